@@ -126,7 +126,7 @@ def along(
     """Forces and moments, or other outputs, on the way through motions (6) from rest."""
     memory, rows = spring.at_rest(), []
     for six in motions:
-        out, memory = spring.evolve(preload, 0.0, Place.of(six), (0.0,) * 6, memory)
+        out, memory = spring.evolve(preload, 0.0, Place(six), (0.0,) * 6, memory)
         rows.append(np.array([float(out[name]) for name in names]))
     return rows
 

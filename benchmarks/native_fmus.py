@@ -113,7 +113,7 @@ def trajectories(name: str) -> dict[str, np.ndarray]:
 def pass_through(name: str) -> dict[str, str]:
     """C sources of an FMU that passes its inputs on."""
     inputs, outputs = PASS_THROUGH[name]
-    paths = [p for p in generate.runtime() if p.parent.name != "fmi" or p.stem in NATIVE]
+    paths = [p for p in generate.runtime() if p.parent.name != "fmi" or p.stem in (*NATIVE, "alike")]
     files = {p.name: p.read_text(encoding="utf-8") for p in paths}
     rows = [
         "time",

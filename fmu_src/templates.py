@@ -1,4 +1,4 @@
-"""HTML pages from jinja templates."""
+"""Pages and C from jinja templates."""
 
 from pathlib import Path
 
@@ -13,13 +13,13 @@ FRAME = Path(__file__).with_name("native")
 
 
 def template(path: Path, *shared: Path) -> jinja2.Template:
-    """A template; what it prints is escaped, an unknown name is an error; `number` prints a value.
+    """A template; a page escapes what it prints, an unknown name is an error; `number` prints a value.
 
     shared : folders of templates that it extends or imports, beside its own
     """
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader([path.parent, *shared]),
-        autoescape=True,
+        autoescape=path.suffix == ".html",
         trim_blocks=True,
         lstrip_blocks=True,
         undefined=jinja2.StrictUndefined,

@@ -35,21 +35,6 @@ class Listed(NamedTuple):
         return isinstance(self.start, bool)
 
 
-class ModelStructureUnknown(NamedTuple):
-    """An output and what it depends on: {value reference: dependenciesKind}.
-
-    state, rate : whether it is a continuous state, or the rate of one
-    knowns  : at communication points and events
-    initial : in initialization mode
-    """
-
-    reference: int
-    state: bool
-    rate: bool
-    knowns: dict[int, str]
-    initial: dict[int, str]
-
-
 def listed(model: Model, parameters: ParameterFile) -> list[Listed]:
     """All variables in the order of their value references, which count from 1."""
     values = parameters.flat
@@ -105,38 +90,33 @@ def unit_definitions(variables: Sequence[Listed]) -> Element:
     return definitions
 
 
-def _unknowns(model: Model, variability: str) -> list[ModelStructureUnknown]:
-    """All outputs with their dependencies; `variability` is that of the parameters."""
-    outputs = [v.name for v in model.outputs]
-    names = [*(v.name for v in model.inputs), *outputs, *model.parameter_fields()]
-    index = {name: reference for reference, name in enumerate(names, start=1)}
-    parameters = {index[name]: "dependent" for name in model.parameter_fields()}
-    rows = []
-    for i, output in enumerate(outputs):
-        knowns, initial = {}, {}
-        for name in sorted(model.depends(output), key=index.__getitem__):
-            linear = model.linear.get(output, {}).get(name)
-            knowns[index[name]] = {None: "dependent", "parameters": variability}.get(linear, "constant")
-            # during initialization parameters still change, so only a number is a known factor
-            initial[index[name]] = "constant" if linear == "constant" else "dependent"
-        state, rate = i < model.states, model.rate(i)
-        rows.append(ModelStructureUnknown(index[output], state, rate, knowns, initial | parameters))
-    return rows
-
-
 def model_structure(model: Model, variability: str, version: str = "2") -> Element:
-    """The element ModelStructure of a version of FMI; in 2.0 a variable's index is its value reference."""
-    root, entries = Element("ModelStructure"), _unknowns(model, variability)
-    for fmi2, fmi3, rows in (
-        ("Outputs", "Output", [(u.reference, u.knowns) for u in entries]),
-        ("Derivatives", "ContinuousStateDerivative", [(u.reference, u.knowns) for u in entries if u.rate]),
-        ("InitialUnknowns", "InitialUnknown", [(u.reference, u.initial) for u in entries if not u.state]),
+    """The element ModelStructure of a version of FMI; in 2.0 a variable's index is its value reference.
+
+    variability : of the parameters
+    """
+    outputs, parameters = [v.name for v in model.outputs], list(model.parameter_fields())
+    names = [*(v.name for v in model.inputs), *outputs, *parameters]
+    index = {name: reference for reference, name in enumerate(names, start=1)}
+    rates = [name for i, name in enumerate(outputs) if model.rate(i)]
+    later = {"constant": "constant", "parameters": variability}
+    initial = {"constant": "constant"}  # parameters still change, so only a number is a known factor
+    root = Element("ModelStructure")
+    for fmi2, fmi3, unknowns, kinds, beside in (
+        ("Outputs", "Output", outputs, later, []),
+        ("Derivatives", "ContinuousStateDerivative", rates, later, []),
+        ("InitialUnknowns", "InitialUnknown", outputs[model.states :], initial, parameters),
     ):
-        group = SubElement(root, fmi2) if rows and version == "2" else root
+        group = SubElement(root, fmi2) if unknowns and version == "2" else root
         tag, key = ("Unknown", "index") if version == "2" else (fmi3, "valueReference")
-        for reference, knowns in rows:
-            own = {"dependencies": " ".join(map(str, knowns)), "dependenciesKind": " ".join(knowns.values())}
-            SubElement(group, tag, {key: str(reference)} | own)
+        for name in unknowns:
+            linear = model.linear.get(name, {})
+            knowns = [*sorted(model.depends(name), key=index.__getitem__), *beside]
+            own = {
+                "dependencies": " ".join(str(index[known]) for known in knowns),
+                "dependenciesKind": " ".join(kinds.get(linear.get(n, ""), "dependent") for n in knowns),
+            }
+            SubElement(group, tag, {key: str(index[name])} | own)
     return root
 
 

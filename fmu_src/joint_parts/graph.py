@@ -183,7 +183,7 @@ def _regimes(spots: Spots) -> tuple[list[Number], list[Spots]]:
     ]
 
 
-def law_functions(g: Graph, law: Any, table: Sequence[str], state: Any = None) -> None:
+def law_functions(g: Graph, law: Any, table: Sequence[str], state: Any) -> None:
     """The interface law: what the inversion, the tables and the outputs need of it."""
     spots, u = law.spots(), ca.SX.sym("u")
     switches, regimes = _regimes(spots)
@@ -201,12 +201,11 @@ def law_functions(g: Graph, law: Any, table: Sequence[str], state: Any = None) -
         rows = [f(name, u) for name in ("load", *table) for f in (regime.total, regime.slope)]
         doc = f"log-area -> total and slope of load, {', '.join(table)}"
         g.add(f"law_table_{k}", doc, [u], rows)
-        if state is not None:
-            y = ca.vertcat(*map(ca.SX, state(regime, u)))
-            slope = ca.jacobian(y, u)
-            doc = "log-area -> state, its slopes, theirs, slope of the load's slope less m times it"
-            rows = [y, slope, ca.jacobian(slope, u), _bend_of_load(regime, u)]
-            g.add(f"law_state_{k}", doc, [u], ca.densify(ca.vertcat(*rows)).nz)
+        y = ca.vertcat(*map(ca.SX, state(regime, u)))
+        slope = ca.jacobian(y, u)
+        doc = "log-area -> state, its slopes, theirs, slope of the load's slope less m times it"
+        rows = [y, slope, ca.jacobian(slope, u), _bend_of_load(regime, u)]
+        g.add(f"law_state_{k}", doc, [u], ca.densify(ca.vertcat(*rows)).nz)
 
 
 def _bend_of_load(spots: Spots, u: Number) -> Number:

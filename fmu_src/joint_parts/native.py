@@ -54,25 +54,22 @@ def quadrature(prefix: str, nodes: Any) -> Definitions:
     return places | weights
 
 
-Named = Sequence[tuple[ModuleType, str]]
-"""Numbers of the package that C has under the same name: modules and names."""
-NUMBERS: Named = (
-    (curve, "MAX_ERROR"),
-    (interface, "LEAST"),
-    (interface, "MOST"),
-    (interface, "FLATTEST"),
-    (interface, "STEEPEST"),
-    (interface, "CLOSE"),
-    (interface, "NOTHING"),
-    (interface, "SIDE"),
-)
-COUNTS: Named = ((curve, "FINEST"), (interface, "MOST_STEPS"))
+Named = Mapping[ModuleType, Sequence[str]]
+"""{module: names} of numbers of the package that C has under the same name."""
+NUMBERS: Named = {
+    curve: ("MAX_ERROR",),
+    interface: ("LEAST", "MOST", "FLATTEST", "STEEPEST", "CLOSE", "NOTHING", "SIDE"),
+}
+COUNTS: Named = {curve: ("FINEST",), interface: ("MOST_STEPS",)}
 """Of every joint with tables: real numbers, and whole ones."""
 
 
-def named(numbers: Named, counts: Named = ()) -> Definitions:
+def named(numbers: Named, counts: Named) -> Definitions:
     """Numbers of the package, as they are now."""
-    counted, real = ({name: getattr(module, name) for module, name in pairs} for pairs in (counts, numbers))
+    counted, real = (
+        {name: getattr(module, name) for module, names in given.items() for name in names}
+        for given in (counts, numbers)
+    )
     return Definitions(counted, real)
 
 

@@ -17,8 +17,8 @@ def _model(
     doc: str,
     inputs: Sequence[Variable],
     outputs: Sequence[Variable],
-    states: int,
     ramp: Ramp,
+    states: int = 0,
 ) -> Model:
     return Model(
         name=parameters.__name__,
@@ -40,6 +40,12 @@ def _model(
     )
 
 
+_TORQUE = (
+    (Variable("tau_in", "N.m", "torque that is added"),),
+    (Variable("tau", "N.m", "torque"),),
+    Ramp("tau_in", 1.0, 1e-3, 1e-3),
+)
+"""Inputs, outputs and ramp of a torque over time."""
 PARTNERS: dict[str, Model] = {
     model.name: model
     for model in (
@@ -55,8 +61,8 @@ PARTNERS: dict[str, Model] = {
                 Variable("w", "rad/s", "speed", 1e-1),
                 Variable("a", "rad/s2", "acceleration", 1e2),
             ),
-            2,
             Ramp("tau_a", 1.0, 1e-3, 1e-3),
+            states=2,
         ),
         _model(
             TranslationalMass,
@@ -70,23 +76,19 @@ PARTNERS: dict[str, Model] = {
                 Variable("v", "m/s", "speed", 1e-3),
                 Variable("a", "m/s2", "acceleration", 1e2),
             ),
-            2,
             Ramp("f_a", 1e3, 1.0, 1e-5),
+            states=2,
         ),
         _model(
             TorqueProfile,
             "Torque over time: a ramp that stays and a pulse, without corners",
-            (Variable("tau_in", "N.m", "torque that is added"),),
-            (Variable("tau", "N.m", "torque"),),
-            0,
-            Ramp("tau_in", 1.0, 1e-3, 1e-3),
+            *_TORQUE,
         ),
         _model(
             ForceProfile,
             "Force over time: a ramp that stays and a pulse, without corners",
             (Variable("f_in", "N", "force that is added", 1e3),),
             (Variable("f", "N", "force", 1e3),),
-            0,
             Ramp("f_in", 1e3, 1.0, 1e-3),
         ),
         _model(
@@ -97,16 +99,12 @@ PARTNERS: dict[str, Model] = {
                 Variable("w_in", "rad/s", "speed that is added"),
             ),
             (Variable("phi", "rad", "angle"), Variable("w", "rad/s", "speed")),
-            0,
             Ramp("phi_in", 1.0, 1e-3, 1e-3),
         ),
         _model(
             TorqueCurve,
             "Torque over time: a Bernstein polynomial, held before and after it",
-            (Variable("tau_in", "N.m", "torque that is added"),),
-            (Variable("tau", "N.m", "torque"),),
-            0,
-            Ramp("tau_in", 1.0, 1e-3, 1e-3),
+            *_TORQUE,
         ),
     )
 }

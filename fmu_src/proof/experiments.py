@@ -53,7 +53,10 @@ def experiments(model: Model, parameters: ParameterFile) -> list[ReferenceExperi
         _experiment(model, parameters, "smoke-test", "smoke test", "a few loads", {}, FEW),
         _experiment(model, parameters, "validation", "load ramp", "the default experiment", {}, RAMP),
         *_loop(model, parameters),
-        *_models(model, parameters),
+        *(
+            _experiment(model, parameters, "validation", f"model {file.name}", "a shipped model", own, FEW)
+            for file, own in models(model, parameters)[1:]
+        ),
         *_neighbours(model, parameters),
         *_samples(model, parameters),
     ]
@@ -131,13 +134,6 @@ def _results(
     own = {name: value for name, value in settings.items() if name not in start}
     values = changed(parameters.values, own) if own else parameters.values
     return results(model, values, start | {n: v for n, v in settings.items() if n in start}, drive)
-
-
-def _models(model: Model, parameters: ParameterFile) -> Iterator[ReferenceExperiment]:
-    for file, differing in models(model, parameters)[1:]:
-        yield _experiment(
-            model, parameters, "validation", f"model {file.name}", "a shipped model", differing, FEW
-        )
 
 
 def _loop(model: Model, parameters: ParameterFile) -> Iterator[ReferenceExperiment]:

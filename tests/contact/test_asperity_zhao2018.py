@@ -79,7 +79,7 @@ class Paper:
 
 @given(law=zhao_laws, u=log_areas)
 def test_totals_are_sums_over_spots(law, u):
-    paper, s = Paper(law), zhao2018.spots(law)
+    paper, s = Paper(law), law.spots()
     largest = paper.ac * np.exp(u)
     stick = (1 - law.traction_ratio) ** (1 / 3)
     D, x = paper.D, 1 - paper.D / 2
@@ -106,7 +106,7 @@ def test_totals_are_sums_over_spots(law, u):
 
 @given(law=zhao_laws, u=st.floats(0.1, 20.0))
 def test_state_is_made_of_the_sums(law, u):
-    paper, s = Paper(law), zhao2018.spots(law)
+    paper, s = Paper(law), law.spots()
     state = law.state(u)
     largest = paper.ac * np.exp(u)
     for symbol, name in {

@@ -125,7 +125,7 @@ def test_a_bracket_slips_under_a_lever_as_its_elements_do(monkeypatch):
     angles = np.linspace(0.0, 2.0 * np.pi, 25)
     memory, start = spring.at_rest(), spring.tightened(joint.preload, 0.0)
     for six in np.outer(np.sin(angles), there) + np.outer(1.0 - np.cos(angles), back):
-        place = Place.of(six)
+        place = Place(six)
         memory = spring.evolve(joint.preload, 0.0, place, (0.0,) * 6, memory)[1]
         after = spring.memory.split(memory)
         opened = place.apart(spring.shape) + spring.modes.opening @ after["amplitude"]

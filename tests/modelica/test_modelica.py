@@ -430,7 +430,8 @@ def test_bolted_component_slips_as_the_package(rumoca: Any, bolted: BoltedJointS
     memory, preload, rows = bolted.at_rest(), 9e3, []  # of the component's own record
     limit = bolted.joint.mu * preload * bolted.joint.n_bolts
     for x, y, z in zip(*(found[f"joint.s_rel[{i}]"][first] for i in (1, 2, 3)), strict=True):
-        out, memory = bolted.evolve(preload, 0.0, Place((x, y, z)), (0.0,) * 6, memory)
+        place = Place(np.array([x, y, z, 0.0, 0.0, 0.0]))
+        out, memory = bolted.evolve(preload, 0.0, place, (0.0,) * 6, memory)
         rows.append([out["f_x"], out["f_y"], out["f_z"], out["E_loss"]])
     exact = np.array(rows).T
     for i in (1, 2):

@@ -66,15 +66,12 @@ def _given_torque(model: Model) -> bool:
     return model.inputs[0].name == "tau"
 
 
-NUMBERS: Named = (
-    (spring, "SOFTEST"),
-    (spring, "STIFFEST"),
-    (hysteresis, "NEAREST"),
-    (hysteresis, "REVERSAL"),
-    (hysteresis, "SETTLED"),
-    (friction, "TURNED"),
-)
-COUNTS: Named = ((hysteresis, "MOST_CORRECTIONS"), (hysteresis, "SLIDERS"), (friction, "BRAKES"))
+NUMBERS: Named = {
+    spring: ("SOFTEST", "STIFFEST"),
+    hysteresis: ("NEAREST", "REVERSAL", "SETTLED"),
+    friction: ("TURNED",),
+}
+COUNTS: Named = {hysteresis: ("MOST_CORRECTIONS", "SLIDERS"), friction: ("BRAKES",)}
 """Numbers of the package that the C has under the same name."""
 
 

@@ -15,6 +15,7 @@ _ONE = 0x3FF0000000000000
 _STEP = 1 << 45
 """Bits from place to place."""
 _DIGITS = 60
+_PI = Decimal("3.1415926535897932384626433832795028841971693993751058209749445923078164")
 _ERF_PER_PLACE, _ERF_END, _N_ERF = 4, 6, 15
 _N_EXPM1, _N_WAVE = 13, 8
 
@@ -24,7 +25,7 @@ def tables() -> str:
     """Text of elementary_tables.h."""
     with localcontext() as context:
         context.prec = _DIGITS
-        log_2, quarter = Decimal(2).ln(), _pi() / 2
+        log_2, quarter = Decimal(2).ln(), _PI / 2
         per_place = log_2 / PLACES
         macros = {
             "LOG_2": _first(log_2, 42),
@@ -98,7 +99,7 @@ def _erf() -> Iterator[list[float]]:
     """Coefficients of Taylor's series of erf about each place: derivatives are Hermite's times a bell."""
     for place in range(_ERF_PER_PLACE * _ERF_END + 1):
         x = Decimal(place) / _ERF_PER_PLACE
-        bell = 2 / _pi().sqrt() * (-x * x).exp()
+        bell = 2 / _PI.sqrt() * (-x * x).exp()
         term = total = x
         n = 0
         while term > Decimal(10) ** -_DIGITS:  # erf(x) = bell times the sum of 2^n x^(2n+1)/(2n+1)!!
@@ -110,18 +111,3 @@ def _erf() -> Iterator[list[float]]:
             row.append(float((-1) ** n * hermite * bell / factorial(n + 1)))
             before, hermite = hermite, 2 * x * hermite - 2 * n * before
         yield row
-
-
-def _pi() -> Decimal:
-    """Machin's formula."""
-    return 4 * (4 * _inverse_tangent(5) - _inverse_tangent(239))
-
-
-def _inverse_tangent(n: int) -> Decimal:
-    """arctan(1/n)."""
-    total, power, k = Decimal(0), Decimal(1) / n, 0
-    while power > Decimal(10) ** -(_DIGITS + 5):
-        total += (-1) ** k * power / (2 * k + 1)
-        power /= n * n
-        k += 1
-    return total

@@ -4,13 +4,13 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import casadi as ca
-import jinja2
 
 from jointfmu.joints.model import Model
 
 from ...joint_parts.c_text import array, number, string
 from ...joint_parts.graph import Graph
 from ...joint_parts.native import NativePart, shared_definitions
+from ...templates import template
 from .emit import HELPERS, function
 
 _SHORT = 150
@@ -38,7 +38,7 @@ def law_c(g: Graph, model: Model, part: NativePart) -> tuple[str, str]:
     given = shared_definitions(part.shared) | part.definitions(g, model)
     variables = [v.name for v in (*model.inputs, *model.outputs)]
     watched = [f"{{{variables.index(o.variable)}, {string(o.doc)}}}" for o in model.outside]
-    header = _template().render(
+    header = template(Path(__file__).with_name("law.h")).render(
         counts={**_counts(g, model, part, count), **given.counts},
         macros={name: number(value) for name, value in given.macros.items()},
         tabulated=part.tabulated,
@@ -51,15 +51,7 @@ def law_c(g: Graph, model: Model, part: NativePart) -> tuple[str, str]:
     )
     bodies += [_limits(g)] if part.tabulated else []
     bodies += [array(f"const double {declared}", rows) for declared, rows in given.arrays.items()]
-    return header, '#include "law.h"\n\n' + "\n".join(bodies)
-
-
-def _template() -> jinja2.Template:
-    """That of law.h."""
-    environment = jinja2.Environment(
-        trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined, keep_trailing_newline=True
-    )
-    return environment.from_string(Path(__file__).with_name("law.h").read_text(encoding="utf-8"))
+    return header + "\n", '#include "law.h"\n\n' + "\n".join(bodies)
 
 
 def _functions(g: Graph) -> dict[str, str]:

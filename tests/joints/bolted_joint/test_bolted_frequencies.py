@@ -110,7 +110,7 @@ def test_frames_that_are_turned_about_the_normal(degrees: float) -> None:
     rates, rest = (0.0,) * 6, spring.at_rest()
 
     def shear(u: Array) -> Array:
-        place = Place((float(u[0]), float(u[1]), -1e-7))
+        place = Place(np.array([*u[:2], -1e-7, 0.0, 0.0, 0.0]))
         found, _ = spring.evolve(PRELOAD, 0.0, place, rates, rest)
         return np.array([found["f_x"], found["f_y"]], dtype=float)
 

@@ -71,7 +71,7 @@ def embedded(joint, path):
 
 def at(spring, *six, memory=None, preload=PRELOAD, moment=0.0):
     start = spring.at_rest() if memory is None else memory
-    return spring.evolve(preload, moment, Place.of(np.array(six)), STILL, start)
+    return spring.evolve(preload, moment, Place(np.array(six)), STILL, start)
 
 
 def stiffness(spring):

@@ -181,7 +181,7 @@ def _bolt_forces(spring: BoltedJointSpring, preload: float, moment: float, opens
     memory, pulls, forces = spring.at_rest(), [], []
     names = [bolt_force(j) for j in range(len(spring.modes.bolts))]
     for s in opens * np.linspace(0.0, BEYOND, 25):
-        place = Place.of(np.array([0.0, 0.0, s, 0.0, 0.0, 0.0]))
+        place = Place(np.array([0.0, 0.0, s, 0.0, 0.0, 0.0]))
         out, memory = spring.evolve(preload, moment, place, (0.0,) * 6, memory)
         pulls.append(-1e-3 * float(out["f_z"]))
         forces.append([1e-3 * float(out[name]) for name in names])

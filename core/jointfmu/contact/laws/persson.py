@@ -6,44 +6,25 @@ variance over all waves is (E* slope/2)^2.
 """
 
 from statistics import NormalDist
-from typing import Protocol
 
 import numpy as np
 
 from ...quantity import Number, erf, where
-from ..surface import Elastic, contact_modulus
 
 _SHORT = 0.2
 """Variance over the square of the hardness [1] up to which images converge faster than waves."""
 
 
-class Sloped(Protocol):
-    """What the real area depends on."""
+def contact_shares(pressure: Number, hardness: Number, spread: Number) -> tuple[Number, Number]:
+    """Shares [1] of the nominal area in elastic and in plastic contact at pressures (...) [Pa].
 
-    @property
-    def slope(self) -> Number:
-        """Rms slope of both surfaces together [1]."""
+    hardness : [Pa], above the pressure
+    spread   : E* slope/2 [Pa], the pressure's standard deviation over all waves
 
-    @property
-    def side1(self) -> Elastic:
-        """First body."""
-
-    @property
-    def side2(self) -> Elastic:
-        """Second body."""
-
-    @property
-    def H(self) -> Number:
-        """Hardness [Pa]."""
-
-
-def contact_shares(law: Sloped, pressure: Number) -> tuple[Number, Number]:
-    """Shares [1] of the nominal area in elastic and in plastic contact at pressures (...) [Pa], below H.
-
-    Elastic alone it is erf(sqrt(2) p/(E* slope)). The plastic share carries what the elastic one does not.
+    Elastic alone it is erf(p/(sqrt(2) spread)). The plastic share carries what the elastic one does not.
     """
-    x = np.minimum(pressure / law.H, 1.0)
-    t = (0.5 * contact_modulus(law.side1, law.side2) * law.slope / law.H) ** 2
+    x = np.minimum(pressure / hardness, 1.0)
+    t = (spread / hardness) ** 2
     early, late = _images(x, np.minimum(t, _SHORT)), _waves(x, np.maximum(t, _SHORT))
     elastic, load = (where(t < _SHORT, a, b) for a, b in zip(early, late, strict=True))
     return elastic, np.maximum(x - load, 0.0)

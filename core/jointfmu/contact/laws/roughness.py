@@ -17,7 +17,7 @@ from ..surface import Elastic, contact_modulus, contact_shear_modulus
 from .persson import bearing_curve, contact_shares
 
 FEW_SPOTS = 0.3
-"""C [1] of the stiffness of few spots, see `spots`: from boundary elements (benchmarks/roughness_law.py)."""
+"""C [1] of the stiffness in `Roughness.spots`: from boundary elements (benchmarks/roughness_law.py)."""
 FIRST_TOUCH = 1e-6
 """Load [1] over E* h longest_wave where the stiffness begins: far less than one hill carries."""
 FEWEST = 0.3
@@ -63,12 +63,37 @@ class Roughness(RoughSurfaces, Checked):
         return self.H
 
     def spots(self) -> Spots:
-        """Load, stiffness and works over u = ln(p/p_1), see `spots`."""
-        return spots(self)
+        """Quantities of the area A_0 as sums of powers of the pressure, exp(u) = p/p_1.
+
+        load       : [N] p A_0
+        normal     : [N/m] p A_0/h (1/gamma + C x^(-hurst/(1 + hurst))), x = p A_0/(E* h longest_wave)
+        tangential : [N/m] rho times normal
+        elastic_work : [J] gamma h p A_0, the energy of p ~ exp(approach/(gamma h))
+        plastic_work : [J] none: the load has been there before
+        """
+        p, A, rho = first_pressure(self), self.A_0, self.shear_ratio()
+        many = p * A / (self.gamma * self.h)
+        few = FEW_SPOTS * p * A / self.h * FIRST_TOUCH ** (-self.hurst / (1.0 + self.hurst))
+        power = 1.0 / (1.0 + self.hurst)
+        return Spots(
+            reference=A,
+            m=_SIZE,
+            weight=1.0 / _SIZE,
+            terms={
+                "load": (_grown(p * A, 1.0),),
+                "normal": (_grown(many, 1.0), _grown(few, power)),
+                "tangential": (_grown(rho * many, 1.0), _grown(rho * few, power)),
+                "elastic_work": (_grown(self.gamma * self.h * p * A, 1.0),),
+                "plastic_work": (_grown(0.0, 1.0),),
+            },
+            onset=0.0,
+            sized=False,
+        )
 
     def areas(self, pressure: Number) -> tuple[Number, Number]:
         """Real area [m2] and its elastic part [1] at pressures (...) [Pa] (Persson 2001)."""
-        elastic, plastic = contact_shares(self, pressure)
+        spread = 0.5 * contact_modulus(self.side1, self.side2) * self.slope
+        elastic, plastic = contact_shares(pressure, self.H, spread)
         return self.A_0 * (elastic + plastic), elastic / (elastic + plastic)
 
     def unproven(self, least: float, most: float) -> list[str]:
@@ -89,55 +114,45 @@ class Roughness(RoughSurfaces, Checked):
         return found
 
     def shear_ratio(self) -> Number:
-        """K_T/K_N [1]."""
-        return shear_ratio(self)
+        """rho = K_T/K_N = 4 G'/E* [1] without slip; 2 (1 - nu)/(2 - nu) for equal bodies (Mindlin 1949)."""
+        return 4.0 * contact_shear_modulus(self.side1, self.side2) / contact_modulus(self.side1, self.side2)
 
     def loss_factor(self) -> Number:
         """eta_t [1] at the traction ratio."""
         return loss_factor(self.traction_ratio)
 
     def state(self, u: Number) -> dict[str, Number]:
-        """Everything the law defines at the log-pressure u, see `state`."""
-        return state(self, u)
+        """Interface quantities (whole area A_0) at the log-pressure u; p = p_1 exp(u).
+
+        F [N], approach [m]; K_N, K_T [N/m] of small motions, and of a plastic contact on unloading;
+        K_loading [N/m] while the load grows for the first time and spots flow: the elastic approach and that
+        of a bearing curve, by the part of the load that plastic spots carry; A_r [m2], elastic_fraction [1];
+        eta_n [1], none; eta_t [1]; friction_limit [N] = mu F, slip_length [m] s_0 = mu gamma h/rho of many
+        spots.
+        """
+        s, p = self.spots(), first_pressure(self) * np.exp(u)
+        F, K_N = s.total("load", u), s.total("normal", u)
+        A_r, elastic = self.areas(p)
+        flowing = np.minimum((1.0 - elastic) * A_r * self.H / F, 1.0)
+        loading = 1.0 / (1.0 / K_N + flowing * self.h / (F * bearing_curve(p / self.H)))
+        return {
+            "F": F,
+            "K_N": K_N,
+            "K_T": s.total("tangential", u),
+            "A_r": A_r,
+            "eta_n": 0.0 * F,
+            "eta_t": self.loss_factor() + 0.0 * F,
+            "K_loading": loading,
+            "approach": approach(self, p),
+            "elastic_fraction": elastic,
+            "friction_limit": self.mu * F,
+            "slip_length": self.mu * self.gamma * self.h / self.shear_ratio() + 0.0 * F,
+        }
 
 
 def first_pressure(law: Roughness) -> Number:
     """p_1 [Pa], the pressure of u = 0: FIRST_TOUCH of E* h longest_wave over A_0."""
     return FIRST_TOUCH * contact_modulus(law.side1, law.side2) * law.h * law.longest_wave / law.A_0
-
-
-def shear_ratio(law: Roughness) -> Number:
-    """rho = K_T/K_N = 4 G'/E* [1] without slip; 2 (1 - nu)/(2 - nu) for equal bodies (Mindlin 1949)."""
-    return 4.0 * contact_shear_modulus(law.side1, law.side2) / contact_modulus(law.side1, law.side2)
-
-
-def spots(law: Roughness) -> Spots:
-    """Quantities of the area A_0 as sums of powers of the pressure, exp(u) = p/p_1.
-
-    load       : [N] p A_0
-    normal     : [N/m] p A_0/h (1/gamma + C x^(-hurst/(1 + hurst))), x = p A_0/(E* h longest_wave)
-    tangential : [N/m] rho times normal
-    elastic_work : [J] gamma h p A_0, the energy of p ~ exp(approach/(gamma h))
-    plastic_work : [J] none: the load has been there before
-    """
-    p, A, rho = first_pressure(law), law.A_0, shear_ratio(law)
-    many = p * A / (law.gamma * law.h)
-    few = FEW_SPOTS * p * A / law.h * FIRST_TOUCH ** (-law.hurst / (1.0 + law.hurst))
-    power = 1.0 / (1.0 + law.hurst)
-    return Spots(
-        reference=A,
-        m=_SIZE,
-        weight=1.0 / _SIZE,
-        terms={
-            "load": (_grown(p * A, 1.0),),
-            "normal": (_grown(many, 1.0), _grown(few, power)),
-            "tangential": (_grown(rho * many, 1.0), _grown(rho * few, power)),
-            "elastic_work": (_grown(law.gamma * law.h * p * A, 1.0),),
-            "plastic_work": (_grown(0.0, 1.0),),
-        },
-        onset=0.0,
-        sized=False,
-    )
 
 
 def _grown(c: Number, power: Number) -> Power:
@@ -164,31 +179,3 @@ def approach(law: Roughness, p: Number) -> Number:
     x = p * law.A_0 / (contact_modulus(law.side1, law.side2) * law.h * law.longest_wave)
     bend = law.hurst / (1.0 + law.hurst)
     return law.gamma * law.h / bend * np.log1p(x**bend / (law.gamma * FEW_SPOTS))
-
-
-def state(law: Roughness, u: Number) -> dict[str, Number]:
-    """Interface quantities (whole area A_0) at the log-pressure u; p = p_1 exp(u).
-
-    F [N], approach [m]; K_N, K_T [N/m] of small motions, and of a plastic contact on unloading;
-    K_loading [N/m] while the load grows for the first time and spots flow: the elastic approach and that of a
-    bearing curve, by the part of the load that plastic spots carry; A_r [m2], elastic_fraction [1];
-    eta_n [1], none; eta_t [1]; friction_limit [N] = mu F, slip_length [m] s_0 = mu gamma h/rho of many spots.
-    """
-    s, p = spots(law), first_pressure(law) * np.exp(u)
-    F, K_N = s.total("load", u), s.total("normal", u)
-    A_r, elastic = law.areas(p)
-    flowing = np.minimum((1.0 - elastic) * A_r * law.H / F, 1.0)
-    loading = 1.0 / (1.0 / K_N + flowing * law.h / (F * bearing_curve(p / law.H)))
-    return {
-        "F": F,
-        "K_N": K_N,
-        "K_T": s.total("tangential", u),
-        "A_r": A_r,
-        "eta_n": 0.0 * F,
-        "eta_t": law.loss_factor() + 0.0 * F,
-        "K_loading": loading,
-        "approach": approach(law, p),
-        "elastic_fraction": elastic,
-        "friction_limit": law.mu * F,
-        "slip_length": law.mu * law.gamma * law.h / law.shear_ratio() + 0.0 * F,
-    }

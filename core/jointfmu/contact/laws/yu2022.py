@@ -60,7 +60,65 @@ class Yu2022(Checked):
 
     @cached_property
     def _spots(self) -> Spots:
-        return spots(self)
+        """Size distribution (lambda times Eq. 44) and the four regimes of one spot.
+
+        Quantities: load [N], Eqs. 38, 36, 34, 64; normal [N/m], Eqs. 72-75; area, elastic_area [m2].
+        """
+        stages, areas = _stages(self)
+        log_nec = critical_log_area(self, 1.0)
+        plastic, middle = (critical_log_area(self, area) - log_nec for area in areas)
+        a = np.exp(log_nec)
+        f1, f2 = shape_factors(self.e)
+        E = modulus(self)
+        (b1, p1), (b2, p2) = curvature_terms(self)
+        c1, c2 = b1 * np.exp(-p1 * log_nec), b2 * np.exp(-p2 * log_nec)
+        elastic = 2.0 * f2 * E / 3.0 * (a / (np.pi * f1)) ** 1.5
+        hertz = 2.0 * f2 * E * np.sqrt(a / (np.pi * f1))
+
+        def sharpness(t: Number) -> Number:
+            """(1/R_x + 1/R_y) over its value at a_nec [1]."""
+            return (c1 * np.exp(-p1 * t) + c2 * np.exp(-p2 * t)) / (c1 + c2)
+
+        def stage_load(stage: Stage, lower: Number, upper: Number) -> Smooth:
+            def load(t: Number) -> Number:
+                sharp = sharpness(t)
+                ratio = np.exp(t) * sharp**2  # a/a_nec of this spot's own curvature
+                return elastic * (c1 + c2) * stage.c * (ratio / stage.m) ** (stage.d / stage.n) / sharp**2
+
+            return Smooth(load, lower, upper)
+
+        def stage_stiffness(stage: Stage, lower: Number, upper: Number) -> Smooth:
+            def stiffness(t: Number) -> Number:
+                sharp = sharpness(t)
+                ratio = np.exp(t) * sharp**2
+                power = (ratio / stage.m) ** ((stage.d - 1.0) / stage.n)
+                return hertz / 1.5 * stage.c * stage.d * power / sharp
+
+            return Smooth(stiffness, lower, upper)
+
+        first, second = stages
+        H = self.hardness
+        return Spots(
+            reference=a,
+            m=size_exponent(self),
+            weight=self.lambda_,
+            terms={
+                "load": (
+                    Power(H * a, 1.0, upper=plastic),
+                    stage_load(second, plastic, middle),
+                    stage_load(first, middle, 0.0),
+                    Power(elastic * c1, 1.5 - p1, 0.0),
+                    Power(elastic * c2, 1.5 - p2, 0.0),
+                ),
+                "normal": (
+                    stage_stiffness(second, plastic, middle),
+                    stage_stiffness(first, middle, 0.0),
+                    Power(hertz, 0.5, 0.0),
+                ),
+                "area": (Power(a, 1.0),),
+                "elastic_area": (Power(a, 1.0, 0.0),),
+            },
+        )
 
     def state(self, u: Number) -> dict[str, Number]:
         """F [N] Eq. 60; K_N [N/m] Eq. 76; A_r [m2] Eq. 54; elastic_fraction [1]."""
@@ -135,68 +193,6 @@ def critical_log_area(law: Yu2022, multiple: float) -> Number:
         value = t + 2.0 * np.log(first + second) - target
         t = t - value / (1.0 - 2.0 * (p1 * first + p2 * second) / (first + second))
     return t
-
-
-def spots(law: Yu2022) -> Spots:
-    """Size distribution (lambda times Eq. 44) and the four regimes of one spot.
-
-    Quantities: load [N], Eqs. 38, 36, 34, 64; normal [N/m], Eqs. 72-75; area, elastic_area [m2].
-    """
-    stages, areas = _stages(law)
-    log_nec = critical_log_area(law, 1.0)
-    plastic, middle = (critical_log_area(law, area) - log_nec for area in areas)
-    a = np.exp(log_nec)
-    f1, f2 = shape_factors(law.e)
-    E = modulus(law)
-    (b1, p1), (b2, p2) = curvature_terms(law)
-    c1, c2 = b1 * np.exp(-p1 * log_nec), b2 * np.exp(-p2 * log_nec)
-    elastic = 2.0 * f2 * E / 3.0 * (a / (np.pi * f1)) ** 1.5
-    hertz = 2.0 * f2 * E * np.sqrt(a / (np.pi * f1))
-
-    def sharpness(t: Number) -> Number:
-        """(1/R_x + 1/R_y) over its value at a_nec [1]."""
-        return (c1 * np.exp(-p1 * t) + c2 * np.exp(-p2 * t)) / (c1 + c2)
-
-    def stage_load(stage: Stage, lower: Number, upper: Number) -> Smooth:
-        def load(t: Number) -> Number:
-            sharp = sharpness(t)
-            ratio = np.exp(t) * sharp**2  # a/a_nec of this spot's own curvature
-            return elastic * (c1 + c2) * stage.c * (ratio / stage.m) ** (stage.d / stage.n) / sharp**2
-
-        return Smooth(load, lower, upper)
-
-    def stage_stiffness(stage: Stage, lower: Number, upper: Number) -> Smooth:
-        def stiffness(t: Number) -> Number:
-            sharp = sharpness(t)
-            ratio = np.exp(t) * sharp**2
-            power = (ratio / stage.m) ** ((stage.d - 1.0) / stage.n)
-            return hertz / 1.5 * stage.c * stage.d * power / sharp
-
-        return Smooth(stiffness, lower, upper)
-
-    first, second = stages
-    H = law.hardness
-    return Spots(
-        reference=a,
-        m=size_exponent(law),
-        weight=law.lambda_,
-        terms={
-            "load": (
-                Power(H * a, 1.0, upper=plastic),
-                stage_load(second, plastic, middle),
-                stage_load(first, middle, 0.0),
-                Power(elastic * c1, 1.5 - p1, 0.0),
-                Power(elastic * c2, 1.5 - p2, 0.0),
-            ),
-            "normal": (
-                stage_stiffness(second, plastic, middle),
-                stage_stiffness(first, middle, 0.0),
-                Power(hertz, 0.5, 0.0),
-            ),
-            "area": (Power(a, 1.0),),
-            "elastic_area": (Power(a, 1.0, 0.0),),
-        },
-    )
 
 
 def _stages(law: Yu2022) -> tuple[tuple[Stage, Stage], tuple[float, float]]:

@@ -46,8 +46,27 @@ class Zhao2018(Checked):
         return self.H
 
     def spots(self) -> Spots:
-        """Regimes of one spot over the size distribution of Eq. 2, reference area a'_c."""
-        return spots(self)
+        """Size distribution (Eq. 2) and regimes; `elastic` spots have t > 0, `plastic` ones t <= 0.
+
+        Quantities: load [N]; normal, tangential [N/m]; area [m2] real; plastic_work [J] (Eq. 15);
+        elastic_work [J] (Eq. 17); loop_area [m3], the sum of a'^(3/2) that Eqs. 24 and 26 need.
+        """
+        D = self.surface.D
+        a = critical_area(self)
+        delta, radius = deformation(self, a), curvature_radius(self, a)
+        modulus = contact_modulus(self.side1, self.side2)
+        work = 8.0 / 15.0 * modulus * np.sqrt(radius) * delta**2.5
+        terms = {
+            "load": (Power(self.H * a, 1.0, upper=0.0), Power(elastic_load(self, a), 1.5 - 0.5 * D, 0.0)),
+            "normal": (Power(normal_stiffness(self, a), 0.5, 0.0),),
+            "tangential": (Power(tangential_stiffness(self, a), 0.5, 0.0),),
+            "area": (Power(a, 1.0, upper=0.0), Power(0.5 * a, 1.0, 0.0)),
+            "plastic_work": (Power(self.H * a * delta, 2.0 - 0.5 * D, upper=0.0),),
+            "elastic_work": (Power(work, 2.5 - D, 0.0),),
+            "loop_area": (Power(a**1.5, 1.5, 0.0),),
+        }
+        weight = domain_extension(D) ** (1.0 - 0.5 * D)
+        return Spots(reference=a, m=0.5 * D, weight=weight, terms=terms)
 
     def shear_ratio(self) -> Number:
         """K_T/K_N [1], the same at every pressure: both sum the square root of the area of elastic spots."""
@@ -58,8 +77,36 @@ class Zhao2018(Checked):
         return mindlin.loss_factor(self.traction_ratio)
 
     def state(self, u: Number) -> dict[str, Number]:
-        """Everything the law defines when the largest spot has log-area `u`."""
-        return state(self, u)
+        """Interface quantities (whole area A_0) for a largest spot of log-area `u` relative to a'_c.
+
+        F [N] Eqs. 9-10; K_N [N/m] Eq. 14; K_T [N/m] Eq. 22; A_r [m2] Eq. 11; W_NP, W_NE [J] Eqs. 16, 18;
+        eta_n [1] Eq. 19; C_N [N.s/m] Eq. 20; W_d, W, W_e [J] Eqs. 24, 26, 27; eta_t [1] Eq. 28;
+        C_T [N.s/m] = eta_t sqrt(mass K_T). Where no spot is elastic (u <= 0) the stiffness is zero and
+        eta_n infinite.
+        """
+        s = self.spots()
+        F, A_r, K_N, K_T = (s.total(name, u) for name in ("load", "area", "normal", "tangential"))
+        plastic, elastic = s.total("plastic_work", u), s.total("elastic_work", u)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            eta_n = np.where(elastic > 0.0, plastic / np.where(elastic > 0.0, elastic, 1.0), np.inf)
+            C_N = np.where(K_N > 0.0, mindlin.viscous_equivalent(eta_n, self.mass, K_N), 0.0)
+        W_d, W = shear_energies(self, F, A_r, s.total("loop_area", u))
+        eta_t = self.loss_factor()
+        return {
+            "F": F,
+            "K_N": K_N,
+            "K_T": K_T,
+            "A_r": A_r,
+            "W_NP": plastic,
+            "W_NE": elastic,
+            "eta_n": eta_n,
+            "C_N": C_N,
+            "W_d": W_d,
+            "W": W,
+            "W_e": W - W_d,
+            "eta_t": eta_t + 0.0 * F,
+            "C_T": mindlin.viscous_equivalent(eta_t, self.mass, K_T),
+        }
 
 
 def critical_area(law: Zhao2018) -> Number:
@@ -119,63 +166,6 @@ def tangential_stiffness(law: Zhao2018, a: Number) -> Number:
     modulus = contact_shear_modulus(law.side1, law.side2)
     stick, _ = mindlin.stick_root(law.traction_ratio)
     return 8.0 * modulus * np.sqrt(a / (2.0 * np.pi)) * stick
-
-
-def spots(law: Zhao2018) -> Spots:
-    """Size distribution (Eq. 2) and regimes; `elastic` spots have t > 0, `plastic` ones t <= 0.
-
-    Quantities: load [N]; normal, tangential [N/m]; area [m2] real; plastic_work [J] (Eq. 15);
-    elastic_work [J] (Eq. 17); loop_area [m3], the sum of a'^(3/2) that Eqs. 24 and 26 need.
-    """
-    D = law.surface.D
-    a = critical_area(law)
-    delta, radius = deformation(law, a), curvature_radius(law, a)
-    modulus = contact_modulus(law.side1, law.side2)
-    work = 8.0 / 15.0 * modulus * np.sqrt(radius) * delta**2.5
-    terms = {
-        "load": (Power(law.H * a, 1.0, upper=0.0), Power(elastic_load(law, a), 1.5 - 0.5 * D, 0.0)),
-        "normal": (Power(normal_stiffness(law, a), 0.5, 0.0),),
-        "tangential": (Power(tangential_stiffness(law, a), 0.5, 0.0),),
-        "area": (Power(a, 1.0, upper=0.0), Power(0.5 * a, 1.0, 0.0)),
-        "plastic_work": (Power(law.H * a * delta, 2.0 - 0.5 * D, upper=0.0),),
-        "elastic_work": (Power(work, 2.5 - D, 0.0),),
-        "loop_area": (Power(a**1.5, 1.5, 0.0),),
-    }
-    weight = domain_extension(D) ** (1.0 - 0.5 * D)
-    return Spots(reference=a, m=0.5 * D, weight=weight, terms=terms)
-
-
-def state(law: Zhao2018, u: Number) -> dict[str, Number]:
-    """Interface quantities (whole area A_0) for a largest spot of log-area `u` relative to a'_c.
-
-    F [N] Eqs. 9-10; K_N [N/m] Eq. 14; K_T [N/m] Eq. 22; A_r [m2] Eq. 11; W_NP, W_NE [J] Eqs. 16, 18;
-    eta_n [1] Eq. 19; C_N [N.s/m] Eq. 20; W_d, W, W_e [J] Eqs. 24, 26, 27; eta_t [1] Eq. 28;
-    C_T [N.s/m] = eta_t sqrt(mass K_T). Where no spot is elastic (u <= 0) the stiffness is zero and
-    eta_n infinite.
-    """
-    s = spots(law)
-    F, A_r, K_N, K_T = (s.total(name, u) for name in ("load", "area", "normal", "tangential"))
-    plastic, elastic = s.total("plastic_work", u), s.total("elastic_work", u)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        eta_n = np.where(elastic > 0.0, plastic / np.where(elastic > 0.0, elastic, 1.0), np.inf)
-        C_N = np.where(K_N > 0.0, mindlin.viscous_equivalent(eta_n, law.mass, K_N), 0.0)
-    W_d, W = shear_energies(law, F, A_r, s.total("loop_area", u))
-    eta_t = law.loss_factor()
-    return {
-        "F": F,
-        "K_N": K_N,
-        "K_T": K_T,
-        "A_r": A_r,
-        "W_NP": plastic,
-        "W_NE": elastic,
-        "eta_n": eta_n,
-        "C_N": C_N,
-        "W_d": W_d,
-        "W": W,
-        "W_e": W - W_d,
-        "eta_t": eta_t + 0.0 * F,
-        "C_T": mindlin.viscous_equivalent(eta_t, law.mass, K_T),
-    }
 
 
 def shear_energies(law: Zhao2018, F: Number, A_r: Number, loop_area: Number) -> tuple[Number, Number]:

@@ -12,30 +12,27 @@ from ...quantity import Array, Number, where
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """Where side 2 is, from the tightened state: shift s_rel [m], small turn theta [rad]."""
+    """Where side 2 is, from the tightened state.
 
-    shift: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    turn: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    six : (6) shift s_rel [m] along x, y, z and small turn theta [rad] about them
+    """
 
-    @classmethod
-    def of(cls, six: Array) -> "Place":
-        """From shift and turn (6)."""
-        x, y, z, about_x, about_y, about_z = map(float, six)
-        return cls((x, y, z), (about_x, about_y, about_z))
+    six: Array
 
     @property
-    def six(self) -> Array:
-        """Shift and turn (6)."""
-        return np.array([*self.shift, *self.turn])
+    def rigid(self) -> Array:
+        """Shift x, y and turn about the normal (3)."""
+        return self.six[[0, 1, 5]]
+
+    @property
+    def normal(self) -> Array:
+        """Shift z and turns about x and y (3)."""
+        return self.six[2:5]
 
     def apart(self, shape: PressureShape) -> Array:
         """How far the sides of the nodes are apart (n) [m]."""
-        x, y = shape.position.T
-        return np.asarray(self.shift[2] + self.turn[0] * y - self.turn[1] * x)
-
-    def along(self, shape: PressureShape) -> Array:
-        """Shift of side 2 along the surface at the nodes (n, 2) [m]."""
-        return along(shape, np.array([self.shift[0], self.shift[1], self.turn[2]]))
+        (x, y), (shift, about_x, about_y) = shape.position.T, self.normal
+        return np.asarray(shift + about_x * y - about_y * x)
 
 
 def along(shape: PressureShape, rigid: Array) -> Array:

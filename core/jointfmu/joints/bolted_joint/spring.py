@@ -21,6 +21,7 @@ from .compliances import Compliances
 from .contact import (
     STICKS,
     Place,
+    along,
     elastic_shear,
     further_tangent,
     loop_sums,
@@ -180,7 +181,7 @@ class BoltedJointSpring:
         preload [N] per bolt, moment [N.m], s_rel [m] (z positive apart), v_rel [m/s], small turn theta [rad]
         of side 2 about the joint's centre, omega [rad/s].
         """
-        place = Place(s_rel, theta)
+        place = Place(np.array([*s_rel, *theta]))
         return self.evolve(preload, moment, place, (*v_rel, *omega), self.at_rest())[0]
 
     @property
@@ -215,7 +216,7 @@ class BoltedJointSpring:
             lifted = stiffer = np.zeros_like(tight)
         else:
             limit, rho = joint.mu * tight, shear_ratio(joint)
-            *parts, lifted, stiffer = elastic_shear(limit, rho, at.derivatives, *place.along(shape).T)
+            *parts, lifted, stiffer = elastic_shear(limit, rho, at.derivatives, *along(shape, place.rigid).T)
             none, nodes = np.zeros_like(tight), shape.as_patches()
             traction, tangent = (
                 np.stack(each, axis=-1) for each in ([*parts[:2], none], [*parts[2:], none, none, none])
@@ -223,7 +224,7 @@ class BoltedJointSpring:
             shear, after = traction_sums(nodes, traction) | tangent_sums(nodes, tangent), memory
             shear["loss"] = 0.0
         plastic, elastic = self.works(at.derivatives[0])
-        shift = self.shift(place.six[[0, 1, 5]], amplitude)
+        shift = self.shift(place.rigid, amplitude)
         size = np.sqrt(np.sum(shift**2, axis=1))
         sums: dict[str, Number] = {
             **over_plane(shape, "tightened", tight),
@@ -236,7 +237,8 @@ class BoltedJointSpring:
         }
         if joint.elastic:
             sums |= self._whole_sums(at, place, amplitude, sums["loop_energy"])
-        out = outputs(joint, sums, place.shift, place.turn, rates, np.max(at.derivatives[0]))
+        s_rel, theta = place.six.reshape(2, 3).tolist()
+        out = outputs(joint, sums, s_rel, theta, rates, np.max(at.derivatives[0]))
         return out | self._bolt_forces(preload, moment, place, amplitude), after
 
     def compliances(self, preload: float, moment: float = 0.0) -> Compliances:
@@ -282,12 +284,12 @@ class BoltedJointSpring:
             {
                 "state": way.state,
                 "loss": loss,
-                "rigid": [*place.shift[:2], place.turn[2]],
+                "rigid": place.rigid,
                 "reference": way.reference,
                 "lowest": way.lowest,
                 "approach": way.approach,
                 "force": moved.force,
-                "apart": [place.shift[2], *place.turn[:2]] if elastic else 0.0,
+                "apart": place.normal if elastic else 0.0,
                 "amplitude": np.pad(amplitude, (0, MODES - amplitude.size)),
                 "tangent": moved.tangent if elastic else 0.0,
             }

@@ -76,9 +76,10 @@ class Trial:
 
 @dataclass(frozen=True, slots=True)
 class Trials:
-    """The joint on its way from a memory to a place, see `whole.Trials`.
+    """The joint on its way from a memory to a place.
 
     starts : approaches [m] of points (n) and patches (m) at tightening
+    told   : the inputs at its end, as text
     """
 
     spring: "BoltedJointSpring"
@@ -93,7 +94,7 @@ class Trials:
             return self.end
         before = self.before
         first = np.array([*before["rigid"][:2], *before["apart"], before["rigid"][2]])
-        return Place.of(first + part * (self.end.six - first))
+        return Place(first + part * (self.end.six - first))
 
     def approaches(self, place: Place, amplitude: Array) -> tuple[Array, Array]:
         """Approaches [m] of points (n) and patches (m)."""
@@ -111,10 +112,9 @@ class Trials:
 
     def _way(self, place: Place, amplitude: Array, approach: Array, further: Array) -> Way:
         spring, before = self.spring, self.before
-        rigid = np.array([*place.shift[:2], place.turn[2]])
-        shift = spring.shift(rigid - before["rigid"], amplitude - before["amplitude"][: amplitude.size])
+        shift = spring.shift(place.rigid - before["rigid"], amplitude - before["amplitude"][: amplitude.size])
         shift += further
-        return spring.way(before, approach, shift, rigid)
+        return spring.way(before, approach, shift, place.rigid)
 
     def apart(self, at: Trial) -> Array:
         """How far the patches come apart by the modes (m, k) [1], as the points that press on them do."""

@@ -5,6 +5,8 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
+
 from ...mechanics.steps import STEPS
 from ...quantity import Number, where
 from ..model import BEYOND, Loop, Model, Outside, Ramp, Values, Variable
@@ -24,7 +26,7 @@ def _three(v: Values, name: str) -> tuple[float, float, float]:
 
 
 def _evolve(spring: BoltedJointSpring, v: Values, memory: Any) -> tuple[Mapping[str, float], Any]:
-    place = Place(_three(v, "s_rel"), _three(v, "theta"))
+    place = Place(np.array([*_three(v, "s_rel"), *_three(v, "theta")]))
     rates = (*_three(v, "v_rel"), *_three(v, "omega"))
     return spring.evolve(v["preload"], v["moment"], place, rates, memory)
 

@@ -14,7 +14,6 @@ follows is the stiffness of the whole, W the tangents of points, patches and bol
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Protocol, TypeVar
 
 import numpy as np
 
@@ -22,6 +21,7 @@ from ...mechanics.footprint.shape import FrictionPatches, PressureShape
 from ...quantity import Array
 from .bodies import Modes
 from .contact import Place, shifts
+from .trials import Trial, Trials
 
 CLOSE = 1e-13
 """Residual over the sum of all forces [1] at which the bodies are in equilibrium: round-off of the sums."""
@@ -35,50 +35,6 @@ CHORD = 0.03
 """Part of the residual that a step leaves [1] below which the next one takes the derivative on."""
 LEAST_PART = 1e-4
 """Least part of a motion that is gone at once [1]."""
-
-
-class Forces(Protocol):
-    """What a trial has at the points and patches."""
-
-    @property
-    def pressure(self) -> Array:
-        """(n) [Pa]."""
-
-    @property
-    def stiffness(self) -> Array:
-        """(n) [Pa/m]."""
-
-    @property
-    def traction(self) -> Array:
-        """(m, 3) [Pa] against the shift, along x, y and around the centres."""
-
-    @property
-    def tangent(self) -> Array:
-        """(m, 6) [Pa/m], see `Moved`."""
-
-
-T = TypeVar("T", bound=Forces)
-
-
-class Trials(Protocol[T]):
-    """A joint on its way to a place, for amplitudes of its modes."""
-
-    @property
-    def told(self) -> str:
-        """The place, as text."""
-
-    def place(self, part: float) -> Place:
-        """Where it is after a part [1] of the way."""
-
-    def at(self, place: Place, amplitude: Array) -> T:
-        """Forces there at amplitudes (k) [m]."""
-
-    def apart(self, at: T) -> Array:
-        """How far the patches come apart by the modes (m, k) [1]."""
-
-    def slopes(self, place: Place, amplitude: Array) -> Array:
-        """Derivatives (m, 3, 4) [Pa/m] of the traction by shifts along x, y and around the centres, and by
-        coming apart."""
 
 
 @dataclass(frozen=True)
@@ -117,19 +73,19 @@ class Whole:
 
     def stretch(self, place: Place, amplitude: Array) -> Array:
         """Of the bolts (b) [m]."""
-        return np.asarray(self.seats @ _normal(place) + self.modes.stretch @ amplitude)
+        return np.asarray(self.seats @ place.normal + self.modes.stretch @ amplitude)
 
-    def residual(self, at: Forces, tight: Array, place: Place, amplitude: Array) -> tuple[Array, float]:
+    def residual(self, at: Trial, tight: Array, place: Place, amplitude: Array) -> tuple[Array, float]:
         """r (k) [N] of amplitudes (k) [m], and what of it is round-off [N]; tight (n) [Pa] at tightening."""
         modes = self.modes
-        rigid, own = self.seats @ _normal(place), modes.stretch @ amplitude
+        rigid, own = self.seats @ place.normal, modes.stretch @ amplitude
         bolts = self.bolt * (rigid + own)
         r = modes.stiffness * amplitude + modes.stretch.T @ bolts
         r = r - modes.opening.T @ (self.weight * (at.pressure - tight))
         for axis in range(3):
             r = r + modes.patch[axis].T @ (self.patch * at.traction[:, axis])
         sizes = self.weight @ (at.pressure + tight), np.sum(np.abs(bolts)), self.patch @ np.abs(at.traction)
-        apart = np.max(np.abs(self.points @ _normal(place)))
+        apart = np.max(np.abs(self.points @ place.normal))
         forces = sum(np.sum(size) for size in sizes) + (self.weight @ at.stiffness) * apart * CANCELS
         return r, float(CLOSE * forces)
 
@@ -162,8 +118,8 @@ class Whole:
         return np.asarray(H[:6, :6] - H[:6, 6:] @ np.linalg.solve(H[6:, 6:], H[6:, :6]))
 
     def solve(
-        self, trials: "Trials[T]", tight: Array, start: Array, first: Array, J: Array
-    ) -> tuple[Array, T]:
+        self, trials: Trials, tight: Array, start: Array, first: Array, J: Array
+    ) -> tuple[Array, Trial]:
         """Amplitudes (k) [m] in equilibrium at the end of a motion, and the trial there.
 
         start, first : amplitudes (k) [m] at its beginning, and at its end in the tangent of the beginning
@@ -205,8 +161,8 @@ class Whole:
         return np.asarray(J)
 
     def _newton(
-        self, trials: "Trials[T]", part: float, tight: Array, amplitude: Array, J: Array
-    ) -> tuple[Array, T] | float:
+        self, trials: Trials, part: float, tight: Array, amplitude: Array, J: Array
+    ) -> tuple[Array, Trial] | float:
         """Equilibrium at a part [1] of the motion, from amplitudes (k) [m] and a derivative J (k, k), or
         the residual [N] left."""
         place, close = trials.place(part), 1.0 if part == 1.0 else ROUGH
@@ -250,7 +206,3 @@ def _apart(position: Array) -> Array:
     """How far places (n, 2) [m] come apart by s_z, theta_x, theta_y: (n, 3)."""
     x, y = position.T
     return np.stack([np.ones_like(x), y, -x], axis=-1)
-
-
-def _normal(place: Place) -> Array:
-    return np.array([place.shift[2], *place.turn[:2]])

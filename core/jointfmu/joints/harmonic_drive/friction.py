@@ -45,11 +45,6 @@ TURNED = 0.1
 """Time [s] for which a drive that turns at initialization has turned before."""
 
 
-def viscous_factor(drive: Drive, temperature: Number) -> Number:
-    """Viscous friction (...) [1] over friction_viscous times speed at temperatures (...) [K]."""
-    return drive.temperature_factor * _thinning(drive.viscous_temperature_coefficient, temperature)
-
-
 def dry_factor(drive: Drive, temperature: Number) -> Number:
     """Limit of dry friction (...) [1] at temperatures (...) [K], over that of the parameters."""
     return drive.temperature_factor * _thinning(drive.dry_temperature_coefficient, temperature)
@@ -80,7 +75,8 @@ def limits(drive: Drive, w1: Number, tau: Number, temperature: Number = REFERENC
 
 def viscous(drive: Drive, w1: Number, temperature: Number = REFERENCE) -> Number:
     """Torque (...) [N.m] of the grease at speeds (...) [rad/s] of the wave generator and temperatures [K]."""
-    return viscous_factor(drive, temperature) * drive.friction_viscous * w1
+    factor = drive.temperature_factor * _thinning(drive.viscous_temperature_coefficient, temperature)
+    return factor * drive.friction_viscous * w1
 
 
 def stiffness(drive: Drive) -> Number:

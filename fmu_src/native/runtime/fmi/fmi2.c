@@ -1,17 +1,10 @@
 /* Entry points of FMI 2.0: each is a thin layer over instance.h. */
-#include "instance.h"
-
 #include "fmi2Functions.h"
 
-/* fmi2Status has the numbers of Status. */
-#define STATUS(call) ((fmi2Status)(call))
-
-/* An entry point that is one call for the instance c. */
-#define ENTRY(name, parameters, call) \
-    fmi2Status name parameters        \
-    {                                 \
-        return STATUS(call);          \
-    }
+#define FMI(Name) fmi2##Name
+typedef fmi2Component Component;
+typedef fmi2Real Real;
+#include "alike.h"
 
 /* Messages: the host takes them as a format of printf, in which FMI 2 gives '#' a meaning too. */
 static void deliver(const Reporter *to, const char *name, Status status, const char *category,
@@ -37,11 +30,6 @@ const char *fmi2GetTypesPlatform(void)
     return fmi2TypesPlatform;
 }
 
-const char *fmi2GetVersion(void)
-{
-    return fmi2Version;
-}
-
 fmi2Component fmi2Instantiate(fmi2String instanceName, fmi2Type fmuType, fmi2String fmuGUID,
                               fmi2String fmuResourceLocation, const fmi2CallbackFunctions *functions,
                               fmi2Boolean visible, fmi2Boolean loggingOn)
@@ -51,23 +39,13 @@ fmi2Component fmi2Instantiate(fmi2String instanceName, fmi2Type fmuType, fmi2Str
     if (!functions)
         return NULL; /* and no way to say why */
     const Reporter reporter = {deliver, (void (*)(void))functions->logger, functions->componentEnvironment};
-    if (fmuType != fmi2ModelExchange && fmuType != fmi2CoSimulation) {
-        instance_not_made(__func__, instanceName, reporter,
-                          "the type is unknown; expected fmi2ModelExchange or "
-                          "fmi2CoSimulation");
-        return NULL;
-    }
+    if (fmuType != fmi2ModelExchange && fmuType != fmi2CoSimulation)
+        return instance_not_made(__func__, instanceName, reporter,
+                                 "the type is unknown; expected fmi2ModelExchange or fmi2CoSimulation");
     return instance_new(__func__, 2, fmuType == fmi2ModelExchange ? MODEL_EXCHANGE : CO_SIMULATION,
                         instanceName, fmuGUID, loggingOn != fmi2False, reporter);
 }
 
-void fmi2FreeInstance(fmi2Component c)
-{
-    instance_free(c);
-}
-
-ENTRY(fmi2SetDebugLogging, (fmi2Component c, fmi2Boolean on, size_t n, const fmi2String categories[]),
-      instance_select_logs(c, __func__, on != fmi2False, n, categories))
 ENTRY(fmi2SetupExperiment,
       (fmi2Component c, fmi2Boolean toleranceDefined, fmi2Real tolerance, fmi2Real startTime,
        fmi2Boolean stopTimeDefined, fmi2Real stopTime),
@@ -75,10 +53,8 @@ ENTRY(fmi2SetupExperiment,
                               stopTimeDefined != fmi2False, stopTime))
 ENTRY(fmi2EnterInitializationMode, (fmi2Component c),
       instance_change(c, __func__, BOTH | INSTANTIATED, INITIALIZATION))
-ENTRY(fmi2ExitInitializationMode, (fmi2Component c), instance_initialize(c, __func__))
 ENTRY(fmi2Terminate, (fmi2Component c),
       instance_change(c, __func__, BOTH | EVENT | CONTINUOUS_TIME | STEP, TERMINATED))
-ENTRY(fmi2Reset, (fmi2Component c), instance_restart(c, __func__))
 
 /* Variables: all are Real but for a few Boolean parameters */
 
@@ -118,7 +94,7 @@ ENTRY(fmi2GetDirectionalDerivative,
        size_t nKnown, const fmi2Real seed[], fmi2Real result[]),
       instance_derivative(c, __func__, unknowns, nUnknown, knowns, nKnown, seed, result))
 
-/* Model exchange: no event indicators, and states in systems only */
+/* Model exchange, beside what both standards have alike */
 
 ENTRY(fmi2EnterEventMode, (fmi2Component c),
       instance_change(c, __func__, MODEL_EXCHANGE | EVENT | CONTINUOUS_TIME, EVENT))
@@ -135,26 +111,8 @@ fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo *eventInfo)
     return STATUS(status);
 }
 
-fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean noSetFMUStatePriorToCurrentPoint,
-                                       fmi2Boolean *enterEventMode, fmi2Boolean *terminateSimulation)
-{
-    (void)noSetFMUStatePriorToCurrentPoint;
-    if (!instance_may_complete(c, __func__, enterEventMode, terminateSimulation))
-        return fmi2Error;
-    *enterEventMode = *terminateSimulation = fmi2False;
-    return STATUS(N_MEMORY ? instance_accept(c) : OK);
-}
-
-ENTRY(fmi2EnterContinuousTimeMode, (fmi2Component c),
-      instance_change(c, __func__, MODEL_EXCHANGE | EVENT, CONTINUOUS_TIME))
-ENTRY(fmi2SetTime, (fmi2Component c, fmi2Real time), instance_set_time(c, __func__, time))
-ENTRY(fmi2SetContinuousStates, (fmi2Component c, const fmi2Real x[], size_t nx),
-      instance_set_states(c, __func__, x, nx))
 ENTRY(fmi2GetDerivatives, (fmi2Component c, fmi2Real derivatives[], size_t nx),
       instance_get_rates(c, __func__, derivatives, nx))
-ENTRY(fmi2GetEventIndicators, (fmi2Component c, fmi2Real indicators[], size_t ni),
-      ((void)indicators, instance_none(c, __func__, MODEL_EXCHANGE | READABLE, "event indicators", ni)))
-ENTRY(fmi2GetContinuousStates, (fmi2Component c, fmi2Real x[], size_t nx), instance_get_states(c, __func__, x, nx))
 ENTRY(fmi2GetNominalsOfContinuousStates, (fmi2Component c, fmi2Real nominal[], size_t nx),
       instance_get_nominals(c, __func__, READABLE | INSTANTIATED, nominal, nx))
 
@@ -190,8 +148,7 @@ static fmi2Status last_status(const Instance *m, const char *function, const voi
         return fmi2Error;
     if (kind == expected)
         return fmi2OK;
-    Text text;
-    text_clear(&text);
+    Text text = {0};
     text_print(&text,
                "%s: there is no such status; expected fmi2GetStatus with fmi2DoStepStatus, "
                "fmi2GetRealStatus with fmi2LastSuccessfulTime, fmi2GetBooleanStatus with fmi2Terminated, "

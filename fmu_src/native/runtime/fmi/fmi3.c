@@ -1,17 +1,10 @@
 /* Entry points of FMI 3.0: each is a thin layer over instance.h. */
-#include "instance.h"
-
 #include "fmi3Functions.h"
 
-/* fmi3Status has the numbers of Status. */
-#define STATUS(call) ((fmi3Status)(call))
-
-/* An entry point that is one call for the instance c. */
-#define ENTRY(name, parameters, call) \
-    fmi3Status name parameters        \
-    {                                 \
-        return STATUS(call);          \
-    }
+#define FMI(Name) fmi3##Name
+typedef fmi3Instance Component;
+typedef fmi3Float64 Real;
+#include "alike.h"
 
 typedef const fmi3ValueReference *References;
 
@@ -25,11 +18,6 @@ static void deliver(const Reporter *to, const char *name, Status status, const c
 }
 
 /* Life */
-
-const char *fmi3GetVersion(void)
-{
-    return fmi3Version;
-}
 
 fmi3Instance fmi3InstantiateModelExchange(fmi3String instanceName, fmi3String instantiationToken,
                                           fmi3String resourcePath, fmi3Boolean visible, fmi3Boolean loggingOn,
@@ -53,12 +41,10 @@ fmi3Instance fmi3InstantiateCoSimulation(fmi3String instanceName, fmi3String ins
     (void)resourcePath, (void)visible, (void)earlyReturnAllowed; /* a step never ends early */
     (void)requiredIntermediateVariables, (void)intermediateUpdate;
     const Reporter reporter = {deliver, (void (*)(void))logMessage, instanceEnvironment};
-    if (eventModeUsed) {
-        instance_not_made(__func__, instanceName, reporter,
-                          "event mode is wanted in co-simulation; expected eventModeUsed = false, as the model "
-                          "description says");
-        return NULL;
-    }
+    if (eventModeUsed)
+        return instance_not_made(__func__, instanceName, reporter,
+                                 "event mode is wanted in co-simulation; expected eventModeUsed = false, as the "
+                                 "model description says");
     Instance *m =
         instance_new(__func__, 3, CO_SIMULATION, instanceName, instantiationToken, loggingOn, reporter);
     if (m && nRequiredIntermediateVariables)
@@ -77,18 +63,10 @@ fmi3Instance fmi3InstantiateScheduledExecution(
     (void)instantiationToken, (void)resourcePath, (void)visible, (void)loggingOn;
     (void)clockUpdate, (void)lockPreemption, (void)unlockPreemption;
     const Reporter reporter = {deliver, (void (*)(void))logMessage, instanceEnvironment};
-    instance_not_made(__func__, instanceName, reporter,
-                      "this FMU has no scheduled execution; expected model exchange or co-simulation");
-    return NULL;
+    return instance_not_made(__func__, instanceName, reporter,
+                             "this FMU has no scheduled execution; expected model exchange or co-simulation");
 }
 
-void fmi3FreeInstance(fmi3Instance c)
-{
-    instance_free(c);
-}
-
-ENTRY(fmi3SetDebugLogging, (fmi3Instance c, fmi3Boolean on, size_t n, const fmi3String categories[]),
-      instance_select_logs(c, __func__, on, n, categories))
 ENTRY(fmi3EnterInitializationMode,
       (fmi3Instance c, fmi3Boolean toleranceDefined, fmi3Float64 tolerance, fmi3Float64 startTime,
        fmi3Boolean stopTimeDefined, fmi3Float64 stopTime),
@@ -96,10 +74,8 @@ ENTRY(fmi3EnterInitializationMode,
                               stopTime) == OK
           ? instance_change(c, __func__, BOTH | INSTANTIATED, INITIALIZATION)
           : ERROR)
-ENTRY(fmi3ExitInitializationMode, (fmi3Instance c), instance_initialize(c, __func__))
 ENTRY(fmi3Terminate, (fmi3Instance c),
       instance_change(c, __func__, BOTH | EVENT | CONTINUOUS_TIME | STEP | RECONFIGURATION, TERMINATED))
-ENTRY(fmi3Reset, (fmi3Instance c), instance_restart(c, __func__))
 
 /* There is no structural parameter: these modes only take other values of the tunable ones. */
 
@@ -209,8 +185,7 @@ static bool has_dependencies(const Instance *m, const char *function, fmi3ValueR
 fmi3Status fmi3GetNumberOfVariableDependencies(fmi3Instance c, fmi3ValueReference valueReference,
                                                size_t *nDependencies)
 {
-    if (!has_dependencies(c, __func__, valueReference) ||
-        !instance_has(c, __func__, "nDependencies", nDependencies))
+    if (!has_dependencies(c, __func__, valueReference) || !HAS(nDependencies))
         return fmi3Error;
     *nDependencies = n_dependencies(valueReference);
     return fmi3OK;
@@ -226,10 +201,8 @@ fmi3Status fmi3GetVariableDependencies(fmi3Instance c, fmi3ValueReference depend
         return fmi3Error;
     if (nDependencies == 0)
         return fmi3OK;
-    if (!instance_has(c, __func__, "elementIndicesOfDependent", elementIndicesOfDependent) ||
-        !instance_has(c, __func__, "independents", independents) ||
-        !instance_has(c, __func__, "elementIndicesOfIndependents", elementIndicesOfIndependents) ||
-        !instance_has(c, __func__, "dependencyKinds", dependencyKinds))
+    if (!HAS(elementIndicesOfDependent) || !HAS(independents) || !HAS(elementIndicesOfIndependents) ||
+        !HAS(dependencyKinds))
         return fmi3Error;
     for (uint32_t i = 0, n = 0; i < N_INPUTS + N_STATES; i++)
         if (depends[dependent - FIRST_OUTPUT][i]) {
@@ -278,44 +251,19 @@ fmi3Status fmi3UpdateDiscreteStates(fmi3Instance c, fmi3Boolean *discreteStatesN
                                     fmi3Boolean *valuesOfContinuousStatesChanged,
                                     fmi3Boolean *nextEventTimeDefined, fmi3Float64 *nextEventTime)
 {
-    if (!instance_allows(c, __func__, BOTH | EVENT) ||
-        !instance_has(c, __func__, "discreteStatesNeedUpdate", discreteStatesNeedUpdate) ||
-        !instance_has(c, __func__, "terminateSimulation", terminateSimulation) ||
-        !instance_has(c, __func__, "nominalsOfContinuousStatesChanged",
-                      nominalsOfContinuousStatesChanged) ||
-        !instance_has(c, __func__, "valuesOfContinuousStatesChanged",
-                      valuesOfContinuousStatesChanged) ||
-        !instance_has(c, __func__, "nextEventTimeDefined", nextEventTimeDefined) ||
-        !instance_has(c, __func__, "nextEventTime", nextEventTime))
+    if (!instance_allows(c, __func__, BOTH | EVENT) || !HAS(discreteStatesNeedUpdate) ||
+        !HAS(terminateSimulation) || !HAS(nominalsOfContinuousStatesChanged) ||
+        !HAS(valuesOfContinuousStatesChanged) || !HAS(nextEventTimeDefined) || !HAS(nextEventTime))
         return fmi3Error;
     *discreteStatesNeedUpdate = *terminateSimulation = *nominalsOfContinuousStatesChanged = fmi3False;
     *valuesOfContinuousStatesChanged = fmi3False;
     return STATUS(instance_update_event(c, nextEventTimeDefined, nextEventTime));
 }
 
-/* Model exchange: no event indicators, and states in systems only */
+/* Model exchange, beside what both standards have alike */
 
-fmi3Status fmi3CompletedIntegratorStep(fmi3Instance c, fmi3Boolean noSetFMUStatePriorToCurrentPoint,
-                                       fmi3Boolean *enterEventMode, fmi3Boolean *terminateSimulation)
-{
-    (void)noSetFMUStatePriorToCurrentPoint;
-    if (!instance_may_complete(c, __func__, enterEventMode, terminateSimulation))
-        return fmi3Error;
-    *enterEventMode = *terminateSimulation = fmi3False;
-    return STATUS(N_MEMORY ? instance_accept(c) : OK);
-}
-
-ENTRY(fmi3EnterContinuousTimeMode, (fmi3Instance c),
-      instance_change(c, __func__, MODEL_EXCHANGE | EVENT, CONTINUOUS_TIME))
-ENTRY(fmi3SetTime, (fmi3Instance c, fmi3Float64 time), instance_set_time(c, __func__, time))
-ENTRY(fmi3SetContinuousStates, (fmi3Instance c, const fmi3Float64 x[], size_t nx),
-      instance_set_states(c, __func__, x, nx))
 ENTRY(fmi3GetContinuousStateDerivatives, (fmi3Instance c, fmi3Float64 derivatives[], size_t nx),
       instance_get_rates(c, __func__, derivatives, nx))
-ENTRY(fmi3GetEventIndicators, (fmi3Instance c, fmi3Float64 indicators[], size_t ni),
-      ((void)indicators, instance_none(c, __func__, MODEL_EXCHANGE | READABLE, "event indicators", ni)))
-ENTRY(fmi3GetContinuousStates, (fmi3Instance c, fmi3Float64 x[], size_t nx),
-      instance_get_states(c, __func__, x, nx))
 ENTRY(fmi3GetNominalsOfContinuousStates, (fmi3Instance c, fmi3Float64 nominal[], size_t nx),
       instance_get_nominals(c, __func__, READABLE, nominal, nx))
 
@@ -339,20 +287,16 @@ ENTRY(fmi3GetOutputDerivatives,
       ((void)refs, (void)orders, (void)values,
        instance_none(c, __func__, CO_SIMULATION | STEP | TERMINATED, "derivatives of outputs", nRefs | n)))
 
-fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 currentCommunicationPoint,
-                      fmi3Float64 communicationStepSize, fmi3Boolean noSetFMUStatePriorToCurrentPoint,
-                      fmi3Boolean *eventHandlingNeeded, fmi3Boolean *terminateSimulation,
-                      fmi3Boolean *earlyReturn, fmi3Float64 *lastSuccessfulTime)
+fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 currentCommunicationPoint, fmi3Float64 communicationStepSize,
+                      fmi3Boolean noSetFMUStatePriorToCurrentPoint, fmi3Boolean *eventHandlingNeeded,
+                      fmi3Boolean *terminateSimulation, fmi3Boolean *earlyReturn, fmi3Float64 *lastSuccessfulTime)
 {
-    const Instance *m = instance;
+    const Instance *m = c;
     (void)noSetFMUStatePriorToCurrentPoint;
-    if (!instance_has(m, __func__, "eventHandlingNeeded", eventHandlingNeeded) ||
-        !instance_has(m, __func__, "terminateSimulation", terminateSimulation) ||
-        !instance_has(m, __func__, "earlyReturn", earlyReturn) ||
-        !instance_has(m, __func__, "lastSuccessfulTime", lastSuccessfulTime))
+    if (!HAS(eventHandlingNeeded) || !HAS(terminateSimulation) || !HAS(earlyReturn) || !HAS(lastSuccessfulTime))
         return fmi3Error;
     *eventHandlingNeeded = *terminateSimulation = *earlyReturn = fmi3False;
-    const Status status = instance_step(instance, __func__, currentCommunicationPoint, communicationStepSize);
+    const Status status = instance_step(c, __func__, currentCommunicationPoint, communicationStepSize);
     if (m)
         *lastSuccessfulTime = m->now.values[0];
     return STATUS(status);

@@ -49,8 +49,7 @@ static bool tabulate(Instance *m)
         m->parameters_changed = false;
         return true;
     }
-    Text why;
-    text_clear(&why);
+    Text why = {0};
     for (size_t i = 0; i < N_PARAMETERS; i++)
         check_parameter(&why, &variables[FIRST_PARAMETER + i], parameters[i]);
     const bool again = m->tables_right, allowed = why.length == 0;
@@ -98,8 +97,7 @@ static void warn(Instance *m, unsigned outside)
     const double *values = m->now.values;
     for (unsigned bit = 1; bit && bit <= outside; bit <<= 1)
         if (outside & bit) {
-            Text text;
-            text_clear(&text);
+            Text text = {0};
             joint_warning(m->joint, values + FIRST_INPUT, values + FIRST_OUTPUT, bit, &text);
             instance_report(m, WARNING, LOG_WARNINGS, text.line);
         }

@@ -35,8 +35,7 @@ void instance_report(const Instance *m, Status status, unsigned category, const 
 
 Status instance_refuse(const Instance *m, const char *function, const char *format, ...)
 {
-    Text text;
-    text_clear(&text);
+    Text text = {0};
     text_print(&text, "%s: ", function);
     va_list values;
     va_start(values, format);
@@ -46,12 +45,12 @@ Status instance_refuse(const Instance *m, const char *function, const char *form
     return ERROR;
 }
 
-void instance_not_made(const char *function, const char *name, Reporter reporter, const char *what)
+Instance *instance_not_made(const char *function, const char *name, Reporter reporter, const char *what)
 {
-    Text text;
-    text_clear(&text);
+    Text text = {0};
     text_print(&text, "%s: %s", function, what);
     reporter.deliver(&reporter, name ? name : "", ERROR, categories_known[0], text.line);
+    return NULL;
 }
 
 /* false: unknown. */
@@ -106,8 +105,7 @@ bool instance_forbids(const Instance *m, const char *function, unsigned where)
     if (!(m->now.kind & where))
         return instance_refuse(m, function, "called for %s; expected %s", exchange ? "model exchange" : "co-simulation",
                                exchange ? "co-simulation" : "model exchange") == OK;
-    Text text;
-    text_clear(&text);
+    Text text = {0};
     text_add(&text, "called in ");
     add_modes(&text, m->now.mode);
     text_add(&text, "; expected ");
@@ -124,24 +122,20 @@ bool instance_forbids(const Instance *m, const char *function, unsigned where)
 Instance *instance_new(const char *function, unsigned version, unsigned kind, const char *name,
                        const char *token, bool logging_on, Reporter reporter)
 {
-    Text text;
-    text_clear(&text);
+    Text text = {0};
     if (!name || !name[0])
         text_add(&text, "the instance name is empty; expected a name");
     else if (!token || strcmp(token, data.token) != 0)
         text_print(&text, "the token is %q; expected '%s', that of %s", token, data.token, data.name);
-    if (text.length > 0) {
-        instance_not_made(function, name, reporter, text.line);
-        return NULL;
-    }
+    if (text.length > 0)
+        return instance_not_made(function, name, reporter, text.line);
     const size_t name_size = strlen(name) + 1;
     Instance *m = calloc(1, sizeof *m + name_size);
     Joint *joint = calloc(1, joint_size());
     if (!m || !joint) {
         free(m);
         free(joint);
-        instance_not_made(function, name, reporter, "no memory is left; expected some for a new instance");
-        return NULL;
+        return instance_not_made(function, name, reporter, "no memory is left; expected some for a new instance");
     }
     m->joint = joint;
     m->version = version;
@@ -185,8 +179,7 @@ Status instance_restart(Instance *m, const char *function)
 void instance_enter(Instance *m, unsigned mode)
 {
     m->now.mode = mode;
-    Text text;
-    text_clear(&text);
+    Text text = {0};
     text_add(&text, "now in ");
     add_modes(&text, mode);
     instance_report(m, OK, LOG_EVENTS, text.line);
@@ -198,8 +191,7 @@ Status instance_set_experiment(Instance *m, const char *function, double toleran
     if (!instance_allows(m, function, BOTH | INSTANTIATED))
         return ERROR;
     if (!isfinite(start) || (stop_defined && !(stop >= start))) {
-        Text text;
-        text_clear(&text);
+        Text text = {0};
         text_print(&text, "start time %.16g", start);
         if (stop_defined)
             text_print(&text, " and stop time %.16g", stop);

@@ -91,8 +91,8 @@ typedef struct {
 /* NULL with a message if the host's name or token is wrong. */
 Instance *instance_new(const char *function, unsigned version, unsigned kind, const char *name,
                        const char *token, bool logging_on, Reporter reporter);
-/* Say why there is no new instance. */
-void instance_not_made(const char *function, const char *name, Reporter reporter, const char *what);
+/* Say why there is no new instance, and give NULL. */
+Instance *instance_not_made(const char *function, const char *name, Reporter reporter, const char *what);
 void instance_free(Instance *m);
 /* Back to the state after instantiation, where that is allowed and without asking. */
 Status instance_restart(Instance *m, const char *function);
@@ -126,14 +126,6 @@ static inline bool instance_counts(const Instance *m, const char *function, cons
                                    size_t expected)
 {
     return given == expected || instance_refuse(m, function, "%zu %s; expected %zu", given, what, expected) == OK;
-}
-
-/* Whether an integrator step may be completed, and its two answers can be given. */
-static inline bool instance_may_complete(const Instance *m, const char *function, const void *event, const void *end)
-{
-    return instance_allows(m, function, MODEL_EXCHANGE | CONTINUOUS_TIME) &&
-           instance_has(m, function, "enterEventMode", event) &&
-           instance_has(m, function, "terminateSimulation", end);
 }
 
 /* Values as hosts set and read them: values.c */

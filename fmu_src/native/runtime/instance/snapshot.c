@@ -163,26 +163,16 @@ static bool fits(const Instance *m, const char *function, const State *s)
            instance_refuse(m, function, "the state is one of %s; expected one of %s", other, own) == OK;
 }
 
-static SavedState *new_state(const Instance *m, const char *function)
-{
-    SavedState *made = calloc(1, sizeof *made);
-    if (!made) {
-        instance_refuse(m, function, "no memory is left; expected some for a state");
-        return NULL;
-    }
-    memcpy(made->magic, magic, sizeof magic);
-    made->version = m->version;
-    return made;
-}
-
 /* Give a state to the host: in its own, if it gives one back. */
 static Status hand_over(const Instance *m, const char *function, const State *state, void **saved)
 {
     if (*saved && !is_saved(m, function, *saved))
         return ERROR;
-    SavedState *to = *saved ? *saved : new_state(m, function);
+    SavedState *to = *saved ? *saved : calloc(1, sizeof *to);
     if (!to)
-        return ERROR;
+        return instance_refuse(m, function, "no memory is left; expected some for a state");
+    memcpy(to->magic, magic, sizeof magic);
+    to->version = m->version;
     to->state = *state;
     *saved = to;
     return OK;

@@ -6,32 +6,18 @@
 /* Every check below comes in two parts: a short loop for what hosts do in each step (inputs to set, outputs
  * to read), and a long way that takes everything else and finds the words for what is wrong. */
 
-static bool all_of(const uint32_t refs[], size_t n, uint32_t first, uint32_t count)
+/* Whether a reference is one of `count` from the first on. */
+static bool among(uint32_t ref, uint32_t first, uint32_t count)
+{
+    return ref - first < count;
+}
+
+static bool all_among(const uint32_t refs[], size_t n, uint32_t first, uint32_t count)
 {
     bool inside = true;
     for (size_t i = 0; i < n; i++)
-        inside &= refs[i] - first < count;
+        inside &= among(refs[i], first, count);
     return inside;
-}
-
-static bool is_input(uint32_t ref)
-{
-    return ref >= FIRST_INPUT && ref < FIRST_OUTPUT;
-}
-
-static bool is_state(uint32_t ref)
-{
-    return ref >= FIRST_OUTPUT && ref < FIRST_OUTPUT + N_STATES;
-}
-
-static bool is_output(uint32_t ref)
-{
-    return ref >= FIRST_OUTPUT && ref < FIRST_PARAMETER;
-}
-
-static bool is_parameter(uint32_t ref)
-{
-    return ref >= FIRST_PARAMETER && ref < N_VALUES;
 }
 
 /* Say what is wrong with a variable. */
@@ -68,9 +54,10 @@ static bool settable(const Instance *m, const char *function, uint32_t ref, bool
 {
     if (!known(m, function, ref) || !of_type(m, function, ref, boolean))
         return false;
-    if (is_input(ref) || (is_state(ref) && (m->now.mode & (INSTANTIATED | CONFIGURATION | INITIALIZATION))))
+    const bool begins = m->now.mode & (INSTANTIATED | CONFIGURATION | INITIALIZATION);
+    if (among(ref, FIRST_INPUT, N_INPUTS) || (begins && among(ref, FIRST_OUTPUT, N_STATES)))
         return true;
-    if (!is_parameter(ref))
+    if (!among(ref, FIRST_PARAMETER, N_PARAMETERS))
         return refused(m, function, ref,
                        ref == 0 ? " is the independent variable; expected an input or a parameter"
                                 : " is an output; expected an input or a parameter");
@@ -102,11 +89,11 @@ void instance_put(Instance *m, uint32_t ref, double value)
 Status instance_set(Instance *m, const char *function, const uint32_t refs[], size_t n, const double values[])
 {
     const bool quick =
-        m && (m->now.mode & SETTABLE) && refs && values && all_of(refs, n, FIRST_INPUT, N_INPUTS);
+        m && (m->now.mode & SETTABLE) && refs && values && all_among(refs, n, FIRST_INPUT, N_INPUTS);
     if (!quick && !can_set(m, function, refs, n, values, false))
         return ERROR;
     for (size_t i = 0; i < n; i++)
-        if (N_MEMORY && !quick && is_parameter(refs[i]))
+        if (N_MEMORY && !quick && among(refs[i], FIRST_PARAMETER, N_PARAMETERS))
             instance_put(m, refs[i], values[i]);
         else
             m->now.values[refs[i]] = values[i];
@@ -135,8 +122,8 @@ Status instance_set_slopes(Instance *m, const char *function, const uint32_t ref
     for (size_t i = 0; i < n; i++) {
         if (!known(m, function, refs[i]))
             return ERROR;
-        const char *wrong = !is_input(refs[i]) ? " is no input; expected one"
-                            : orders[i] != 1   ? " is given a derivative of another order; expected order 1"
+        const char *wrong = !among(refs[i], FIRST_INPUT, N_INPUTS) ? " is no input; expected one"
+                            : orders[i] != 1 ? " is given a derivative of another order; expected order 1"
                             : !isfinite(values[i])
                                 ? " is given a derivative that is not finite; expected a finite one"
                                 : NULL;
@@ -161,7 +148,7 @@ static bool can_get(Instance *m, const char *function, const uint32_t refs[], si
     for (size_t i = 0; i < n; i++) {
         if (!known(m, function, refs[i]) || !of_type(m, function, refs[i], boolean))
             return false;
-        output |= is_output(refs[i]);
+        output |= among(refs[i], FIRST_OUTPUT, N_OUTPUTS);
     }
     return !output || instance_evaluate(m) == OK;
 }
@@ -169,7 +156,7 @@ static bool can_get(Instance *m, const char *function, const uint32_t refs[], si
 Status instance_get(Instance *m, const char *function, const uint32_t refs[], size_t n, double values[])
 {
     const bool quick = m && !m->dirty && (m->now.mode & READABLE) && refs && values &&
-                       all_of(refs, n, FIRST_OUTPUT, N_OUTPUTS);
+                       all_among(refs, n, FIRST_OUTPUT, N_OUTPUTS);
     if (!quick && !can_get(m, function, refs, n, values, false))
         return ERROR;
     for (size_t i = 0; i < n; i++)
@@ -217,12 +204,12 @@ static bool can_differentiate(Instance *m, const char *function, const uint32_t 
         return false;
     for (size_t i = 0; i < n_unknowns; i++)
         if (!known(m, function, unknowns[i]) ||
-            !(is_output(unknowns[i]) ||
+            !(among(unknowns[i], FIRST_OUTPUT, N_OUTPUTS) ||
               refused(m, function, unknowns[i], " is among the unknowns; expected outputs")))
             return false;
     for (size_t i = 0; i < n_knowns; i++)
         if (!known(m, function, knowns[i]) ||
-            !(is_input(knowns[i]) || is_state(knowns[i]) ||
+            !(among(knowns[i], FIRST_INPUT, N_INPUTS) || among(knowns[i], FIRST_OUTPUT, N_STATES) ||
               refused(m, function, knowns[i], " is among the knowns; expected inputs")))
             return false;
     const size_t n_results = n_unknowns + n_knowns - n;
