@@ -1,10 +1,12 @@
 """The whole bolted joint between its attachments: members, interface and bolts."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from jointfmu_tools.fem.geometry import Assembly, BoltList, Plate
+from jointfmu_tools.fem.reduction.states import Cells
 from jointfmu_tools.fem.whole_joint import ATTACHED, WholeJoint
 
 pytestmark = pytest.mark.slow  # solves finite elements
@@ -68,3 +70,15 @@ def test_each_stiffer_part_makes_a_stiffer_joint():
     bolt, members = 1e9, 1.0 / base.whole[2]
     assert bolted.load_factor == pytest.approx(bolt / (bolt + members), rel=1e-9)
     assert 1.0 / bolted.whole[2] == pytest.approx(bolt + members, rel=1e-9)
+
+
+def test_a_mirrored_side_moves_as_the_mirror_image(monkeypatch):
+    """It is not solved for; but the edges that are held lie at opposite ends, and a softer side is another."""
+    joint = WholeJoint.of(block(nu=0.3), "heads")
+    near = SimpleNamespace(shape=SimpleNamespace(position=joint.interface.centred[::40]))
+    found = Cells.of(joint, near, np.ones(joint.interface.area.size)).moved
+    soft = replace(joint, bodies=(joint.bodies[0], replace(joint.bodies[1], E=1e11)))
+    assert [each.mirrored for each in (joint, soft, WholeJoint.of(block(), "edge"))] == [True, False, False]
+    monkeypatch.setattr(WholeJoint, "mirrored", False)
+    expected = Cells.of(joint, near, np.ones(joint.interface.area.size)).moved
+    assert np.max(np.abs(found - expected)) < 1e-9 * np.max(np.abs(expected))

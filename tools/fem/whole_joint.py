@@ -22,6 +22,8 @@ from .geometry import Assembly
 from .mesh import contact_cells, contact_mesh, plan_of
 
 AXES = (0, 1, 2)
+MIRROR = np.array([1.0, 1.0, -1.0])
+"""Of displacements and places in the plane of the contact."""
 SLACK = 1e-6
 """Distance from a face over the body's size [1] at which a node lies on it."""
 
@@ -85,6 +87,17 @@ class WholeJoint:
         interface = Interface.of(contact_mesh(plan, contact_cells(plan, assembly)))
         bolts = assembly.bolts.positions
         return cls((first, second), (held[0], held[1]), interface, (heads[0], heads[1]), bolts)
+
+    @property
+    def mirrored(self) -> bool:
+        """Whether side 2 is the mirror image of side 1, with its attachment."""
+        first, second = self.bodies
+        return (
+            (first.E, first.nu) == (second.E, second.nu)
+            and first.nodes.shape == second.nodes.shape
+            and np.array_equal(first.nodes, second.nodes * MIRROR[:, None])
+            and np.array_equal(*self.held)
+        )
 
     def apart(self, axis: int) -> sp.csr_matrix:
         """Displacement (points, n) of side 2 against side 1 along an axis."""

@@ -17,8 +17,8 @@ from jointfmu.joints.bolted_joint.law import working_preload
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.quantity import Array
 
-from ..elasticity import Cholesky
-from ..whole_joint import AXES, Linear, WholeJoint
+from ..elasticity import Cholesky, ElasticBody, Index
+from ..whole_joint import AXES, MIRROR, Linear, WholeJoint
 from .patch_work import TINY
 
 SHEARED = (0.05, 0.2, 0.4, 0.6, 0.8, 1.0, 1.3)
@@ -74,13 +74,21 @@ class Cells:
         means = cell_means(joint, spring.shape.position, normal)
         stretch = sp.csr_matrix(joint.stretch.T)
         loads = sp.vstack([*(means @ joint.apart(axis) for axis in (2, 0, 1)), stretch]).tocsr()
-        moved, first = np.zeros(loads.shape[::-1]), 0
-        for body, held in zip(joint.bodies, joint.held, strict=True):
-            free = np.setdiff1d(np.arange(body.size), held)
-            factor = Cholesky(body.stiffness[free][:, free])
-            moved[first + free] = factor.solve(loads[:, first + free].toarray().T)
-            first += body.size
-        return cls(joint, spring, normal, loads, moved)
+        first, second = joint.bodies
+        moved = _moved(first, joint.held[0], loads[:, : first.size])
+        if joint.mirrored:
+            along = np.repeat([1.0, -1.0, 1.0], (means.shape[0], 2 * means.shape[0], stretch.shape[0]))
+            other = np.tile(MIRROR, second.size // 3)[:, None] * moved * along
+        else:
+            other = _moved(second, joint.held[1], loads[:, first.size :])
+        return cls(joint, spring, normal, loads, np.concatenate([moved, other]))
+
+
+def _moved(body: ElasticBody, held: Index, loads: sp.csr_matrix) -> Array:
+    """Displacements (n, k) [m/N] of a body by loads (k, n), held at its attachment."""
+    moved, free = np.zeros(loads.shape[::-1]), np.setdiff1d(np.arange(body.size), held)
+    moved[free] = Cholesky(body.stiffness[free][:, free]).solve(loads[:, free].toarray().T)
+    return moved
 
 
 def cell_means(joint: WholeJoint, places: Array, normal: Array) -> sp.csr_matrix:
