@@ -127,7 +127,7 @@ class WholeJoint:
         shanks = bolt * sp.csr_matrix(self.stretch) @ sp.csr_matrix(self.stretch.T)
         return Linear(self, bodies, contact, shanks, bolt, *self._solved(bodies + contact + shanks))
 
-    def _solved(self, stiffness: sp.csr_matrix) -> tuple[Array, Array, Index, Cholesky]:
+    def _solved(self, stiffness: sp.csr_matrix) -> tuple[Array, Array, Index, "Cholesky | Halves"]:
         """Displacements (n, 6) under unit motions of side 2's attachment about the centroid of the contact,
         and those of rigid sides; unknowns that are free, factors of their stiffness."""
         first, second = self.bodies
@@ -137,9 +137,31 @@ class WholeJoint:
         free = np.setdiff1d(np.arange(rigid.shape[0]), held)
         moved = np.zeros_like(rigid)
         moved[held] = rigid[held]
-        factor = Cholesky(stiffness[free][:, free])
+        own = stiffness[free][:, free]
+        mirror = np.tile(MIRROR, first.size // 3)[free[free < first.size]]
+        factor = Halves(own, mirror) if self.mirrored else Cholesky(own)
         moved[free] = -factor.solve(stiffness[free][:, held] @ rigid[held])
         return moved, rigid, free, factor
+
+
+class Halves:
+    """Factors of the stiffness (2 n, 2 n) of two bodies that mirror each other, by what they do alike and
+    oppositely; mirror (n): its sign for each unknown of the first one."""
+
+    def __init__(self, matrix: sp.csr_matrix, mirror: Array) -> None:
+        n = len(mirror)
+        own, other = matrix[n:, n:], matrix[n:, :n] @ sp.diags(mirror)
+        self._mirror, self._alike, self._opposite = mirror, Cholesky(own + other), Cholesky(own - other)
+
+    def solve(self, right: Array) -> Array:
+        """Solution (2 n, k) of `matrix @ x = right`."""
+        first, second = np.split(right, 2)
+        first = self._mirror[:, None] * first
+        alike, opposite = (
+            self._alike.solve(0.5 * (second + first)),
+            self._opposite.solve(0.5 * (second - first)),
+        )
+        return np.concatenate([self._mirror[:, None] * (alike - opposite), alike + opposite])
 
 
 @dataclass(frozen=True)
@@ -160,7 +182,7 @@ class Linear:
     moved: Array
     rigid: Array
     free: Index
-    factor: Cholesky
+    factor: Cholesky | Halves
 
     def solve(self, loads: Array) -> Array:
         """Displacements (n, s) [m] under loads (n, s) [N] while the attachments rest."""
