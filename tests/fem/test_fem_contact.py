@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from jointfmu_tools.fem import newton
+from jointfmu_tools.fem import installed, newton
 from jointfmu_tools.fem.balance import RigidBalance
 from jointfmu_tools.fem.bolted_contact import BoltedContact, elastic_body, midway
 from jointfmu_tools.fem.contact import ContactModel, ContactSolution, Interface
@@ -13,6 +13,7 @@ from jointfmu_tools.fem.elasticity import Cholesky, ElasticBody
 from jointfmu_tools.fem.geometry import Assembly, BoltList, Plate, TappedPlate
 from scipy.sparse import diags_array
 from skfem import MeshHex, MeshQuad
+from threadpoolctl import threadpool_info, threadpool_limits
 
 from jointfmu.mechanics.curve import approach_curve
 from jointfmu.parameters import default
@@ -338,3 +339,13 @@ def test_a_thread_pulls_beside_its_hole(law):
         assert force @ field.position / force.sum() == pytest.approx([0.004, 0.0], abs=1e-5)
         reach.append(np.sqrt(force @ ((field.position - [0.004, 0.0]) ** 2).sum(axis=1) / force.sum()))
     assert 0.7 < reach[1] / reach[0] < 1.0
+
+
+def test_solutions_have_one_thread():
+    def threads():
+        return max(pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas")
+
+    with threadpool_limits(2, "blas"):
+        with installed("a solution"):
+            assert threads() == 1
+        assert threads() == 2
