@@ -4,6 +4,7 @@ positive definite matrices (CHOLMOD, by way of CVXOPT).
 
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -25,13 +26,10 @@ class Cholesky:
     """
 
     def __init__(self, matrix: sp.spmatrix) -> None:
-        from cvxopt import cholmod, spmatrix
-        from cvxopt import matrix as dense
+        from cvxopt import cholmod
 
-        lower = sp.tril(matrix).tocoo()
-        rows, columns = (dense(part.astype(np.int64)) for part in (lower.row, lower.col))
         cholmod.options["supernodal"] = 2
-        packed = spmatrix(dense(lower.data), rows, columns, lower.shape)
+        packed = _packed(sp.tril(matrix))
         self._factor = cholmod.symbolic(packed)
         try:
             cholmod.numeric(packed, self._factor)
@@ -40,14 +38,37 @@ class Cholesky:
                 "a stiffness matrix is not positive definite: a body can move freely"
             ) from None
 
-    def solve(self, right: Array) -> Array:
-        """Solution (n) or (n, k) of `matrix @ x = right`."""
+    def solve(self, right: Array | sp.spmatrix) -> Array:
+        """Solution (n) or (n, k) of `matrix @ x = right`.
+
+        Sparse right sides go through the factor by four, in half the time of dense ones, which CVXOPT takes
+        one by one.
+        """
         from cvxopt import cholmod
         from cvxopt import matrix as dense
 
+        if sp.issparse(right):
+            parts = (right[:, first : first + COLUMNS] for first in range(0, right.shape[1], COLUMNS))
+            return np.hstack(
+                [np.array(dense(cholmod.spsolve(self._factor, _packed(part)))) for part in parts]
+            )
         x = dense(np.asfortranarray(right, dtype=np.float64))
         cholmod.solve(self._factor, x)
         return np.array(x).reshape(right.shape)
+
+
+COLUMNS = 32
+"""Sparse right sides that are solved at once: their solutions are in memory twice."""
+
+
+def _packed(matrix: sp.spmatrix) -> Any:
+    """A matrix (n, k) as CVXOPT's sparse one."""
+    from cvxopt import matrix as dense
+    from cvxopt import spmatrix
+
+    entries = matrix.tocoo()
+    rows, columns = (dense(part.astype(np.int64)) for part in (entries.row, entries.col))
+    return spmatrix(dense(entries.data), rows, columns, entries.shape)
 
 
 Index = NDArray[np.int64]

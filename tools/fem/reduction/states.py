@@ -87,7 +87,7 @@ class Cells:
 def _moved(body: ElasticBody, held: Index, loads: sp.csr_matrix) -> Array:
     """Displacements (n, k) [m/N] of a body by loads (k, n), held at its attachment."""
     moved, free = np.zeros(loads.shape[::-1]), np.setdiff1d(np.arange(body.size), held)
-    moved[free] = Cholesky(body.stiffness[free][:, free]).solve(loads[:, free].toarray().T)
+    moved[free] = Cholesky(body.stiffness[free][:, free]).solve(loads[:, free].T.tocsc())
     return moved
 
 
