@@ -190,11 +190,13 @@ def test_gross_slip_about_poles_inside_has_the_force_of_all_nodes(name, most):
         *(("random", motion) for motion in ("along, moment", "turning, tilt 0.1 back", "both, tilt 0.1")),
     ],
 )
-def test_friction_of_few_patches_is_that_of_all_nodes(spring, plate, motion):
+def test_friction_of_few_patches_is_that_of_all_nodes(spring, plate, motion, monkeypatch):
     """22 patches with the FMU's sliders: forces within 1 % of gross slip, areas of loops within 3 %.
 
-    A turn about a pole under a bolt has less friction, and 3 % of it.
+    A turn about a pole under a bolt has less friction, and 3 % of it. Every second of the benchmark's ways,
+    the last one with them.
     """
+    monkeypatch.setattr(patch_reduction, "WAYS", patch_reduction.WAYS[1::2])
     shape = contact(plate)
     motion = patch_reduction.MOTIONS[motion]
     part = 0.01 if motion.turn in (0.0, 1.0) else 0.03
