@@ -23,7 +23,7 @@ RESONANCE_TOLERANCE = 5e-3
 """Peak of the spectrum against sqrt(K/J) [1]."""
 DAMPING_TOLERANCE = 1e-2
 """Decrement of the free decay against the stated damping [1]."""
-LINE = 81
+LINE = 41
 """Points of a line over the load."""
 RESOLVED = 1e-10
 """Least first deflection over that of the working point [1]: round-off is 1e-6 of it."""
