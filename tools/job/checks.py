@@ -69,7 +69,7 @@ def check(name: str, folder: Path, result: ramp.RampResult) -> list[Check]:
 
 
 def same(name: str, folder: Path, expected: ramp.RampResult) -> Check:
-    """The ramp of another flavour at ten times larger steps against the one expected, at the shared points."""
+    """The ramp of another flavour, at ten times larger steps, against that expected at the shared points."""
     repeated = default_ramp(name, folder, _COARSE).columns
     shared = expected.columns.items()
     worst = max(deviation(repeated[column], fine[:: int(_COARSE)]) for column, fine in shared)
