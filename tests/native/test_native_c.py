@@ -230,7 +230,7 @@ def test_no_data_that_changes_and_little_of_the_c_library(native: Path, tmp_path
     assert {file for file, text in files if "calloc(" in text} == {"instance.c", "snapshot.c"}
 
 
-@pytest.mark.parametrize("name", ["GearContact", "BoltedJoint", *ALONE])
+@pytest.mark.parametrize("name", ["GearContact", "HarmonicDriveSpring", *ALONE])
 @every_version
 @pytest.mark.parametrize("program", ["lifecycle", "modes", "refusals"])
 def test_in_order_and_out_of_order(
