@@ -1,5 +1,6 @@
 """Pages and C from jinja templates."""
 
+from functools import cache
 from pathlib import Path
 
 import jinja2
@@ -17,15 +18,21 @@ def template(path: Path, *shared: Path) -> jinja2.Template:
 
     shared : folders of templates that it extends or imports, beside its own
     """
+    return _environment((path.parent, *shared), path.suffix == ".html").get_template(path.name)
+
+
+@cache
+def _environment(folders: tuple[Path, ...], escapes: bool) -> jinja2.Environment:
+    """Kept, with the templates that it has compiled."""
     environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader([path.parent, *shared]),
-        autoescape=path.suffix == ".html",
+        loader=jinja2.FileSystemLoader(folders),
+        autoescape=escapes,
         trim_blocks=True,
         lstrip_blocks=True,
         undefined=jinja2.StrictUndefined,
     )
     environment.globals["number"] = _number
-    return environment.get_template(path.name)
+    return environment
 
 
 def _number(value: float | str) -> str:

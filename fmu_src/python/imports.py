@@ -2,6 +2,7 @@
 
 import ast
 from collections.abc import Collection, Iterator, Sequence
+from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -34,7 +35,7 @@ def imported(start: Sequence[str], roots: Collection[str]) -> dict[str, Path]:
 
 def _imports(text: str, package: str) -> Iterator[str]:
     """Names that the top of a module imports; of `from A import B` both A and A.B, as B may be a module."""
-    for node in ast.parse(text).body:
+    for node in _parsed(text).body:
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
@@ -42,3 +43,9 @@ def _imports(text: str, package: str) -> Iterator[str]:
             module = ".".join([*above, *([node.module] if node.module else [])])
             yield module
             yield from (f"{module}.{alias.name}" for alias in node.names)
+
+
+@cache
+def _parsed(text: str) -> ast.Module:
+    """Kept for the next FMU, into which most of it comes as well."""
+    return ast.parse(text)

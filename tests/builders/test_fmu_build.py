@@ -109,12 +109,12 @@ def test_a_second_build_says_what_it_replaces(tmp_path: Path, capsys: Capture) -
 
 
 def test_json_lists_what_was_built(tmp_path: Path, capsys: Capture) -> None:
-    status = cli.main(["build", "BoltedJoint", "--flavour", "python", "--out", str(tmp_path), "--json"])
+    status = cli.main(["build", "GearContact", "--flavour", "python", "--out", str(tmp_path), "--json"])
     assert status == 0
     found = json.loads(capsys.readouterr().out)
-    assert found["built"] == [str(tmp_path / "python" / "BoltedJoint.fmu")]
+    assert found["built"] == [str(tmp_path / "python" / "GearContact.fmu")]
     assert found.keys() == {"built", "replaced", "joints"}
-    assert found["joints"]["bolted_joint"].keys() == {"level", "warnings"}
+    assert found["joints"]["gear_contact"].keys() == {"level", "warnings"}
 
 
 def test_a_parameter_file_without_names_builds_the_fmus_of_its_joint(tmp_path: Path) -> None:

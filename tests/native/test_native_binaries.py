@@ -199,19 +199,19 @@ def test_no_fmu_is_large(native: Path) -> None:
 def test_another_process_with_a_cold_cache_builds_the_same_bytes(
     native: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """One FMU has the whole runtime; that sources repeat for every FMU is tested beside descriptions."""
-    name = next(iter(MODELS))
+    """One FMU of FMI 3.0 has the whole runtime but for one file; that sources repeat for every FMU is tested
+    beside descriptions."""
+    name, version = next(iter(MODELS)), "fmi3"
     monkeypatch.setenv("ZIG_GLOBAL_CACHE_DIR", str(tmp_path / "cold cache"))
     monkeypatch.setenv("JOINTFMU_CACHE", str(tmp_path / "nothing kept"))
     monkeypatch.setenv("PYTHONHASHSEED", "7")
     script = "import sys; from jointfmu_tools import cli; sys.exit(cli.main(sys.argv[1:]))"
-    done = run_host(script, "build", name, "--flavour", *VERSIONS, "--out", tmp_path / "out")
+    done = run_host(script, "build", name, "--flavour", version, "--out", tmp_path / "out")
     assert done.returncode == 0, done.stderr
-    for version in VERSIONS:
-        first, again = (folder / version / f"{name}.fmu" for folder in (native, tmp_path / "out"))
-        one, two = members(first), members(again)
-        assert [member for member in one | two if one.get(member) != two.get(member)] == []
-        assert first.read_bytes() == again.read_bytes()
+    first, again = (folder / version / f"{name}.fmu" for folder in (native, tmp_path / "out"))
+    one, two = members(first), members(again)
+    assert [member for member in one | two if one.get(member) != two.get(member)] == []
+    assert first.read_bytes() == again.read_bytes()
 
 
 @pytest.mark.parametrize("version", VERSIONS)

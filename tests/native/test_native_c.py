@@ -10,6 +10,7 @@ import re
 import shutil
 import subprocess
 import sys
+import zipfile
 from collections.abc import Mapping
 from functools import cache
 from graphlib import TopologicalSorter
@@ -38,9 +39,16 @@ COMPILERS = {"gcc": ("gcc",), "clang": ("clang",), "zig": (sys.executable, "-m",
 """{name: command}; the last comes with the package and builds the FMUs: it is clang, and warns as that."""
 SANITIZERS = {"clang": "address,undefined", "gcc": "address,undefined", "zig": "undefined"}
 """The first that is installed is taken. Zig has no runtime of the address sanitizer."""
-PLAIN = ("-O2", "-fPIC", "-fno-sanitize=all")
-LINUX, HERE = (("-target", TARGETS[place]) for place in ("x86_64-linux", fmpy.platform_tuple))
+PLAIN = {
+    "gcc": ("-O2", "-fPIC"),  # which finds some faults only where it optimizes
+    "zig": ("-O0", "-fPIC", "-fno-sanitize=all", "-target", TARGETS[fmpy.platform_tuple]),
+}
 VERSIONS = ("2", "3")
+OWN = {
+    version: (place, fmpy.sharedLibraryExtension)
+    for version, place in zip(VERSIONS, (fmpy.platform, fmpy.platform_tuple), strict=True)
+}
+"""{version: folder and suffix of this machine's libraries}."""
 FUZZ_CALLS = 250_000 // (len(MODELS) * len(VERSIONS))
 
 FEW_PARTNERS = ("RotationalInertia", "TorqueProfile")
@@ -90,6 +98,12 @@ def c_of(name: str) -> Sources:
         return Sources(files, len(model.inputs), len(model.outputs), len(model.parameter_fields()))
     files = {p.name: p.read_text() for p in [*runtime(), *(HOSTS / name).iterdir()]}
     return Sources(files, *ALONE[name])
+
+
+def shipped(native: Path, name: str, version: str, out: Path, platform: str, suffix: str) -> Path:
+    """The library of an FMU for a platform, unpacked."""
+    with zipfile.ZipFile(native / f"fmi{version}" / f"{name}.fmu") as fmu:
+        return Path(fmu.extract(f"binaries/{platform}/{name}{suffix}", out))
 
 
 class Builder:
@@ -187,7 +201,7 @@ every_version = pytest.mark.parametrize("version", VERSIONS)
 def test_no_warning(compiler: str, builder: Builder, name: str) -> None:
     if shutil.which(COMPILERS[compiler][0]) is None:
         pytest.skip(f"{compiler} is not installed")
-    assert builder.objects(compiler, name, *PLAIN, *(HERE if compiler == "zig" else ()))
+    assert builder.objects(compiler, name, *PLAIN[compiler])
 
 
 def test_files_use_each_other_in_one_direction() -> None:
@@ -201,22 +215,22 @@ def test_files_use_each_other_in_one_direction() -> None:
 
 
 @pytest.mark.parametrize("name", MODELS)
-def test_no_data_that_changes_and_little_of_the_c_library(builder: Builder, name: str) -> None:
+def test_no_data_that_changes_and_little_of_the_c_library(native: Path, tmp_path: Path, name: str) -> None:
     import lief
 
-    (merged,) = builder.objects("zig", name, *PLAIN, *LINUX)
-    binary = lief.parse(str(merged))
+    binary = lief.parse(str(shipped(native, name, "3", tmp_path, "x86_64-linux", ".so")))
     assert isinstance(binary, lief.ELF.Binary)
     sizes = {str(section.name): section.size for section in binary.sections}
+    assert ".text" in sizes
     assert sizes.get(".data", 0) == sizes.get(".bss", 0) == 0
     outside = {str(symbol.name) for symbol in binary.symbols if symbol.name and symbol.shndx == UNDEFINED}
     assert "calloc" in outside
-    assert outside - {"_GLOBAL_OFFSET_TABLE_", "__stack_chk_fail"} <= C_LIBRARY
+    assert outside <= C_LIBRARY
     files = c_of(name).files.items()
     assert {file for file, text in files if "calloc(" in text} == {"instance.c", "snapshot.c"}
 
 
-@pytest.mark.parametrize("name", ["GearContact", "BoltedJoint", *ALONE])
+@pytest.mark.parametrize("name", ["GearContact", "HarmonicDriveSpring", *ALONE])
 @every_version
 @pytest.mark.parametrize("program", ["lifecycle", "modes", "refusals"])
 def test_in_order_and_out_of_order(
@@ -271,15 +285,21 @@ def test_fuzz(sanitizing: str, builder: Builder, name: str, version: str) -> Non
 
 
 @every_joint
-def test_a_library_exports_all_and_leaves_nothing_behind(builder: Builder, name: str) -> None:
-    """As hosts use it: loaded at run time, without sanitizers, whose allocator shows no growth."""
-    library, host = builder.work / f"{name}.so", builder.work / "lifecycle"
-    zig, objects = COMPILERS["zig"], map(str, builder.objects("zig", name, *PLAIN, *HERE))
-    builder.call(builder.work, *zig, *RELEASED, "-shared", *objects, "-lm", "-o", str(library))
+def test_a_library_exports_all_and_leaves_nothing_behind(
+    builder: Builder, native: Path, tmp_path: Path, name: str
+) -> None:
+    """As hosts use it: loaded at run time, without sanitizers, whose allocator shows no growth. FMUs have one
+    already."""
+    zig, host, library = COMPILERS["zig"], builder.work / "lifecycle", tmp_path / f"{name}.so"
+    if name not in MODELS:
+        objects = map(str, builder.objects("zig", name, *PLAIN["zig"]))
+        builder.call(builder.work, *zig, *RELEASED, "-shared", *objects, "-lm", "-o", str(library))
     if not host.exists():
         found = ("-D_GNU_SOURCE", "-isystem", str(FMI_HEADERS), "-ldl", "-lm")
         options = (*STRICT, *RELEASED, "-fno-sanitize=all", *found)
         builder.call(builder.work, *zig, str(HOSTS / "lifecycle.c"), *options, "-o", str(host))
     for version in VERSIONS:
+        if name in MODELS:
+            library = shipped(native, name, version, tmp_path, *OWN[version])
         found = builder.call(builder.work, str(host), str(library), version, *c_of(name).arguments)
         assert found == SAID["lifecycle"]

@@ -282,7 +282,9 @@ def test_it_gives_the_numbers_of_linux(run: Run, machine: str, name: str, versio
 @pytest.mark.parametrize("program", ["lifecycle", "modes", "refusals"])
 @pytest.mark.parametrize("machine", OTHERS)
 def test_it_behaves_as_on_linux(run: Run, machine: str, program: str, version: str) -> None:
-    assert run(program, machine, "GearContact", version, *counts(MODELS["GearContact"])) == SAID[program]
+    """The runtime does: it is driven in the joint that starts fastest."""
+    name = "HarmonicDriveCompliance"
+    assert run(program, machine, name, version, *counts(MODELS[name])) == SAID[program]
 
 
 @pytest.mark.parametrize("version", VERSIONS)

@@ -11,6 +11,7 @@ from runpy import run_path
 import numpy as np
 import pytest
 from conftest import here_alone
+from jointfmu_tools import cli
 from PIL import Image
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -33,6 +34,14 @@ def stem(path: Path) -> str:
     return path.stem
 
 
+def in_this_process(command: list[str], check: bool) -> None:
+    """`subprocess.run` of a script that runs `python -m jointfmu ...`, for this machine alone as what it
+    builds itself."""
+    assert check
+    assert command[:3] == [sys.executable, "-m", "jointfmu"]
+    assert cli.main(command[3:]) == 0
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("script", SCRIPTS, ids=stem)
 def test_an_example_runs_and_writes_its_picture(
@@ -45,6 +54,7 @@ def test_an_example_runs_and_writes_its_picture(
         import matplotlib.pyplot as plt
 
         monkeypatch.chdir(tmp_path)
+        monkeypatch.setattr(subprocess, "run", in_this_process)
         plt.switch_backend("agg")
         with here_alone():
             run_path(str(script), run_name="__main__")

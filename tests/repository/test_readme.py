@@ -42,8 +42,8 @@ def test_the_readme_is_short():
 @pytest.fixture
 def few_points(monkeypatch):
     """A page's ramp and loops have few points: of elastic plates all take 20 s, and are drawn alike."""
-    monkeypatch.setattr(course, "_POINTS", 21)
-    monkeypatch.setattr(course, "_SWING", Swing(points=20))
+    monkeypatch.setattr(course, "_POINTS", 11)
+    monkeypatch.setattr(course, "_SWING", Swing(points=8))
 
 
 @pytest.mark.slow

@@ -1,6 +1,7 @@
 """A whole system run by an own master, of either kind, on its FMUs of FMI 2.0."""
 
 from contextlib import ExitStack
+from itertools import accumulate
 from pathlib import Path
 
 import numpy as np
@@ -48,29 +49,31 @@ def simulate(
             parts[name] = opened.enter_context(Slave(path, start, [w.input for w in fed[name]], read[name]))
         joints = [name for name, part in system.components.items() if part.file]
         others = [name for name in parts if name not in joints]
-        now = rows[0]
+        at = {name: [place[f"{w.source}.{w.output}"] for w in fed[name]] for name in parts}
+        ends = dict(zip(read, accumulate(len(outputs) for outputs in read.values()), strict=True))
+        span = {name: slice(ends[name] - len(outputs), ends[name]) for name, outputs in read.items()}
+        now = [0.0] * len(columns)
 
         def feed(group: list[str]) -> None:
             for name in group:
-                parts[name].set(*(now[place[f"{w.source}.{w.output}"]] for w in fed[name]))
+                parts[name].set(*[now[k] for k in at[name]])
 
         def look(group: list[str]) -> None:
             for name in group:
-                for output, value in zip(read[name], parts[name].get(), strict=True):
-                    now[place[f"{name}.{output}"]] = value
+                now[span[name]] = parts[name].get()
 
         look(others)
         feed(joints)
         look(joints)
+        rows[0] = now
         groups = [others, joints] if master.in_turn else [[*others, *joints]]
         for k in track(range(count), f"run {system.name}", count):
-            rows[k + 1] = rows[k]
-            now = rows[k + 1]
             for group in groups:
                 feed(group)
                 for name in group:
                     parts[name].step(k * step, step)
                 look(group)
+            rows[k + 1] = now
     time = np.asarray(step * np.arange(count + 1), dtype=np.float64)
     return {"time": time} | {column: rows[:, k] for column, k in place.items()}
 

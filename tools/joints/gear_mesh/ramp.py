@@ -32,8 +32,8 @@ def _series(folder: Path, result: RampResult) -> tuple[str, float]:
     mesh = default("gear_mesh").values
     assert isinstance(mesh, GearMesh)
 
-    def compliance(f: float) -> float:
-        return float(1.0 / (mesh.A_0 * stiffness_curve(mesh, f / mesh.A_0)[0]) + 1.0 / mesh.K_tooth)
+    def compliance(f: Array) -> Array:
+        return 1.0 / (mesh.A_0 * stiffness_curve(mesh, f / mesh.A_0)[0]) + 1.0 / mesh.K_tooth
 
     c = result.columns
     pair = c["f"] / c["pairs"]
@@ -42,7 +42,7 @@ def _series(folder: Path, result: RampResult) -> tuple[str, float]:
     way = integrals(compliance, pair[at])
     work = -cumulative_simpson(c["tau1"], x=c["phi1"], initial=0.0)
     return (
-        "s_rel against the integral of df/K of flanks and teeth (scipy, quad), E against the work of tau1",
+        "s_rel against the integral of df/K of flanks and teeth (scipy, Simpson), E against the work of tau1",
         max(deviation(np.diff(c["s_rel"][at]), way), deviation(c["E"], work)),
     )
 

@@ -85,7 +85,7 @@ def tightened(spring: BoltedJointSpring, preload: float, moment: float) -> Tight
     whole = Curve(c, load, stiffness, bend[:-1], bend[1:])
     zero = int(np.searchsorted(c, 0.0))
     some = np.concatenate([np.linspace(first, 0.0, _COARSE), np.linspace(0.0, end, _COARSE)[1:]])
-    eta = np.interp(c, some, [_dissipation(spring, start + x) for x in some])
+    eta = np.interp(c, some, _dissipation(spring, start + some[:, None]))
 
     def linear(i: int, j: int) -> bool:
         line = np.interp(c[i : j + 1], c[[i, j]], eta[[i, j]])
@@ -104,10 +104,10 @@ def tightened(spring: BoltedJointSpring, preload: float, moment: float) -> Tight
     return Tightened(table, damping, ratio, at_rest, rows, sliders)
 
 
-def _dissipation(spring: BoltedJointSpring, approach: Array) -> float:
-    """eta_n [1] with the nodes at approaches (n) [m]."""
+def _dissipation(spring: BoltedJointSpring, approach: Array) -> Array:
+    """eta_n (m) [1] with the nodes at approaches (m, n) [m]."""
     plastic, elastic = spring.works(spring.curve.derivatives(approach, 0)[0])
-    return float((plastic @ spring.shape.share) / (elastic @ spring.shape.share))
+    return np.asarray((plastic @ spring.shape.share) / (elastic @ spring.shape.share))
 
 
 TIGHTENED = ((9e3, 0.0), (15e3, 0.0), (15e3, 4500.0))
