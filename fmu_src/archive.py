@@ -8,9 +8,6 @@ from pathlib import Path
 
 from jointfmu.files.writing import made_folder
 
-_LEVEL = 6
-"""Of compression: 9 makes an FMU half a percent smaller in two to three times the time."""
-
 
 @contextmanager
 def workshop(target: Path) -> Iterator[Path]:
@@ -38,4 +35,4 @@ def pack(members: Mapping[str, bytes], file: Path) -> None:
             info = zipfile.ZipInfo(name, date_time=(1980, 1, 1, 0, 0, 0))
             info.create_system = 3
             info.external_attr = 0o644 << 16
-            archive.writestr(info, content, zipfile.ZIP_DEFLATED, _LEVEL)
+            archive.writestr(info, content, zipfile.ZIP_DEFLATED, 9)

@@ -21,8 +21,9 @@ from ..systems.decays import FREQUENCY_TOLERANCE, Decay
 from ..systems.ringing import DAMPING_TOLERANCE, RESONANCE_TOLERANCE, Ringing
 
 _COARSE = 10.0
-"""Of a ramp's step, where the ramp is repeated [1]."""
+"""Step of a ramp that is repeated, over its own [1]."""
 _INTERVALS = 10_000
+"""Of an integral [1]."""
 ThroughFmu = Callable[[Point, Path], float | None]
 """A published point and the folder of the FMUs -> what they give, None where they do not show it."""
 INTEGRATION_TOLERANCE = 1e-6
