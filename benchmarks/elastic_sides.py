@@ -37,6 +37,7 @@ from jointfmu.joints.bolted_joint.law import pressures
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.mechanics.footprint.bolts import pressure_shape
 from jointfmu.mechanics.footprint.patches import few_points
+from jointfmu.mechanics.footprint.shape import PressureShape
 from jointfmu.parameters import ParameterFile
 
 Array = NDArray[np.float64]
@@ -81,20 +82,24 @@ class Joint:
         seen: dict[str, object] = {}
         real = computed.whole_joint
 
-        def watched(file: ParameterFile, plates: computed.Plates, to: str) -> computed.ComputedJoint:
+        def watched(
+            file: ParameterFile, plates: computed.Plates, to: str, shape: PressureShape | None
+        ) -> computed.ComputedJoint:
             joint = WholeJoint.of(plates.assembly(file), to, refinement)
             if elements:
                 joint = replace(joint, interface=one_each(joint.interface))
-            springs = computed._springs(file, plates.preload, joint)
+            springs = computed._springs(
+                file, plates.preload, joint, shape or pressure_shape(file.values.pattern)
+            )
             linear = joint.linear(springs, file.values.bolt_stiffness)
             seen.update(rigid=file, preload=plates.preload, normal=springs[:, 2], linear=linear)
             if refinement != 1.0:
-                return real(file, plates, to)
+                return real(file, plates, to, shape)
             with (  # the command's own finite elements are these
                 patch.object(WholeJoint, "of", lambda *_: joint),
                 patch.object(WholeJoint, "linear", lambda *_: linear),
             ):
-                return real(file, plates, to)
+                return real(file, plates, to, shape)
 
         computed.whole_joint = watched
         try:

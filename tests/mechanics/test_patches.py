@@ -23,7 +23,7 @@ CONTACTS = ("frame", "plate", "row")
 def contact(name: str) -> PressureShape:
     """The default frame, a plate without symmetry, one with bolts at random, one with a row of bolts."""
     if name == "random":
-        return patch_reduction.random_plate(5)
+        return patch_reduction.random_plate(4)
     if name == "annulus":
         return patch_reduction.annulus()
     if name == "square":

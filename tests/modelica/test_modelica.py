@@ -449,7 +449,7 @@ def test_the_bolted_component_read_by_another_parser_holds_along_the_solution(ru
     pytest.importorskip("pymoca")
     body = "JointStiffness.Components.BoltedJoint joint;\n  Circle way;"
     wires = " ".join(f"connect(joint.flange_{a}, way.{a});" for a in "xyz")
-    found = simulate(rumoca, top(body, wires, _CIRCLE), 1.2, 4e-3, rtol=1e-6)
+    found = simulate(rumoca, top(body, wires, _CIRCLE), 0.7, 4e-3, rtol=1e-6)
     times, first = np.unique(found.time, return_index=True)
     record = identifier(f"{default('bolted_joint').name} 9 kN")
     seen, root = solution(found, "joint", first), read(STAND_IN, COMMITTED)

@@ -89,7 +89,7 @@ def test_the_arm_sags_as_it_says(six):
 
 
 @pytest.mark.slow
-def test_plugin_and_system_wind_up_as_the_plain_file(tmp_path, capsys):
+def test_plugin_and_system_wind_up_as_the_plain_file(tmp_path, capsys, few_poses):
     """Both have the FMU's spring; the plain file's least squares leave more at small torques than the 3 % at
     rated torque. Motors held, damped to rest."""
     words = [

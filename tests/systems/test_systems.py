@@ -663,11 +663,12 @@ def robot(time: float, x: Array, found: Values, load: TorqueProfile) -> list[flo
 def test_the_robot_joint_converges_to_the_packages_law(built: Path) -> None:
     found, stop = system("robot_joint").values, 0.4
     load = TorqueProfile(**{k.removeprefix("load."): v for k, v in found.items() if k.startswith("load.")})
-    start = [0.0] * (4 + ROBOT.hysteresis.limit.size)
+    sliders = ROBOT.hysteresis.limit.size
+    start, small = [0.0] * (4 + sliders), [1e-12] * 4 + [1e-8] * sliders  # rad, rad/s and N.m
     exact = solve_ivp(
-        robot, (0.0, stop), start, "DOP853", rtol=1e-9, atol=1e-12, max_step=0.02, args=(found, load)
+        robot, (0.0, stop), start, "DOP853", rtol=1e-9, atol=small, max_step=0.02, args=(found, load)
     ).y[2, -1]
-    steps = (4e-4, 2e-4, 1e-4)
+    steps = (8e-4, 4e-4, 2e-4)
     errors = [abs(simulated(built, "robot_joint", h, stop - 0.5 * h)["link.phi"][-1] - exact) for h in steps]
     orders = np.log2(np.divide(errors[:-1], errors[1:]))
     assert errors[-1] < 1e-5 * exact
@@ -689,9 +690,9 @@ def test_the_bolted_column_converges_to_the_packages_law(built: Path) -> None:
         moved = mass.outputs({"s": x[0], "v": x[1], "f_a": f, "f_b": -x[2:].sum()})
         return [x[1], float(moved["a"]), *sliding(x[2:], stiffness, limit, x[1])]
 
-    start = [0.0] * (2 + limit.size)
-    exact = solve_ivp(rates, (0.95e-3, stop), start, "DOP853", rtol=1e-7, atol=1e-12).y[0, -1]
-    steps = (2e-6, 1e-6, 5e-7)
+    start, small = [0.0] * (2 + limit.size), [1e-12] * 2 + [1e-6] * limit.size  # m, m/s and N
+    exact = solve_ivp(rates, (0.95e-3, stop), start, "DOP853", rtol=1e-7, atol=small).y[0, -1]
+    steps = (4e-6, 2e-6, 1e-6)
     errors = [
         abs(simulated(built, "bolted_column", h, stop - 0.5 * h)["column.s"][-1] - exact) for h in steps
     ]

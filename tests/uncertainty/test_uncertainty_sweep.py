@@ -1,6 +1,7 @@
 """`jointfmu sweep`: many runs of an FMU that may be killed at any time and resumed."""
 
 import json
+import multiprocessing
 import os
 import signal
 import subprocess
@@ -33,8 +34,20 @@ def fmu(native):
     return native / "fmi3" / "HarmonicDriveCompliance.fmu"
 
 
+@pytest.fixture(scope="module", autouse=True)
+def copied():
+    """Workers of this process are copies of one that has loaded what they need, which takes each a second.
+    Those of the commands that are killed start as they do for users."""
+    import dask
+
+    multiprocessing.set_forkserver_preload(["distributed", "fmpy", "jointfmu_tools.uncertainty.worker"])
+    how = "spawn" if sys.platform == "win32" else "forkserver"
+    with dask.config.set({"distributed.worker.multiprocessing-method": how}):
+        yield
+
+
 @pytest.fixture(scope="module")
-def cluster():
+def cluster(copied):
     from distributed import LocalCluster
 
     with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as one:

@@ -148,7 +148,7 @@ class ElasticBody:
         )
         rows = functions.transpose(1, 0, 2)
         scalar = self.density * (rows * self.basis.dx[:, None, :]) @ rows.transpose(0, 2, 1)
-        return _assembled(self.basis, [scalar[..., None, None] * np.eye(3)])
+        return sp.kron(_assembled(self.basis, [scalar[..., None, None]]), np.eye(3), format="csr")
 
     def uniform_load(self, facets: Index) -> Array:
         """Load (n) [N per N] along z of a unit force spread uniformly over facets, in all unknowns."""
@@ -177,14 +177,15 @@ class ElasticBody:
 
 
 def _assembled(basis: Basis, blocks: list[Array]) -> sp.csr_matrix:
-    """Sum element matrices (m, n, n, 3, 3) into one of 3 x 3 blocks."""
+    """Sum element matrices (m, n, n, k, k) into one of k x k blocks."""
     dofs = np.asarray(basis.element_dofs.T, dtype=np.int64)
     key = (dofs[:, :, None] * basis.N + dofs[:, None, :]).ravel()
     order = np.argsort(key, kind="stable")
     key = key[order]
     first = np.flatnonzero(np.concatenate([[True], key[1:] != key[:-1]]))
-    data = np.concatenate(blocks).reshape(-1, 9)[order]
-    data = np.add.reduceat(data, first, axis=0).reshape(-1, 3, 3)
+    k = blocks[0].shape[-1]
+    data = np.concatenate(blocks).reshape(-1, k * k)[order]
+    data = np.add.reduceat(data, first, axis=0).reshape(-1, k, k)
     row, column = np.divmod(key[first], basis.N)
     start = np.searchsorted(row, np.arange(basis.N + 1))
-    return sp.bsr_matrix((data, column, start), shape=(3 * basis.N, 3 * basis.N)).tocsr()
+    return sp.bsr_matrix((data, column, start), shape=(k * basis.N, k * basis.N)).tocsr()

@@ -70,12 +70,14 @@ def further_loads(limit: float) -> Iterator[Load]:
 
     sequence = qmc.Halton(3, seed=SEED)
     low, high = np.log(PRELOADS)
-    for i in count():
-        a, b, c = sequence.random(1)[0]
+    drawn = (point for _ in count() for point in sequence.random(TOGETHER))
+    for i, (a, b, c) in enumerate(drawn):
         apart = c * (1.0 + PRESSED) - PRESSED if i % 3 else 0.0
         yield Load(float(np.exp(low + a * (high - low))), float(limit * (2.0 * b - 1.0)), float(apart))
 
 
+TOGETHER = 64
+"""Further loads that are drawn at once: each alone takes as long."""
 COUPLED = 100.0
 """How much larger the deviations of first and mixed moments may be [1]."""
 _FAST = 1e-2

@@ -304,7 +304,7 @@ def test_uncertainty_of_a_joint_with_a_field(imported, tmp_path, capsys):
     assert "unknown name 'pattern.decay_length', allowed are" in capsys.readouterr().err
 
 
-def test_a_force_that_is_off_is_scaled_if_that_is_asked_for(tmp_path, capsys):
+def test_a_force_that_is_off_is_scaled_if_that_is_asked_for(imported, tmp_path, capsys):
     """Nodal pressures of some solvers do not sum up to the contact force."""
     path = tmp_path / "field.csv"
     path.write_text(nodal_result.csv_text(replace(FIELD, pressure=0.8 * FIELD.pressure)))
@@ -317,7 +317,7 @@ def test_a_force_that_is_off_is_scaled_if_that_is_asked_for(tmp_path, capsys):
     out = tmp_path / "joint.toml"
     assert cli.main([*line, "--force-tolerance", "0.3", "--out", str(out)]) == 0
     assert "scaled by +25 % to the force of the bolts" in capsys.readouterr().err
-    right, _ = with_field(FILE, FIELD, PRELOAD, "test")
+    right, _ = imported
     found = BoltedJointSpring.of(load(out).values).motion(PRELOAD, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     exact = BoltedJointSpring.of(right.values).motion(PRELOAD, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     assert found["K_zz"] == pytest.approx(exact["K_zz"], rel=1e-6)  # the points of both, 1e-6

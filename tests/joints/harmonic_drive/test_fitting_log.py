@@ -64,7 +64,7 @@ def test_steady_speeds_give_their_friction_back(seed):
 def test_an_arm_that_swings_gives_its_friction_back(monkeypatch):
     """Inertias and gravity come beside: the rotor's, which nobody states, from the wind-up. In half a minute
     the arm is slow too seldom for Stribeck's part, which steady speeds determine."""
-    monkeypatch.setattr(log_round_trips, "STEP", 4e-3)
+    monkeypatch.setattr(log_round_trips, "STEP", 8e-3)
     found = trip(log_round_trips.moving, {"torque_constant": log_round_trips.CONSTANT}, 1)
     check_friction(found, {"friction_stribeck"})
     assert found.facts["motor_inertia"][0] == pytest.approx(log_round_trips.ROTOR, rel=0.05)

@@ -86,7 +86,7 @@ def ripple(law, inertia, speed, periods=60):
 
     times = np.linspace(0.75 * end, end, 1500, endpoint=False)  # whole periods
     start = [0.0, speed / law.joint.ratio]
-    y = solve_ivp(rate, (0.0, end), start, t_eval=times, rtol=1e-8, atol=1e-11).y[0]
+    y = solve_ivp(rate, (0.0, end), start, "DOP853", times, rtol=1e-8, atol=1e-11).y[0]
     beside = y - speed * times / law.joint.ratio
     return 2.0 * abs(np.mean((beside - beside.mean()) * np.exp(-2j * speed * times)))
 

@@ -133,7 +133,7 @@ class Hysteresis(Sliders):
         over. It begins where the way did, or where the sliders all slip, if that is nearer.
         """
         tau, most = np.asarray(torque, dtype=np.float64), float(np.sum(self.limit))
-        slipping = (curve.odd_inverse(load) for load in (tau - most, tau + most))
+        slipping = curve.odd_inverse(np.stack([tau - most, tau + most]))
         phi = np.clip(MEMORY.split(memory)["wind_up"], *slipping)
         low, high = np.full(tau.shape, -np.inf), np.full(tau.shape, np.inf)
         for _ in range(MOST_STEPS):
