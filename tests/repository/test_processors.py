@@ -43,9 +43,15 @@ WholeJoint.of = partial(WholeJoint.of, refinement={bodies})
 sys.exit(main(sys.argv[1:]))"""
 SURFACE = ["--material", "steel", "--Ra", "0.8"]
 PLATES = {
-    "plate": ["--plate", "200x100", "--bolts", "4xM12", "--at", "160x60"],
+    "plate": ["--plate", "80x50", "--bolts", "4xM8", "--at", "50x25"],
     "row": ["--plate", "120x25", "--bolts", "3xM8", "--at", "60x0"],
 }
+
+
+def drawing(name: str, folder: Path) -> list[str]:
+    """Arguments of the command that makes a plate's file in a folder."""
+    out = ["--out", str(folder / f"{name}.toml")]
+    return ["new", "bolted-joint", *PLATES[name], "--grip", "40", *SURFACE, *out]
 
 
 def elsewhere(folder: Path, paths: list[Path]) -> dict[str, str]:
@@ -60,11 +66,9 @@ def elsewhere(folder: Path, paths: list[Path]) -> dict[str, str]:
 def paths(tmp_path_factory) -> list[Path]:
     """Parameter files of a plate with four bolts, with its bodies, and of one with a row of three."""
     folder = tmp_path_factory.mktemp("files")
-    more = ["--grip", "40", *SURFACE]
     with pytest.MonkeyPatch.context() as patch:
-        for name, given in PLATES.items():
-            out = ["--out", str(folder / f"{name}.toml")]
-            assert cli.main(["new", "bolted-joint", *given, *more, *out]) == 0
+        for name in PLATES:
+            assert cli.main(drawing(name, folder)) == 0
             patch.setattr(computed, "facts", lambda file, *arguments: computed.NewJoint(file, {}, []))
     return sorted(folder.iterdir())
 
@@ -79,14 +83,12 @@ newer = pytest.mark.skipif(not __cpu_features__.get("AVX2", False), reason="this
 
 
 @newer
-def test_the_file_of_a_whole_joint_is_the_same(tmp_path):
+def test_the_file_of_a_whole_joint_is_the_same(tmp_path, paths):
     """Of the elements that plates have in these tests."""
-    given = ["new", "bolted-joint", "--plate", "60x30", "--bolts", "2xM8", "--at", "40x0", "--grip", "20"]
-    here, there = ([*given, *SURFACE, "--out", str(tmp_path / name)] for name in ("here.toml", "there.toml"))
-    assert cli.main(here) == 0
-    script = [sys.executable, "-c", COARSE.format(**REFINEMENT), *there]
+    script = [sys.executable, "-c", COARSE.format(**REFINEMENT), *drawing("plate", tmp_path)]
     subprocess.run(script, env=os.environ | OLD, check=True, stdout=PIPE)
-    assert (tmp_path / "here.toml").read_text() == (tmp_path / "there.toml").read_text()
+    here = next(path for path in paths if path.stem == "plate")
+    assert (tmp_path / "plate.toml").read_text() == here.read_text()
 
 
 @newer
