@@ -73,7 +73,7 @@ def test_each_stiffer_part_makes_a_stiffer_joint():
 
 
 def test_a_mirrored_side_moves_as_the_mirror_image(monkeypatch):
-    """It is not solved for; but the edges that are held lie at opposite ends, and a softer side differs."""
+    """It is not solved for. A softer side is none, nor other heads, nor edges, held at opposite ends."""
     joint = WholeJoint.of(block(nu=0.3), "heads")
     near = SimpleNamespace(shape=SimpleNamespace(position=joint.interface.centred[::40]))
     springs = even(joint, 1e12, 2e12)
@@ -84,7 +84,9 @@ def test_a_mirrored_side_moves_as_the_mirror_image(monkeypatch):
 
     found = moved()
     soft = replace(joint, bodies=(joint.bodies[0], replace(joint.bodies[1], E=1e11)))
-    assert [each.mirrored for each in (joint, soft, WholeJoint.of(block(), "edge"))] == [True, False, False]
+    pulled = replace(joint, heads=(joint.heads[0], 2.0 * joint.heads[1]))
+    others = (soft, pulled, WholeJoint.of(block(), "edge"))
+    assert [each.mirrored for each in (joint, *others)] == [True, False, False, False]
     monkeypatch.setattr(WholeJoint, "mirrored", False)
     for one, expected in zip(found, moved(), strict=True):
         assert np.max(np.abs(one - expected)) < 1e-9 * np.max(np.abs(expected))

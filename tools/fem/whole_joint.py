@@ -90,13 +90,14 @@ class WholeJoint:
 
     @property
     def mirrored(self) -> bool:
-        """Whether side 2 is the mirror image of side 1, with its attachment."""
+        """Whether side 2 is the mirror image of side 1, with its attachment and what its bolts press on."""
         first, second = self.bodies
         return (
             (first.E, first.nu) == (second.E, second.nu)
             and first.nodes.shape == second.nodes.shape
             and np.array_equal(first.nodes, second.nodes * MIRROR[:, None])
             and np.array_equal(*self.held)
+            and np.allclose(*self.heads, rtol=0.0, atol=SLACK)
         )
 
     def apart(self, axis: int) -> sp.csr_matrix:
@@ -157,10 +158,8 @@ class Halves:
         """Solution (2 n, k) of `matrix @ x = right`."""
         first, second = np.split(right, 2)
         first = self._mirror[:, None] * first
-        alike, opposite = (
-            self._alike.solve(0.5 * (second + first)),
-            self._opposite.solve(0.5 * (second - first)),
-        )
+        alike = self._alike.solve(0.5 * (second + first))
+        opposite = self._opposite.solve(0.5 * (second - first))
         return np.concatenate([self._mirror[:, None] * (alike - opposite), alike + opposite])
 
 
