@@ -88,9 +88,7 @@ class Joint:
             joint = WholeJoint.of(plates.assembly(file), to, refinement)
             if elements:
                 joint = replace(joint, interface=one_each(joint.interface))
-            springs = computed._springs(
-                file, plates.preload, joint, shape or pressure_shape(file.values.pattern)
-            )
+            springs = computed._springs(file, plates.preload, joint, shape)
             linear = joint.linear(springs, file.values.bolt_stiffness)
             seen.update(rigid=file, preload=plates.preload, normal=springs[:, 2], linear=linear)
             if refinement != 1.0:

@@ -139,8 +139,7 @@ class WholeJoint:
         moved = np.zeros_like(rigid)
         moved[held] = rigid[held]
         own = stiffness[free][:, free]
-        mirror = np.tile(MIRROR, first.size // 3)[free[free < first.size]]
-        factor = Halves(own, mirror) if self.mirrored else Cholesky(own)
+        factor = Halves(own, MIRROR[free[: len(free) // 2] % 3]) if self.mirrored else Cholesky(own)
         moved[free] = -factor.solve(stiffness[free][:, held] @ rigid[held])
         return moved, rigid, free, factor
 

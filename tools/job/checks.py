@@ -57,8 +57,7 @@ def default_ramp(name: str, folder: Path, factor: float = 1.0) -> ramp.RampResul
 
 def check(name: str, folder: Path, result: ramp.RampResult) -> list[Check]:
     """All checks of an FMU's ramp: its own, RAMPS[name] in its joint's file, after those of every FMU."""
-    coarse = default_ramp(name, folder, _COARSE).columns
-    worst = max(deviation(coarse[column], fine[:: int(_COARSE)]) for column, fine in result.columns.items())
+    worst = _repeated(name, folder, result)
     checks = [
         Check(name, "ten times larger steps, every output at the shared points", worst, REPEAT_TOLERANCE)
     ]
@@ -71,10 +70,14 @@ def check(name: str, folder: Path, result: ramp.RampResult) -> list[Check]:
 
 def same(name: str, folder: Path, expected: ramp.RampResult) -> Check:
     """The ramp of another flavour, at ten times larger steps, against that expected at the shared points."""
-    repeated = default_ramp(name, folder, _COARSE).columns
-    shared = expected.columns.items()
-    worst = max(deviation(repeated[column], fine[:: int(_COARSE)]) for column, fine in shared)
+    worst = _repeated(name, folder, expected)
     return Check(name, f"flavour {folder.name}: every output the same", worst, FLAVOUR_TOLERANCE)
+
+
+def _repeated(name: str, folder: Path, result: ramp.RampResult) -> float:
+    """Largest deviation [1] of the ramp at ten times larger steps, of all columns at the shared points."""
+    coarse = default_ramp(name, folder, _COARSE).columns
+    return max(deviation(coarse[column], fine[:: int(_COARSE)]) for column, fine in result.columns.items())
 
 
 def check_ringing(systems: Mapping[str, Sequence[Ringing]]) -> list[Check]:

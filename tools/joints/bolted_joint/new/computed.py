@@ -117,7 +117,7 @@ def whole_of(
         clamped = assembly()
         check_thickness(clamped)
         joint = WholeJoint.of(clamped, attached)
-        springs = _springs(file, preload, joint, shape or pressure_shape(file.values.pattern))
+        springs = _springs(file, preload, joint, shape)
         linear = joint.linear(springs, file.values.bolt_stiffness)
         bodies = replace(
             elastic_bodies(linear, BoltedJointSpring.of(file.values), springs[:, 2], preload),
@@ -143,14 +143,15 @@ def with_bodies(file: ParameterFile, bodies: ElasticBodies, attached: str) -> Pa
     )
 
 
-def _springs(file: ParameterFile, preload: float, joint: "WholeJoint", shape: PressureShape) -> Array:
+def _springs(file: ParameterFile, preload: float, joint: "WholeJoint", shape: PressureShape | None) -> Array:
     """Stiffness (points, 3) [N/m3] of the tightened interface along x, y, z at the points of the elements.
 
-    That of the nearest node of the joint's own contact, together as stiff as that.
+    That of the nearest node of the joint's own contact, together as stiff as that; shape as in `whole_of`.
     """
     from scipy.spatial import cKDTree
 
     values, at = file.values, joint.interface
+    shape = shape or pressure_shape(values.pattern)
     curve = approach_curve(values)
     normal = curve.derivatives(curve.inverse(pressures(values, shape, preload, 0.0)), 1)[1]
     here = normal[cKDTree(shape.position).query(at.centred)[1]]
