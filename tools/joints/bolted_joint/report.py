@@ -61,6 +61,7 @@ def pictured(course: Course) -> Figure:
         if joint.elastic
         else "The sides are rigid: the FMU is the interface"
         + (" with its bolts." if joint.bolt_stiffness else " alone.")
+        + " The members, mostly far softer, are not in it; jointfmu new makes the whole joint of a drawing."
     )
     return Figure("The joint", text, pictures=pictures)
 

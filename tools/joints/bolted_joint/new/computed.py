@@ -164,12 +164,18 @@ Facts = dict[str, tuple[float, str, str]]
 
 
 def facts(
-    file: ParameterFile, plates: Plates, attached: str, sides: str | None, shape: PressureShape | None = None
+    file: ParameterFile,
+    plates: Plates,
+    attached: str,
+    sides: str | None,
+    alone: str,
+    shape: PressureShape | None = None,
 ) -> NewJoint:
     """The whole joint beside the interface, and the parameters with elastic sides; or a line that says why it
     cannot be computed.
 
     sides : rigid or elastic as stated; None: elastic if the packages are there
+    alone : that the FMU is the interface alone
     shape : as in `whole_of`
 
     Raises ValueError if it was asked for and cannot be computed.
@@ -179,9 +185,7 @@ def facts(
     except ValueError as error:
         if sides == "elastic":
             raise
-        return NewJoint(
-            file, {}, [f"members and bolts are not computed, the FMU is the interface alone: {error}"]
-        )
+        return NewJoint(file, {}, [f"members and bolts are not computed, {alone}: {error}"])
     parts = found.compliances
     rows = _stiffnesses(parts, attached) | _load(parts, plates.tension, attached)
     rows |= _share(parts, sides == "rigid")

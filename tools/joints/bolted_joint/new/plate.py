@@ -24,7 +24,6 @@ SAME = 1e-6
 """How far the thicknesses may be from the grip [1]."""
 LONGEST = 50
 """Most grip over the diameter of the thread: beyond it a bolt is a tie rod."""
-ALONE = "the FMU is the interface alone: for the whole joint state --thickness of both plates"
 ENGAGED = 1.0
 """Depth of a thread that holds the bolt over its diameter [1]: a usual one in steel."""
 
@@ -98,9 +97,13 @@ def joint(given: Given) -> NewJoint:
     if given["field"] == "computed":
         file, shape = with_computed_field(file, plates)
     facts = _facts(file, one, heights, preload)
+    alone = _alone(facts["K_zz"][0] / count, one)
     if given["tapped"] and given["thickness"] is None:
-        return NewJoint(file, facts, [*warnings, ALONE])
-    found = computed.facts(file, plates, given["attached"] or "faces", given["sides"], shape)
+        return NewJoint(
+            file, facts, [*warnings, f"{alone}: for the whole joint state --thickness of both plates"]
+        )
+    attached, sides = given["attached"] or "faces", given["sides"]
+    found = computed.facts(file, plates, attached, sides, alone, shape)
     return NewJoint(found.file, {**facts, **found.facts}, [*warnings, *found.warnings])
 
 
@@ -260,6 +263,15 @@ def _friction(file: ParameterFile, preload: float) -> dict[str, tuple[float, str
         facts[f"slip_force{name}"] = (row.slip_force, "N", slip + text)
         facts[f"loss_factor{name}"] = (row.loss_factor, "1", loss + text)
     return facts
+
+
+def _alone(interface: float, one: Clamped) -> str:
+    """That the FMU is the interface alone, whose stiffness [N/m] for each bolt is this, and what it lacks."""
+    share = one.members / (one.members + interface)
+    return (
+        f"the FMU is the interface alone ({share:.1%} of the compliance along z that it has in series with "
+        "the members of VDI 2230, loaded at the heads)"
+    )
 
 
 def _facts(
