@@ -83,7 +83,7 @@ EXACT: dict[str, Callable[..., Decimal]] = {
     "sin": lambda x: wave(x, 0),
     "cos": lambda x: wave(x, 1),
 }
-ULPS = {"exp": 0.51, "pow": 0.6, "log": 1.0, "log1p": 0.6, "sin": 0.8, "cos": 0.8, "expm1": 1.1}
+ULPS = {"exp": 0.52, "pow": 0.6, "log": 1.0, "log1p": 0.6, "sin": 0.8, "cos": 0.8, "expm1": 1.1}
 """Half an ulp is the rounding of the result; the others are found with two or three roundings more."""
 USUAL_ULPS = 2.0
 

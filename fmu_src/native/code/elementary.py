@@ -7,13 +7,13 @@ from math import factorial
 
 from ...joint_parts.c_text import array, number
 
-PLACES = 128
+PLACES = 32
 """Of the tables of exponential and logarithm."""
-LOG_BEGIN = 0x3FE6955500000000
+LOG_BEGIN = 0x3FE6AAAA00000000
 """Bits of the number with which a binade of the logarithm's table begins; 1 lies inside of a place."""
 _ONE = 0x3FF0000000000000
-_STEP = 1 << 45
-"""Bits from place to place."""
+LOG_BITS = 47
+"""Of the mantissa that lie below a place, 52 less log2 of the places."""
 _DIGITS = 60
 _PI = Decimal("3.1415926535897932384626433832795028841971693993751058209749445923078164")
 _ERF_PER_PLACE, _ERF_END, _N_ERF = 4, 6, 15
@@ -45,7 +45,7 @@ def tables() -> str:
             f"SINE[{_N_WAVE}]": [[-((-1) ** n) / factorial(2 * n + 3)] for n in range(_N_WAVE)],
             f"COSINE[{_N_WAVE}]": [[(-1) ** n / factorial(2 * n + 4)] for n in range(_N_WAVE)],
         }
-    counts = {"PLACES": PLACES, "N_EXPM1": _N_EXPM1, "N_ERF": _N_ERF, "N_WAVE": _N_WAVE}
+    counts = {"PLACES": PLACES, "LOG_BITS": LOG_BITS, "N_EXPM1": _N_EXPM1, "N_ERF": _N_ERF, "N_WAVE": _N_WAVE}
     return "\n".join(
         [
             f"enum {{ {', '.join(f'{name} = {n}' for name, n in counts.items())} }};",
@@ -83,9 +83,9 @@ def _parts(value: Decimal) -> Iterator[float]:
 def _logs() -> Iterator[list[float]]:
     """1/c of few bits near the middle of each place, exactly 1 where 1 lies; log(c) in two parts."""
     for place in range(PLACES):
-        begin = LOG_BEGIN + place * _STEP
-        ends = [_double(begin), _double(begin + _STEP)]
-        inverse = 1.0 if begin <= _ONE < begin + _STEP else round(2.0**16 * 2.0 / sum(ends)) * 2.0**-16
+        begin, end = (LOG_BEGIN + (k << LOG_BITS) for k in (place, place + 1))
+        middle = 0.5 * (_double(begin) + _double(end))
+        inverse = 1.0 if begin <= _ONE < end else round(2.0**16 / middle) * 2.0**-16
         log = -Decimal(inverse).ln()
         high = _first(log, 42)
         yield [inverse, high, float(log - Decimal(high))]

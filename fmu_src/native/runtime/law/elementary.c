@@ -1,4 +1,4 @@
-/* Exponential and logarithm by a table of 128 places and a short polynomial (P. T. P. Tang, ACM Trans. Math.
+/* Exponential and logarithm by a table of 32 places and a short polynomial (P. T. P. Tang, ACM Trans. Math.
  * Softw. 15 and 16), with a second double for what the first one loses where the result needs it. */
 #include "elementary.h"
 
@@ -59,7 +59,8 @@ static double exponential(double high, double low)
     const double r = ((high - k * LOG_2_PER_PLACE) - k * LOG_2_PER_PLACE_LOW) + low;
     const int whole = (int)k, place = whole & (PLACES - 1), power = (whole - place) / PLACES;
     const double square = r * r;
-    const double more = POWERS[place][1] + r + square * (0.5 + r * (1.0 / 6.0)) + square * square * (1.0 / 24.0 + r * (1.0 / 120.0));
+    const double last = (1.0 / 24.0 + r * (1.0 / 120.0)) + square * (1.0 / 720.0 + r * (1.0 / 5040.0));
+    const double more = POWERS[place][1] + r + square * (0.5 + r * (1.0 / 6.0)) + square * square * last;
     const int half = power / 2;
     const double one = from_bits((uint64_t)(1023 + half) << 52), other = from_bits((uint64_t)(1023 + power - half) << 52);
     return (POWERS[place][0] + POWERS[place][0] * more) * one * other;
@@ -80,7 +81,7 @@ static inline Place place_of(double x)
     }
     const uint64_t bits = bits_of(x), from = bits - LOG_BEGIN;
     const int raised = (int)((int64_t)from >> 52);
-    const double *row = LOGS[(from >> 45) & (PLACES - 1)];
+    const double *row = LOGS[(from >> LOG_BITS) & (PLACES - 1)];
     const double z = from_bits(bits - ((uint64_t)raised << 52));
     const double z_first = from_bits((bits_of(z) + 0x80000000) & 0xffffffff00000000);
     const Pair r = sum_of(z_first * row[0] - 1.0, (z - z_first) * row[0]);
@@ -90,8 +91,8 @@ static inline Place place_of(double x)
 /* (log(1 + r) - r + r^2/2) / r^3 */
 static inline double series(double r)
 {
-    const double square = r * r;
-    return ((1.0 / 3.0 - r * 0.25) + square * (0.2 - r * (1.0 / 6.0))) + square * square * (1.0 / 7.0 - r * 0.125);
+    const double square = r * r, last = (1.0 / 7.0 - r * 0.125) + square * ((1.0 / 9.0 - r * 0.1) + square * (1.0 / 11.0));
+    return ((1.0 / 3.0 - r * 0.25) + square * (0.2 - r * (1.0 / 6.0))) + square * square * last;
 }
 
 /* log(x) of a positive finite number; the second double holds what the first one lacks. */
