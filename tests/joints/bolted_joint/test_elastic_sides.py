@@ -17,6 +17,8 @@ from jointfmu_tools.fields.nodal_result import ContactField
 from jointfmu_tools.joints.bolted_joint import report
 from jointfmu_tools.joints.bolted_joint.new import computed
 from jointfmu_tools.report.course import Course
+from jointfmu_tools.uncertainty import propagate
+from jointfmu_tools.uncertainty.problem import pose
 
 from jointfmu.joints import KINDS
 from jointfmu.joints.bolted_joint import whole as equilibrium
@@ -205,6 +207,22 @@ def test_embedding_takes_of_the_preload(made):
     assert none["p_max"] == none["K_xx"] == none["F_bolt[1]"] == 0.0
     page = report.whole_joint(Course(KINDS["bolted_joint"].models[0], replace(joint.file, values=lost.joint)))
     assert "14.2 kN in each bolt" in page[0].text
+
+
+def test_bands_are_those_of_the_whole(made):
+    """Of roughness and bolts; at points of other samples' ramp and without preload too, to 1e-4 of values."""
+    joint = made(*FOUR, preload=15e3)
+    task = pose(joint.file, {"h": "+-20%", "bolt_stiffness": "+-5%", "A_0": "+-5%"}, 15e3, 31)
+    found = propagate.bands(task, propagate.design(task, 16, 0)[0])
+    assert found.error < 1e-4
+    out, _ = at(joint.spring, *STILL, preload=15e3)
+    for name in ("K_zz", "K_xx"):
+        assert found.nominal[name][-1] == pytest.approx(out[name], rel=1e-4)
+        assert found.nominal[name][0] == pytest.approx(at(joint.spring, *STILL, preload=0.0)[0][name])
+    alone = replace(joint.file, values=interface_alone(joint.file.values))
+    rigid = propagate.bands(pose(alone, {"h": "+-20%"}, 15e3, 3), propagate.design(task, 16, 0)[0])
+    assert rigid.nominal["K_zz"][-1] > 4.0 * found.nominal["K_zz"][-1]
+    assert rigid.nominal["approach"][-1] == pytest.approx(found.nominal["approach"][-1], rel=1e-6)
 
 
 def test_a_moment_changes_the_bolts_by_their_rows(made):

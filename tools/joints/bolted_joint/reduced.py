@@ -3,21 +3,25 @@
 Without a moment and tightened only, a node's pressure is the mean pressure times a fixed number
 `equal`. Sums over the nodes are sums over a few Gauss points of its distribution, taken from a table
 over the log of the pressure whose places relative to the end of the ramp are the same for all samples:
-one matrix for all of them.
+one matrix for all of them. With elastic sides the stiffness is that of the whole, condensed at the points and
+patches of the exported joint.
 """
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.interpolate import CubicSpline
 
 from jointfmu.contact.laws import mindlin
 from jointfmu.joints.bolted_joint import KIND
+from jointfmu.joints.bolted_joint.bodies import Modes
+from jointfmu.joints.bolted_joint.contact import parts
 from jointfmu.joints.bolted_joint.law import Bolted, interface_alone, node_pressure, shear_ratio, slip_force
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.joints.bolted_joint.spring import BoltedJointSpring, patches, points
+from jointfmu.joints.bolted_joint.whole import Whole
 from jointfmu.joints.model import Variable
 from jointfmu.mechanics.footprint.bolts import PressureSource, pressure_shape
 from jointfmu.quantity import Array, flatten
@@ -34,8 +38,8 @@ _POWER = 0.8
 """The stiffness grows about like this power of the pressure; what is left is interpolated."""
 _PLAN = ("pattern.", "plate.")
 """Prefixes of what decides the distribution of the pressure."""
-FEW = 7
-"""Loads at which the loss factor is computed [1]."""
+FEW, FEW_SIDES = 7, 16
+"""Loads at which the loss factor is computed, and what elastic sides make of the stiffness [1]."""
 _BELOW = 1e-6
 """Where the table begins, over the pressure at which the closing ends [1]: K is a power of p there."""
 SHEAR = 0.05
@@ -71,10 +75,10 @@ class Places:
     force: Array
 
     @classmethod
-    def of(cls, start: float, equal: Array) -> "Places":
-        """From the log of the force over its end, `start`."""
+    def of(cls, start: float, equal: Array, most: float) -> "Places":
+        """From the log of the force over its end, `start`, to the greatest pressure over the mean one."""
         force = np.arange(start, 0.5 * CELL, CELL)
-        table = np.arange(start + np.log(equal[0]) - CELL, np.log(equal[-1]) + 2.0 * CELL, CELL)
+        table = np.arange(start + np.log(equal[0]) - CELL, np.log(most) + 2.0 * CELL, CELL)
         return cls(table, force)
 
     def sums(self, equal: Array, shares: Array, force: Array) -> Array:
@@ -84,6 +88,13 @@ class Places:
         for e, share in zip(equal, shares, strict=True):
             total += share * np.exp(_POWER * (force + np.log(e))) * spline(force + np.log(e)).T
         return total
+
+    def at(self, scaled: Array, logs: Array) -> Array:
+        """(n, e) from values (n, t) over p^POWER at the table's places to values at log-pressures (e) over
+        the mean one at the end; before the first place they go as that power."""
+        spline = CubicSpline(self.table, np.eye(self.table.size))
+        weight = np.exp(_POWER * logs) * spline(np.maximum(logs, self.table[0])).T
+        return np.asarray(scaled @ weight)
 
     def integral(self, force: Array) -> Array:
         """(f, force) from an integrand over the log of the force to its integral from the first place."""
@@ -96,7 +107,7 @@ def evaluate(
     """K_zz, K_xx [N/m], C_zz, C_xx [N.s/m], approach [m], slip_force [N] and loss_factor [1] (n, m) at
     preloads factor (n, 1) times loads (m) that embedding has left.
 
-    The approach is the integral of dF/K_zz over the force F of all bolts, from zero.
+    The approach is the integral of dF/K_zz of the interface over the force F of all bolts, from zero.
     values : by structured name, numbers or samples (n); samples of the pattern go one by one
     """
     samples = {name for name, value in values.items() if isinstance(value, np.ndarray)}
@@ -112,9 +123,11 @@ def evaluate(
 
 
 @lru_cache(maxsize=8)
-def _matrices(pattern: PressureSource, start: float, ramp: bytes) -> tuple[Places, Array, Array, Array]:
+def _matrices(
+    pattern: PressureSource, start: float, most: float, ramp: bytes
+) -> tuple[Places, Array, Array, Array]:
     equal, shares = equal_pressures(pattern)
-    places, force = Places.of(start, equal), np.frombuffer(ramp)
+    places, force = Places.of(start, equal, most), np.frombuffer(ramp)
     ends = (places.force, force)
     to_force, to_ramp = (places.sums(equal, shares, end) for end in ends)
     return places, to_force, to_ramp, places.integral(force)
@@ -130,10 +143,12 @@ def _evaluate(
     ramp = np.log(loads[touching] / loads[-1])
     mean = np.broadcast_to(factor * loads[-1] * joint.n_bolts / joint.A_0, factor.shape)
     works = ("plastic_work", "elastic_work") if joint.plastic_damping else ()
-    rows, closed = tabulate(joint, 0.0 * mean, mean * equal[-1] * np.exp(2.0 * CELL), works)
+    sides = Sides.of(joint, pattern) if joint.elastic else None
+    most = max(float(equal[-1]), sides.most if sides else 0.0)
+    rows, closed = tabulate(joint, 0.0 * mean, mean * most * np.exp(2.0 * CELL), works)
     first = float(np.min(np.log(_BELOW * closed / mean))) - np.log(equal[-1])
     start = CELL * np.floor(min(first, ramp[0] - 1.0) / CELL / 10.0) * 10.0
-    places, to_force, to_ramp, integral = _matrices(pattern, start, ramp.tobytes())
+    places, to_force, to_ramp, integral = _matrices(pattern, start, most, ramp.tobytes())
     end = np.log(joint.hardness)
     table = held(rows, places.table, np.log(mean), end)
     scaled = {name: np.exp(value - _POWER * places.table) for name, value in table.items()}
@@ -161,18 +176,85 @@ def _evaluate(
     curves = {name: np.concatenate([zero, value], axis=1) for name, value in curves.items()}
     slip = np.broadcast_to(slip_force(joint, factor * loads), curves["K_zz"].shape)
     curves["K_zz"] = curves["K_zz"] + joint.n_bolts * joint.bolt_stiffness
-    few, between = _few(ramp)
+    if sides:
+        few, between = _few(ramp, FEW_SIDES)
+        at = np.concatenate([[-np.inf], few])
+        for name, K in sides.stiffness(joint, places, scaled["k"], at).items():
+            curves[name][:, touching] = np.exp(np.log(K[:, 1:]) @ between)
+            curves[name][:, ~touching] = K[:, :1]
+    few, between = _few(ramp, FEW)
     lost = loss_factors(_pressed(table["k"], places, few), equal, shares, joint.mu, (factor.size, few.size))
     lost = lost @ between
     return curves | {"slip_force": slip, "loss_factor": np.concatenate([zero, lost], axis=1)}
 
 
-def _few(ramp: Array) -> tuple[Array, Array]:
-    """Few loads, as logs (f), and what carries values there to the ramp (f, m): the loss hardly changes."""
-    if ramp.size <= FEW:
+class Sides(NamedTuple):
+    """What elastic sides make of the stiffness of points and patches, by one motion and k modes.
+
+    equal  : (points), (patches) [1] pressure over mean pressure
+    normal : (points, (1 + k)^2) [1] products of how far they come apart by s_z and the modes, times shares
+    shear  : (patches, (1 + k)^2) [1] of how far they shift by s_x and the modes
+    bolts  : ((1 + k)^2) [1] of how far their seats come apart
+    modes  : (k) [N/m]
+    """
+
+    equal: tuple[Array, Array]
+    normal: Array
+    shear: Array
+    bolts: Array
+    modes: Array
+
+    @classmethod
+    def of(cls, joint: Bolted, pattern: PressureSource) -> "Sides":
+        """Raises ValueError for bodies that were computed for another contact."""
+        shape, few = points(pattern), patches(pattern)
+        modes = Modes.of(joint.bodies, shape.share.size, few.position)
+        whole = Whole.of(modes, shape, few, 1.0, 1.0)
+        pressing = parts(shape, few) * shape.share / few.share[:, None]
+
+        def products(weight: Array, *motions: tuple[Array, Array]) -> Array:
+            rows = [np.column_stack(motion) for motion in motions]
+            return np.asarray(sum(np.einsum("n,ni,nj->nij", weight, row, row) for row in rows)).reshape(
+                len(weight), -1
+            )
+
+        return cls(
+            (shape.equal, pressing @ shape.equal),
+            products(whole.weight, (whole.points[:, :1], modes.opening)),
+            products(whole.patch, *zip(whole.patches[:, :, :1], modes.patch, strict=True)),
+            products(np.ones(len(whole.seats)), (whole.seats[:, :1], modes.stretch)).sum(axis=0),
+            modes.stiffness,
+        )
+
+    @property
+    def most(self) -> float:
+        """Greatest pressure over the mean one [1]."""
+        return float(max(np.max(equal) for equal in self.equal))
+
+    def stiffness(self, joint: Bolted, places: Places, scaled: Array, ramp: Array) -> dict[str, Array]:
+        """K_zz and K_xx (n, m) [N/m] of the whole, tightened, at logs (m) of loads over the end of the ramp.
+
+        scaled : (n, t) stiffness of the interface over p^POWER at the table's places
+        """
+        size, found = 1 + len(self.modes), []
+        for load in ramp:
+            with np.errstate(divide="ignore"):
+                points, patches = (places.at(scaled, load + np.log(equal)) for equal in self.equal)
+            normal = joint.A_0 * (points @ self.normal) + joint.bolt_stiffness * self.bolts
+            shear = shear_ratio(joint) * joint.A_0 * (patches @ self.shear)
+            H = np.stack([each.reshape(-1, size, size) for each in (normal, shear)])
+            beside = np.moveaxis(H[:, :, 1:, 0], 0, -1)
+            follow = np.linalg.solve(H.sum(axis=0)[:, 1:, 1:] + np.diag(self.modes), beside)
+            found.append(H[:, :, 0, 0] - np.einsum("nkd,nkd->dn", beside, follow))
+        return dict(zip(("K_zz", "K_xx"), np.stack(found, axis=-1), strict=True))
+
+
+def _few(ramp: Array, count: int) -> tuple[Array, Array]:
+    """Few loads, as logs (f), and what carries values there to the ramp (f, m): what changes smoothly."""
+    if ramp.size <= count:
         return ramp, np.eye(ramp.size)
-    few = np.linspace(ramp[0], ramp[-1], FEW)
-    return few, np.asarray(CubicSpline(few, np.eye(FEW))(ramp).T)
+    few = np.linspace(ramp[0], ramp[-1], count)
+    return few, np.asarray(CubicSpline(few, np.eye(count))(ramp).T)
 
 
 def _pressed(log_k: Array, places: Places, ramp: Array) -> Callable[[Array], Array]:
@@ -234,11 +316,12 @@ def loss_factors(
 
 def exact(joint: Bolted, loads: Array) -> dict[str, Array]:
     """Stiffness, damping, approach, slip force and loss factor (m) of the spring on all nodes, in full stick,
-    at preloads (m) [N] that embedding has left.
+    at preloads (m) [N] that embedding has left; the first two of the exported joint with elastic sides.
     """
     alone = replace(interface_alone(joint), memory=False, embedding=0.0)
     spring, rest = BoltedJointSpring.of_nodes(alone), (0.0, 0.0, 0.0)
-    states = [spring.motion(float(load), 0.0, rest, rest) for load in loads]
+    tightened = BoltedJointSpring.of(replace(joint, embedding=0.0)) if joint.elastic else spring
+    states = [tightened.motion(float(load), 0.0, rest, rest) for load in loads]
     curves = {name: np.array([state[name] for state in states]) for name in _OUTPUTS}
     pressure = node_pressure(alone, spring.shape.equal, spring.shape.tilt, loads[:, None], 0.0)
     slip = alone.A_0 * spring.foundation().friction * (pressure @ spring.shape.share)
