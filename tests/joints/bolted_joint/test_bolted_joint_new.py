@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -12,6 +13,7 @@ from jointfmu_tools.drawing import vdi2230
 from jointfmu_tools.drawing.tables import classes, threads
 from jointfmu_tools.fem.bolted_contact import BoltedContact
 from jointfmu_tools.joints.bolted_joint.new import computed, layout
+from jointfmu_tools.joints.bolted_joint.report import friction_band
 from jointfmu_tools.shown import stated
 from jointfmu_tools.uncertainty.problem import pose
 
@@ -436,6 +438,8 @@ def test_friction_of_which_nothing_is_said_has_a_range(capsys, tmp_path):
     ratio = facts["loss_factor_low"] / facts["loss_factor_high"]
     assert ratio == pytest.approx(high / low, rel=0.1)
     assert facts["loss_factor_high"] < facts["loss_factor"] < facts["loss_factor_low"]
+    bare = replace(file, values=replace(file.values, embedding=0.0))  # embedding takes of the preload once
+    np.testing.assert_allclose(friction_band(file, 30e3)[1], friction_band(bare, left)[1], rtol=1e-9)
     (mu,) = (each for each in stated(file) if each.name == "mu")
     assert mu.source.startswith(f"{low:g} to {high:g}; ")
     study = pose(file, {}, 30e3, 3)

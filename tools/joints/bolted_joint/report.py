@@ -12,7 +12,7 @@ from jointfmu.joints.bolted_joint.compliances import Compliances
 from jointfmu.joints.bolted_joint.contact import Place
 from jointfmu.joints.bolted_joint.law import (
     interface_alone,
-    node_pressure,
+    shaped_pressure,
     slip_force,
     working_preload,
 )
@@ -108,11 +108,11 @@ def friction_band(file: ParameterFile, preload: float) -> tuple[float, list[Band
 def loss_factor(spring: BoltedJointSpring, left: float, shear: float) -> float:
     """Loss over 2 pi times the stored energy of a loop with an amplitude of the shear force [N].
 
-    left : [N] force of each bolt, without a moment
+    left : [N] force of each bolt that embedding leaves, without a moment
     """
     joint, shape = spring.joint, spring.patches
-    law = spring.foundation()
-    approach = spring.curve.inverse(node_pressure(joint, shape.equal, shape.tilt, left, 0.0))
+    law, mean = spring.foundation(), left * joint.n_bolts / joint.A_0
+    approach = spring.curve.inverse(shaped_pressure(shape.equal, shape.tilt, mean, 0.0))
     low, size = 0.0, law.friction / law.ratio * float(np.max(approach - spring.curve.displacement[0]))
     for _ in range(60):
         middle = 0.5 * (low + size)
