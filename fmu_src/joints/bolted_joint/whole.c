@@ -374,6 +374,7 @@ static Newton newton(Joint *joint, Way *way, double part, double *amplitude, dou
     least = residual(joint, at, amplitude, r);
     const Factors *with = &kind->begin.factors; /* of the derivative: at first that at the beginning of the way */
     double before = INFINITY;
+    bool own = false; /* the derivative is that at the amplitudes */
     for (int n = 0, kept = 0; n < NEWTON_STEPS; n++) {
         const double left = largest(r);
         if (left <= close * least)
@@ -382,6 +383,7 @@ static Newton newton(Joint *joint, Way *way, double part, double *amplitude, dou
             jacobian(joint, at, way->memory);
             with = &kind->factors;
             kept = 0;
+            own = true;
         }
         const bool last = part == 1.0 && n > 0 && left < WHOLE_CHORD * before && left * left < before * least;
         before = left;
@@ -399,11 +401,12 @@ static Newton newton(Joint *joint, Way *way, double part, double *amplitude, dou
                 return REFUSED;
             least = residual(joint, at, amplitude, r);
             const double rises = dense_dot(r, step);
-            if (!(rises > 0.5 * fabs(falls)))
+            if (size == 0.0 || !(rises > 0.5 * fabs(falls)))
                 break;
-            size *= fmax(falls / (falls - rises), 0.1);
+            size *= own ? fmax(falls / (falls - rises), 0.1) : 0.0;
             before = 0.0;
         }
+        own = false;
     }
     *missed = largest(r);
     return *missed <= close * least ? FOUND : LOST;

@@ -301,7 +301,7 @@ def test_the_fmu_is_the_package(made, tmp_path, flavour):
             least = {"f": 1e-5, "m": 1e-6}.get(name[0], 0.0)  # of 1e4 N, 1e3 N.m
             assert found == pytest.approx(float(expected[name]), rel=1e-8, abs=least), name
     before = fmu.get("f_x", "m_y")
-    fmu.set({"s_rel_x": 1e15, "s_rel_z": -1e15})
+    fmu.set({"s_rel_x": 1e15, "theta_z": 1e20})
     line = fmu.refused(fmu.step)
     assert re.search(r"s_rel_x = 1e\+15, .*: the sides find no equilibrium beyond .* residual is .* N", line)
     fmu.set(dict(zip(MOTIONS, six, strict=True)))
@@ -368,6 +368,17 @@ def test_a_path_far_into_slip_and_opening_is_found_with_few_parts(made, monkeypa
         memory = at(spring, *six, memory=memory, preload=15e3)[1]
     assert len(found) == 17
     assert max(apart) < 0.01
+
+
+def test_long_steps_back_from_gross_slip_are_found(made):
+    """Where all slipped before, the derivative at the beginning of a way back is far from that on it."""
+    spring, rng = made(*M16, "--attached", "heads").spring, np.random.default_rng(1)
+    unit = np.array([5e-6, 5e-6, 5e-6, 1e-4, 1e-4, 3e-4])
+    a, b = rng.uniform(-1.0, 1.0, (3, 2, 6))[2] * unit
+    memory = spring.at_rest()
+    for angle in np.linspace(0.0, 4.0 * np.pi, 17):
+        out, memory = at(spring, *(a * np.sin(angle) + b * (1.0 - np.cos(angle))), memory=memory)
+    assert out["E_loss"] > 0.0
 
 
 def test_a_motion_without_equilibrium_is_told_and_the_next_goes_on(made, monkeypatch):

@@ -168,7 +168,7 @@ class Whole:
         place, close = trials.place(part), 1.0 if part == 1.0 else ROUGH
         at = trials.at(place, amplitude)
         r, least = self.residual(at, tight, place, amplitude)
-        before = np.inf
+        before, own = np.inf, False  # whether the derivative is that at the amplitudes
         steps: list[Array] = []
         for _ in range(STEPS):
             left = float(np.max(np.abs(r)))
@@ -176,7 +176,7 @@ class Whole:
                 return amplitude, at
             if not left < CHORD * before:
                 J = self._derivative(at.stiffness, trials.apart(at), trials.slopes(place, amplitude))
-                steps = []
+                steps, own = [], True
             try:
                 step, before = _broyden(np.asarray(-np.linalg.solve(J, r)), steps), left
             except np.linalg.LinAlgError:  # the derivative is singular
@@ -188,10 +188,11 @@ class Whole:
                 at = trials.at(place, amplitude)
                 r, least = self.residual(at, tight, place, amplitude)
                 rises = float(r @ step)
-                if not rises > 0.5 * abs(falls):
+                if size == 0.0 or not rises > 0.5 * abs(falls):
                     break
-                size *= max(falls / (falls - rises), 0.1)
+                size *= max(falls / (falls - rises), 0.1) if own else 0.0
                 before = 0.0
+            own = False
         return float(np.max(np.abs(r)))
 
 
