@@ -81,7 +81,11 @@ def run(args: argparse.Namespace) -> Answer:
         if args.fmu:
             more += _system(args, model, axes, files, pose, tip)
     longest = poses.longest_step(model, axes, pose)
+    weight = poses.torques(model, axes, pose, args.payload, tip)[0].tolist()
+    plain, plain_sunk = poses.sag(model, axes, pose, args.payload, tip, [axis.fitted for axis in axes])
+    under = [(axis.joint, axis, axis.fitted, torque) for axis, torque in zip(axes, weight, strict=True)]
     notes = [line for axis in axes for line in axis.noted]
+    notes += [line for _, axis, _, torque in under for line in axis.overload(torque)]
     if model.opt.timestep > longest:
         notes.append(
             f"its timestep, {model.opt.timestep:g} s, is beyond {longest:.3g} s, which the drives bear"
@@ -92,8 +96,15 @@ def run(args: argparse.Namespace) -> Answer:
         "tip": model.body(tip).name,
         "pose": {axis.joint: float(pose[model.joint(axis.joint).qposadr[0]]) for axis in axes},
         "frequencies": {"lowest": float(found.min()), "highest": float(found.max())},
+        "torque": {name: torque for name, _, _, torque in under},
         "wind_up": dict(zip([axis.joint for axis in axes], wound.tolist(), strict=True)),
+        "stiffness": {name: axis.stiffness(torque) for name, axis, _, torque in under},
         "tip_error": sunk,
+        "plain": {
+            "wind_up": dict(zip([axis.joint for axis in axes], plain.tolist(), strict=True)),
+            "stiffness": {name: fitted.stiffness(torque) for name, _, fitted, torque in under},
+            "tip_error": plain_sunk,
+        },
         "longest_step": longest,
         "notes": notes,
     }
@@ -127,13 +138,19 @@ def _system(args: argparse.Namespace, model: Any, axes: Any, files: Any, pose: A
 
 
 def _lines(facts: dict[str, Any]) -> Sequence[str]:
-    span, payload = facts["frequencies"], facts["payload"]
+    span, payload, plain = facts["frequencies"], facts["payload"], facts["plain"]
     return [
         *(f"wrote {path}" for path in facts["written"]),
         f"natural frequencies over the poses: {span['lowest']:.4g} to {span['highest']:.4g} Hz",
         f"with {payload:g} kg at " + ", ".join(f"{name} = {x:.4g} rad" for name, x in facts["pose"].items()),
-        *(f"{name}: wind-up {1e3 * x:.4g} mrad" for name, x in facts["wind_up"].items()),
-        f"tip error at {facts['tip']}: {1e3 * facts['tip_error']:.4g} mm",
+        *(
+            f"{name}: wind-up {1e3 * x:.4g} mrad, {facts['stiffness'][name]:.4g} N.m/rad, "
+            f"at {facts['torque'][name]:.4g} N.m; in the plain file "
+            f"{1e3 * plain['wind_up'][name]:.4g} mrad, {plain['stiffness'][name]:.4g} N.m/rad"
+            for name, x in facts["wind_up"].items()
+        ),
+        f"tip error at {facts['tip']}: {1e3 * facts['tip_error']:.4g} mm; in the plain file "
+        f"{1e3 * plain['tip_error']:.4g} mm",
         *facts["notes"],
     ]
 

@@ -20,6 +20,8 @@ MOTORS = "drive_motors"
 """What the name of their bodies begins with."""
 _ROOM = 6
 """Coordinates that MuJoCo allows in a body."""
+_BACK = 1e-6
+"""Step back [1] over the rated torque that small vibrations make."""
 _LIGHT = 1e-12
 """Mass [kg] and inertia [kg.m2] of the motors' body; their rotors are armatures."""
 
@@ -39,14 +41,23 @@ class ElasticAxis:
     noted: tuple[str, ...] = ()
 
     def wind_up(self, torque: float) -> float:
-        """[rad] on the way from rest at a torque [N.m]."""
-        up = np.linspace(0.0, 3.0 * self.drive.wind_up([self.fitted.torque])[0], 400)
-        return float(np.copysign(np.interp(abs(torque), self.fitted.along(up), up), torque))
+        """[rad] by the drive's own law, on the way from rest at a torque [N.m]."""
+        return float(self.drive.wind_up([torque])[0])
 
     def stiffness(self, torque: float) -> float:
         """[N.m/rad] of small vibrations about a torque [N.m]: what slides sticks again."""
-        x = self.wind_up(torque)
-        return self.fitted.linear + 3.0 * self.fitted.cubic * x**2 + sum(k for k, _ in self.fitted.sliders)
+        back = float(np.copysign(_BACK * self.drive.rated_torque, torque))
+        there, after = self.drive.wind_up([torque, torque - back])
+        return back / float(there - after)
+
+    def overload(self, torque: float) -> Iterator[str]:
+        """What to say of a torque [N.m] beyond those of the drive."""
+        drive, size = self.drive, abs(torque)
+        what = f"{self.joint}: {size:.4g} N.m is beyond the"
+        if size > drive.max_torque:
+            yield f"{what} max_torque, {drive.max_torque:g} N.m, of {drive.name}, where its law ends"
+        elif size > drive.rated_torque:
+            yield f"{what} rated torque, {drive.rated_torque:g} N.m, of {drive.name}"
 
 
 def read(path: str | Path) -> Any:
