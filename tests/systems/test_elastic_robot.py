@@ -14,7 +14,8 @@ import pytest
 from conftest import here_alone, refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.interface import drive
-from jointfmu_tools.robots import pictures
+from jointfmu_tools.robots import elastic, pictures, poses
+from jointfmu_tools.robots.transmission import transmission
 
 from jointfmu.parameters import dump
 
@@ -149,15 +150,8 @@ def test_frequencies_are_those_of_the_model_in_mujoco(six, capsys, tmp_path):
     """With its springs about its sagged pose, linearised by MuJoCo's own finite differences; what weight adds
     is < 1 %.
     """
-    from jointfmu_tools.robots import elastic, poses
-    from jointfmu_tools.robots.transmission import transmission
-
-    import jointfmu
-
     spec = elastic.read(ROBOT)
-    axes = elastic.axes(
-        spec, {f"joint{i}": transmission(jointfmu.load(n).file) for i, n in enumerate(SIZES, 1)}
-    )
+    axes = elastic.axes(spec, {f"joint{i}": transmission(drive(n).file) for i, n in enumerate(SIZES, 1)})
     rigid = spec.compile()
     pose = elastic.posed(rigid, {"joint2": "0.7", "joint3": "0.8"})
     springs = [SimpleNamespace(joint=axis.joint, stiffness=axis.fitted.stiffness) for axis in axes]
@@ -201,7 +195,9 @@ def test_a_joints_limit_of_its_actuators_is_theirs(own, expected, tmp_path, caps
     text = ROBOT.read_text().replace('name="joint1"', 'name="joint1" actuatorfrcrange="-40 60"')
     robot = tmp_path / "robot.xml"
     robot.write_text(text.replace('name="motor1"', f'name="motor1" {own}'))
-    said = made(capsys, robot, tmp_path / "out", "--drive", "joint1=CSG-32-100")
+    words = ["--drive", "joint1=CSG-32-100", "--pose", "joint2=0.5"]
+    said = made(capsys, robot, tmp_path / "out", *words)
+    assert said["pose"] == {"joint1": 0.0, "joint2": 0.5}
     model = mujoco.MjModel.from_xml_path(said["written"][0])
     assert model.actuator("motor1").forcerange.tolist() == pytest.approx(expected)
     assert model.actuator("motor1").forcelimited
@@ -285,12 +281,25 @@ def test_seven_axes_of_a_urdf(tmp_path, capsys, few_poses):
     words = [f"j{i}=CSG-20-100" for i in range(1, 8)]
     said = made(capsys, robot, tmp_path / "out", "--drive", *words, "--pose", "j2=1.5708")
     assert sum("no armature" in line for line in said["notes"]) == 7
+    assert any(
+        "at the origin of l7, on the axis of j7, which it does not load" in line for line in said["notes"]
+    )
     assert list(said["wind_up"]) == [f"j{i}" for i in range(1, 8)]
     assert said["wind_up"]["j1"] == pytest.approx(0.0, abs=1e-9)
     assert said["wind_up"]["j2"] > 1e-4
     model = mujoco.MjModel.from_xml_path(said["written"][0])
     assert model.nv == 14
     assert all(Path(path).stat().st_size > 1000 for path in said["written"])
+
+
+def test_a_tool_frame_of_a_urdf_is_the_tip(tmp_path):
+    """A link that a fixed joint holds."""
+    robot = tmp_path / "one.urdf"
+    tool = '<joint name="t" type="fixed"><parent link="l1"/><child link="tool"/></joint><link name="tool"/>'
+    robot.write_text(SEVEN.format(LINK.format(1, 0, "0 1 0", 2) + tool))
+    spec = elastic.read(robot)
+    axes = elastic.axes(spec, {"j1": transmission(drive("CSG-14-100").file)})
+    assert spec.compile().body(elastic.body(spec.compile(), None, axes)).name == "tool"
 
 
 OTHERS = {
@@ -347,6 +356,10 @@ def test_robots_of_others(wheel, end, count, tmp_path, capsys, few_poses):
             "--tip 'toe': no body of the robot; allowed",
         ),
         (["--drive", "joint1=CSG-14-100", "--pose", "joint1=up"], "--pose joint1 = 'up' is no number"),
+        (
+            ["--drive", "joint1=CSG-14-100", "--pose", "joint2=90"],
+            r"--pose joint2 = 90 rad is outside \[-2, 2\] rad",
+        ),
     ],
 )
 def test_refusals(words, line, tmp_path, capsys):

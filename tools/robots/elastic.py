@@ -67,6 +67,7 @@ def read(path: str | Path) -> Any:
     check_version()
     try:
         spec = mujoco.MjSpec.from_file(str(path))
+        spec.compiler.fusestatic = False  # of a URDF, whose tool frames are links that do not move
         spec.compile()
     except (ValueError, OSError, mujoco.FatalError) as error:
         line = " ".join(str(error).split())
@@ -203,10 +204,17 @@ def _limit(actuator: Any, ends: Array) -> None:
     actuator.forcelimited, actuator.forcerange = 1, [low, high]
 
 
+def unit(model: Any, name: str) -> str:
+    """Of the coordinate of a hinge or a slide."""
+    import mujoco
+
+    return "m" if model.joint(name).type[0] == mujoco.mjtJoint.mjJNT_SLIDE else "rad"
+
+
 def posed(model: Any, angles: Mapping[str, str]) -> Array:
     """Positions of the rigid robot: its first keyframe, or as it is drawn, with stated angles [rad].
 
-    Raises ValueError for a joint that it has not or an angle that is no finite number.
+    Raises ValueError for a joint that it has not or an angle that is no number within the joint's range.
     """
     import mujoco
 
@@ -221,11 +229,17 @@ def posed(model: Any, angles: Mapping[str, str]) -> Array:
         if name not in known:
             raise ValueError(f"--pose {name}: no joint of the robot; allowed are {', '.join(known)}")
         try:
-            pose[known[name]] = float(text)
+            value = float(text)
         except ValueError:
             raise ValueError(f"--pose {name} = {text!r} is no number") from None
-    if not np.isfinite(pose).all():
-        raise ValueError("--pose: an angle is not finite")
+        joint = model.joint(name).id
+        low, high = model.jnt_range[joint] if model.jnt_limited[joint] else (-np.inf, np.inf)
+        if not (np.isfinite(value) and low <= value <= high):
+            allowed = f"[{low:g}, {high:g}]" if model.jnt_limited[joint] else "(-inf, inf)"
+            raise ValueError(
+                f"--pose {name} = {text} {unit(model, name)} is outside {allowed} {unit(model, name)}"
+            )
+        pose[known[name]] = value
     return pose
 
 
