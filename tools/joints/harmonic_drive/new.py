@@ -111,13 +111,10 @@ def _brakes(given: Given, printed: Mapping[str, Printed]) -> dict[str, Printed]:
         return {}
     if "starting_torque" not in printed and stated:
         raise ValueError(f"{flag(stated[0])} needs {flag('starting_torque')}: without it no friction acts")
-    dropped: set[str] = set()
-    if "starting_torque" in stated:  # what is scaled belongs to another one
-        dropped = {name for name in QUOTED if name in printed and printed[name].kind == "estimate"}
-    return _with_drag(
-        friction({name: number for name, number in printed.items() if name not in dropped}),
-        given["motor_drag"],
-    )
+    if "starting_torque" in stated:  # what is scaled belongs to another one; the rest must be met
+        printed = {n: p for n, p in printed.items() if n not in QUOTED or p.kind != "estimate"}
+        stated = [name for name in QUOTED if name in printed]
+    return _with_drag(friction(printed, stated), given["motor_drag"])
 
 
 def _with_drag(brakes: dict[str, Printed], stated: str | None) -> dict[str, Printed]:
