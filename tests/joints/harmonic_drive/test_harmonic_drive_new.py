@@ -300,6 +300,13 @@ def test_what_is_stated_makes_the_friction(tmp_path):
     assert efficiency(both) == pytest.approx(0.7)
 
 
+def test_lost_motion_is_told_beside_its_limit(capsys):
+    """Below it with the catalogue's stiffness, above with a softer one."""
+    for words, place in (([], "below"), (["--K1", "20000"], "above")):
+        assert cli.main(["new", "harmonic-drive", "--catalogue", "CSG-25-100", *words]) == 0
+        assert f"; {place} 0.0002909 rad: limit" in capsys.readouterr().out
+
+
 START = ("--starting-torque", "0.03")
 
 

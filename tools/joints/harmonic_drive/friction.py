@@ -22,7 +22,7 @@ from typing import NamedTuple
 import numpy as np
 
 from jointfmu.joints.harmonic_drive.drive import Drive
-from jointfmu.joints.harmonic_drive.friction import limits, viscous
+from jointfmu.joints.harmonic_drive.friction import REFERENCE, limits, viscous
 from jointfmu.quantity import Array
 
 from ...catalogue import Item, Printed
@@ -200,11 +200,13 @@ def interval_text(interval: tuple[float, float]) -> str:
     return f"{100.0 * LEVEL:g} % interval {interval[0]:.4g} to {interval[1]:.4g}"
 
 
-def efficiency(drive: Drive) -> float:
-    """Output power over motor power [1] of a drive at rated torque and SPEED, without hysteresis."""
+def efficiency(drive: Drive, temperature: float = REFERENCE) -> float:
+    """Output power over motor power [1] of a drive at rated torque, SPEED and a temperature [K], without
+    hysteresis.
+    """
     carried = drive.rated_torque / abs(drive.ratio)
     against = -math.copysign(drive.rated_torque, drive.ratio)
-    braked = limits(drive, SPEED, against)[0] + viscous(drive, SPEED)
+    braked = limits(drive, SPEED, against, temperature)[0] + viscous(drive, SPEED, temperature)
     return float(carried / (carried + braked))
 
 
