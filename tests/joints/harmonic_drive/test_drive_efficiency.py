@@ -235,9 +235,7 @@ def test_the_page_has_what_is_published_of_the_drive(tmp_path):
     assert "Beside what is published of it" in page
     assert "3.06 N m" in page
     assert "the lubricant is at 45 degrees C" in page
-    assert {"-10", "20", "45", "60"} == set(
-        re.findall(r"\"(-?\d+) degrees C\"", page)
-    )
+    assert {"-10", "20", "45", "60"} == set(re.findall(r"\"(-?\d+) degrees C\"", page))
 
 
 def test_the_study_prints_its_tables(capsys):

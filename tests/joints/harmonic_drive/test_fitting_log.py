@@ -154,6 +154,7 @@ def written(path, **given):
 TIME = np.linspace(0.0, 8.0, 4001)
 BACK = np.where(TIME > 4.0, TIME - 3.0, TIME)
 HOLE = np.where(TIME > 4.0, TIME + 3.0, TIME)
+FRICTION = 0.05 * np.sign(np.cos(2.0 * TIME)) + 0.04 * np.cos(2.0 * TIME)
 MISSING = np.where(np.arange(4001) == 7, np.nan, 0.1)
 
 
@@ -169,6 +170,7 @@ MISSING = np.where(np.arange(4001) == 7, np.nan, 0.1)
         ({"tau": ("N.m", MISSING)}, "line 9: tau = 'nan' is no finite number"),
         ({"time": ("s", BACK)}, "runs back; expected rising times"),
         ({"time": ("s", HOLE)}, "a gap of 3.002 s"),
+        ({"tau": ("N.m", -FRICTION)}, "friction drives the motion; reverse the sign of one column"),
         ({"tau": None}, "has no torque and no current of the motor; expected tau [N.m | mN.m], i [A | mA]"),
         ({"q": None, "dq": None}, "has neither q nor dq"),
         ({"dq": ("rad", TIME)}, "column 'dq' has unit 'rad'"),
@@ -201,6 +203,42 @@ def test_an_unknown_rotor_is_told(drive, tmp_path, capsys):
     path = written(tmp_path / "log.csv")
     assert cli.main(["fit", "log", str(path), "--params", str(drive)]) == 0
     assert "without --motor-inertia all inertia counts as the arm's" in capsys.readouterr().err
+
+
+LIGHT = FRICTION - 0.6 * 4.0 / 100.0 * np.sin(2.0 * TIME)
+LEVEL = ("N.m", 0.0 * TIME)
+"""Torque of the motor with 0.6 kg.m2 at the joint; gravity."""
+
+
+def test_what_a_light_arm_leaves_open_stays_as_it_is(drive, tmp_path, capsys):
+    """Its load is above the least one; what is fitted without being determined is no calibration."""
+    noise = 0.1 * np.random.default_rng(0).standard_normal(4001)
+    path, out = (
+        written(tmp_path / "log.csv", tau=("N.m", LIGHT + noise), gravity=LEVEL),
+        tmp_path / "out.toml",
+    )
+    asked = ["fit", "log", str(path), "--params", str(drive), "--motor-inertia", "1e-6", "--out", str(out)]
+    assert cli.main(asked) == 0
+    shown, start, found = capsys.readouterr().err, load(drive), load(out)
+    for name in ("load_loss", "load_loss_back"):
+        assert f"does not determine {name}, which stays as it is: that fits as well" in shown
+        assert (found.flat[name], found.sources[name]) == (start.flat[name], start.sources[name])
+    assert found.origins["friction_coulomb"] == "calibration"
+    assert found.origins["friction_stribeck"] == "estimate"
+    assert found.sources["friction_stribeck"].endswith("not determined: other values fit as well")
+
+
+@pytest.mark.parametrize(
+    ("given", "hint"), [("0.5", "; stated at the joint, it is 4.9e-05 kg.m2"), ("9", "log")]
+)
+def test_a_rotor_beyond_the_whole_is_refused(drive, tmp_path, capsys, given, hint):
+    path = written(tmp_path / "log.csv", tau=("N.m", LIGHT), gravity=LEVEL)
+    line = refused_line(capsys, "fit", "log", path, "--params", drive, "--motor-inertia", given)
+    assert (
+        f"--motor-inertia = {given} kg.m2 times ratio^2 is {101.0**2 * float(given):.4g} kg.m2 at the joint"
+        in line
+    )
+    assert hint in line
 
 
 def test_noise_is_not_written(drive, tmp_path, capsys):
