@@ -9,9 +9,11 @@ import numpy as np
 import pytest
 from conftest import refused_line
 from jointfmu_tools import cli, columns
+from jointfmu_tools.fitting import outcome
 from jointfmu_tools.joints.harmonic_drive.fit import hysteresis, log
 from jointfmu_tools.joints.harmonic_drive.new import NEW
 from log_round_trips import CASES, TRUE, trip
+from matplotlib.figure import Figure
 
 from jointfmu.joints.harmonic_drive.friction import limits, viscous
 from jointfmu.parameters import dump, load
@@ -98,6 +100,11 @@ def test_a_load_that_is_measured_gives_the_losses(tmp_path):
     for name in ("friction_coulomb", "friction_stribeck", "friction_viscous", "load_loss", "load_loss_back"):
         assert found.parameters.flat[name] == pytest.approx(TRUE[name], rel=1e-3)
     assert any("viscous_temperature_coefficient" in note for note in found.notes)
+    figure = Figure(outcome.size(found), layout="constrained")
+    outcome.draw(figure, found)
+    figure.draw_without_rendering()
+    legend, data = figure.axes[0].get_legend().get_window_extent(), figure.axes[0].get_window_extent()
+    assert legend.y0 >= data.y1  # beside the curves
 
 
 # a measured robot
