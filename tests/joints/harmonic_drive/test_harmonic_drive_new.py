@@ -90,7 +90,7 @@ def test_what_is_stated_takes_the_place_of_the_catalogue(tmp_path):
 @pytest.mark.parametrize(
     ("words", "text"),
     [
-        (["--catalogue", "CSG-17-60"], "nearest are CSG-17-80, CSG-17-50, CSG-17-30"),
+        (["--catalogue", "CSG-17-60"], "nearest are CSG-17-50, CSG-17-80, CSG-17-100"),
         (["--catalogue", "CSG-17-100", "--K1", "1"], "K1 = 1 N.m/rad winds up"),
         (["--ratio", "100", "--K1", "1"], "--K2, --K3, --T1, --T2 missing"),
     ],
