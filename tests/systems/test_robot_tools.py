@@ -20,7 +20,7 @@ ROOT = Path(__file__).parents[2]
 
 @pytest.mark.parametrize(("page", "package"), [("drake", "pydrake"), ("pinocchio", "pinocchio")])
 def test_the_page_gives_wind_up_and_tip_error(page, package, capsys, tmp_path, monkeypatch):
-    """Least squares of the plain MJCF are within 3 % of the drives here."""
+    """By the drives' own law, as it is printed."""
     if find_spec(package) is None:
         pytest.skip(f"{package} is not installed")
     pytest.importorskip("mujoco")
@@ -32,9 +32,9 @@ def test_the_page_gives_wind_up_and_tip_error(page, package, capsys, tmp_path, m
     words = "--drive joint2=CSG-40-100 joint3=CSG-25-100 --payload 3 --pose joint2=0.7 joint3=0.8 --json"
     assert cli.main(["robot", "models/robots/six_axis.xml", *words.split(), "--out", str(tmp_path)]) == 0
     expected = json.loads(capsys.readouterr().out)
-    assert 1e-3 * moved == pytest.approx(expected["tip_error"], rel=0.03)
+    assert 1e-3 * moved == pytest.approx(expected["tip_error"], rel=2e-3)
     for angle, name in zip(wound[1:3], ("joint2", "joint3"), strict=True):
-        assert 1e-3 * angle == pytest.approx(expected["wind_up"][name], rel=0.03)
+        assert 1e-3 * angle == pytest.approx(expected["wind_up"][name], rel=2e-3)
 
 
 @pytest.mark.slow

@@ -81,7 +81,19 @@ def run(args: argparse.Namespace) -> Answer:
         if args.fmu:
             more += _system(args, model, axes, files, pose, tip)
     longest = poses.longest_step(model, axes, pose)
+    weight, jacobian = poses.torques(model, axes, pose, args.payload, tip)
+    plain, plain_sunk = poses.sag(model, axes, pose, args.payload, tip, [axis.fitted for axis in axes])
+    under = [
+        (axis.joint, axis, axis.fitted, torque) for axis, torque in zip(axes, weight.tolist(), strict=True)
+    ]
     notes = [line for axis in axes for line in axis.noted]
+    notes += [line for _, axis, _, torque in under for line in axis.overload(torque)]
+    last = axes[-1].joint
+    if args.payload and not jacobian[:, -1].any() and model.jnt_bodyid[model.joint(last).id] == tip:
+        notes.append(
+            f"the payload is at the origin of {model.body(tip).name}, on the axis of {last}, which it does "
+            "not load; --tip BODY puts it elsewhere, at a body (a link of a URDF) that stands for the tool"
+        )
     if model.opt.timestep > longest:
         notes.append(
             f"its timestep, {model.opt.timestep:g} s, is beyond {longest:.3g} s, which the drives bear"
@@ -90,14 +102,24 @@ def run(args: argparse.Namespace) -> Answer:
         "written": [str(path) for path in (written, *pictures, *more)],
         "payload": args.payload,
         "tip": model.body(tip).name,
-        "pose": {axis.joint: float(pose[model.joint(axis.joint).qposadr[0]]) for axis in axes},
+        "pose": {
+            name: float(pose[model.joint(name).qposadr[0]])
+            for name in dict.fromkeys([*(axis.joint for axis in axes), *angles])
+        },
         "frequencies": {"lowest": float(found.min()), "highest": float(found.max())},
+        "torque": {name: torque for name, _, _, torque in under},
         "wind_up": dict(zip([axis.joint for axis in axes], wound.tolist(), strict=True)),
+        "stiffness": {name: axis.stiffness(torque) for name, axis, _, torque in under},
         "tip_error": sunk,
+        "plain": {
+            "wind_up": dict(zip([axis.joint for axis in axes], plain.tolist(), strict=True)),
+            "stiffness": {name: fitted.stiffness(torque) for name, _, fitted, torque in under},
+            "tip_error": plain_sunk,
+        },
         "longest_step": longest,
         "notes": notes,
     }
-    return Answer(document=facts, lines=_lines(facts))
+    return Answer(document=facts, lines=_lines(facts, model))
 
 
 def _plugged(args: argparse.Namespace, spec: Any, axes: Any, files: Any) -> list[Path]:
@@ -126,14 +148,23 @@ def _system(args: argparse.Namespace, model: Any, axes: Any, files: Any, pose: A
     return [written, *build_system(assembly(read(written)), args.out)]
 
 
-def _lines(facts: dict[str, Any]) -> Sequence[str]:
-    span, payload = facts["frequencies"], facts["payload"]
+def _lines(facts: dict[str, Any], model: Any) -> Sequence[str]:
+    from ..robots.elastic import unit
+
+    span, payload, plain = facts["frequencies"], facts["payload"], facts["plain"]
     return [
         *(f"wrote {path}" for path in facts["written"]),
         f"natural frequencies over the poses: {span['lowest']:.4g} to {span['highest']:.4g} Hz",
-        f"with {payload:g} kg at " + ", ".join(f"{name} = {x:.4g} rad" for name, x in facts["pose"].items()),
-        *(f"{name}: wind-up {1e3 * x:.4g} mrad" for name, x in facts["wind_up"].items()),
-        f"tip error at {facts['tip']}: {1e3 * facts['tip_error']:.4g} mm",
+        f"with {payload:g} kg at "
+        + ", ".join(f"{name} = {x:.4g} {unit(model, name)}" for name, x in facts["pose"].items()),
+        *(
+            f"{name}: wind-up {1e3 * x:.4g} mrad, {facts['stiffness'][name]:.4g} N.m/rad, "
+            f"at {facts['torque'][name]:.4g} N.m; in the plain file "
+            f"{1e3 * plain['wind_up'][name]:.4g} mrad, {plain['stiffness'][name]:.4g} N.m/rad"
+            for name, x in facts["wind_up"].items()
+        ),
+        f"tip error at {facts['tip']}: {1e3 * facts['tip_error']:.4g} mm; in the plain file "
+        f"{1e3 * plain['tip_error']:.4g} mm",
         *facts["notes"],
     ]
 

@@ -307,4 +307,4 @@ def draw(figure: "Figure", outcome: FitResult) -> None:
         above.set_ylabel(picture.labels[1])
         below.set_xlabel(picture.labels[0])
         below.set_ylabel(picture.labels[2])
-        above.legend()
+        above.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2)

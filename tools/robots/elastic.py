@@ -20,6 +20,8 @@ MOTORS = "drive_motors"
 """What the name of their bodies begins with."""
 _ROOM = 6
 """Coordinates that MuJoCo allows in a body."""
+_BACK = 1e-6
+"""Step back [1] over the rated torque that small vibrations make."""
 _LIGHT = 1e-12
 """Mass [kg] and inertia [kg.m2] of the motors' body; their rotors are armatures."""
 
@@ -39,14 +41,23 @@ class ElasticAxis:
     noted: tuple[str, ...] = ()
 
     def wind_up(self, torque: float) -> float:
-        """[rad] on the way from rest at a torque [N.m]."""
-        up = np.linspace(0.0, 3.0 * self.drive.wind_up([self.fitted.torque])[0], 400)
-        return float(np.copysign(np.interp(abs(torque), self.fitted.along(up), up), torque))
+        """[rad] by the drive's own law, on the way from rest at a torque [N.m]."""
+        return float(self.drive.wind_up([torque])[0])
 
     def stiffness(self, torque: float) -> float:
         """[N.m/rad] of small vibrations about a torque [N.m]: what slides sticks again."""
-        x = self.wind_up(torque)
-        return self.fitted.linear + 3.0 * self.fitted.cubic * x**2 + sum(k for k, _ in self.fitted.sliders)
+        back = float(np.copysign(_BACK * self.drive.rated_torque, torque))
+        there, after = self.drive.wind_up([torque, torque - back])
+        return back / float(there - after)
+
+    def overload(self, torque: float) -> Iterator[str]:
+        """What to say of a torque [N.m] beyond those of the drive."""
+        drive, size = self.drive, abs(torque)
+        what = f"{self.joint}: {size:.4g} N.m is beyond the"
+        if size > drive.max_torque:
+            yield f"{what} max_torque, {drive.max_torque:g} N.m, of {drive.name}, where its law ends"
+        elif size > drive.rated_torque:
+            yield f"{what} rated torque, {drive.rated_torque:g} N.m, of {drive.name}"
 
 
 def read(path: str | Path) -> Any:
@@ -56,6 +67,7 @@ def read(path: str | Path) -> Any:
     check_version()
     try:
         spec = mujoco.MjSpec.from_file(str(path))
+        spec.compiler.fusestatic = False  # of a URDF, whose tool frames are links that do not move
         spec.compile()
     except (ValueError, OSError, mujoco.FatalError) as error:
         line = " ".join(str(error).split())
@@ -192,10 +204,17 @@ def _limit(actuator: Any, ends: Array) -> None:
     actuator.forcelimited, actuator.forcerange = 1, [low, high]
 
 
+def unit(model: Any, name: str) -> str:
+    """Of the coordinate of a hinge or a slide."""
+    import mujoco
+
+    return "m" if model.joint(name).type[0] == mujoco.mjtJoint.mjJNT_SLIDE else "rad"
+
+
 def posed(model: Any, angles: Mapping[str, str]) -> Array:
     """Positions of the rigid robot: its first keyframe, or as it is drawn, with stated angles [rad].
 
-    Raises ValueError for a joint that it has not or an angle that is no finite number.
+    Raises ValueError for a joint that it has not or an angle that is no number within the joint's range.
     """
     import mujoco
 
@@ -210,11 +229,17 @@ def posed(model: Any, angles: Mapping[str, str]) -> Array:
         if name not in known:
             raise ValueError(f"--pose {name}: no joint of the robot; allowed are {', '.join(known)}")
         try:
-            pose[known[name]] = float(text)
+            value = float(text)
         except ValueError:
             raise ValueError(f"--pose {name} = {text!r} is no number") from None
-    if not np.isfinite(pose).all():
-        raise ValueError("--pose: an angle is not finite")
+        joint = model.joint(name).id
+        low, high = model.jnt_range[joint] if model.jnt_limited[joint] else (-np.inf, np.inf)
+        if not (np.isfinite(value) and low <= value <= high):
+            allowed = f"[{low:g}, {high:g}]" if model.jnt_limited[joint] else "(-inf, inf)"
+            raise ValueError(
+                f"--pose {name} = {text} {unit(model, name)} is outside {allowed} {unit(model, name)}"
+            )
+        pose[known[name]] = value
     return pose
 
 

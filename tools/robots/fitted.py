@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import nnls
+from scipy.optimize import brentq, nnls
 
 from jointfmu.mechanics.jenkins import Sliders
 from jointfmu.quantity import Array
@@ -35,6 +35,19 @@ class FittedTendons:
         """Torques (n) [N.m] along wind-ups (n) [rad] from rest."""
         found = self.linear * wind_up + self.cubic * wind_up**3
         return found + sum((k * slider(wind_up, y) for k, y in self.sliders), np.zeros_like(wind_up))
+
+    def wind_up(self, torque: float) -> float:
+        """[rad] on the way from rest at a torque [N.m]."""
+        far = 1.0
+        while self.along(np.array([far]))[0] < abs(torque):
+            far *= 2.0
+        found = brentq(lambda x: self.along(np.array([x]))[0] - abs(torque), 0.0, far, xtol=1e-15)
+        return float(np.copysign(found, torque))
+
+    def stiffness(self, torque: float) -> float:
+        """[N.m/rad] of small vibrations about a torque [N.m]: what slides sticks again."""
+        x = self.wind_up(torque)
+        return self.linear + 3.0 * self.cubic * x**2 + sum(k for k, _ in self.sliders)
 
 
 def slider(wind_up: Array, limit: float) -> Array:

@@ -145,8 +145,8 @@ def _about_friction(drive: Transmission, motor: float) -> Iterator[str]:
     yield f"  and steps up to {STEP:g} s, not for the integrator RK4"
 
 
-def text(drive: Transmission, torque: float) -> tuple[str, Miss]:
-    """The file of a drive fitted up to a torque [N.m], and what running it showed.
+def text(drive: Transmission, torque: float) -> tuple[str, Miss, list[str]]:
+    """The file of a drive fitted up to a torque [N.m], what running it showed, and what it lacks.
 
     Raises ImportError without mujoco.
     """
@@ -171,4 +171,4 @@ def text(drive: Transmission, torque: float) -> tuple[str, Miss]:
         *(f"  {line}" for line in drive.lacks),
     ]
     comment = "\n".join(f"  {line.replace('--', '- -')}" for line in about)
-    return f"<!--\n{comment}\n-->\n{_model(drive, fitted, motor, link)}", miss
+    return f"<!--\n{comment}\n-->\n{_model(drive, fitted, motor, link)}", miss, [*drive.lacks]

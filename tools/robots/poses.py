@@ -8,6 +8,7 @@ import numpy as np
 from jointfmu.quantity import Array
 
 from .elastic import ElasticAxis, mass_matrix
+from .fitted import FittedTendons
 
 
 def dofs(model: Any, axes: Sequence[ElasticAxis]) -> list[int]:
@@ -56,21 +57,29 @@ def frequencies(model: Any, axes: Sequence[ElasticAxis], pose: Array, payload: f
 
 def longest_step(model: Any, axes: Sequence[ElasticAxis], pose: Array) -> float:
     """Step [s] beyond which MuJoCo's default integrator diverges: 2 over the highest natural frequency of
-    links and free motors at a pose, the drives at the torques of their fits.
+    links and free motors at a pose, its springs at the torques of their fits.
     """
     own = dofs(model, axes)
     rotors = np.zeros(model.nv)
     rotors[own] = model.dof_armature[own]
     mobility = np.linalg.inv(mass_matrix(model, pose) - np.diag(rotors))[np.ix_(own, own)]
     mobility += np.diag([1.0 / axis.rotor for axis in axes])
-    scale = np.sqrt([axis.stiffness(axis.fitted.torque) for axis in axes])
+    scale = np.sqrt([axis.fitted.stiffness(axis.fitted.torque) for axis in axes])
     return float(2.0 / np.sqrt(np.linalg.eigvalsh(scale[:, None] * mobility * scale)[-1]))
 
 
 def sag(
-    model: Any, axes: Sequence[ElasticAxis], pose: Array, payload: float, tip: int
+    model: Any,
+    axes: Sequence[ElasticAxis],
+    pose: Array,
+    payload: float,
+    tip: int,
+    springs: Sequence[FittedTendons] | None = None,
 ) -> tuple[Array, float]:
-    """Wind-ups (n) [rad] under weight at a pose, motors held, and how far the tip sinks by them [m]."""
+    """Wind-ups (n) [rad] under weight at a pose, motors held, and how far the tip sinks by them [m]; with the
+    drives' own laws, or with springs (n) in their place.
+    """
     load, jacobian = torques(model, axes, pose, payload, tip)
-    x = np.array([axis.wind_up(t) for axis, t in zip(axes, load.tolist(), strict=True)])
+    laws: Sequence[ElasticAxis | FittedTendons] = springs or axes
+    x = np.array([law.wind_up(t) for law, t in zip(laws, load.tolist(), strict=True)])
     return x, float(np.linalg.norm(jacobian @ x))

@@ -5,7 +5,6 @@ from xml.sax.saxutils import quoteattr
 
 from jointfmu import __version__
 
-from .mjcf import Miss
 from .transmission import Transmission, area
 
 RATED_SPEED = 209.44
@@ -16,24 +15,26 @@ LIGHT = (
 )
 
 
-def text(drive: Transmission, torque: float) -> tuple[str, Miss]:
-    """The file of a drive, and what it misses: URDF has no springs, so all of the wind-up and of its loop."""
+def text(drive: Transmission, torque: float) -> tuple[str, None, list[str]]:
+    """The file of a drive; nothing of it is measured; and what it lacks: springs, which URDF has not."""
     torques, x = drive.loop(torque)
     lossy = bool(drive.wind_up([torque, 0.0])[1])
-    miss = Miss(-1.0, -1.0 if lossy else None)
+    lacks = [
+        f"the wind-up, {x[: len(x) // 2].max():.4g} rad at {torque:g} N.m",
+        *([f"the hysteresis, {abs(area(x, torques)):.4g} J a loop at {torque:g} N.m"] if lossy else []),
+        f"the damping of the wind-up, {drive.damping:.4g} N.m.s/rad",
+        *_friction(drive),
+        *drive.lacks,
+    ]
     about = [
         f"{drive.name} as URDF, jointfmu {__version__}; not run in ROS",
         "friction of the motor is that of the joint, times the ratio and its square",
         "it cannot carry, as URDF has no springs:",
-        f"  the wind-up, {x[: len(x) // 2].max():.4g} rad at {torque:g} N.m",
-        *([f"  the hysteresis, {abs(area(x, torques)):.4g} J a loop at {torque:g} N.m"] if lossy else []),
-        f"  the damping of the wind-up, {drive.damping:.4g} N.m.s/rad",
-        *(f"  {line}" for line in _friction(drive)),
-        *(f"  {line}" for line in drive.lacks),
+        *(f"  {line}" for line in lacks),
         "limits: largest torque of the drive; speed at 2000 rpm of the motor; inertias stand for yours",
     ]
     comment = "\n".join(f"  {line.replace('--', '- -')}" for line in about)
-    return f'<?xml version="1.0"?>\n<!--\n{comment}\n-->\n{_robot(drive)}', miss
+    return f'<?xml version="1.0"?>\n<!--\n{comment}\n-->\n{_robot(drive)}', None, lacks
 
 
 def _friction(drive: Transmission) -> Iterator[str]:

@@ -20,10 +20,11 @@ def written(form: str, source: str, torque: float | None) -> tuple[str, list[str
         raise ValueError(
             f"--torque = {reached:g} N.m is outside (0, {drive.max_torque:g}] N.m of {drive.name}"
         )
-    text, miss = WRITERS[form](drive, reached)
-    lines = [*miss.lines(reached), *(f"not carried: {line}" for line in drive.lacks)]
-    return text, lines, {"drive": drive.name, "torque": reached, **asdict(miss), "lacks": [*drive.lacks]}
+    text, miss, lacks = WRITERS[form](drive, reached)
+    lines = [*(miss.lines(reached) if miss else ()), *(f"not carried: {line}" for line in lacks)]
+    measured = asdict(miss) if miss else {}
+    return text, lines, {"drive": drive.name, "torque": reached, **measured, "lacks": lacks}
 
 
 WRITERS = {"mjcf": mjcf.text, "urdf": urdf.text}
-"""{format: (drive, torque [N.m]) -> text and what it misses}."""
+"""{format: (drive, torque [N.m]) -> text, what it misses where it has springs, what it lacks}."""

@@ -56,15 +56,25 @@ def test_every_row_of_torque_is_told_as_printed():
         ("csf 25_80", "CSF-25-80"),
         ("SHG-32-160-2SO", "SHG-32-160"),
         ("RSF-8B-50", "RSF-8B-50"),
-        ("CSG-14-1000", None),
     ],
 )
 def test_names(name, found):
-    if found is None:
-        with pytest.raises(ValueError, match="nearest are CSG-14-100"):
-            catalogue.find(name)
-    else:
-        assert catalogue.find(name).name == found
+    assert catalogue.find(name).name == found
+
+
+@pytest.mark.parametrize(
+    ("name", "near"),
+    [
+        ("CSG-14-1000", "CSG-14-100, CSG-14-80, CSG-14-50"),
+        ("CSG-25-99", "CSG-25-100, CSG-25-120, CSG-25-80"),
+        ("CSG-25", "CSG-25-30, CSG-25-50, CSG-25-80"),
+        ("CSF26-100", "CSF-25-100, CSF-25-120, CSF-25-80"),
+    ],
+)
+def test_the_nearest_names_are_told(name, near):
+    """Of the same series, then of the nearest size, then of the nearest ratio."""
+    with pytest.raises(ValueError, match=f"nearest are {near}"):
+        catalogue.find(name)
 
 
 def test_a_torque_that_is_not_printed_is_a_marked_estimate():

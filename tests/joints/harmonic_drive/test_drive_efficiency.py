@@ -2,6 +2,7 @@
 
 import csv
 import math
+import re
 from dataclasses import replace
 from importlib.resources import files
 from pathlib import Path
@@ -13,7 +14,7 @@ from drive_friction import DRIVES, JOINTS, drag, friction, joint, left_out, meas
 from jointfmu_tools import cli
 from jointfmu_tools.joints.harmonic_drive import catalogue, job
 from jointfmu_tools.joints.harmonic_drive.efficiency import bench, printed_drives, spring_bench
-from jointfmu_tools.joints.harmonic_drive.friction import SPEED, PrintedFriction, scaled
+from jointfmu_tools.joints.harmonic_drive.friction import SPEED, PrintedFriction, efficiency, scaled
 from jointfmu_tools.joints.harmonic_drive.new import NEW
 from jointfmu_tools.joints.harmonic_drive.report import beside
 from jointfmu_tools.report.course import Course
@@ -227,10 +228,14 @@ def test_the_page_has_what_is_published_of_the_drive(tmp_path):
     assert measured["starting_torque"].role == measured["back_driving_torque"].role == PREDICTED
     assert not {"starting_torque", "efficiency"} & set(rows_of("CSG-17-100"))
     assert beside(SPRING, default("harmonic_drive")) == []
-    write_joint_report(tmp_path / "drive.html", replace(made("RT1-H-17-100"), name="Shoulder"))
+    warm = made("RT1-H-17-100", temperature="45")
+    assert [*beside(SPRING, warm)] == [*rows.values()]  # catalogues hold at 20 degrees C
+    write_joint_report(tmp_path / "drive.html", replace(warm, name="Shoulder"))
     page = (tmp_path / "drive.html").read_text(encoding="utf-8")
     assert "Beside what is published of it" in page
     assert "3.06 N m" in page
+    assert "the lubricant is at 45 degrees C" in page
+    assert {"-10", "20", "45", "60"} == set(re.findall(r"\"(-?\d+) degrees C\"", page))
 
 
 def test_the_study_prints_its_tables(capsys):
@@ -305,6 +310,10 @@ def test_drag_and_temperature(tmp_path, capsys):
     assert file.start("temperature") == pytest.approx(318.15)
     at_rest = dry_factor(file.values, 318.15) * file.values.friction_coulomb
     assert f"starting_torque    {at_rest:.4g} N.m  at the wave generator, at 45 degrees C" in out
+    found = efficiency(file.values, 318.15)
+    assert f"efficiency         {found:.4g}  at rated torque and 2000 rev/min, at 45 degrees C" in out
+    warm = spring_bench(SPRING, file)
+    assert warm.efficiency(SPEED, file.values.rated_torque) == pytest.approx(found, rel=1e-6)
     kelvin = made("CSG-25-100", temperature="318.15K")
     assert kelvin.inputs == file.inputs
     bare = dict.fromkeys(o.name for o in NEW.options) | {"motor_drag": "0.02", "ratio": "100"}

@@ -9,9 +9,11 @@ import numpy as np
 import pytest
 from conftest import refused_line
 from jointfmu_tools import cli, columns
+from jointfmu_tools.fitting import outcome
 from jointfmu_tools.joints.harmonic_drive.fit import hysteresis, log
 from jointfmu_tools.joints.harmonic_drive.new import NEW
 from log_round_trips import CASES, TRUE, trip
+from matplotlib.figure import Figure
 
 from jointfmu.joints.harmonic_drive.friction import limits, viscous
 from jointfmu.parameters import dump, load
@@ -98,6 +100,11 @@ def test_a_load_that_is_measured_gives_the_losses(tmp_path):
     for name in ("friction_coulomb", "friction_stribeck", "friction_viscous", "load_loss", "load_loss_back"):
         assert found.parameters.flat[name] == pytest.approx(TRUE[name], rel=1e-3)
     assert any("viscous_temperature_coefficient" in note for note in found.notes)
+    figure = Figure(outcome.size(found), layout="constrained")
+    outcome.draw(figure, found)
+    figure.draw_without_rendering()
+    legend, data = figure.axes[0].get_legend().get_window_extent(), figure.axes[0].get_window_extent()
+    assert legend.y0 >= data.y1  # beside the curves
 
 
 # a measured robot
@@ -154,6 +161,7 @@ def written(path, **given):
 TIME = np.linspace(0.0, 8.0, 4001)
 BACK = np.where(TIME > 4.0, TIME - 3.0, TIME)
 HOLE = np.where(TIME > 4.0, TIME + 3.0, TIME)
+FRICTION = 0.05 * np.sign(np.cos(2.0 * TIME)) + 0.04 * np.cos(2.0 * TIME)
 MISSING = np.where(np.arange(4001) == 7, np.nan, 0.1)
 
 
@@ -169,6 +177,7 @@ MISSING = np.where(np.arange(4001) == 7, np.nan, 0.1)
         ({"tau": ("N.m", MISSING)}, "line 9: tau = 'nan' is no finite number"),
         ({"time": ("s", BACK)}, "runs back; expected rising times"),
         ({"time": ("s", HOLE)}, "a gap of 3.002 s"),
+        ({"tau": ("N.m", -FRICTION)}, "friction drives the motion; reverse the sign of one column"),
         ({"tau": None}, "has no torque and no current of the motor; expected tau [N.m | mN.m], i [A | mA]"),
         ({"q": None, "dq": None}, "has neither q nor dq"),
         ({"dq": ("rad", TIME)}, "column 'dq' has unit 'rad'"),
@@ -201,6 +210,42 @@ def test_an_unknown_rotor_is_told(drive, tmp_path, capsys):
     path = written(tmp_path / "log.csv")
     assert cli.main(["fit", "log", str(path), "--params", str(drive)]) == 0
     assert "without --motor-inertia all inertia counts as the arm's" in capsys.readouterr().err
+
+
+LIGHT = FRICTION - 0.6 * 4.0 / 100.0 * np.sin(2.0 * TIME)
+LEVEL = ("N.m", 0.0 * TIME)
+"""Torque of the motor with 0.6 kg.m2 at the joint; gravity."""
+
+
+def test_what_a_light_arm_leaves_open_stays_as_it_is(drive, tmp_path, capsys):
+    """Its load is above the least one; what is fitted without being determined is no calibration."""
+    noise = 0.1 * np.random.default_rng(0).standard_normal(4001)
+    path, out = (
+        written(tmp_path / "log.csv", tau=("N.m", LIGHT + noise), gravity=LEVEL),
+        tmp_path / "out.toml",
+    )
+    asked = ["fit", "log", str(path), "--params", str(drive), "--motor-inertia", "1e-6", "--out", str(out)]
+    assert cli.main(asked) == 0
+    shown, start, found = capsys.readouterr().err, load(drive), load(out)
+    for name in ("load_loss", "load_loss_back"):
+        assert f"does not determine {name}, which stays as it is: that fits as well" in shown
+        assert (found.flat[name], found.sources[name]) == (start.flat[name], start.sources[name])
+    assert found.origins["friction_coulomb"] == "calibration"
+    assert found.origins["friction_stribeck"] == "estimate"
+    assert found.sources["friction_stribeck"].endswith("not determined: other values fit as well")
+
+
+@pytest.mark.parametrize(
+    ("given", "hint"), [("0.5", "; stated at the joint, it is 4.9e-05 kg.m2"), ("9", "log")]
+)
+def test_a_rotor_beyond_the_whole_is_refused(drive, tmp_path, capsys, given, hint):
+    path = written(tmp_path / "log.csv", tau=("N.m", LIGHT), gravity=LEVEL)
+    line = refused_line(capsys, "fit", "log", path, "--params", drive, "--motor-inertia", given)
+    assert (
+        f"--motor-inertia = {given} kg.m2 times ratio^2 is {101.0**2 * float(given):.4g} kg.m2 at the joint"
+        in line
+    )
+    assert hint in line
 
 
 def test_noise_is_not_written(drive, tmp_path, capsys):

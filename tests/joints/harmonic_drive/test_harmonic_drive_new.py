@@ -90,7 +90,7 @@ def test_what_is_stated_takes_the_place_of_the_catalogue(tmp_path):
 @pytest.mark.parametrize(
     ("words", "text"),
     [
-        (["--catalogue", "CSG-17-60"], "nearest are CSG-17-80, CSG-17-50, CSG-17-30"),
+        (["--catalogue", "CSG-17-60"], "nearest are CSG-17-50, CSG-17-80, CSG-17-100"),
         (["--catalogue", "CSG-17-100", "--K1", "1"], "K1 = 1 N.m/rad winds up"),
         (["--ratio", "100", "--K1", "1"], "--K2, --K3, --T1, --T2 missing"),
     ],
@@ -300,6 +300,16 @@ def test_what_is_stated_makes_the_friction(tmp_path):
     assert efficiency(both) == pytest.approx(0.7)
 
 
+def test_lost_motion_is_told_beside_its_limit(capsys):
+    """Below it with the catalogue's stiffness, above with a softer one."""
+    for words, place in (([], "below"), (["--K1", "20000"], "above")):
+        assert cli.main(["new", "harmonic-drive", "--catalogue", "CSG-25-100", *words]) == 0
+        assert f"; {place} 0.0002909 rad: limit" in capsys.readouterr().out
+
+
+START = ("--starting-torque", "0.03")
+
+
 @pytest.mark.parametrize(
     ("words", "text"),
     [
@@ -310,6 +320,17 @@ def test_what_is_stated_makes_the_friction(tmp_path):
         (["--efficiency", "1.5"], "--efficiency = '1.5' is outside (0, 1)"),
         (["--starting-torque", "0.03", "--efficiency", "70"], "--efficiency = '70' is outside (0, 1)"),
         (["--starting-torque", "0.03N"], "unit 'N.m' does not measure what 'N' does"),
+        ([*START, "--running-torque", "0.02"], "--running-torque = 0.02 N.m is outside [0.03, inf) N.m"),
+        (
+            [*START, "--back-driving-torque", "1.4"],
+            "--back-driving-torque = 1.4 N.m is outside [1.5, inf) N.m",
+        ),
+        ([*START, "--efficiency", "0.95"], f"--efficiency = 0.95 is outside (0, {1 / (1 + 1.5 / 21):.6g}]"),
+        (["--efficiency", "0.9"], "--efficiency = 0.9 is outside (0, 0.8"),
+        (
+            ["--catalogue", "RT1-H-17-100", "--starting-torque", "0.06"],
+            "--running-torque = 0.051 N.m is outside",
+        ),
     ],
 )
 def test_friction_that_cannot_be_is_refused(capsys, words, text):

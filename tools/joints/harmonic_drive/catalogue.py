@@ -7,9 +7,10 @@ starting and back-driving torque for single drives, from which those of the othe
 """
 
 import csv
+import math
 import re
 from collections.abc import Iterator, Mapping
-from difflib import get_close_matches
+from difflib import SequenceMatcher
 from functools import cache
 from importlib.resources import files
 from typing import TypeAlias
@@ -66,11 +67,19 @@ def find(name: str) -> Item:
     begun = [item for key, item in known.items() if wanted == key or wanted.startswith(f"{key}-")]
     if begun:
         return max(begun, key=lambda item: len(item.name))
-    near = get_close_matches(wanted, known, _NAMES, 0.0)
+    near = sorted(known, key=lambda key: _distance(key, wanted))[:_NAMES]
     raise ValueError(
         f"catalogue {name!r} is unknown; nearest are {', '.join(known[key].name for key in near)} "
         "(jointfmu catalogue)"
     )
+
+
+def _distance(key: str, wanted: str) -> tuple[float, ...]:
+    """How far a name is from a wanted one: by its letters, then by size, then by ratio."""
+    own, other = (re.sub("[^a-z]", "", name) for name in (key, wanted))
+    numbers = ([float(n) for n in re.findall(r"[1-9]\d*", name)] for name in (key, wanted))
+    apart = [abs(math.log(a / b)) for a, b in zip(*numbers, strict=False)]
+    return -SequenceMatcher(None, own, other).ratio(), *apart
 
 
 @cache

@@ -22,10 +22,11 @@ from typing import NamedTuple
 import numpy as np
 
 from jointfmu.joints.harmonic_drive.drive import Drive
-from jointfmu.joints.harmonic_drive.friction import limits, viscous
+from jointfmu.joints.harmonic_drive.friction import REFERENCE, limits, viscous
 from jointfmu.quantity import Array
 
 from ...catalogue import Item, Printed
+from ...command_line.common import flag
 
 LEVEL = 0.95
 SIZE, RATIO = 20.0, 100.0
@@ -106,6 +107,8 @@ SPEED = 2000.0 * math.pi / 30.0
 """[rad/s] of the wave generator, at which catalogues quote running torque and efficiency."""
 QUOTED = ("starting_torque", "running_torque", "back_driving_torque", "efficiency")
 """Columns of the catalogue that this takes."""
+_MET = 1e-5
+"""Part [1] of a limit by which a stated number may miss it: it may be typed as the refusal prints it."""
 _DIGITS = 12
 """Decimals of the ends of intervals in SI units: a bound of zero is one."""
 SET_BY: Mapping[str, tuple[str, str]] = {
@@ -117,26 +120,30 @@ SET_BY: Mapping[str, tuple[str, str]] = {
 """{column: parameter that it sets, what the source of that says of it}."""
 
 
-def friction(printed: Mapping[str, Printed]) -> dict[str, Printed]:
+def friction(printed: Mapping[str, Printed], stated: Collection[str] = ()) -> dict[str, Printed]:
     """friction_coulomb, friction_viscous and both load losses of a drive; nothing without a starting torque.
 
     printed : ratio, QUOTED and rated_torque, as far as they are known
+    stated  : those of QUOTED that must be met
 
     The starting torque is the dry friction at rest, and the rise to the running torque at SPEED is viscous.
     load_loss is what the efficiency at rated torque leaves, 1/efficiency - 1 - running torque ratio/rated
     torque, load_loss_back what the back-driving torque tells, 1 - ratio starting torque/back-driving torque;
     at least 0. Where one of the two is known it stands for both.
+
+    Raises ValueError where a stated number leaves less than 0.
     """
     if "starting_torque" not in printed:
         return {}
     start, running = printed["starting_torque"], printed.get("running_torque")
     ratio, rated = abs(printed["ratio"].value), printed.get("rated_torque")
+    _check_met(printed, stated)
     values: dict[str, tuple[Callable[[float], float], str]] = {"starting_torque": (lambda torque: torque, "")}
     if running is not None:
         text = f" over {SPEED:.4g} rad/s"
         values["running_torque"] = (lambda torque: (torque - start.value) / SPEED, text)
     if (output := printed.get("efficiency")) is not None and rated is not None:
-        idle = (running or start).value * ratio / rated.value
+        idle = _idle(printed)
         values["efficiency"] = (
             lambda part: 1.0 / part - 1.0 - idle,
             f" {output.value:.4g}, less the running torque",
@@ -150,6 +157,31 @@ def friction(printed: Mapping[str, Printed]) -> dict[str, Printed]:
     if "load_loss_back" in found and "load_loss" not in found:
         found["load_loss"] = found["load_loss_back"]
     return found
+
+
+def _idle(printed: Mapping[str, Printed]) -> float:
+    """Running torque, or where it is not known starting torque, over rated torque at the motor [1]."""
+    torque = printed.get("running_torque", printed["starting_torque"]).value
+    return torque * abs(printed["ratio"].value) / printed["rated_torque"].value
+
+
+def _check_met(printed: Mapping[str, Printed], stated: Collection[str]) -> None:
+    """Raise ValueError for a stated number beside which the rest leaves a friction below zero."""
+    start, ratio = printed["starting_torque"].value, abs(printed["ratio"].value)
+    ends = {
+        "running_torque": (start, "the starting torque"),
+        "back_driving_torque": (ratio * start, "ratio times starting torque"),
+    }
+    for name, (least, what) in ends.items():
+        if name in stated and printed[name].value < (1.0 - _MET) * least:
+            value = f"{flag(name)} = {printed[name].value:g} N.m"
+            raise ValueError(f"{value} is outside [{least:.6g}, inf) N.m: it is at least {what}")
+    if "efficiency" in stated and "rated_torque" in printed:
+        most, own = 1.0 / (1.0 + _idle(printed)), printed["efficiency"].value
+        if own > (1.0 + _MET) * most:
+            raise ValueError(
+                f"--efficiency = {own:g} is outside (0, {most:.6g}]: the torque without load takes the rest"
+            )
 
 
 def _set(column: str, number: Printed, value: Callable[[float], float], text: str) -> Printed:
@@ -168,11 +200,13 @@ def interval_text(interval: tuple[float, float]) -> str:
     return f"{100.0 * LEVEL:g} % interval {interval[0]:.4g} to {interval[1]:.4g}"
 
 
-def efficiency(drive: Drive) -> float:
-    """Output power over motor power [1] of a drive at rated torque and SPEED, without hysteresis."""
+def efficiency(drive: Drive, temperature: float = REFERENCE) -> float:
+    """Output power over motor power [1] of a drive at rated torque, SPEED and a temperature [K], without
+    hysteresis.
+    """
     carried = drive.rated_torque / abs(drive.ratio)
     against = -math.copysign(drive.rated_torque, drive.ratio)
-    braked = limits(drive, SPEED, against)[0] + viscous(drive, SPEED)
+    braked = limits(drive, SPEED, against, temperature)[0] + viscous(drive, SPEED, temperature)
     return float(carried / (carried + braked))
 
 

@@ -29,7 +29,8 @@ if TYPE_CHECKING:
 
 
 class DriveJoint(Joint):
-    """A harmonic drive. `wind_up`, `torque` and `stiffness` are those of the midline, wave generator locked.
+    """A harmonic drive. `wind_up`, `torque` and `stiffness` are those of the midline, wave generator locked;
+    beyond max_torque its last tangent goes on, which `messages` of `evaluate` and `follow` say.
 
     >>> import jointfmu
     >>> drive = jointfmu.drive("CSG-25-100")

@@ -76,6 +76,9 @@ def _at(made: NewJoint, text: str) -> NewJoint:
     facts = {"starting_torque": (dry, "N.m", f"at the wave generator, at {text}")}
     wet = float(limits(drive, SPEED, 0.0, kelvin)[0] + viscous(drive, SPEED, kelvin))
     facts["running_torque"] = (wet, "N.m", f"the same at 2000 rev/min, at {text}")
+    if "efficiency" in made.facts:
+        what = f"{made.facts['efficiency'][2]}, at {text}"
+        facts["efficiency"] = (efficiency(drive, kelvin), "1", what)
     return replace(made, file=file, facts={**made.facts, **facts})
 
 
@@ -111,13 +114,10 @@ def _brakes(given: Given, printed: Mapping[str, Printed]) -> dict[str, Printed]:
         return {}
     if "starting_torque" not in printed and stated:
         raise ValueError(f"{flag(stated[0])} needs {flag('starting_torque')}: without it no friction acts")
-    dropped: set[str] = set()
-    if "starting_torque" in stated:  # what is scaled belongs to another one
-        dropped = {name for name in QUOTED if name in printed and printed[name].kind == "estimate"}
-    return _with_drag(
-        friction({name: number for name, number in printed.items() if name not in dropped}),
-        given["motor_drag"],
-    )
+    if "starting_torque" in stated:  # what is scaled belongs to another one; the rest must be met
+        printed = {n: p for n, p in printed.items() if n not in QUOTED or p.kind != "estimate"}
+        stated = [name for name in QUOTED if name in printed]
+    return _with_drag(friction(printed, stated), given["motor_drag"])
 
 
 def _with_drag(brakes: dict[str, Printed], stated: str | None) -> dict[str, Printed]:
@@ -177,8 +177,10 @@ def _of_lines(printed: dict[str, Printed], brakes: Mapping[str, Printed], name: 
     angle = float(spring.curve.inverse(rated))
     facts["wind_up"] = (angle, "rad", f"at the rated torque {rated:g} N.m, of the midline")
     text = f"of this drive, midway in its loop between +-{LOST_MOTION:g} times the rated torque"
-    text += f"; below {play.value:.4g} rad: {_short(play)}" if play else ""
-    facts["lost_motion"] = (lost_motion(spring), "rad", text)
+    found = lost_motion(spring)
+    if play:
+        text += f"; {'below' if found < play.value else 'above'} {play.value:.4g} rad: {_short(play)}"
+    facts["lost_motion"] = (found, "rad", text)
     if brakes:
         facts["efficiency"] = (efficiency(file.values), "1", "at rated torque and 2000 rev/min")
     kinds = {name: number.kind for name, number in printed.items() if name in file.flat}

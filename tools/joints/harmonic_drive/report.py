@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 
 import numpy as np
 
@@ -9,6 +10,7 @@ from jointfmu.joints.harmonic_drive.friction import REFERENCE, Friction, limits,
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
+from jointfmu.quantity.units import KELVIN_AT_ZERO
 
 from ...catalogue import Item, Printed
 from ...report.course import Course
@@ -45,23 +47,24 @@ def friction(course: Course) -> list[Figure]:
     text = (
         f"Starting torque of the motor without load: {bench.starting_torque():.4g} N m. Torque at the output "
         f"that drives the motor back: {moved}. Efficiency against a load, without hysteresis and kinematic "
-        "error, up to the rated torque; speeds are those of the motor."
+        "error, up to the rated torque; speeds are those of the motor; the lubricant is at "
+        f"{_celsius(file.start('temperature'))}."
     )
     over_load = Panel("Efficiency", "load [N m]", "efficiency", series)
     return [Figure(title, text, [over_load]), _over_speed(file)]
 
 
 def _over_speed(file: ParameterFile) -> Figure:
-    """Friction of the drive without load over the motor's speed, at three temperatures."""
+    """Friction of the drive without load over the motor's speed, at some temperatures and the file's own."""
     drive, rpm = file.values, np.linspace(0.0, max(SPEEDS), _LOADS)
     w1 = rpm * math.pi / 30.0
     series = [
         Series(
-            f"{kelvin - 273.15:g} degrees C",
+            _celsius(kelvin),
             rpm,
             np.asarray(limits(drive, w1, 0.0, kelvin)[0] + viscous(drive, w1, kelvin)),
         )
-        for kelvin in KELVIN
+        for kelvin in sorted({*KELVIN, file.start("temperature")})
     ]
     told = [
         f"{name} = {file.flat[name]:g} 1/K ({file.sources.get(name, 'default choice')})"
@@ -69,10 +72,14 @@ def _over_speed(file: ParameterFile) -> Figure:
     ]
     text = (
         "Torque that turns the wave generator without load, over the motor's speed. The parameters hold at "
-        f"{REFERENCE - 273.15:g} degrees C; other temperatures follow from {' and '.join(told)}."
+        f"{_celsius(REFERENCE)}; other temperatures follow from {' and '.join(told)}."
     )
     panel = Panel("Friction over speed", "speed of the motor [rev/min]", "torque [N m]", series)
     return Figure("Friction over speed and temperature", text, [panel])
+
+
+def _celsius(kelvin: float) -> str:
+    return f"{kelvin - KELVIN_AT_ZERO:g} degrees C"
 
 
 _LOOP = {"hysteresis_loss": (hysteresis_loss, OWN), "lost_motion": (lost_motion, PREDICTED)}
@@ -83,10 +90,10 @@ def beside(model: Model, file: ParameterFile) -> list[Beside]:
     """All that the catalogue publishes of the drive that the file is of; nothing if it has no such drive.
 
     A file is of the drive that it is named after, or that its ratio comes from. Estimates are left out,
-    upper limits are not.
+    upper limits are not. Catalogues hold at REFERENCE, and so does what stands beside them.
     """
     item = _drive(file)
-    return [] if item is None else list(_rows(model, file, item))
+    return [] if item is None else list(_rows(model, replace(file, inputs={}), item))
 
 
 def _drive(file: ParameterFile) -> Item | None:

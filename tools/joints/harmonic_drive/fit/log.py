@@ -18,10 +18,12 @@ from jointfmu.quantity.units import KELVIN_AT_ZERO
 from ....fitting.least_squares import Solution
 from ....fitting.outcome import Facts, FitResult, Picture, fitted, undetermined
 from . import hysteresis
-from .log_friction import FittedLog, LinearTerms, fitted_to, wanted_of, with_rotor
+from .log_friction import FittedLog, LinearTerms, driven, fitted_to, wanted_of, with_rotor, without_blind
 from .log_reading import ONE_SPEED, Samples, joined, named, read
 
 LEVEL = 0.95
+WHOLE, SURE = 1.1, 4.0
+"""Share [1] of all inertia that a rotor may seem to be, and standard deviations [1] of it beyond that."""
 
 
 def fit(
@@ -56,10 +58,19 @@ def fit(
     if not turned and (alone := [name for name in free or () if name in hysteresis.OWN]):
         raise ValueError(f"{label}: {alone[0]} needs the columns q and q_motor beside the time")
     _speeds(label, samples)
+    if driven(samples, file.values):
+        raise ValueError(
+            f"{label}: friction drives the motion; reverse the sign of one column or of --torque-constant"
+        )
     rotor = motor_inertia or 0.0
     own = [name for name in free or () if name not in hysteresis.OWN]
     wanted, left = wanted_of(samples, file.values, own, rotor)
     whole = fitted_to(file, samples, wanted, rotor)
+    if rotor and samples.dynamic.any():
+        _within(rotor, whole)
+    if not own:
+        whole, wanted, blind = without_blind(file, samples, whole, wanted)
+        left += blind
     if samples.dynamic.any() and motor_inertia is None:
         if turned and (seen := _rotor(file, turned[0], whole)):
             whole = with_rotor(file, samples, wanted, *seen)
@@ -77,9 +88,14 @@ def fit(
             found, drawn = _both(found, more[0]), [*drawn, more[1]]
             intervals |= _intervals(more[0])
     result = fitted(file, found.values, "calibration", label, _span(samples))
-    for name, (low, high) in intervals.items():
-        text = f"{result.sources[name]}; {100.0 * LEVEL:g} % interval {low:.4g} to {high:.4g}"
-        result = replace(result, sources={**result.sources, name: text})
+    for name, value in found.values.items():
+        kind, text = "estimate", "not determined: other values fit as well"
+        if name in intervals:
+            kind, text = (
+                "calibration",
+                "{:g} % interval {:.4g} to {:.4g}".format(100.0 * LEVEL, *intervals[name]),
+            )
+        result = result.with_values({name: value}, kind, f"{result.sources[name]}; {text}")
     return FitResult(
         result,
         found,
@@ -88,6 +104,18 @@ def fit(
         notes=left,
         intervals=intervals,
     )
+
+
+def _within(rotor: float, whole: FittedLog) -> None:
+    """Raise ValueError for a rotor [kg.m2] that is more than all inertia of the log."""
+    there = rotor * whole.drive.ratio**2
+    most = WHOLE * whole.inertia + SURE * float(np.sqrt(whole.covariance[0, 0]))
+    if there > most:
+        hint = f"; stated at the joint, it is {rotor / whole.drive.ratio**2:.3g} kg.m2 of the rotor"
+        raise ValueError(
+            f"--motor-inertia = {rotor:g} kg.m2 times ratio^2 is {there:.4g} kg.m2 at the joint, outside "
+            f"[0, {most:.4g}] kg.m2, of arm and rotor in the log{hint if rotor <= most else ''}"
+        )
 
 
 def _rotor(file: ParameterFile, log: Samples, whole: FittedLog) -> tuple[float, float] | None:

@@ -100,6 +100,9 @@ FIRST = {LOSS: 0.05, BACK: 0.05, WARM[0]: 0.02, WARM[1]: 0.01}
 """Where the fit starts if the file has none [1], [1/K]."""
 LEAST_PART = 1e-3
 """Of where the fit starts [1], below which a parameter is none."""
+BLIND, AS_WELL = 2.0, 2.0
+"""Factor [1] by which a parameter is left open that may stay as it is; standard deviations of the residual
+[1], for each of them, up to which the file's values fit as well."""
 SMALL = 1e-4
 """Step in the logarithms [1] over which what follows from them is taken as straight."""
 
@@ -212,6 +215,32 @@ def fitted_to(file: ParameterFile, samples: Samples, wanted: Sequence[str], roto
     own = solution.noise**2 * np.linalg.pinv(beside.matrix.T @ beside.matrix)
     follows = _deviations(solution, lambda values: beside.found(rest(values)))
     return FittedLog(changed.values, solution, linear, own + follows.T @ follows, rotor, 0.0)
+
+
+def without_blind(
+    file: ParameterFile, samples: Samples, fit: FittedLog, wanted: Sequence[str]
+) -> tuple[FittedLog, list[str], list[str]]:
+    """The fit without those of FIRST that it leaves open by a factor of BLIND, if the file's own values fit
+    as well; names of what is fitted, and what to say of the others.
+    """
+    open_ = [n for n in wanted if n in FIRST and fit.solution.deviations[n] > np.log(BLIND)]
+    kept = [name for name in wanted if name not in open_]
+    if open_ and kept:
+        other = fitted_to(file, samples, kept, fit.rotor)
+        more = np.sum(other.solution.residuals**2) - np.sum(fit.solution.residuals**2)
+        if more < len(open_) * (AS_WELL * fit.solution.noise) ** 2:
+            text = "the log does not determine {}, which stays as it is: that fits as well"
+            return other, kept, [text.format(name) for name in open_]
+    return fit, list(wanted), []
+
+
+def driven(samples: Samples, drive: Drive) -> bool:
+    """Whether friction drives the motion, as it does where the torque's sign is the other one."""
+    beside, linear = _straight(samples, drive)
+    w1 = abs(drive.ratio) * samples.dq
+    braked = linear[0] * np.sign(w1) + linear[1] * w1
+    rest = samples.torque - beside.known - braked - beside.matrix @ linear[2:]
+    return bool(braked @ w1 < 0.0 and np.sum(braked**2) > np.sum(rest**2))
 
 
 def with_rotor(
