@@ -15,6 +15,8 @@ from .judgement import known_height
 
 ROW = ("largest_spot", "pressure", "F", "K_N", "K_T", "A_r", "eta_n", "eta_t")
 """Columns of every law; a law that does not define one gives null."""
+PROFILE = ("surface.D", "surface.G")
+"""Parameters of a profile that belong together."""
 
 
 def law_parameters(law: str, file: ParameterFile | None, settings: dict[str, Any]) -> Any:
@@ -42,15 +44,26 @@ def roughness_settings(
     stated   : h [m] that its file states; goes before D and G
     longest  : wave [m] up to which D and G count, unless the settings have longest_wave
     settings : may have Ra1, Ra2, Rq1, Rq2 [m], or surface.D and surface.G of a profile, in place of h
+
+    Raises ValueError for one of D and G whose other is not known, for both beside a height, and as
+    `roughness.check`.
     """
-    heights = {name: settings[name] for name in settings if name in DECLARED and name != "h"}
-    rest = {name: value for name, value in settings.items() if name not in heights}
+    heights = {name: settings[name] for name in DECLARED if name in settings}
+    own = {name: settings[name] for name in PROFILE if name in settings}
+    rest = {name: value for name, value in settings.items() if name not in {*heights, *own}}
+    if heights and own:
+        raise ValueError(f"{', '.join(own)} beside {', '.join(heights)}: expected D and G, or heights")
     if heights:
-        return rest | {"h": height(check(heights | ({"h": rest["h"]} if "h" in rest else {})))}
-    own = {name: rest.pop(name) for name in ("surface.D", "surface.G") if name in rest}
-    pairs = fractal_surfaces(known | own if own or stated is None else {})
-    if not pairs or "h" in rest:
-        return rest if stated is None else {"h": stated} | rest
+        return rest | (heights if [*heights] == ["h"] else {"h": height(check(heights))})
+    if own:
+        known = {name: value for name, value in (known | own).items() if name in PROFILE}
+        if missing := [name for name in PROFILE if name not in known]:
+            raise ValueError(f"{', '.join(own)} without {missing[0]}: expected both, or heights")
+    elif stated is not None:
+        return {"h": stated} | rest
+    pairs = fractal_surfaces(known)
+    if not pairs:
+        return rest
     wave = rest.get("longest_wave", longest)
     h = math.sqrt(sum(fractal.height(D, G, wave, areal) ** 2 for D, G, areal in pairs) / len(pairs))
     exponent = sum(fractal.hurst(D, areal) for D, G, areal in pairs) / len(pairs)
