@@ -77,9 +77,9 @@ class Judgement:
 
 
 def known_height(file: ParameterFile) -> float | None:
-    """Rms height h [m] of both surfaces together: stated beside the law, else of the law; or None."""
-    stated = height(file.roughness)
-    return stated if stated is not None else law_height(KINDS[file.joint].law_of(file.values))
+    """Rms height h [m] of both surfaces together: of the law, else stated beside it; or None."""
+    own = law_height(KINDS[file.joint].law_of(file.values))
+    return height(file.roughness) if own is None else own
 
 
 def judge(
