@@ -14,7 +14,7 @@ from jointfmu.contact.interface import InterfaceLaw, beyond, stiffness_curve
 from jointfmu.contact.roughness import GAMMA, ROUGHEST, height, level
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile
-from jointfmu.quantity import Array
+from jointfmu.quantity import Array, Number
 
 FACTOR = 3.0
 """Ratio to p/(GAMMA h), either way, beyond which a law's level is doubtful [1] (docs/validity.md)."""
@@ -119,10 +119,9 @@ def judge(
     return Judgement(found, tuple(warnings))
 
 
-def law_height(law: InterfaceLaw) -> float | None:
+def law_height(law: InterfaceLaw) -> Number | None:
     """h [m] of an interface law that has it; else None."""
-    h = getattr(law, "h", None)
-    return None if h is None else float(h)
+    return getattr(law, "h", None)
 
 
 def _span(values: Array) -> str:

@@ -1,17 +1,19 @@
 """Interface laws on their own: the parameter set of one, out of a joint's parameter file and settings."""
 
-import math
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from jointfmu.contact.laws import LAWS, ROUGHNESS_LAW
 from jointfmu.contact.roughness import DECLARED, check, height
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile, default, load
-from jointfmu.quantity import build, flat_fields, flatten
+from jointfmu.quantity import Number, build, flat_fields, flatten
 
 from . import fractal
-from .judgement import known_height
+from .judgement import known_height, law_height
 
 ROW = ("largest_spot", "pressure", "F", "K_N", "K_T", "A_r", "eta_n", "eta_t")
 """Columns of every law; a law that does not define one gives null."""
@@ -65,15 +67,27 @@ def roughness_settings(
     if not pairs:
         return rest
     wave = rest.get("longest_wave", longest)
-    h = math.sqrt(sum(fractal.height(D, G, wave, areal) ** 2 for D, G, areal in pairs) / len(pairs))
+    h = np.sqrt(sum(fractal.height(D, G, wave, areal) ** 2 for D, G, areal in pairs) / len(pairs))
     exponent = sum(fractal.hurst(D, areal) for D, G, areal in pairs) / len(pairs)
     return {"h": h, "hurst": exponent} | rest
 
 
-def fractal_surfaces(known: dict[str, Any]) -> list[tuple[float, float, bool]]:
+def surfaces_height(
+    law: str, parameters: Any, file: ParameterFile | None, settings: Iterable[str]
+) -> Number | None:
+    """Rms height h [m] that is known of the surfaces, for what `law_parameters` gives of the same; what the
+    default file states is that of its own surfaces."""
+    own = law_height(parameters)
+    if own is None and (file or not any(name.startswith("surface") for name in settings)):
+        return known_height(file or default(first_joint(law), law))
+    return own
+
+
+def fractal_surfaces(known: dict[str, Any]) -> list[tuple[Number, Number, bool]]:
     """(D, G, whether of the area) of every direction in which a law's surface is stated."""
     prefixes = [name[:-2] for name in known if name.endswith(".D")]
-    return [(known[f"{p}.D"], known[f"{p}.G"], known[f"{p}.D"] > 2.0) for p in prefixes if f"{p}.G" in known]
+    pairs = [(known[f"{p}.D"], known[f"{p}.G"]) for p in prefixes if f"{p}.G" in known]
+    return [(D, G, bool(np.all(D > 2.0))) for D, G in pairs]
 
 
 def joints_of(law: str) -> list[str]:

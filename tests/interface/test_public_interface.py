@@ -1,6 +1,7 @@
 """`import jointfmu`: what a notebook finds there."""
 
 import doctest
+import json
 import subprocess
 import sys
 from importlib import import_module
@@ -8,6 +9,7 @@ from importlib import import_module
 import numpy as np
 import pytest
 from conftest import here_alone
+from jointfmu_tools import cli
 from jointfmu_tools.joints.bolted_joint.new import computed
 
 import jointfmu
@@ -140,6 +142,45 @@ def test_a_law_evaluates_arrays():
     assert np.all(np.diff(found["K_N"]) > 0.0)
     assert found.units["K_N"] == "N/m"
     assert "surface.D" in repr(law)
+
+
+@pytest.mark.parametrize(
+    ("name", "varied"),
+    [
+        ("zhao2018", {"surface.D": [1.3, 1.42]}),
+        ("hu2023", {"surface.D": [2.5, 2.53], "sigma_y": [3e8, 4e8]}),
+        ("yu2022", {"e": [0.1, 0.2]}),
+        ("roughness", {"h": [1e-6, 2e-6]}),
+        ("roughness", {"Ra1": [1e-6, 2e-6], "Ra2": 1e-6}),
+        ("roughness", {"surface.D": [1.3, 1.42], "surface.G": 1e-9}),
+    ],
+)
+def test_a_law_evaluates_arrays_of_parameters(name, varied):
+    """Point by point what the law of each point gives; the inversion's residual is 1e-12."""
+    law = jointfmu.law(name, **{key: np.array(value) for key, value in varied.items()})
+    found = law.at_pressure([1e6, 2e6])
+    alone = [
+        jointfmu.law(name, **{key: np.broadcast_to(value, 2)[i] for key, value in varied.items()})
+        for i in (0, 1)
+    ]
+    for column in found:
+        expected = [one.at_pressure(p)[column][0] for one, p in zip(alone, (1e6, 2e6), strict=True)]
+        np.testing.assert_allclose(found[column], expected, rtol=1e-10)
+    assert "not judged for arrays" in found.messages[0]
+    assert "2 numbers from" in repr(law)
+    with pytest.raises(ValueError, match="inputs of different lengths"):
+        law.at_pressure([1e6, 2e6, 3e6])
+
+
+def test_a_law_is_judged_as_by_the_command(capsys):
+    """By the height that its default file states, unless the surface is another one."""
+    for varied in ({"critical_area": "printed"}, {"surface.D": 1.2}):
+        settings = [f"{name}={value}" for name, value in varied.items()]
+        assert cli.main(["law", "zhao2018", "--pressure", "1e6", "--json", "--set", *settings]) == 0
+        said = json.loads(capsys.readouterr().out)["warnings"]
+        assert jointfmu.law("zhao2018", **varied).at_pressure(1e6).messages == tuple(said)
+        assert bool(said) == ("critical_area" in varied)
+    assert jointfmu.load("BoltedJoint").with_values(critical_area="printed").law.at_pressure(1e6).messages
 
 
 @pytest.mark.parametrize(
