@@ -91,6 +91,21 @@ def test_a_joint_prints_its_numbers_with_units_and_sources(plate):
     assert other.values["plate.x"] == pytest.approx(one.values["plate.x"], rel=1e-12)
 
 
+@pytest.mark.parametrize("form", [list, tuple, np.array])
+def test_of_each_side_or_bolt_in_any_form(plate, form):
+    """Several values, or one of several numbers: as the option declares it."""
+    flanks = {"width": 20, "load": 3000, "material": form(["steel", "cast iron"])}
+    made = jointfmu.gear_contact(**flanks, radii=form([30, 50]), Ra=form([0.4, 0.8]))
+    assert made.file.roughness == pytest.approx({"Ra1": 0.4e-6, "Ra2": 0.8e-6})
+    assert (made.values["side2.E"], made.name) == (110e9, "flanks 20 wide")
+    wheels = {"module": 4, "width": np.array(20), "torque": 150, "material": "hardened steel", "Ra": 0.4}
+    assert jointfmu.gear_mesh(**wheels, teeth=form([29, 45])).values["teeth1"] == 29.0
+    places = form([(-80, -30), (80, -30), (-80, 30), (80, 30)])
+    for at in (form([160, 60]), places):
+        one = plate(plate=form([200, 100]), at=at, grip=form([20, 20]))
+        assert one.values["plate.x"] == pytest.approx((-0.08, 0.08, -0.08, 0.08))
+
+
 def test_what_is_evaluated_is_what_is_followed_on_the_way_from_rest(plate):
     joint = plate()
     far = joint.evaluate(s_rel_x=[0.0, 3e-7])
@@ -191,6 +206,8 @@ def test_a_law_is_judged_as_by_the_command(capsys):
         (lambda: jointfmu.drive("CSG-25-100", efficiency=1.5), r"efficiency = .1.5. is outside \(0, 1\)"),
         (lambda: jointfmu.bolted_joint(**PLATE | {"grip": -40}), r"grip = '-40' is outside \(0, inf\)"),
         (lambda: jointfmu.bolted_joint(**PLATE | {"head": "round"}), "head = 'round', allowed are"),
+        (lambda: jointfmu.bolted_joint(**PLATE | {"preload": (1, 2)}), r"preload = \(1, 2\) are 2 values"),
+        (lambda: jointfmu.bolted_joint(**PLATE | {"material": []}), r"material = \[\] are 0 values"),
         (lambda: jointfmu.load("nothing"), "'nothing' is no parameter file"),
         (lambda: jointfmu.load("BoltedJoint").with_values(mu=-1.0), "mu = -1"),
         (lambda: jointfmu.load("BoltedJoint").with_values(nu=1.0), "unknown name 'nu'"),

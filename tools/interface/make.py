@@ -6,7 +6,9 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.joints.kind import Kind
@@ -26,8 +28,8 @@ if TYPE_CHECKING:
 
 _HELP = """Make {}.
 
-    Numbers have the unit of the drawing, stated below; a text may carry one: '0.8 um'. A size is a tuple,
-    (200, 100); what is stated of each side or bolt is a list.
+    Numbers have the unit of the drawing, stated below; a text may carry one: '0.8 um'. A size is (200, 100),
+    what is stated of each side or bolt [0.8, 1.6]; lists, tuples and arrays are the same.
 
 {}
 
@@ -94,25 +96,30 @@ def _named_as_in_python() -> Iterator[None]:
         raise ValueError(_FLAG.sub(lambda m: m[1].replace("-", "_"), str(error))) from None
 
 
-def _given(option: Option, value: object) -> object:
-    """A value as the command line has it: a number as text, (200, 100) as 200x100, a list as several."""
+def _given(option: Option, value: Any) -> object:
+    """A value as the command line has it, numbers as text: a size as 200x100, else several as several."""
     if option.flag:
         return bool(value)
     if value is None:
         return None
+    each = value.tolist() if isinstance(value, np.ndarray) else value
+    texts = [_text(v) for v in (each if isinstance(each, list | tuple) else [each])]
+    if option.by and not (option.many and any("," in text for text in texts)):
+        texts = [option.by.join(texts)]
+    if not texts or (len(texts) > 1 and not option.many):
+        raise ValueError(f"{option.name} = {value!r} are {len(texts)} values, expected one")
     if option.many:
-        return [_text(v, ",") for v in value] if isinstance(value, list) else [_text(value, "x")]
-    text = _text(value, "x")
-    if option.choices and text not in option.choices:
-        raise ValueError(f"{option.name} = {text!r}, allowed are {', '.join(option.choices)}")
-    return text
+        return texts
+    if option.choices and texts[0] not in option.choices:
+        raise ValueError(f"{option.name} = {texts[0]!r}, allowed are {', '.join(option.choices)}")
+    return texts[0]
 
 
-def _text(value: object, by: str) -> str:
-    """A number, a text, or several with a sign between them."""
-    if isinstance(value, list | tuple):
-        return by.join(_text(v, by) for v in value)
-    return value if isinstance(value, str) else f"{value:.17g}" if isinstance(value, float) else str(value)
+def _text(value: Any) -> str:
+    """A number, a text, or the place X,Y of two numbers."""
+    if isinstance(value, list | tuple | np.ndarray):
+        return ",".join(map(_text, value))
+    return repr(float(value)) if isinstance(value, float) else str(value)
 
 
 def maker(name: str, kind: Kind, example: str, first: str | None = None) -> Callable[..., Joint]:
