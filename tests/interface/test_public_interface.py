@@ -24,6 +24,7 @@ PLATE = {
     "Ra": 0.8,
     "preload": 30e3,
 }
+ROW = {"K1": 4700.0, "K2": 6100.0, "K3": 7100.0, "T1": 2.0, "T2": 6.9}
 
 
 @pytest.fixture(autouse=True)
@@ -222,6 +223,13 @@ def test_a_law_is_judged_as_by_the_command(capsys):
         (lambda: jointfmu.fit("loop", "a.csv"), "of several joints"),
         (lambda: jointfmu.fit("catalogue", K1=1.0), "missing"),
         (lambda: jointfmu.fit("catalogue", "a.csv"), "takes no file"),
+        (
+            lambda: jointfmu.fit("loop", "a.csv", joint="bolted_joint", preload="9 kN"),
+            r"preload = '9 kN' is no number: of each bolt in the test \[N\]",
+        ),
+        (lambda: jointfmu.fit("catalogue", **ROW, law="hu2023", free="name"), "'name' is no parameter to"),
+        (lambda: jointfmu.fit("preload", "a.csv", direction="up"), "direction = 'up', allowed are normal"),
+        (lambda: jointfmu.fit("torque-angle", "a.csv", rated_torque="2 N"), "rated_torque = '2 N': unit"),
         (lambda: jointfmu.run("no.fmu", {}), "no such file"),
     ],
 )

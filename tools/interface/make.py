@@ -17,6 +17,7 @@ from jointfmu.parameters import load as load_file
 
 from .. import plots
 from ..drawing.part import Drawing, NewJoint
+from ..drawing.reading import number
 from ..fitting.outcome import FitResult, draw, percent, size
 from ..fitting.procedure import procedures
 from ..joint_parts import Option, part
@@ -209,23 +210,34 @@ def _paths(procedure: str, many: bool, file: str | Path | Sequence[str | Path]) 
     return [Path(each) for each in file]
 
 
+def _taken(option: Option, value: Any) -> object:
+    """An option of a procedure as its function takes it."""
+    if value is None or not (option.number or option.unit):
+        return _given(option, value)
+    if option.unit and isinstance(value, str):
+        return number(option.name, value, option.unit, option.unit, None)
+    if not isinstance(value, int | float | np.number):
+        raise ValueError(f"{option.name} = {value!r} is no number: {option.text}")
+    return float(value)
+
+
 def fit(
     procedure: str,
     file: str | Path | Sequence[str | Path] | None = None,
     *,
     joint: str | None = None,
     start: Joint | None = None,
-    free: Sequence[str] | None = None,
+    free: str | Sequence[str] | None = None,
     **options: object,
 ) -> Fit:
     """Fit a joint's parameters to a measurement or a catalogue row, as `jointfmu fit PROCEDURE` does.
 
-    procedure : catalogue, torque-angle, table, loop, preload, ...
+    procedure : catalogue, torque-angle, log, loop or preload
     file      : measured data (CSV; the heading names columns and units), where the procedure has some;
                 several files where it takes them
     joint     : `bolted_joint`, ... where procedures of several joints have the name
     start     : joint to start from
-    free      : names of the parameters to fit
+    free      : names of the parameters to fit, or one name
     options   : of the procedure, numbers in SI units
 
     Raises ValueError for bad input, RuntimeError if the fit finds no end.
@@ -254,7 +266,8 @@ def fit(
         raise ValueError(f"unknown name {unknown[0]!r}, allowed are {', '.join(own)}")
     if missing := [name for name, option in own.items() if option.required and name not in options]:
         raise ValueError(f"{', '.join(missing)} missing: {own[missing[0]].text}")
-    taken = {name: options.get(name, option.default) for name, option in own.items()}
     data = () if file is None else (_paths(procedure, chosen.many, file),)
+    names = [free] if isinstance(free, str) else free
     with _named_as_in_python():
-        return Fit(chosen.run(*data, start and start.file, free, **taken))
+        taken = {name: _taken(option, options.get(name, option.default)) for name, option in own.items()}
+        return Fit(chosen.run(*data, start and start.file, names, **taken))
