@@ -489,6 +489,15 @@ def test_units_of_each_column(folder, line, capsys, heads, factors, options):
         assert one["slope"] == pytest.approx(other["slope"], rel=1e-6)
 
 
+def test_the_micro_sign_of_latin_1_is_read_and_other_encodings_are_refused(folder, line, capsys):
+    rows = "".join(f"{1e6 * i * line.dx:.9g};{1e6 * z:.9g}\n" for i, z in enumerate(line.z))
+    for heads in ("X [µm];Z [µm]", "# profile: x [µm], z [µm]"):
+        (folder / "l.csv").write_text(f"{heads}\n{rows}", encoding="latin-1")
+        assert read(folder / "l.csv").z == pytest.approx(line.z, rel=1e-8)
+    (folder / "l.csv").write_text(f"X [µm];Z [µm]\n{rows}", encoding="utf-16")
+    assert "l.csv: is no text file; expected CSV (UTF-8)" in refused_line(capsys, "surface", "l.csv")
+
+
 @pytest.mark.parametrize(
     ("heads", "options", "says"),
     [

@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 
 from jointfmu.quantity import Array
 
+from ..columns import CONTROL
+
 FORMS = ("tilt", "mean", "curvature")
 """What is removed before anything else: a plane (default), the mean height, a surface of second order."""
 LEAST_PROFILE = 128
@@ -183,7 +185,6 @@ SIGNATURES = (
     *(b"\xff\xfef\0i", b"\xfe\xff\0f\0i", b"\x88\x1b\x03", b"GWY", b"FRTM_GLIDERV", b"WSxM file copyright"),
 )
 """First bytes of those formats; Wyko OPD has its name from the third byte on."""
-_CONTROL = re.compile(rb"[\x00-\x08\x0e-\x1f]")
 _NUMBER = re.compile(rb"\d+")
 
 
@@ -200,7 +201,7 @@ def check(path: Path) -> None:
     if path.stat().st_size > SMALL:
         return
     data = path.read_bytes()
-    if not _CONTROL.search(data) and (count := len(_NUMBER.findall(data))) < LEAST_PROFILE:
+    if not CONTROL.search(data) and (count := len(_NUMBER.findall(data))) < LEAST_PROFILE:
         raise ValueError(
             f"{path}: is no surface: a text of {count} numbers, "
             f"a profile needs at least {LEAST_PROFILE} points"
