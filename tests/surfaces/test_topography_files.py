@@ -182,6 +182,11 @@ def test_form_is_removed(area, form, order):
             "constant surface",
         ),
         (
+            "ramp.csv",
+            "# profile: x [um], z [um]\n" + "".join(f"{i},{0.1 * i:.1f}\n" for i in range(200)),
+            "ramp.csv: without its tilt the surface is smooth, it has no D and no G",
+        ),
+        (
             "nan.csv",
             "# profile: x [m], z [m]\n" + "".join(f"{i},nan\n" for i in range(200)),
             "all 200 heights",

@@ -19,6 +19,8 @@ LEAST_PROFILE = 128
 """Least number of points of a profile: the lags used then span 0.9 decades."""
 LEAST_AREAL = 64
 """Least number of points along either side of an areal map."""
+FLAT = 1e-9
+"""Largest deviation of heights over the heights themselves [1] that is round-off."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -86,7 +88,7 @@ def _check(name: str, z: Array, *spacings: float) -> None:
     if valid.size == 0:
         raise ValueError(f"{name}: all {z.size} heights are missing or NaN")
     low, high = float(valid.min()), float(valid.max())
-    if high - low <= 1e-9 * max(abs(low), abs(high)):
+    if high - low <= FLAT * max(abs(low), abs(high)):
         raise ValueError(f"{name}: all heights are {low:g} m, a constant surface has no D and no G")
 
 
