@@ -27,6 +27,8 @@ Column: TypeAlias = NDArray[Any]
 Head: TypeAlias = tuple[str, str | None]
 """Name and unit of a column; None: it states none."""
 
+CONTROL = re.compile(rb"[\x00-\x08\x0e-\x1f]")
+"""What no text has."""
 _HEADING = re.compile(r"\s*(?P<name>[^\[\]]*?)\s*(?:\[\s*(?P<unit>[^\[\]]*?)\s*\])?\s*$")
 _OTHERWISE = re.compile(r"\s*(?P<name>[^()/]*?)\s*(?:\(\s*(?P<one>[^()]+?)\s*\)|/\s*(?P<two>\S+))\s*$")
 """`name (unit)` and `name / unit`."""
@@ -132,11 +134,21 @@ def content(path: Path, most: int | None = None) -> list[tuple[int, str]]:
 def text_lines(path: Path) -> list[str]:
     """All lines of a file. Raises ValueError, one line, if the file cannot be read or is no text."""
     try:
-        return path.read_text(encoding="utf-8-sig").splitlines()
+        return decoded(path.read_bytes()).splitlines()
     except OSError as error:
         raise ValueError(f"{path}: cannot be read ({error.strerror}); expected a CSV file") from None
     except UnicodeDecodeError:
         raise ValueError(f"{path}: is no text file; expected CSV (UTF-8)") from None
+
+
+def decoded(raw: bytes) -> str:
+    """Text in UTF-8, or else in Latin-1. Raises UnicodeDecodeError if that has control characters."""
+    try:
+        return raw.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        if CONTROL.search(raw):
+            raise
+        return raw.decode("latin-1")
 
 
 def separator(line: str) -> str | None:

@@ -74,6 +74,7 @@ class Option:
     default  : where nothing is stated
     choices  : words that are allowed; none: any
     many     : it takes several
+    by       : sign between the numbers of one value, the x of 200x100
     flag     : it takes none
     required : it must be stated
     number   : it is a number in the unit of its text
@@ -88,6 +89,7 @@ class Option:
     default: float | str | None = None
     choices: Sequence[str] = ()
     many: bool = False
+    by: str = ""
     flag: bool = False
     required: bool = False
     number: bool = False

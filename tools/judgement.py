@@ -14,7 +14,7 @@ from jointfmu.contact.interface import InterfaceLaw, beyond, stiffness_curve
 from jointfmu.contact.roughness import GAMMA, ROUGHEST, height, level
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile
-from jointfmu.quantity import Array
+from jointfmu.quantity import Array, Number
 
 FACTOR = 3.0
 """Ratio to p/(GAMMA h), either way, beyond which a law's level is doubtful [1] (docs/validity.md)."""
@@ -77,9 +77,9 @@ class Judgement:
 
 
 def known_height(file: ParameterFile) -> float | None:
-    """Rms height h [m] of both surfaces together: stated beside the law, else of the law; or None."""
-    stated = height(file.roughness)
-    return stated if stated is not None else law_height(KINDS[file.joint].law_of(file.values))
+    """Rms height h [m] of both surfaces together: of the law, else stated beside it; or None."""
+    own = law_height(KINDS[file.joint].law_of(file.values))
+    return height(file.roughness) if own is None else own
 
 
 def judge(
@@ -119,10 +119,9 @@ def judge(
     return Judgement(found, tuple(warnings))
 
 
-def law_height(law: InterfaceLaw) -> float | None:
+def law_height(law: InterfaceLaw) -> Number | None:
     """h [m] of an interface law that has it; else None."""
-    h = getattr(law, "h", None)
-    return None if h is None else float(h)
+    return getattr(law, "h", None)
 
 
 def _span(values: Array) -> str:

@@ -1,20 +1,24 @@
 """Interface laws on their own: the parameter set of one, out of a joint's parameter file and settings."""
 
-import math
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from jointfmu.contact.laws import LAWS, ROUGHNESS_LAW
 from jointfmu.contact.roughness import DECLARED, check, height
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile, default, load
-from jointfmu.quantity import build, flat_fields, flatten
+from jointfmu.quantity import Number, build, flat_fields, flatten
 
 from . import fractal
-from .judgement import known_height
+from .judgement import known_height, law_height
 
 ROW = ("largest_spot", "pressure", "F", "K_N", "K_T", "A_r", "eta_n", "eta_t")
 """Columns of every law; a law that does not define one gives null."""
+PROFILE = ("surface.D", "surface.G")
+"""Parameters of a profile that belong together."""
 
 
 def law_parameters(law: str, file: ParameterFile | None, settings: dict[str, Any]) -> Any:
@@ -42,25 +46,48 @@ def roughness_settings(
     stated   : h [m] that its file states; goes before D and G
     longest  : wave [m] up to which D and G count, unless the settings have longest_wave
     settings : may have Ra1, Ra2, Rq1, Rq2 [m], or surface.D and surface.G of a profile, in place of h
+
+    Raises ValueError for one of D and G whose other is not known, for both beside a height, and as
+    `roughness.check`.
     """
-    heights = {name: settings[name] for name in settings if name in DECLARED and name != "h"}
-    rest = {name: value for name, value in settings.items() if name not in heights}
+    heights = {name: settings[name] for name in DECLARED if name in settings}
+    own = {name: settings[name] for name in PROFILE if name in settings}
+    rest = {name: value for name, value in settings.items() if name not in {*heights, *own}}
+    if heights and own:
+        raise ValueError(f"{', '.join(own)} beside {', '.join(heights)}: expected D and G, or heights")
     if heights:
-        return rest | {"h": height(check(heights | ({"h": rest["h"]} if "h" in rest else {})))}
-    own = {name: rest.pop(name) for name in ("surface.D", "surface.G") if name in rest}
-    pairs = fractal_surfaces(known | own if own or stated is None else {})
-    if not pairs or "h" in rest:
-        return rest if stated is None else {"h": stated} | rest
+        return rest | (heights if [*heights] == ["h"] else {"h": height(check(heights))})
+    if own:
+        known = {name: value for name, value in (known | own).items() if name in PROFILE}
+        if missing := [name for name in PROFILE if name not in known]:
+            raise ValueError(f"{', '.join(own)} without {missing[0]}: expected both, or heights")
+    elif stated is not None:
+        return {"h": stated} | rest
+    pairs = fractal_surfaces(known)
+    if not pairs:
+        return rest
     wave = rest.get("longest_wave", longest)
-    h = math.sqrt(sum(fractal.height(D, G, wave, areal) ** 2 for D, G, areal in pairs) / len(pairs))
+    h = np.sqrt(sum(fractal.height(D, G, wave, areal) ** 2 for D, G, areal in pairs) / len(pairs))
     exponent = sum(fractal.hurst(D, areal) for D, G, areal in pairs) / len(pairs)
     return {"h": h, "hurst": exponent} | rest
 
 
-def fractal_surfaces(known: dict[str, Any]) -> list[tuple[float, float, bool]]:
+def surfaces_height(
+    law: str, parameters: Any, file: ParameterFile | None, settings: Iterable[str]
+) -> Number | None:
+    """Rms height h [m] that is known of the surfaces, for what `law_parameters` gives of the same; what the
+    default file states is that of its own surfaces."""
+    own = law_height(parameters)
+    if own is None and (file or not any(name.startswith("surface") for name in settings)):
+        return known_height(file or default(first_joint(law), law))
+    return own
+
+
+def fractal_surfaces(known: dict[str, Any]) -> list[tuple[Number, Number, bool]]:
     """(D, G, whether of the area) of every direction in which a law's surface is stated."""
     prefixes = [name[:-2] for name in known if name.endswith(".D")]
-    return [(known[f"{p}.D"], known[f"{p}.G"], known[f"{p}.D"] > 2.0) for p in prefixes if f"{p}.G" in known]
+    pairs = [(known[f"{p}.D"], known[f"{p}.G"]) for p in prefixes if f"{p}.G" in known]
+    return [(D, G, bool(np.all(D > 2.0))) for D, G in pairs]
 
 
 def joints_of(law: str) -> list[str]:

@@ -4,6 +4,8 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from jointfmu.contact.roughness import DECLARED
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile
@@ -28,7 +30,7 @@ def quantity(value: Any, unit: str | None, digits: int = 6) -> tuple[str, str]:
     """A value as text in the unit in which it reads best, and that unit."""
     if isinstance(value, bool | str):
         return str(value).lower(), ""
-    if isinstance(value, tuple):
+    if np.ndim(value):
         return f"{len(value)} numbers from {min(value):.6g} to {max(value):.6g}", spelled(unit or "1")
     if unit is None:
         return f"{value:g}", ""

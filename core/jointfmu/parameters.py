@@ -14,14 +14,16 @@ from there. Another law has none; there `[comparison]` states the same, and the 
 
 import json
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import Field, dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from .contact import roughness
 from .joints import KINDS
 from .quantity import build, changed, flat_fields, flatten, problem, problems, quantity
+
+T = TypeVar("T")
 
 SCHEMA = 1
 ORIGINS = ("published", "derived", "catalogue", "estimate", "calibration", "user")
@@ -81,17 +83,24 @@ class ParameterFile:
         return self.inputs.get(name, own.start if own else 0.0)
 
     def with_values(self, changes: Mapping[str, object], origin: str, source: str) -> "ParameterFile":
-        """The same file with some values changed; names and intervals are checked."""
+        """The same file with some values changed; names and intervals are checked.
+
+        A height of the law stands in place of the roughnesses that made it.
+        """
+        gone = {*self.roughness} if any(map(_is_height, changes)) else set[str]()
+        texts = {self.surfaces + name for name in gone}
         return replace(
             self,
             values=changed(self.values, changes),
-            origins={**self.origins, **dict.fromkeys(changes, origin)},
-            sources={**self.sources, **dict.fromkeys(changes, source)},
-            ranges={name: ends for name, ends in self.ranges.items() if name not in changes},
+            origins=_without(texts, self.origins) | dict.fromkeys(changes, origin),
+            sources=_without(texts, self.sources) | dict.fromkeys(changes, source),
+            roughness=_without(gone, self.roughness),
+            ranges=_without(changes, self.ranges),
         )
 
     def with_roughness(self, stated: Mapping[str, float], origin: str, source: str) -> "ParameterFile":
-        """The same file with heights [m] of the surfaces; what spoke of the same side is replaced.
+        """The same file with heights [m] of the surfaces; what spoke of the same side is replaced, and the
+        height of a law is that of all of them.
 
         Raises ValueError as `roughness.check`.
         """
@@ -99,13 +108,17 @@ class ParameterFile:
         gone = {other for name in heights for other in roughness.excluded(name)}
         texts = {self.surfaces + name for name in gone}
         names = [self.surfaces + name for name in heights]
-        origins = {name: kind for name, kind in self.origins.items() if name not in texts}
-        sources = {name: text for name, text in self.sources.items() if name not in texts}
+        known = _without(gone, self.roughness) | heights
+        origins = _without(texts, self.origins) | dict.fromkeys(names, origin)
+        sources = _without(texts, self.sources) | dict.fromkeys(names, source)
+        of_law = {name: roughness.height(known) for name in self.flat if _is_height(name)}
         return replace(
             self,
-            roughness={name: value for name, value in self.roughness.items() if name not in gone} | heights,
-            origins=origins | dict.fromkeys(names, origin),
-            sources=sources | dict.fromkeys(names, source),
+            values=changed(self.values, of_law),
+            roughness=known,
+            origins=origins | dict.fromkeys(of_law, "derived"),
+            sources=sources | dict.fromkeys(of_law, _made_of(self.surfaces, known, sources)),
+            ranges=_without(of_law, self.ranges),
         )
 
 
@@ -149,12 +162,21 @@ def load(path: str | Path, joint: str | None = None) -> ParameterFile:
     for text in KINDS[stated].contradictions(parameters):
         raise ValueError(f"{path}: {text}")
     name = str(document.get("name", path.stem))
-    text = "; ".join(dict.fromkeys(sources[prefix + height] for height in heights))
     origins |= dict.fromkeys(of_law, "derived")
-    sources |= dict.fromkeys(of_law, f"from {', '.join(prefix + height for height in heights)}: {text}")
+    sources |= dict.fromkeys(of_law, _made_of(prefix, heights, sources))
     return ParameterFile(
         stated, name, parameters, origins, sources, inputs, heights, _ranges(path, declared, body)
     )
+
+
+def _without(gone: Collection[str], named: Mapping[str, T]) -> dict[str, T]:
+    return {name: value for name, value in named.items() if name not in gone}
+
+
+def _made_of(prefix: str, heights: Iterable[str], sources: Mapping[str, str]) -> str:
+    """Source of the height of a law that comes from those of the surfaces."""
+    names = [prefix + height for height in heights]
+    return f"from {', '.join(names)}: {'; '.join(dict.fromkeys(sources[name] for name in names))}"
 
 
 def _height_of_law(

@@ -168,9 +168,27 @@ def test_a_roughness_out_of_the_file_of_another_law(law_json, tmp_path, run):
     found = law_json("roughness", "--pressure", 1e6, "--params", path)["parameters"]
     assert found["h"] == pytest.approx(5.2e-7, rel=0.01)  # of D and G, waves up to 1 mm
     assert found["H"] == pytest.approx(2.8 * 235e6, rel=1e-12)
-    status, out, err = run("law", "roughness", "--pressure", 1, "--set", "h=1e-6", "Ra1=1e-6")
-    assert (status, out) == (2, "")
-    assert err == "jointfmu law: Ra1 beside h: expected one height of each side, or h alone\n"
+    both = ["surface.D=1.42", "surface.G=1.21e-8"]
+    again = law_json("roughness", "--pressure", 1e6, "--params", path, "--set", *both)["parameters"]
+    assert again["h"] == law_json("roughness", "--pressure", 1e6, "--set", *both)["parameters"]["h"]
+
+
+@pytest.mark.parametrize(
+    ("settings", "message"),
+    [
+        (["h=1e-6", "Ra1=1e-6"], "Ra1 beside h: expected one height of each side, or h alone"),
+        (["surface.D=1.3"], "surface.D without surface.G: expected both, or heights"),
+        (["surface.G=1e-9"], "surface.G without surface.D: expected both, or heights"),
+        (
+            ["surface.D=1.3", "surface.G=1e-9", "h=1e-6"],
+            "surface.D, surface.G beside h: expected D and G, or heights",
+        ),
+        (["surface.D=1.3", "Ra1=1e-6"], "surface.D beside Ra1: expected D and G, or heights"),
+    ],
+)
+def test_a_roughness_is_stated_once_and_whole(run, settings, message):
+    status, out, err = run("law", "roughness", "--pressure", 1, "--set", *settings)
+    assert (status, out, err) == (2, "", f"jointfmu law: {message}\n")
 
 
 @pytest.mark.parametrize(("law", "name"), [(law, name) for law, names in SETTABLE.items() for name in names])

@@ -130,6 +130,17 @@ def test_another_height_of_the_law_beside_it_is_refused(joint):
         load_text(dump(file) + SECTION + entry("Ra1", 0.8e-6))
 
 
+@pytest.mark.parametrize("joint", KINDS)
+def test_a_law_has_the_height_that_was_stated_last(joint):
+    """Of its surfaces, or its own in place of theirs: what is written loads again."""
+    file = default(joint, "roughness").with_roughness({"Ra1": 1e-6, "Rq2": 2e-6}, "user", "drawing")
+    name = next(name for name in file.flat if name.split(".")[-1] == "h")
+    assert load_text(dump(file)).flat[name] == pytest.approx(np.sqrt(np.pi / 2 * 1e-12 + 4e-12), rel=1e-15)
+    assert file.sources[name] == "from roughness.Ra1, roughness.Rq2: drawing"
+    fitted = load_text(dump(file.with_values({name: 3e-6}, "calibration", "fit")))
+    assert (fitted.flat[name], fitted.roughness) == (3e-6, {})
+
+
 def test_a_roughness_acts_or_is_refused(tmp_path):
     """Beside a law without a height it stands in a section that says what it does."""
     path = tmp_path / "joint.toml"

@@ -1,6 +1,7 @@
 """`import jointfmu`: what a notebook finds there."""
 
 import doctest
+import json
 import subprocess
 import sys
 from importlib import import_module
@@ -8,6 +9,7 @@ from importlib import import_module
 import numpy as np
 import pytest
 from conftest import here_alone
+from jointfmu_tools import cli
 from jointfmu_tools.joints.bolted_joint.new import computed
 
 import jointfmu
@@ -22,6 +24,7 @@ PLATE = {
     "Ra": 0.8,
     "preload": 30e3,
 }
+ROW = {"K1": 4700.0, "K2": 6100.0, "K3": 7100.0, "T1": 2.0, "T2": 6.9}
 
 
 @pytest.fixture(autouse=True)
@@ -89,6 +92,21 @@ def test_a_joint_prints_its_numbers_with_units_and_sources(plate):
     assert other.values["plate.x"] == pytest.approx(one.values["plate.x"], rel=1e-12)
 
 
+@pytest.mark.parametrize("form", [list, tuple, np.array])
+def test_of_each_side_or_bolt_in_any_form(plate, form):
+    """Several values, or one of several numbers: as the option declares it."""
+    flanks = {"width": 20, "load": 3000, "material": form(["steel", "cast iron"])}
+    made = jointfmu.gear_contact(**flanks, radii=form([30, 50]), Ra=form([0.4, 0.8]))
+    assert made.file.roughness == pytest.approx({"Ra1": 0.4e-6, "Ra2": 0.8e-6})
+    assert (made.values["side2.E"], made.name) == (110e9, "flanks 20 wide")
+    wheels = {"module": 4, "width": np.array(20), "torque": 150, "material": "hardened steel", "Ra": 0.4}
+    assert jointfmu.gear_mesh(**wheels, teeth=form([29, 45])).values["teeth1"] == 29.0
+    places = form([(-80, -30), (80, -30), (-80, 30), (80, 30)])
+    for at in (form([160, 60]), places):
+        one = plate(plate=form([200, 100]), at=at, grip=form([20, 20]))
+        assert one.values["plate.x"] == pytest.approx((-0.08, 0.08, -0.08, 0.08))
+
+
 def test_what_is_evaluated_is_what_is_followed_on_the_way_from_rest(plate):
     joint = plate()
     far = joint.evaluate(s_rel_x=[0.0, 3e-7])
@@ -143,6 +161,45 @@ def test_a_law_evaluates_arrays():
 
 
 @pytest.mark.parametrize(
+    ("name", "varied"),
+    [
+        ("zhao2018", {"surface.D": [1.3, 1.42]}),
+        ("hu2023", {"surface.D": [2.5, 2.53], "sigma_y": [3e8, 4e8]}),
+        ("yu2022", {"e": [0.1, 0.2]}),
+        ("roughness", {"h": [1e-6, 2e-6]}),
+        ("roughness", {"Ra1": [1e-6, 2e-6], "Ra2": 1e-6}),
+        ("roughness", {"surface.D": [1.3, 1.42], "surface.G": 1e-9}),
+    ],
+)
+def test_a_law_evaluates_arrays_of_parameters(name, varied):
+    """Point by point what the law of each point gives; the inversion's residual is 1e-12."""
+    law = jointfmu.law(name, **{key: np.array(value) for key, value in varied.items()})
+    found = law.at_pressure([1e6, 2e6])
+    alone = [
+        jointfmu.law(name, **{key: np.broadcast_to(value, 2)[i] for key, value in varied.items()})
+        for i in (0, 1)
+    ]
+    for column in found:
+        expected = [one.at_pressure(p)[column][0] for one, p in zip(alone, (1e6, 2e6), strict=True)]
+        np.testing.assert_allclose(found[column], expected, rtol=1e-10)
+    assert "not judged for arrays" in found.messages[0]
+    assert "2 numbers from" in repr(law)
+    with pytest.raises(ValueError, match="inputs of different lengths"):
+        law.at_pressure([1e6, 2e6, 3e6])
+
+
+def test_a_law_is_judged_as_by_the_command(capsys):
+    """By the height that its default file states, unless the surface is another one."""
+    for varied in ({"critical_area": "printed"}, {"surface.D": 1.2}):
+        settings = [f"{name}={value}" for name, value in varied.items()]
+        assert cli.main(["law", "zhao2018", "--pressure", "1e6", "--json", "--set", *settings]) == 0
+        said = json.loads(capsys.readouterr().out)["warnings"]
+        assert jointfmu.law("zhao2018", **varied).at_pressure(1e6).messages == tuple(said)
+        assert bool(said) == ("critical_area" in varied)
+    assert jointfmu.load("BoltedJoint").with_values(critical_area="printed").law.at_pressure(1e6).messages
+
+
+@pytest.mark.parametrize(
     ("call", "message"),
     [
         (lambda: jointfmu.drive("CSG-99"), "'CSG-99' is unknown"),
@@ -150,6 +207,8 @@ def test_a_law_evaluates_arrays():
         (lambda: jointfmu.drive("CSG-25-100", efficiency=1.5), r"efficiency = .1.5. is outside \(0, 1\)"),
         (lambda: jointfmu.bolted_joint(**PLATE | {"grip": -40}), r"grip = '-40' is outside \(0, inf\)"),
         (lambda: jointfmu.bolted_joint(**PLATE | {"head": "round"}), "head = 'round', allowed are"),
+        (lambda: jointfmu.bolted_joint(**PLATE | {"preload": (1, 2)}), r"preload = \(1, 2\) are 2 values"),
+        (lambda: jointfmu.bolted_joint(**PLATE | {"material": []}), r"material = \[\] are 0 values"),
         (lambda: jointfmu.load("nothing"), "'nothing' is no parameter file"),
         (lambda: jointfmu.load("BoltedJoint").with_values(mu=-1.0), "mu = -1"),
         (lambda: jointfmu.load("BoltedJoint").with_values(nu=1.0), "unknown name 'nu'"),
@@ -164,6 +223,13 @@ def test_a_law_evaluates_arrays():
         (lambda: jointfmu.fit("loop", "a.csv"), "of several joints"),
         (lambda: jointfmu.fit("catalogue", K1=1.0), "missing"),
         (lambda: jointfmu.fit("catalogue", "a.csv"), "takes no file"),
+        (
+            lambda: jointfmu.fit("loop", "a.csv", joint="bolted_joint", preload="9 kN"),
+            r"preload = '9 kN' is no number: of each bolt in the test \[N\]",
+        ),
+        (lambda: jointfmu.fit("catalogue", **ROW, law="hu2023", free="name"), "'name' is no parameter to"),
+        (lambda: jointfmu.fit("preload", "a.csv", direction="up"), "direction = 'up', allowed are normal"),
+        (lambda: jointfmu.fit("torque-angle", "a.csv", rated_torque="2 N"), "rated_torque = '2 N': unit"),
         (lambda: jointfmu.run("no.fmu", {}), "no such file"),
     ],
 )

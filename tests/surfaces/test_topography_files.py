@@ -18,6 +18,7 @@ from jointfmu_tools.surfaces.heights import Areal, Profile
 from jointfmu_tools.surfaces.reading import read
 
 from jointfmu.contact.interface import at_pressure
+from jointfmu.contact.roughness import FACTOR
 from jointfmu.joints import KINDS
 from jointfmu.parameters import default, dump, load
 
@@ -179,6 +180,11 @@ def test_form_is_removed(area, form, order):
             "flat.csv",
             "# profile: x [m], z [m]\n" + "".join(f"{i},5\n" for i in range(200)),
             "constant surface",
+        ),
+        (
+            "ramp.csv",
+            "# profile: x [um], z [um]\n" + "".join(f"{i},{0.1 * i:.1f}\n" for i in range(200)),
+            "ramp.csv: without its tilt the surface is smooth, it has no D and no G",
         ),
         (
             "nan.csv",
@@ -488,6 +494,15 @@ def test_units_of_each_column(folder, line, capsys, heads, factors, options):
         assert one["slope"] == pytest.approx(other["slope"], rel=1e-6)
 
 
+def test_the_micro_sign_of_latin_1_is_read_and_other_encodings_are_refused(folder, line, capsys):
+    rows = "".join(f"{1e6 * i * line.dx:.9g};{1e6 * z:.9g}\n" for i, z in enumerate(line.z))
+    for heads in ("X [µm];Z [µm]", "# profile: x [µm], z [µm]"):
+        (folder / "l.csv").write_text(f"{heads}\n{rows}", encoding="latin-1")
+        assert read(folder / "l.csv").z == pytest.approx(line.z, rel=1e-8)
+    (folder / "l.csv").write_text(f"X [µm];Z [µm]\n{rows}", encoding="utf-16")
+    assert "l.csv: is no text file; expected CSV (UTF-8)" in refused_line(capsys, "surface", "l.csv")
+
+
 @pytest.mark.parametrize(
     ("heads", "options", "says"),
     [
@@ -592,12 +607,34 @@ def test_a_joint_by_its_roughness_gets_h_and_its_kin(folder, capsys):
     out = json.loads(run(capsys, *command, "--out", "s.toml", "--json").out)
     file = load("s.toml")
     assert file.law == "roughness"
-    assert file.roughness == given.roughness
+    assert file.roughness == dict.fromkeys(("Rq1", "Rq2"), out["roughness"]["scans"][0]["h"])
     assert file.values.h == pytest.approx(out["roughness"]["h"])
     assert file.values.h == pytest.approx(np.sqrt(2.0) * out["roughness"]["scans"][0]["h"])
     assert (file.values.longest_wave, file.values.slope) == (5e-4, out["roughness"]["slope"])
     assert file.values.hurst == pytest.approx(2.0 - 1.42, abs=0.03)
     assert file.values.H == given.values.H
+
+
+def test_the_other_side_of_a_drawing_stays(folder, capsys):
+    """h of a scan of side 1 and of Ra 0.4 um of side 2; then of two scans, one after the other."""
+    flanks = ["--width", "20", "--radii", "12", "30", "--load", "2000", "--material", "steel", "--Ra", "0.4"]
+    run(capsys, "new", "gear-contact", *flanks, "--out", "g.toml")
+    drawn = load("g.toml")
+    assert (drawn.roughness, drawn.sources["roughness.Ra2"]) == (
+        {"Ra1": pytest.approx(4e-7), "Ra2": pytest.approx(4e-7)},
+        "Ra 0.4 um of the drawing",
+    )
+    said = run(capsys, "surface", "line.csv", "--side", "1", "--params", "g.toml", "--out", "s.toml")
+    file = load("s.toml")
+    assert set(file.roughness) == {"Rq1", "Ra2"}
+    assert file.values.h == pytest.approx(np.hypot(file.roughness["Rq1"], FACTOR * 4e-7), rel=1e-12)
+    assert "slope, hurst are those of side 1 alone" in said.err
+    assert f"(h = {1e6 * file.values.h:.4g} um of both sides)" in said.out
+    run(capsys, "surface", "line.csv", "--side", "2", "--params", "s.toml", "--out", "t.toml")
+    assert load("t.toml").values.h == pytest.approx(np.sqrt(2.0) * file.roughness["Rq1"], rel=1e-12)
+    (folder / "h.toml").write_text(dump(drawn.with_values({"h": 1e-6}, "user", "known together")))
+    line = refused_line(capsys, "surface", "line.csv", "--side", "1", "--params", "h.toml", "--out", "s.toml")
+    assert "h.toml: states h = 1e-06 m of both sides together; expected of the other side Ra2 or Rq2" in line
 
 
 @pytest.mark.parametrize("joint", [name for name, kind in KINDS.items() if kind.surfaces])

@@ -9,12 +9,11 @@ import numpy as np
 
 from jointfmu.contact.interface import at_largest_spot, at_pressure
 from jointfmu.contact.laws import LAWS
-from jointfmu.parameters import ParameterFile, default
 from jointfmu.quantity import flatten
 
 from ..command_line.common import Answer, Commands, argument, command, settings
-from ..judgement import judge, known_height, law_height
-from ..laws import ROW, first_joint, joints_of, law_file, law_parameters
+from ..judgement import judge
+from ..laws import ROW, joints_of, law_file, law_parameters, surfaces_height
 
 
 def add(commands: Commands) -> None:
@@ -40,23 +39,14 @@ def _law(args: argparse.Namespace) -> Answer:
     names = [*ROW, *(name for name in state if name not in ROW)]
     count = len(args.pressure or args.largest_spot)
     rows = [{n: _json_number(state[n], i) if n in state else None for n in names} for i in range(count)]
-    found = judge(law, np.ravel(state["pressure"]).tolist(), _height(args, law, file))
+    h = surfaces_height(args.law, law, file, dict(args.settings))
+    found = judge(law, np.ravel(state["pressure"]).tolist(), h)
     cells = [names, *(["-" if row[n] is None else f"{row[n]:.6g}" for n in names] for row in rows)]
     return Answer(
         document={"law": args.law, "parameters": flatten(law), "rows": rows},
         lines=["  ".join(f"{cell:>12}" for cell in line) for line in cells],
         judgement=found,
     )
-
-
-def _height(args: argparse.Namespace, law: Any, file: ParameterFile | None) -> float | None:
-    """Rms height h [m] that is known of the surfaces; what the default file states is that of its own."""
-    if (h := law_height(law)) is not None:
-        return h
-    others = any(name.startswith("surface") for name, _ in args.settings)
-    if file is None and others:
-        return None
-    return known_height(file or default(first_joint(args.law), args.law))
 
 
 def _json_number(column: Any, i: int) -> float | None:

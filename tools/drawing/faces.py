@@ -72,7 +72,7 @@ def materials(given: Given) -> tuple[TableRow, TableRow]:
 
 
 class Heights(NamedTuple):
-    """What is known of h [m] of both faces: its range; and the heights for the section [roughness].
+    """What is known of h [m] of both faces: its range.
 
     Rz : of the rougher face [m], RZ times its Ra
     """
@@ -80,7 +80,6 @@ class Heights(NamedTuple):
     low: float
     high: float
     Rz: float
-    stated: dict[str, float]
 
 
 def put(sheet: Sheet, given: Given) -> Heights:
@@ -132,8 +131,10 @@ def _heights(sheet: Sheet, pair: tuple[Face, Face], wave: str | None) -> Heights
         "slope", value, "estimate", "both sides together; " + "; ".join({known.source for known in slopes})
     )
     _fractal(sheet)
-    stated = {f"{name}{i + 1}": v for i, face in enumerate(pair) for name, v in face.stated.items()}
-    return Heights(low, high, RZ * rough.Rq / roughness.FACTOR, stated)
+    for i, face in enumerate(pair):
+        kind = "estimate" if face.high > face.low else "user"
+        sheet.roughness |= {f"{name}{i + 1}": (v, kind, face.text) for name, v in face.stated.items()}
+    return Heights(low, high, RZ * rough.Rq / roughness.FACTOR)
 
 
 def _fractal(sheet: Sheet) -> None:

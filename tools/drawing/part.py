@@ -3,7 +3,7 @@ parameters as they are collected, each with where it comes from.
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from jointfmu.joints import KINDS
@@ -48,13 +48,16 @@ class Drawing:
 
 @dataclass(slots=True)
 class Sheet:
-    """{structured name: (value, kind, source)} of a joint, start values of its inputs, ranges of some."""
+    """{structured name: (value, kind, source)} of a joint, start values of its inputs, ranges of some, and
+    {name: (height [m], kind, source)} of its surfaces, as in `ParameterFile.roughness`.
+    """
 
     joint: str
     law: str
     known: dict[str, tuple[object, str, str]] = field(default_factory=dict)
     inputs: dict[str, float] = field(default_factory=dict)
     ranges: dict[str, tuple[float, float]] = field(default_factory=dict)
+    roughness: dict[str, tuple[float, str, str]] = field(default_factory=dict)
 
     def put(self, name: str, value: Any, kind: str, source: str) -> None:
         """A parameter, or with the prefix `inputs.` a start value."""
@@ -75,7 +78,7 @@ class Sheet:
     def value(self, name: str) -> Any:
         return self.known[name][0]
 
-    def file(self, name: str, roughness: Mapping[str, float] | None = None) -> ParameterFile:
+    def file(self, name: str) -> ParameterFile:
         """The parameter file of that name, with those of the values that the joint's law has.
 
         Raises ValueError as `quantity.build`.
@@ -94,4 +97,9 @@ class Sheet:
             self.inputs,
             ranges={name: ends for name, ends in self.ranges.items() if name in own},
         )
-        return file.with_roughness(roughness, "user", "stated on the drawing") if roughness else file
+        rough = file
+        for height, (value, kind, source) in self.roughness.items():
+            rough = rough.with_roughness({height: value}, kind, source)
+        return replace(
+            rough, origins={**rough.origins, **file.origins}, sources={**rough.sources, **file.sources}
+        )

@@ -16,6 +16,7 @@ from jointfmu.parameters import ParameterFile, dump
 
 from .. import plots
 from ..command_line.common import needing
+from ..judgement import known_height
 from ..pressure import judge_file
 from ..ramps.ramp import broadcast
 from ..shown import quantity, stated
@@ -67,7 +68,7 @@ class Joint(Tabled):
         found = KINDS[self.file.joint].law_of(self.file.values)
         if found is None:
             raise ValueError(f"{self.name}: law = {self.file.law!r} is of no interface")
-        return Law(self.file.law, found)
+        return Law(self.file.law, found, known_height(self.file))
 
     @property
     def warnings(self) -> list[str]:

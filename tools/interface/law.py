@@ -9,11 +9,12 @@ from numpy.typing import ArrayLike
 
 from jointfmu.contact.interface import at_largest_spot, at_pressure
 from jointfmu.contact.laws import LAWS
-from jointfmu.quantity import flat_fields, flatten
+from jointfmu.quantity import Array, flat_fields, flatten
 
 from .. import plots
-from ..judgement import judge, law_height
-from ..laws import ROW, law_parameters
+from ..judgement import judge
+from ..laws import ROW, law_parameters, surfaces_height
+from ..ramps.ramp import broadcast
 from ..shown import quantity
 from .frame import Frame, Table, Tabled
 
@@ -37,7 +38,8 @@ UNITS = {
 class Law(Tabled):
     """An interface law: load, stiffness, real area and dissipation of two rough surfaces in contact.
 
-    parameters : the law's parameter set, see `values`
+    parameters : the law's parameter set, see `values`; numbers or arrays (n)
+    h          : rms height of both surfaces together [m], by which the level is judged; None: not known
 
     >>> import jointfmu
     >>> law = jointfmu.law("roughness", Ra1=0.8e-6, Ra2=0.8e-6)
@@ -48,6 +50,7 @@ class Law(Tabled):
 
     name: str
     parameters: Any
+    h: Any = None
 
     @property
     def values(self) -> dict[str, object]:
@@ -65,17 +68,30 @@ class Law(Tabled):
     def at_pressure(self, pressure: ArrayLike) -> Frame:
         """The interface under nominal pressures (n) [Pa]: F, K_N, K_T, A_r of the whole nominal area A_0.
 
-        `messages` of the frame say where the law's level or range is in doubt.
+        `messages` of the frame say where the law's level or range is in doubt; arrays of parameters are not
+        judged.
 
-        Raises ValueError for a pressure that is negative, NaN, infinite or not representable.
+        Raises ValueError for a pressure that is negative, NaN, infinite or not representable, or arrays of
+        different lengths.
         """
-        state = at_pressure(self.parameters, np.ravel(np.asarray(pressure, dtype=np.float64)))
-        found = judge(self.parameters, np.ravel(state["pressure"]).tolist(), law_height(self.parameters))
-        return self._frame(state, found.warnings)
+        state = at_pressure(self.parameters, self._column("pressure", pressure))
+        if many := ", ".join(self._arrays):
+            return self._frame(state, (f"level and range are not judged for arrays of {many}",))
+        return self._frame(state, judge(self.parameters, state["pressure"].tolist(), self.h).warnings)
 
     def at_largest_spot(self, area: ArrayLike) -> Frame:
         """The interface whose largest contact spot has an area (n) [m2]."""
-        return self._frame(at_largest_spot(self.parameters, np.ravel(np.asarray(area, dtype=np.float64))), ())
+        return self._frame(at_largest_spot(self.parameters, self._column("largest_spot", area)), ())
+
+    @property
+    def _arrays(self) -> dict[str, Array]:
+        return {name: value for name, value in self.values.items() if isinstance(value, np.ndarray)}
+
+    def _column(self, name: str, values: ArrayLike) -> Array:
+        """Values (n), or (1), that go with the arrays of parameters."""
+        column = np.ravel(np.asarray(values, dtype=np.float64))
+        broadcast({name: column, **self._arrays}, f"law {self.name}")
+        return column
 
     def _frame(self, state: Mapping[str, Any], messages: tuple[str, ...]) -> Frame:
         names = [name for name in (*ROW, *(n for n in state if n not in ROW)) if name in state]
@@ -101,11 +117,11 @@ class Law(Tabled):
         return figure
 
 
-def law(name: str, **parameters: object) -> Law:
+def law(name: str, **parameters: Any) -> Law:
     """An interface law: `roughness`, `zhao2018`, `hu2023` or `yu2022`.
 
-    parameters : values [SI] by name, structured ones as `**{"surface.D": 1.42}`; others have the values of
-        the shipped joint with this law.
+    parameters : values or arrays (n) [SI] by name, structured ones as `**{"surface.D": 1.42}`; others have
+        the values of the shipped joint with this law.
         `roughness` takes Ra1, Ra2, Rq1, Rq2 or h.
 
     Raises ValueError for an unknown law or parameter, or a value outside its interval.
@@ -116,4 +132,6 @@ def law(name: str, **parameters: object) -> Law:
     """
     if name not in LAWS:
         raise ValueError(f"law = {name!r}, allowed are {', '.join(LAWS)}")
-    return Law(name, law_parameters(name, None, parameters))
+    given = {n: np.ravel(v) if np.ndim(v) else v for n, v in parameters.items()}
+    found = law_parameters(name, None, given)
+    return Law(name, found, surfaces_height(name, found, None, given))

@@ -6,7 +6,9 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.joints.kind import Kind
@@ -15,6 +17,7 @@ from jointfmu.parameters import load as load_file
 
 from .. import plots
 from ..drawing.part import Drawing, NewJoint
+from ..drawing.reading import number
 from ..fitting.outcome import FitResult, draw, percent, size
 from ..fitting.procedure import procedures
 from ..joint_parts import Option, part
@@ -26,8 +29,8 @@ if TYPE_CHECKING:
 
 _HELP = """Make {}.
 
-    Numbers have the unit of the drawing, stated below; a text may carry one: '0.8 um'. A size is a tuple,
-    (200, 100); what is stated of each side or bolt is a list.
+    Numbers have the unit of the drawing, stated below; a text may carry one: '0.8 um'. A size is (200, 100),
+    what is stated of each side or bolt [0.8, 1.6]; lists, tuples and arrays are the same.
 
 {}
 
@@ -94,25 +97,30 @@ def _named_as_in_python() -> Iterator[None]:
         raise ValueError(_FLAG.sub(lambda m: m[1].replace("-", "_"), str(error))) from None
 
 
-def _given(option: Option, value: object) -> object:
-    """A value as the command line has it: a number as text, (200, 100) as 200x100, a list as several."""
+def _given(option: Option, value: Any) -> object:
+    """A value as the command line has it, numbers as text: a size as 200x100, else several as several."""
     if option.flag:
         return bool(value)
     if value is None:
         return None
+    each = value.tolist() if isinstance(value, np.ndarray) else value
+    texts = [_text(v) for v in (each if isinstance(each, list | tuple) else [each])]
+    if option.by and not (option.many and any("," in text for text in texts)):
+        texts = [option.by.join(texts)]
+    if not texts or (len(texts) > 1 and not option.many):
+        raise ValueError(f"{option.name} = {value!r} are {len(texts)} values, expected one")
     if option.many:
-        return [_text(v, ",") for v in value] if isinstance(value, list) else [_text(value, "x")]
-    text = _text(value, "x")
-    if option.choices and text not in option.choices:
-        raise ValueError(f"{option.name} = {text!r}, allowed are {', '.join(option.choices)}")
-    return text
+        return texts
+    if option.choices and texts[0] not in option.choices:
+        raise ValueError(f"{option.name} = {texts[0]!r}, allowed are {', '.join(option.choices)}")
+    return texts[0]
 
 
-def _text(value: object, by: str) -> str:
-    """A number, a text, or several with a sign between them."""
-    if isinstance(value, list | tuple):
-        return by.join(_text(v, by) for v in value)
-    return value if isinstance(value, str) else f"{value:.17g}" if isinstance(value, float) else str(value)
+def _text(value: Any) -> str:
+    """A number, a text, or the place X,Y of two numbers."""
+    if isinstance(value, list | tuple | np.ndarray):
+        return ",".join(map(_text, value))
+    return repr(float(value)) if isinstance(value, float) else str(value)
 
 
 def maker(name: str, kind: Kind, example: str, first: str | None = None) -> Callable[..., Joint]:
@@ -202,23 +210,34 @@ def _paths(procedure: str, many: bool, file: str | Path | Sequence[str | Path]) 
     return [Path(each) for each in file]
 
 
+def _taken(option: Option, value: Any) -> object:
+    """An option of a procedure as its function takes it."""
+    if value is None or not (option.number or option.unit):
+        return _given(option, value)
+    if option.unit and isinstance(value, str):
+        return number(option.name, value, option.unit, option.unit, None)
+    if not isinstance(value, int | float | np.number):
+        raise ValueError(f"{option.name} = {value!r} is no number: {option.text}")
+    return float(value)
+
+
 def fit(
     procedure: str,
     file: str | Path | Sequence[str | Path] | None = None,
     *,
     joint: str | None = None,
     start: Joint | None = None,
-    free: Sequence[str] | None = None,
+    free: str | Sequence[str] | None = None,
     **options: object,
 ) -> Fit:
     """Fit a joint's parameters to a measurement or a catalogue row, as `jointfmu fit PROCEDURE` does.
 
-    procedure : catalogue, torque-angle, table, loop, preload, ...
+    procedure : catalogue, torque-angle, log, loop or preload
     file      : measured data (CSV; the heading names columns and units), where the procedure has some;
                 several files where it takes them
     joint     : `bolted_joint`, ... where procedures of several joints have the name
     start     : joint to start from
-    free      : names of the parameters to fit
+    free      : names of the parameters to fit, or one name
     options   : of the procedure, numbers in SI units
 
     Raises ValueError for bad input, RuntimeError if the fit finds no end.
@@ -247,7 +266,8 @@ def fit(
         raise ValueError(f"unknown name {unknown[0]!r}, allowed are {', '.join(own)}")
     if missing := [name for name, option in own.items() if option.required and name not in options]:
         raise ValueError(f"{', '.join(missing)} missing: {own[missing[0]].text}")
-    taken = {name: options.get(name, option.default) for name, option in own.items()}
     data = () if file is None else (_paths(procedure, chosen.many, file),)
+    names = [free] if isinstance(free, str) else free
     with _named_as_in_python():
-        return Fit(chosen.run(*data, start and start.file, free, **taken))
+        taken = {name: _taken(option, options.get(name, option.default)) for name, option in own.items()}
+        return Fit(chosen.run(*data, start and start.file, names, **taken))

@@ -21,6 +21,7 @@ from ..columns import (
     cells,
     check_length,
     content,
+    decoded,
     head,
     number,
     rows,
@@ -48,9 +49,10 @@ def unit(text: str, where: str) -> float:
 
 def header(path: Path) -> str | None:
     """The line that declares our layout, if the file begins with one; None for any other file."""
-    with path.open("rb") as file:
-        first = file.readline(1000).decode("utf-8", errors="replace").strip()
-    return first if _HEADER.match(first) else None
+    with path.open("rb") as file, contextlib.suppress(UnicodeDecodeError):
+        first = decoded(file.readline(1000)).strip()
+        return first if _HEADER.match(first) else None
+    return None
 
 
 def read(path: Path, line: str) -> tuple[Heights, str]:
@@ -77,6 +79,8 @@ def titles(path: Path) -> list[Head] | None:
     try:
         lines = content(path, 2)
     except ValueError:
+        if path.suffix.lower() == ".csv":
+            raise
         return None  # no text: an instrument's
     mark = separator(lines[0][1]) if len(lines) == 2 else None
     if mark is None:

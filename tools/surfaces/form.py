@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from jointfmu.quantity import Array
 
-from .heights import FORMS, Areal, Heights
+from .heights import FLAT, FORMS, Areal, Heights
 
 Mask = NDArray[np.bool_]
 SPIKE = 8.0
@@ -141,9 +141,14 @@ class Prepared:
 
 
 def prepare(heights: Heights, form: str = FORMS[0], keep_spikes: bool = False) -> Prepared:
-    """Take spikes as missing, unless they are kept; remove the form, fill."""
+    """Take spikes as missing, unless they are kept; remove the form, fill.
+
+    Raises ValueError if the form leaves round-off alone, and as `filled`.
+    """
     clean, spikes = (heights, []) if keep_spikes else without_spikes(heights)
     gappy = without_form(clean, form)
+    if np.nanmax(np.abs(gappy.z)) <= FLAT * np.nanmax(np.abs(clean.z)):
+        raise ValueError(f"{heights.name}: without its {form} the surface is smooth, it has no D and no G")
     whole, gaps = filled(gappy)
     return Prepared(gappy, whole, (*spikes, *gaps))
 

@@ -11,12 +11,16 @@ from numpy.typing import NDArray
 
 from jointfmu.quantity import Array
 
+from ..columns import CONTROL
+
 FORMS = ("tilt", "mean", "curvature")
 """What is removed before anything else: a plane (default), the mean height, a surface of second order."""
 LEAST_PROFILE = 128
 """Least number of points of a profile: the lags used then span 0.9 decades."""
 LEAST_AREAL = 64
 """Least number of points along either side of an areal map."""
+FLAT = 1e-9
+"""Largest deviation of heights over the heights themselves [1] that is round-off."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -84,7 +88,7 @@ def _check(name: str, z: Array, *spacings: float) -> None:
     if valid.size == 0:
         raise ValueError(f"{name}: all {z.size} heights are missing or NaN")
     low, high = float(valid.min()), float(valid.max())
-    if high - low <= 1e-9 * max(abs(low), abs(high)):
+    if high - low <= FLAT * max(abs(low), abs(high)):
         raise ValueError(f"{name}: all heights are {low:g} m, a constant surface has no D and no G")
 
 
@@ -183,7 +187,6 @@ SIGNATURES = (
     *(b"\xff\xfef\0i", b"\xfe\xff\0f\0i", b"\x88\x1b\x03", b"GWY", b"FRTM_GLIDERV", b"WSxM file copyright"),
 )
 """First bytes of those formats; Wyko OPD has its name from the third byte on."""
-_CONTROL = re.compile(rb"[\x00-\x08\x0e-\x1f]")
 _NUMBER = re.compile(rb"\d+")
 
 
@@ -200,7 +203,7 @@ def check(path: Path) -> None:
     if path.stat().st_size > SMALL:
         return
     data = path.read_bytes()
-    if not _CONTROL.search(data) and (count := len(_NUMBER.findall(data))) < LEAST_PROFILE:
+    if not CONTROL.search(data) and (count := len(_NUMBER.findall(data))) < LEAST_PROFILE:
         raise ValueError(
             f"{path}: is no surface: a text of {count} numbers, "
             f"a profile needs at least {LEAST_PROFILE} points"

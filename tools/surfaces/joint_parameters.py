@@ -54,15 +54,15 @@ def with_surface(
 ) -> ParameterFile:
     """The parameter file with what the surface decides, each with its source.
 
-    With the law `roughness`: h, slope, longest wave and, if it is determined, the Hurst exponent. Else D and
-    G, if they are determined, and the heights of the known sides beside its law.
+    The heights of the known sides, of which the law `roughness` takes its h. With that law slope, longest
+    wave and, if it is determined, the Hurst exponent; else D and G, if they are determined.
 
     force : D and G (the Hurst exponent) also if they are not determined; ValueError if one is no number
     """
     sure = force or doubt(identified, file.joint) is None
     if file.law == ROUGHNESS_LAW:
-        return _with_law(file, identified, method, sure)
-    if sure:
+        file = _with_law(file, identified, method, sure)
+    elif sure:
         file = _with_fractal(file, identified, method)
     for side, scan in identified.sides.items():
         name = identified.names[min(side, len(identified.names)) - 1]
@@ -76,8 +76,7 @@ def _with_law(
 ) -> ParameterFile:
     shortest, longest = identified.scans[0].shortest_wave, identified.longest_wave
     source = f"measured: {_files(identified)}; waves up to {longest:.4g} m"
-    heights = {"h": identified.h, "longest_wave": longest}
-    file = file.with_values(heights, "user", source)
+    file = file.with_values({"longest_wave": longest}, "user", source)
     file = file.with_values({"slope": identified.slope}, "user", f"{source}, down to {shortest:.3g} m")
     if not sure:
         return file

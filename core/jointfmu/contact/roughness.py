@@ -65,8 +65,8 @@ def excluded(name: str) -> tuple[str, ...]:
     return ({"a": "Rq", "q": "Ra"}[name[1]] + name[2], "h")
 
 
-def check(stated: Mapping[str, Any], prefix: str = "") -> dict[str, float]:
-    """{name: height [m]} as stated. `prefix` is put before names in messages.
+def check(stated: Mapping[str, Any], prefix: str = "") -> dict[str, Number]:
+    """{name: height [m]} as stated, floats or arrays. `prefix` is put before names in messages.
 
     Raises ValueError, one line: an unknown name, no number, outside (0, inf), or two heights of one side.
     """
@@ -80,14 +80,15 @@ def check(stated: Mapping[str, Any], prefix: str = "") -> dict[str, float]:
             break
     if texts:
         raise ValueError("; ".join(texts))
-    return {name: float(value) for name, value in stated.items()}
+    return {name: value if np.ndim(value) else float(value) for name, value in stated.items()}
 
 
-def height(stated: Mapping[str, float]) -> float | None:
+def height(stated: Mapping[str, Number]) -> Number | None:
     """Rms height h [m] of both surfaces together; None where nothing is stated."""
     if not stated:
         return None
     if "h" in stated:
         return stated["h"]
     sides = (stated.get(f"Rq{side}", rms_of_mean(stated.get(f"Ra{side}", 0.0))) for side in (1, 2))
-    return float(together(*sides))
+    h = together(*sides)
+    return h if np.ndim(h) else float(h)

@@ -12,6 +12,7 @@ from jointfmu.parameters import ParameterFile, default, dump, load
 from jointfmu.quantity.refusal import Refusal
 
 from ...command_line.common import IMPLIED, Answer, Commands, Parser, argument, command, joint_name, written
+from ...judgement import known_height
 from ...surfaces.heights import FORMS
 from ...surfaces.reading import ROUGHEST, read
 from ...surfaces.spectrum import METHODS, SIDES
@@ -124,6 +125,12 @@ def _base(args: argparse.Namespace) -> ParameterFile | None:
         file = load(args.params, args.joint)
         if args.law not in (None, file.law):
             raise Refusal(f"{args.params}: has law = {file.law!r}; expected that or none", "law")
+        if args.side in ("1", "2") and known_height(file) and not file.roughness.keys() - {"h"}:
+            other = 3 - int(args.side)
+            raise ValueError(
+                f"{args.params}: states h = {known_height(file):g} m of both sides together; expected of the "
+                f"other side Ra{other} or Rq{other} in its section [{file.surfaces[:-1]}], or --side both"
+            )
         return file
     if args.joint:
         law = args.law or ROUGHNESS_LAW

@@ -115,9 +115,7 @@ def _number(value: Number) -> float | None:
 
 def together(identified: Identification, file: ParameterFile | None) -> float:
     """Rms height h [m] of both sides: of a parameter file with what else it knows, else of the scans."""
-    if file is None or file.law == ROUGHNESS_LAW:
-        return identified.h
-    return height(file.roughness) or identified.h
+    return height(file.roughness if file else {}) or identified.h
 
 
 def joints_shown(args: argparse.Namespace, file: ParameterFile | None) -> list[str]:
@@ -132,12 +130,14 @@ def warnings(identified: Identification, file: ParameterFile | None, args: argpa
         return lines
     why = doubt(identified, file.joint)
     names = "hurst" if file.law == ROUGHNESS_LAW else ", ".join(changes(identified, file.joint))
+    alone = ["slope"] if file.law == ROUGHNESS_LAW else []
     if why and not args.force:
         lines.append(f"{names} stay as they were, since they are not determined ({why}); --force writes them")
-    elif len(identified.sides) < len({name[-1] for name in file.roughness}):
-        lines.append(
-            f"{names} are those of side {identified.side} alone; give both scans for those of the pair"
-        )
+    else:
+        alone.append(names)
+    if alone and len(identified.sides) < len({name[-1] for name in file.roughness}):
+        of = f"those of side {identified.side} alone"
+        lines.append(f"{', '.join(alone)} are {of}; give both scans for those of the pair")
     return lines
 
 

@@ -23,16 +23,17 @@ NEW = Drawing(
     example="--plate 200x100 --bolts 4xM12 --at 160x60 --grip 40 --material steel --finish ground "
     "--preload 30e3",
     options=(
-        Option("plate", "length along x and width along y [mm]", "LxW", required=True),
-        Option("bolts", "number and thread", "NxMd", required=True),
+        Option("plate", "length along x and width along y [mm]", "LxW", by="x", required=True),
+        Option("bolts", "number and thread", "NxMd", by="x", required=True),
         Option(
             "at",
             "distances of the outermost bolts along x and y, LxW, or the place X,Y of each bolt from "
             "the middle of the plate [mm]",
             "PLACE",
             many=True,
+            by="x",
         ),
-        Option("grid", "bolts along x and y, where the distances do not tell", "NxM"),
+        Option("grid", "bolts along x and y, where the distances do not tell", "NxM", by="x"),
         Option("circle", "pitch circle of the bolts [mm]", "D"),
         Option(
             "grip", "clamped length of both plates together, or of each [mm]", "L", many=True, required=True

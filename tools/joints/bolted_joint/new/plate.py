@@ -86,8 +86,7 @@ def joint(given: Given) -> NewJoint:
     for choice in ("critical_area", "spot_stiffness"):
         default = {"critical_area": "continuity", "spot_stiffness": "hertz"}[choice]
         sheet.put(choice, default, "estimate", "nearest to the roughness of the surfaces, docs/validity.md")
-    name = f"plate {given['plate']} with {given['bolts']}"
-    file = sheet.file(name, None if law == "roughness" else heights.stated)
+    file = sheet.file(f"plate {given['plate']} with {given['bolts']}")
     density = tuple(material.numbers["density"].value for material in faces.materials(given))
     layers, depth = one.layers, 0.0
     if given["tapped"] and given["thickness"] is not None:
