@@ -61,6 +61,8 @@ def recombined(values: Array, weights: Array, turn: Array) -> tuple[Nodes, Array
 
 TOLERANCE = 1e-6
 """Largest deviation of a sum [1] that a reduced field may have."""
+LARGE = 1e-5
+"""The same of one with too many nodes to keep them all."""
 AIM, LET_PASS, WORTH_ADDING = 0.05, 0.6, 0.15
 """Parts of the tolerance [1]: what is aimed at, what is let pass where it was not aimed at (the rest is for
 loads that are not tried), and from where on a load is one to aim at."""
@@ -118,14 +120,15 @@ class Reduction:
 
 
 def reduce(joint: BoltedInterface, shape: PressureShape, preload: float, pressures: Pressures) -> Reduction:
-    """The fewest points found that keep a field's sums within TOLERANCE.
+    """The fewest points found that keep a field's sums within TOLERANCE; all nodes where none do, of more
+    than MOST nodes those within LARGE.
 
     preload   : [N] per bolt, the field's; loads are tried from PRELOADS of it, from pressed together to
                 fully open, with moments up to the one at which a row of bolts has no force left or nodes
                 that carried the part OPENED of the preload are open, whichever comes first
     pressures : of the joint, those of joints.clamped.Clamping
 
-    Raises RuntimeError if no points do and there are more than MOST nodes.
+    Raises RuntimeError if none do.
     """
     nodes = shape.share.size
     if nodes <= FEW:
@@ -140,15 +143,18 @@ def reduce(joint: BoltedInterface, shape: PressureShape, preload: float, pressur
         nodes, min(SAMPLE, nodes), replace=False, p=sums.weights(shape, largest_moment(joint, shape))
     )
     reduction = _search(sums, shape, shape.part(few), own)
-    if reduction is not None:
+    if reduction is not None and (nodes > MOST or reduction.deviation <= TOLERANCE):
         return reduction
     if nodes <= MOST:
         return Reduction(own, own)
-    raise RuntimeError(f"the field of {nodes} nodes has no points that keep its sums within {TOLERANCE:g}")
+    raise RuntimeError(
+        f"the field of {nodes} nodes has no points that keep its sums within {LARGE:g}; of up to {MOST} all "
+        "nodes are kept"
+    )
 
 
 def _search(sums: Sums, shape: PressureShape, some: PressureShape, own: PressureShape) -> Reduction | None:
-    """Points that keep the sums at first loads and at those of others that they missed.
+    """Points that keep the sums at first loads and at those of others that they missed, within LARGE.
 
     shape : the nodes, rounded
     some  : of these, on which it is found which sums follow from others
@@ -157,7 +163,7 @@ def _search(sums: Sums, shape: PressureShape, some: PressureShape, own: Pressure
     limit = largest_moment(sums.joint, shape)
     loads, tests = further_loads(limit), int(np.clip(WORK / shape.share.size, *TESTS))
     system = _System.of(sums, shape, own, some, sums.at(shape, [*first_loads(limit), *islice(loads, MORE)]))
-    best, least = None, TOLERANCE
+    best, least = None, LARGE
     for _ in track(range(ROUNDS), "points", ROUNDS):
         points = system.points()
         if points is None:
@@ -239,7 +245,7 @@ class _System:
         target = np.concatenate([self.shape.share @ balance(self.shape) / self.over, self.rows.total.ravel()])
         target -= self.shape.share[held] @ self.values(self.shape.part(held))
         best, count = None, kept.size
-        allowed = LET_PASS * TOLERANCE
+        allowed = LET_PASS * LARGE
         while count > 1 and np.max(np.abs(share @ values - target)) <= allowed:
             best, allowed = (left, share), AIM * TOLERANCE
             count = int(FEWER * count)

@@ -8,7 +8,7 @@ import pytest
 from conftest import here_alone
 from jointfmu_fmu_src.building import build
 from jointfmu_tools import PARTS, cli, plots
-from jointfmu_tools.fields import nodal_result
+from jointfmu_tools.fields import nodal_result, reduction
 from jointfmu_tools.fields.joint_parameters import pressure_shape, with_field
 from jointfmu_tools.fields.nodal_result import ContactField
 from jointfmu_tools.fields.reduction import DIGITS, TOLERANCE, reduce
@@ -145,6 +145,17 @@ def test_patches_come_from_the_nodes(tmp_path):
 def test_few_nodes_stay_as_they_are():
     shape = pressure_shape(JOINT, ContactField(*(a[:50] for a in _parts(FIELD))), _preload(FIELD, 50))
     assert reduce(JOINT, shape, PRELOAD, pressures).shape is shape
+
+
+def test_points_that_miss_a_little_stand_for_many_nodes_alone(monkeypatch):
+    shape = pressure_shape(JOINT, FIELD, PRELOAD)
+    found = [reduction.Reduction(shape.part(slice(99)), shape, 0.5 * reduction.LARGE), None]
+    monkeypatch.setattr(reduction, "_search", lambda *given: found[0])
+    assert reduce(JOINT, shape, PRELOAD, pressures).points == shape.share.size
+    monkeypatch.setattr(reduction, "MOST", 1000)
+    assert reduce(JOINT, shape, PRELOAD, pressures) is found.pop(0)
+    with pytest.raises(RuntimeError, match="no points that keep its sums within 1e-05; of up to 1000 all"):
+        reduce(JOINT, shape, PRELOAD, pressures)
 
 
 def _parts(one):
