@@ -341,4 +341,6 @@ def test_curves_of_the_arm_are_the_inverse_dynamics() -> None:
 def test_ring_without_fmus_says_what_writes_them(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     said = refused_line(capsys, "ring", "robot_joint")
-    assert "has no HarmonicDriveSpring.fmu; `jointfmu build --systems` writes it" in said
+    assert "has no HarmonicDriveSpring.fmu; `jointfmu system robot_joint` writes it" in said
+    said = refused_line(capsys, "ring", "six_axis_robot", "--joint", "elbow_drive")
+    assert "has no six_axis_robot_elbow_drive.fmu" in said
