@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from conftest import refused_line
 from jointfmu_fmu_src.partners.laws import GRAVITY, TorqueCurve
+from jointfmu_tools.report.systems import loads, panels
 from jointfmu_tools.systems.arm import Arm, Link
 from jointfmu_tools.systems.ssp import fmu_names
 from jointfmu_tools.systems.system import names, read, system
@@ -336,6 +337,18 @@ def test_curves_of_the_arm_are_the_inverse_dynamics() -> None:
         left = inertia * acceleration[:, k] - torque[:, k]
         assert np.max(np.abs(values - left)) < 5e-4 * np.max(np.abs(torque[:, k]))
     assert re.search(r"J = .*", ARM) is None  # computed, not stated
+
+
+def test_a_picture_shows_the_peaks_of_a_run():
+    robot, time = system("robot_joint"), np.linspace(0.0, 2.0, 4001)
+    torque = np.zeros(4001)
+    torque[[1233, 1234]] = -3.0, 77.5
+    ((output, _),) = loads(robot).values()
+    (panel,) = panels(robot, {"time": time, output: torque})
+    (drawn,) = panel.series
+    assert (np.min(drawn.y), np.max(drawn.y)) == (-3.0, 77.5)
+    assert len(drawn.x) <= 800
+    assert np.all(np.diff(drawn.x) > 0.0)
 
 
 def test_ring_without_fmus_says_what_writes_them(tmp_path, monkeypatch, capsys):
