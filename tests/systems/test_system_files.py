@@ -1,14 +1,19 @@
 """Files of systems: what they refuse, and the arm's mechanics by other ways."""
 
+import dataclasses
 import math
 import re
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 from conftest import refused_line
 from jointfmu_fmu_src.partners.laws import GRAVITY, TorqueCurve
+from jointfmu_tools.modelica.library import system_text
+from jointfmu_tools.modelica.records import environment
+from jointfmu_tools.modelica.systems import system_model
 from jointfmu_tools.report.systems import loads, panels
 from jointfmu_tools.systems.arm import Arm, Link
 from jointfmu_tools.systems.ssp import fmu_names
@@ -337,6 +342,25 @@ def test_curves_of_the_arm_are_the_inverse_dynamics() -> None:
         left = inertia * acceleration[:, k] - torque[:, k]
         assert np.max(np.abs(values - left)) < 5e-4 * np.max(np.abs(torque[:, k]))
     assert re.search(r"J = .*", ARM) is None  # computed, not stated
+
+
+def test_the_modelica_model_is_as_warm_and_as_tight_as_the_fmus(tmp_path):
+    """What the joint's file states of its inputs, or the system."""
+    files = {"harmonic_drive": {"temperature": 318.15}, "bolted_joint": {"preload": 12e3}}
+    for joint, inputs in files.items():
+        stated = dataclasses.replace(default(joint), inputs=inputs)
+        (tmp_path / f"{joint}.toml").write_text(dump(stated), encoding="utf-8")
+    own = f'{DRIVE}\nparameters = "harmonic_drive.toml"'
+    assert "final T=318.15," in system_text(read(changed(tmp_path, (DRIVE, own))))
+    held = 'temperature = { value = 303.15, unit = "K", kind = "user", source = "a test" }'
+    assert ", T=303.15)" in system_text(read(changed(tmp_path, (DRIVE, f"{own}\n{held}"))))
+    column = (ROOT / "models/systems/bolted_column.toml").read_text(encoding="utf-8")
+    bolted = ('model = "BoltedJoint"\npreload', 'model = "BoltedJoint"\nparameters = "bolted_joint.toml"\n#')
+    asked = []
+    known = SimpleNamespace(name="Known")
+    column = read(changed(tmp_path, bolted, text=column))
+    system_model(column, environment(), lambda kind, file, point: asked.append(point) or known)
+    assert asked == [(12e3, 0.0)]
 
 
 def test_a_picture_shows_the_peaks_of_a_run():
