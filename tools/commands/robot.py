@@ -82,6 +82,10 @@ def run(args: argparse.Namespace) -> Answer:
             more += _system(args, model, axes, files, pose, tip)
     longest = poses.longest_step(model, axes, pose)
     notes = [line for axis in axes for line in axis.noted]
+    lacking = (
+        f"{axis.drive.name}: the MJCF does not carry {line}" for axis in axes for line in axis.drive.lacks
+    )
+    notes += dict.fromkeys(lacking)
     if model.opt.timestep > longest:
         notes.append(
             f"its timestep, {model.opt.timestep:g} s, is beyond {longest:.3g} s, which the drives bear"
