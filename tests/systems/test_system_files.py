@@ -11,17 +11,21 @@ import numpy as np
 import pytest
 from conftest import refused_line
 from jointfmu_fmu_src.partners.laws import GRAVITY, TorqueCurve
+from jointfmu_tools import cli
 from jointfmu_tools.modelica.library import system_text
 from jointfmu_tools.modelica.records import environment
 from jointfmu_tools.modelica.systems import system_model
 from jointfmu_tools.report.systems import loads, panels
+from jointfmu_tools.systems import cosimulation, ssp
 from jointfmu_tools.systems.arm import Arm, Link
 from jointfmu_tools.systems.ssp import fmu_names
+from jointfmu_tools.systems.steps import longest_step
 from jointfmu_tools.systems.system import names, read, system
 from jointfmu_tools.systems.wiring import ends, lags, wires
 from numpy.typing import NDArray
 
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
+from jointfmu.mechanics.steps import stable_steps
 from jointfmu.parameters import default, dump
 from jointfmu.quantity import changed as replaced
 
@@ -361,6 +365,38 @@ def test_the_modelica_model_is_as_warm_and_as_tight_as_the_fmus(tmp_path):
     column = read(changed(tmp_path, bolted, text=column))
     system_model(column, environment(), lambda kind, file, point: asked.append(point) or known)
     assert asked == [(12e3, 0.0)]
+
+
+def test_an_interval_beyond_the_largest_stable_step_is_said(tmp_path, monkeypatch, capsys):
+    """Of the motor and the link on the drive at rest, and at the largest torque of a run."""
+    monkeypatch.setattr(ssp, "build_systems", lambda out, wanted: [])
+    path, out = changed(tmp_path, ("value = 5.0e-4", "value = 3.0e-3")), tmp_path / "out"
+    drive = HarmonicDriveSpring.of(read(path).joints["drive"].file.values)
+
+    def limit(torque: float) -> float:
+        at_rest = drive.windup(torque)["K_WTS"]
+        return stable_steps(at_rest, drive.joint.d, 1.0 / 0.05 + 1.0 / (1e-5 * drive.joint.ratio**2))[1]
+
+    said = (
+        f"experiment.interval = 0.003 s is longer than {limit(0.0):.3g} s, the largest stable step of drive"
+    )
+    assert said in refused_line(capsys, "system", path, "--out", out, "--csv", tmp_path / "run.csv")
+    assert not out.exists()
+    assert cli.main(["system", str(path), "--out", str(out)]) == 0
+    assert f"warning: {said}" in capsys.readouterr().err
+    angle, still = np.array([0.0, float(drive.windup(5.0)["phi_rel"]), 0.0]), np.zeros(3)
+    moved = {"motor.phi": still, "motor.w": still, "link.phi": angle, "link.w": still}
+    found = longest_step(read(path), moved | {"drive.tau1": angle, "drive.tau2": -angle})
+    assert found == (pytest.approx(limit(5.0), rel=0.01), "drive")
+    assert limit(5.0) < 0.8 * limit(0.0)
+
+    def diverges(*_: object) -> None:
+        raise ValueError("too large")
+
+    monkeypatch.setattr(cosimulation, "simulate", diverges)
+    path = changed(tmp_path)
+    said = refused_line(capsys, "system", path, "--out", out, "--csv", tmp_path / "run.csv")
+    assert "too large; experiment.interval = 0.0005 s may be too long" in said
 
 
 def test_a_picture_shows_the_peaks_of_a_run():
