@@ -40,12 +40,8 @@ def _model(
     )
 
 
-_TORQUE = (
-    (Variable("tau_in", "N.m", "torque that is added"),),
-    (Variable("tau", "N.m", "torque"),),
-    Ramp("tau_in", 1.0, 1e-3, 1e-3),
-)
-"""Inputs, outputs and ramp of a torque over time."""
+_TORQUE = (Variable("tau_in", "N.m", "torque that is added"),), (Variable("tau", "N.m", "torque"),)
+"""Inputs and outputs of a torque over time."""
 PARTNERS: dict[str, Model] = {
     model.name: model
     for model in (
@@ -83,13 +79,14 @@ PARTNERS: dict[str, Model] = {
             TorqueProfile,
             "Torque over time: a ramp that stays and a pulse, without corners",
             *_TORQUE,
+            Ramp("tau_in", 1.0, 1e-3, 1e-3, {"pulse_height": 1.0}),
         ),
         _model(
             ForceProfile,
             "Force over time: a ramp that stays and a pulse, without corners",
             (Variable("f_in", "N", "force that is added", 1e3),),
             (Variable("f", "N", "force", 1e3),),
-            Ramp("f_in", 1e3, 1.0, 1e-3),
+            Ramp("f_in", 1e3, 1.0, 1e-3, {"pulse_height": 1e3}),
         ),
         _model(
             AngleProfile,
@@ -99,12 +96,13 @@ PARTNERS: dict[str, Model] = {
                 Variable("w_in", "rad/s", "speed that is added"),
             ),
             (Variable("phi", "rad", "angle"), Variable("w", "rad/s", "speed")),
-            Ramp("phi_in", 1.0, 1e-3, 1e-3),
+            Ramp("phi_in", 1.0, 1e-3, 1e-3, {"height": 1.0}),
         ),
         _model(
             TorqueCurve,
             "Torque over time: a Bernstein polynomial, held before and after it",
             *_TORQUE,
+            Ramp("tau_in", 1.0, 1e-3, 1e-3),
         ),
     )
 }

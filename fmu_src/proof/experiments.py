@@ -114,6 +114,7 @@ def _experiment(
     levels: int,
 ) -> ReferenceExperiment:
     """The load ramp in some levels; a model with states rests under the ramp's end."""
+    settings = {**model.ramp.settings, **settings}
     start, end = start_of(model, parameters)[model.ramp.input], model.ramp.end
     if model.states:
         places = np.full(levels + 1, end)

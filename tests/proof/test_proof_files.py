@@ -150,8 +150,8 @@ def test_neighbours_lie_just_inside_what_is_refused(name: str) -> None:
     found = [one for one in made(name) if one.doc.startswith("inside ")]
     assert found or name in PARTNERS  # whose numbers may have no end
     for one in found:
-        own_settings = one.settings.items() - {(model.ramp.input, model.ramp.end)}  # what drives states
-        ((parameter, value),) = own_settings
+        usual = {model.ramp.input: model.ramp.end, **model.ramp.settings}  # what drives states, and a course
+        ((parameter, value),) = one.settings.items() - usual.items()
         interval = model.parameter_fields()[parameter].metadata["interval"]
         own = file.flat[parameter]
         end = interval.low if value < own else interval.high
@@ -222,6 +222,16 @@ def test_the_text_says_how_many_and_how_near(name: str) -> None:
     counts = re.findall(r"^ +(\d+) [a-z-]+$", said, re.MULTILINE)
     assert sum(map(int, counts)) == len(made(name))
     assert f"{TOLERANCE:g} max(|reference|" in said
+
+
+@pytest.mark.parametrize("name", ["TorqueProfile", "ForceProfile", "AngleProfile"])
+def test_a_course_over_time_shows_itself_in_its_proof_alone(name: str) -> None:
+    """A system's file that states no pulse and no turn has none."""
+    model, file = given(name)
+    assert not any(value for key, value in file.flat.items() if key.endswith("height"))
+    one = made(name)[1]
+    column = one.results.columns[model.outputs[0].name]
+    assert np.max(np.abs(column - np.linspace(0.0, column[-1], column.size))) > 1e-9 * column[-1]
 
 
 def test_a_mass_under_a_constant_force_moves_as_newton_says() -> None:

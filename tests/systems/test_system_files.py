@@ -1,21 +1,31 @@
 """Files of systems: what they refuse, and the arm's mechanics by other ways."""
 
+import dataclasses
 import math
 import re
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 from conftest import refused_line
 from jointfmu_fmu_src.partners.laws import GRAVITY, TorqueCurve
+from jointfmu_tools import cli
+from jointfmu_tools.modelica.library import system_text
+from jointfmu_tools.modelica.records import environment
+from jointfmu_tools.modelica.systems import system_model
+from jointfmu_tools.report.systems import loads, panels
+from jointfmu_tools.systems import cosimulation, ssp
 from jointfmu_tools.systems.arm import Arm, Link
 from jointfmu_tools.systems.ssp import fmu_names
+from jointfmu_tools.systems.steps import longest_step
 from jointfmu_tools.systems.system import names, read, system
 from jointfmu_tools.systems.wiring import ends, lags, wires
 from numpy.typing import NDArray
 
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
+from jointfmu.mechanics.steps import stable_steps
 from jointfmu.parameters import default, dump
 from jointfmu.quantity import changed as replaced
 
@@ -338,7 +348,72 @@ def test_curves_of_the_arm_are_the_inverse_dynamics() -> None:
     assert re.search(r"J = .*", ARM) is None  # computed, not stated
 
 
+def test_the_modelica_model_is_as_warm_and_as_tight_as_the_fmus(tmp_path):
+    """What the joint's file states of its inputs, or the system."""
+    files = {"harmonic_drive": {"temperature": 318.15}, "bolted_joint": {"preload": 12e3}}
+    for joint, inputs in files.items():
+        stated = dataclasses.replace(default(joint), inputs=inputs)
+        (tmp_path / f"{joint}.toml").write_text(dump(stated), encoding="utf-8")
+    own = f'{DRIVE}\nparameters = "harmonic_drive.toml"'
+    assert "final T=318.15," in system_text(read(changed(tmp_path, (DRIVE, own))))
+    held = 'temperature = { value = 303.15, unit = "K", kind = "user", source = "a test" }'
+    assert ", T=303.15)" in system_text(read(changed(tmp_path, (DRIVE, f"{own}\n{held}"))))
+    column = (ROOT / "models/systems/bolted_column.toml").read_text(encoding="utf-8")
+    bolted = ('model = "BoltedJoint"\npreload', 'model = "BoltedJoint"\nparameters = "bolted_joint.toml"\n#')
+    asked = []
+    known = SimpleNamespace(name="Known")
+    column = read(changed(tmp_path, bolted, text=column))
+    system_model(column, environment(), lambda kind, file, point: asked.append(point) or known)
+    assert asked == [(12e3, 0.0)]
+
+
+def test_an_interval_beyond_the_largest_stable_step_is_said(tmp_path, monkeypatch, capsys):
+    """Of the motor and the link on the drive at rest, and at the largest torque of a run."""
+    monkeypatch.setattr(ssp, "build_systems", lambda out, wanted: [])
+    path, out = changed(tmp_path, ("value = 5.0e-4", "value = 3.0e-3")), tmp_path / "out"
+    drive = HarmonicDriveSpring.of(read(path).joints["drive"].file.values)
+
+    def limit(torque: float) -> float:
+        at_rest = drive.windup(torque)["K_WTS"]
+        return stable_steps(at_rest, drive.joint.d, 1.0 / 0.05 + 1.0 / (1e-5 * drive.joint.ratio**2))[1]
+
+    said = (
+        f"experiment.interval = 0.003 s is longer than {limit(0.0):.3g} s, the largest stable step of drive"
+    )
+    assert said in refused_line(capsys, "system", path, "--out", out, "--csv", tmp_path / "run.csv")
+    assert not out.exists()
+    assert cli.main(["system", str(path), "--out", str(out)]) == 0
+    assert f"warning: {said}" in capsys.readouterr().err
+    angle, still = np.array([0.0, float(drive.windup(5.0)["phi_rel"]), 0.0]), np.zeros(3)
+    moved = {"motor.phi": still, "motor.w": still, "link.phi": angle, "link.w": still}
+    found = longest_step(read(path), moved | {"drive.tau1": angle, "drive.tau2": -angle})
+    assert found == (pytest.approx(limit(5.0), rel=0.01), "drive")
+    assert limit(5.0) < 0.8 * limit(0.0)
+
+    def diverges(*_: object) -> None:
+        raise ValueError("too large")
+
+    monkeypatch.setattr(cosimulation, "simulate", diverges)
+    path = changed(tmp_path)
+    said = refused_line(capsys, "system", path, "--out", out, "--csv", tmp_path / "run.csv")
+    assert "too large; experiment.interval = 0.0005 s may be too long" in said
+
+
+def test_a_picture_shows_the_peaks_of_a_run():
+    robot, time = system("robot_joint"), np.linspace(0.0, 2.0, 4001)
+    torque = np.zeros(4001)
+    torque[[1233, 1234]] = -3.0, 77.5
+    ((output, _),) = loads(robot).values()
+    (panel,) = panels(robot, {"time": time, output: torque})
+    (drawn,) = panel.series
+    assert (np.min(drawn.y), np.max(drawn.y)) == (-3.0, 77.5)
+    assert len(drawn.x) <= 800
+    assert np.all(np.diff(drawn.x) > 0.0)
+
+
 def test_ring_without_fmus_says_what_writes_them(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     said = refused_line(capsys, "ring", "robot_joint")
-    assert "has no HarmonicDriveSpring.fmu; `jointfmu build --systems` writes it" in said
+    assert "has no HarmonicDriveSpring.fmu; `jointfmu system robot_joint` writes it" in said
+    said = refused_line(capsys, "ring", "six_axis_robot", "--joint", "elbow_drive")
+    assert "has no six_axis_robot_elbow_drive.fmu" in said

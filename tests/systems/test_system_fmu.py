@@ -9,10 +9,12 @@ import fmpy
 import numpy as np
 import pytest
 from fmpy.validation import validate_fmu
+from jointfmu_fmu_src.proof.series import TimeSeries
 from jointfmu_fmu_src.proof.standard import FOLDER
 from jointfmu_tools.host import opened, unpacked
 from jointfmu_tools.proof.manifest import Related
 from jointfmu_tools.proof.run import prove
+from jointfmu_tools.systems.fmu import proof
 from jointfmu_tools.systems.fmu.assembly import assembly
 from jointfmu_tools.systems.fmu.build import build_system
 from jointfmu_tools.systems.system import read, system, systems
@@ -106,6 +108,24 @@ def test_scales_decide_what_counts(joint, tmp_path, scale, refused):
             prove(path)
     else:
         assert [text for text in prove(path).misses if "link.phi" in text]
+
+
+@pytest.mark.parametrize(("sensitive", "end"), [(3.0, 2.0), (0.505, 0.5), (0.5, 0.49)])
+def test_the_proof_ends_before_the_motion_is_too_sensitive(monkeypatch, sensitive, end):
+    """Where a host's tolerance gives other results than that of the references."""
+    model = assembly(system("robot_joint")).model()
+
+    def exchanged(model, fmu, times, tolerance):
+        columns = {v.name: times + 1.0 for v in model.outputs}
+        if tolerance > proof.SOLVER:
+            columns["link.phi"] = np.where(times < sensitive - 1e-9, times + 1.0, 0.0)
+        return TimeSeries(times, columns)
+
+    monkeypatch.setattr(proof, "_exchanged", exchanged)
+    members = proof.proof(model, 2.0, 5e-4, Path())
+    (text,) = (content.decode() for path, content in members.items() if path.endswith("model-exchange.exp"))
+    assert f'stopTime="{end:g}"' in text
+    assert f"They end at {end:g} s of 2 s" in members["documentation/fmi-ls-ref.txt"].decode()
 
 
 def test_variables_are_those_of_the_components(joint):

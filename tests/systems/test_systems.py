@@ -935,14 +935,16 @@ def test_the_whole_robot_joint_in_model_exchange(built: Path, make: Make, versio
 def test_the_command_builds_a_system_of_ones_own(
     built: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """With a drive of its own: an FMU for it, archives that run, a Modelica model, table and picture."""
+    """With a drive of its own: an FMU for it, which rings, archives that run, a Modelica model, table and
+    picture."""
     text = (files("jointfmu_models") / "systems" / "robot_joint.toml").read_text(encoding="utf-8")
     model = 'model = "HarmonicDriveSpring"'
     own = text.replace(model, f'{model}\nparameters = "drives/my_drive.toml"').replace(
         "value = 2.0,", "value = 0.3,"
     )
     (tmp_path / "drives").mkdir()
-    drive = default("harmonic_drive").with_values({"ratio": 50.0}, "user", "test")
+    changes = {"ratio": 50.0, "radial_deformation": 2.3e-4}
+    drive = default("harmonic_drive").with_values(changes, "user", "test")
     (tmp_path / "drives" / "my_drive.toml").write_text(dump(drive), encoding="utf-8")
     (tmp_path / "my_arm.toml").write_text(own, encoding="utf-8")
     out, table, picture = tmp_path / "dist", tmp_path / "run.csv", tmp_path / "run.png"
@@ -967,6 +969,12 @@ def test_the_command_builds_a_system_of_ones_own(
     written = (out / "modelica" / "MyArm.mo").read_text(encoding="utf-8")
     assert "final ratio=50" in written
     assert written.startswith('model MyArm "Robot joint with a harmonic drive"')
+    arguments = ["ring", tmp_path / "my_arm.toml", "--fmus", out / "fmi2", "--load", 5, "--json"]
+    assert cli.main([*map(str, arguments)]) == 0
+    (row,) = json.loads(capsys.readouterr().out)["rows"]
+    stiffness = HarmonicDriveSpring.of(drive.values).windup(5.0)["K_WTS"]
+    expected = math.sqrt(stiffness / LINK) / math.tau  # 2 % from the default drive's
+    assert row["expected_frequency"] == pytest.approx(expected, rel=1e-5)
 
 
 def test_the_robot_in_modelica_winds_up_as_the_fmus_do(built: Path) -> None:
@@ -1162,7 +1170,7 @@ def test_ring_down_in_shear(built: Path, capsys: pytest.CaptureFixture[str]) -> 
         (["bolted_column", "--load", "-5"], "preload = -5 N is outside [0, inf)"),
         (
             ["bolted_column", "--fmus", "nowhere"],
-            "--fmus nowhere: has no BoltedJoint.fmu; `jointfmu build --systems` writes it",
+            "--fmus nowhere: has no BoltedJoint.fmu; `jointfmu system bolted_column` writes it",
         ),
         (["robot_joint", "--plot", "a.pdf"], "suffix '.pdf' is no picture"),
         (["gearbox"], "system 'gearbox': allowed are bolted_column, robot_joint, six_axis_robot, or a file"),

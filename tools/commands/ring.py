@@ -23,7 +23,7 @@ def add(commands: Commands) -> None:
     ring = command(commands, "ring", _ring, text)
     argument(ring, "system", str, f"{', '.join(names())}, or a system's file (TOML)", "SYSTEM")
     argument(ring, "--joint", str, "the joint, where the system has several")
-    text = "folder with the FMUs of `jointfmu build --systems`"
+    text = "folder with the FMUs of `jointfmu system` or `build --systems`"
     argument(ring, "--fmus", Path, text, "DIR", default=Path("dist/fmi2"))
     text = "what loads the joint, SI: preload of a bolt [N], torque at the output [N.m] (default: several "
     argument(ring, "--load", float, text + "that show the joint)", nargs="+")
@@ -41,9 +41,11 @@ def _ring(args: argparse.Namespace) -> Answer:
         from ..systems import ringing
     example = ringing.vibrating_joint(system(args.system), args.joint)
     _check(args, example.inertia_unit)
-    for name in (example.body.fmu, example.body.partner):
+    for name in (example.fmu, example.body.partner):
         if not (args.fmus / f"{name}.fmu").is_file():
-            raise ValueError(f"--fmus {args.fmus}: has no {name}.fmu; `jointfmu build --systems` writes it")
+            raise ValueError(
+                f"--fmus {args.fmus}: has no {name}.fmu; `jointfmu system {args.system}` writes it"
+            )
     if args.amplitude is not None:
         return _decays(args, example)
     if args.settings:

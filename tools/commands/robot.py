@@ -94,6 +94,10 @@ def run(args: argparse.Namespace) -> Answer:
             f"the payload is at the origin of {model.body(tip).name}, on the axis of {last}, which it does "
             "not load; --tip BODY puts it elsewhere, at a body (a link of a URDF) that stands for the tool"
         )
+    lacking = (
+        f"{axis.drive.name}: the MJCF does not carry {line}" for axis in axes for line in axis.drive.lacks
+    )
+    notes += dict.fromkeys(lacking)
     if model.opt.timestep > longest:
         notes.append(
             f"its timestep, {model.opt.timestep:g} s, is beyond {longest:.3g} s, which the drives bear"

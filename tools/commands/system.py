@@ -7,7 +7,7 @@ from jointfmu.files.writing import check_folder, write_text
 
 from .. import columns
 from ..command_line.common import Answer, Commands, argument, command, needing
-from ..systems.system import names, system
+from ..systems.system import System, names, system
 from . import check_files, draw
 
 
@@ -33,22 +33,30 @@ def _system(args: argparse.Namespace) -> Answer:
         from ..modelica.systems import model_name
         from ..systems import ssp
         from ..systems.fmu.assembly import assembly
+        from ..systems.steps import longest_step
 
         whole = assembly(found) if args.fmu else None
         model = library.system_text(found)
-        built = ssp.build_systems(args.out, [found])
+        step = longest_step(found)
+        if (args.csv or args.plot) and (beyond := _beyond(found, *step)):
+            raise ValueError(f"{args.file}: {beyond}; allowed is a shorter one, or neither --csv nor --plot")
+        made = ssp.build_systems(args.out, [found])
         if whole:
             from ..systems.fmu.build import build_system
 
-            built += build_system(whole, args.out)
+            made += build_system(whole, args.out)
     written = args.out / "modelica" / f"{model_name(found)}.mo"
     write_text(written, model)
-    paths = [*built, written]
+    paths = [*made, written]
     if args.csv or args.plot:
         from ..report import systems
         from ..systems import cosimulation
 
-        run = cosimulation.simulate(found, args.out / "fmi2")
+        try:
+            run = cosimulation.simulate(found, args.out / "fmi2")
+        except ValueError as error:
+            raise ValueError(f"{error}; experiment.interval = {found.interval:g} s may be too long") from None
+        step = min(step, longest_step(found, run))
         if args.csv:
             units = systems.units(found)
             heads = [(name, units[name]) for name in run]
@@ -56,5 +64,15 @@ def _system(args: argparse.Namespace) -> Answer:
         if args.plot:
             draw(args.plot, systems.panels(found, run), systems.MOTION_SIZE)
         paths += [path for path in (args.csv, args.plot) if path]
-    document = {"system": found.name, "built": [str(path) for path in paths]}
-    return Answer(document=document, lines=[f"built {path}" for path in paths])
+    notes = [f"warning: {text}" for text in (_beyond(found, *step),) if text]
+    built = [str(path) for path in paths]
+    document = {"system": found.name, "built": built, "longest_step": step[0], "notes": notes}
+    return Answer(document=document, lines=[f"built {path}" for path in built], notes=notes)
+
+
+def _beyond(system: System, longest: float, joint: str) -> str:
+    """What is said of an interval [s] that is longer than the largest stable step of a joint."""
+    if system.interval <= longest:
+        return ""
+    stated = f"experiment.interval = {system.interval:g} s is longer than {longest:.3g} s"
+    return f"{stated}, the largest stable step of {joint} where all step side by side"

@@ -190,6 +190,7 @@ class ModelicaComponent:
     texts   : first record -> {name: text}
     flanges : names of its flanges
     of_system : parameters -> {parameter of the component: text} that a system sets beside the record
+    held    : {input of the joint: parameter of the component} at which a system may hold it
     special : parameters of the joint that only these decide, not the record's table
     note    : HTML for the description of all components
     """
@@ -202,6 +203,7 @@ class ModelicaComponent:
     note: str = ""
     flanges: Sequence[str] = ("flange_a", "flange_b")
     of_system: Callable[[ParameterFile], Mapping[str, str]] = lambda file: {}
+    held: Mapping[str, str] = field(default_factory=dict)
     special: Sequence[str] = ()
 
 

@@ -125,8 +125,11 @@ def _record(
     assert part.file
     component = _component(part)
     file = part.file
-    point = tuple(part.state.get(name, 0.0) for name in KINDS[part.kind].working_point)
+    point = tuple(part.state.get(name, file.start(name)) for name in KINDS[part.kind].working_point)
     own = [f"{key}={value}" for key, value in component.of_system(file).items()]
+    own += [
+        f"{component.held[name]}={number(part.state[name])}" for name in component.held if name in part.state
+    ]
     shown = library(part.kind, file, point)
     if shown:
         return [f"data=JointStiffness.Data.{shown.name}()"], own

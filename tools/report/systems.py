@@ -111,8 +111,8 @@ def decay_panels(points: Sequence[Decay], body: Body) -> list[Panel]:
 
 
 MOTION_SIZE = (11.4, 3.8)
-_THIN = 20
-"""Points of a run from one that is drawn to the next."""
+_STRETCHES = 400
+"""Of a run: of each its least and its greatest point are drawn."""
 Run = Mapping[str, Array]
 """{COMPONENT.OUTPUT: values} and `time` [s]."""
 
@@ -149,23 +149,30 @@ def windup(system: System, run: Run) -> tuple[Array, Array, Array]:
     return q, real - q, error
 
 
+def _drawn(name: str, time: Array, values: Array) -> Series:
+    size = -(-values.size // _STRETCHES)
+    stretches = [(k, values[k : k + size]) for k in range(0, values.size, size)]
+    kept = sorted({k + int(f(part)) for k, part in stretches for f in (np.argmin, np.argmax)})
+    return Series(name, time[kept], values[kept])
+
+
 def panels(system: System, run: Run) -> list[Panel]:
     """Loads of the joints over time; of an arm wind-up and the tip's error beside them."""
-    time, over = run["time"][::_THIN], "time [s]"
+    over = "time [s]"
     shown = loads(system)
     unit = " or ".join(dict.fromkeys(unit for _, unit in shown.values()))
     carried = [
-        Series(name.removesuffix("_drive"), time, run[output][::_THIN]) for name, (output, _) in shown.items()
+        _drawn(name.removesuffix("_drive"), run["time"], run[output]) for name, (output, _) in shown.items()
     ]
     found = [Panel("Loads of the joints", over, f"load [{unit}]", carried)]
     if system.arm:
         _, wound, error = windup(system, run)
         turned = [
-            Series(name, time, 1e3 * values[::_THIN])
+            _drawn(name, run["time"], 1e3 * values)
             for name, values in zip(system.arm.names, wound.T, strict=True)
         ]
         found.append(Panel("Wind-up of the drives", over, "wind-up [mrad]", turned))
-        tip = [Series("tip", time, 1e3 * error[::_THIN])]
+        tip = [_drawn("tip", run["time"], 1e3 * error)]
         found.append(Panel("Error of the tip", over, "error [mm]", tip))
     return found
 

@@ -55,7 +55,6 @@ def text(
             f'\n[{name}_weight]\nmodel = "TorqueProfile"',
             _entry("ramp_height", torque, "N.m", "of the weight at the pose"),
             _entry("ramp_duration", SETTLING, "s", "slow beside the axes' periods"),
-            _entry("pulse_height", 0.0, "N.m", "none"),
             "",
         ]
     at = ", ".join(f"{axis.joint} = {pose[model.joint(axis.joint).qposadr[0]]:.4g} rad" for axis in axes)

@@ -81,29 +81,25 @@ def decays(
 
     Raises ValueError for an FMU that is missing or refuses, and where too few periods stand out.
     """
-    body, own = one.body, one.joint.parameters
-    loads = [max(body.loads(folder, own))] if loads is None else loads
+    joint = {**one.parameters, **(settings or {})}
+    loads = [max(one.body.loads(folder / f"{one.fmu}.fmu", joint))] if loads is None else loads
     inertia = one.inertia if inertia is None else inertia
-    joint = {**own, **(settings or {})}
-    return [
-        _decay_at(body, folder, load, joint, {one.key: inertia}, first)
-        for load in track(loads, "ring", len(loads))
-    ]
+    return [_decay_at(one, folder, load, joint, inertia, first) for load in track(loads, "ring", len(loads))]
 
 
 def _decay_at(
-    body: Body,
+    one: VibratingJoint,
     folder: Path,
     load: float,
     parameters: Mapping[str, Any],
-    inertia: Mapping[str, float],
+    mass: float,
     first: float,
 ) -> Decay:
-    rest, partner, (mass,) = body.rest(folder, load, parameters), PARTNERS[body.partner], inertia.values()
+    body, path = one.body, folder / f"{one.fmu}.fmu"
+    rest, partner = body.rest(path, load, parameters), PARTNERS[body.partner]
     states = [v.name for v in partner.outputs[: partner.states]]
     pulled = rest.position + np.copysign(first, rest.position)  # one way from no load: the joint begins there
-    start = {**inertia, states[0]: pulled}
-    path, held = folder / f"{body.fmu}.fmu", {**parameters, **body.start(load)}
+    start, held = {one.key: mass, states[0]: pulled}, {**parameters, **body.start(load)}
     step = 2.0 * np.pi / np.sqrt(rest.stiffness / mass) / PER_PERIOD
     with (
         Slave(path, {**held, body.motion[0]: pulled}, body.motion, (body.force,)) as joint,

@@ -15,6 +15,7 @@ from jointfmu.quantity import Array, flat_fields
 
 from ..joint_parts import part
 from .master import Slave, damping_ratio, motion, peak
+from .ssp import fmu_names, values
 from .system import Component, System, systems
 from .wiring import wires
 
@@ -108,15 +109,14 @@ class Pull(NamedTuple):
 class Body:
     """How a joint rings with a body on it: RINGING in the joint's file.
 
-    fmu     : of the joint, motion in
+    model   : of the joint, motion in
     motion  : its inputs, position and speed of the body
     force   : its output, the force or torque on the body
     partner : FMU of the body
     over    : the variable that loads it
-    loads   : (folder of the FMUs, parameters of the joint) -> the loads that show the joint, SI
+    loads   : (the joint's FMU, its parameters) -> the loads that show the joint, SI
     start   : load -> {input: value} of the joint's FMU under it
-    rest    : (folder of the FMUs, load, parameters of the joint's FMU) -> working point; ValueError where
-              nothing rings
+    rest    : (the joint's FMU, load, its parameters) -> working point; ValueError where nothing rings
     release : force or torque whose deflection is the first one [N or N.m]
     load, deflection : as plots show them
     doc     : how the body is held, for the report
@@ -125,7 +125,7 @@ class Body:
     elastic : parameters of the joint without friction, where friction adds to its stiffness at tiny motion
     """
 
-    fmu: str
+    model: str
     motion: tuple[str, str]
     force: str
     partner: str
@@ -156,13 +156,23 @@ def body_on(joint: str) -> Body:
 class VibratingJoint:
     """A joint of a system, and the body on it that rings while all others are held.
 
+    fmu : name of the joint's FMU
     key : the parameter of the body that is its inertia
     """
 
     body: Body
     joint: Component
+    fmu: str
     moving: Component
     key: str
+
+    @property
+    def parameters(self) -> dict[str, Any]:
+        """Of the joint's FMU: all of one of its own, which another joint may share; else what the system
+        gives it, for `--fmus` may hold a joint of other numbers."""
+        if not self.joint.own:
+            return self.joint.parameters
+        return {name: entry.value for name, entry in values(self.joint).items()}
 
     @property
     def inertia(self) -> float:
@@ -200,11 +210,10 @@ def vibrating_joint(system: System, joint: str | None = None) -> VibratingJoint:
     body = body_on(joints[name].kind)
     ends = [w.source for w in wires(system) if (w.target, w.input) == (name, body.motion[0])]
     moving = system.components[ends[0]] if ends else None
-    if joints[name].model != body.fmu or moving is None or moving.model != body.partner:
-        raise ValueError(f"{name}: expected a {body.fmu} that takes {body.motion[0]} from a {body.partner}")
-    return VibratingJoint(
-        body, joints[name], moving, next(iter(dict(flat_fields(PARTNERS[body.partner].parameters))))
-    )
+    if joints[name].model != body.model or moving is None or moving.model != body.partner:
+        raise ValueError(f"{name}: expected a {body.model} that takes {body.motion[0]} from a {body.partner}")
+    key = next(iter(dict(flat_fields(PARTNERS[body.partner].parameters))))
+    return VibratingJoint(body, joints[name], fmu_names(system)[name], moving, key)
 
 
 def examples(folder: Path) -> dict[str, list[Ringing]]:
@@ -230,31 +239,29 @@ def ring(
 
     Raises ValueError for an FMU that is missing or refuses, and where nothing rings.
     """
-    body, joint = one.body, {**one.joint.parameters, **one.body.elastic}
+    joint = {**one.parameters, **one.body.elastic}
     if loads is None:
-        loads = body.loads(folder, one.joint.parameters)
+        loads = one.body.loads(folder / f"{one.fmu}.fmu", joint)
     if inertia is None:
         inertia = one.inertia
-    return [
-        _ring_at(body, folder, load, joint, one.key, inertia) for load in track(loads, "ring", len(loads))
-    ]
+    return [_ring_at(one, folder, load, joint, inertia) for load in track(loads, "ring", len(loads))]
 
 
 def stiffness_line(one: VibratingJoint, folder: Path, points: Sequence[Ringing]) -> tuple[Array, Array]:
     """Loads (n), evenly from the least to the largest of some points, and sqrt(K/J) there [rad/s]."""
-    joint = {**one.joint.parameters, **one.body.elastic}
+    joint, path = {**one.parameters, **one.body.elastic}, folder / f"{one.fmu}.fmu"
     ends, inertia = [point.load for point in points], points[0].inertia
     loads = np.linspace(min(ends), max(ends), LINE)
-    stiffness = np.array([one.body.rest(folder, float(load), joint).stiffness for load in loads])
+    stiffness = np.array([one.body.rest(path, float(load), joint).stiffness for load in loads])
     return loads, np.sqrt(stiffness / inertia)
 
 
 def _ring_at(
-    body: Body, folder: Path, load: float, parameters: Mapping[str, float], key: str, inertia: float
+    one: VibratingJoint, folder: Path, load: float, parameters: Mapping[str, Any], inertia: float
 ) -> Ringing:
-    """Free motion about one working point, with parameters of the joint, of a body whose inertia is the
-    parameter `key`."""
-    rest, partner = body.rest(folder, load, parameters), PARTNERS[body.partner]
+    """Free motion about one working point, with parameters of the joint."""
+    body, path = one.body, folder / f"{one.fmu}.fmu"
+    rest, partner = body.rest(path, load, parameters), PARTNERS[body.partner]
     first, least = body.release / rest.stiffness, RESOLVED * abs(rest.position)
     if not first > least:
         raise ValueError(
@@ -262,12 +269,10 @@ def _ring_at(
             f"{first:.3g}; allowed is more than {least:.3g}"
         )
     states = [v.name for v in partner.outputs[: partner.states]]
-    start = {key: inertia, states[0]: rest.position + first}
+    start = {one.key: inertia, states[0]: rest.position + first}
     forces = [v.name for v in partner.inputs]
     with (
-        Slave(
-            folder / f"{body.fmu}.fmu", {**parameters, **body.start(load)}, body.motion, (body.force,)
-        ) as joint,
+        Slave(path, {**parameters, **body.start(load)}, body.motion, (body.force,)) as joint,
         Slave(folder / f"{body.partner}.fmu", start, forces, states) as mass,
     ):
         return _ring(joint, mass, rest, load, inertia)

@@ -64,12 +64,16 @@ class Variable:
 
 @dataclass(frozen=True, slots=True)
 class Ramp:
-    """Load ramp: the default experiment, one step per interval [s]."""
+    """Load ramp: the default experiment, one step per interval [s].
+
+    settings : of parameters with which a course over time shows in experiments
+    """
 
     input: str
     end: float
     step: float
     interval: float = 1.0
+    settings: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

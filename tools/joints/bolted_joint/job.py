@@ -85,9 +85,9 @@ PRELOADS = (3e3, 9e3, 15e3, 30e3)
 """Per bolt [N]."""
 
 
-def _rest(folder: Path, preload: float, parameters: Mapping[str, Any]) -> Rest:
+def _rest(path: Path, preload: float, parameters: Mapping[str, Any]) -> Rest:
     start = {**parameters, "preload": preload, "v_rel_x": 1.0}
-    with Slave(folder / f"{_FMU}.fmu", start, (), ("K_xx", "f_x")) as law:
+    with Slave(path, start, (), ("K_xx", "f_x")) as law:
         K, dashpot = law.get()
     if K <= 0.0:
         raise ValueError(f"load = {preload:g} N: the joint has no stiffness there; allowed are preloads > 0")
@@ -95,12 +95,12 @@ def _rest(folder: Path, preload: float, parameters: Mapping[str, Any]) -> Rest:
 
 
 RINGING = Body(
-    fmu=_FMU,
+    model=_FMU,
     motion=("s_rel_x", "v_rel_x"),
     force="f_x",
     partner="TranslationalMass",
     over="preload",
-    loads=lambda folder, parameters: PRELOADS,
+    loads=lambda path, parameters: PRELOADS,
     start=lambda preload: {"preload": preload},
     rest=_rest,
     release=1.0,

@@ -164,18 +164,16 @@ def torque_angle(result: RampResult) -> Panel:
 
 LOADING = (0.0, 0.1, 0.2, 0.4, 0.7, 1.0)
 """Torques over the rated torque [1]."""
-_SPRING = "HarmonicDriveSpring"
 
 
-def _torques(folder: Path, parameters: Mapping[str, float]) -> list[float]:
+def _torques(path: Path, parameters: Mapping[str, float]) -> list[float]:
     """From zero to the drive's rated torque [N.m]."""
-    with Slave(folder / f"{_SPRING}.fmu", parameters, (), ("rated_torque",)) as drive:
+    with Slave(path, parameters, (), ("rated_torque",)) as drive:
         (rated,) = drive.get()
     return [share * rated for share in LOADING]
 
 
-def _rest(folder: Path, torque: float, parameters: Mapping[str, float]) -> Rest:
-    path = folder / f"{_SPRING}.fmu"
+def _rest(path: Path, torque: float, parameters: Mapping[str, float]) -> Rest:
     with Slave(path, {**parameters, "w2": 1.0}, ("w1",), ("tau",)) as dashpot:
         (damping,) = dashpot.get()
     with Slave(path, parameters, ("phi2", "w2"), ("tau", "K_WTS")) as law:
@@ -196,7 +194,7 @@ def _wound_up(drive: Slave, torque: float) -> tuple[float, float]:
 
 
 RINGING = Body(
-    fmu=_SPRING,
+    model="HarmonicDriveSpring",
     motion=("phi2", "w2"),
     force="tau2",
     partner="RotationalInertia",

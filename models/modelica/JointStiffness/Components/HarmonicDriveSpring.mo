@@ -30,7 +30,7 @@ model HarmonicDriveSpring "Torsional spring and damper of a harmonic drive betwe
     annotation (Dialog(tab="Friction"));
   parameter Boolean useHeatPort = false "= true, if heatPort is enabled: it gives the temperature and takes lossPower"
     annotation (Evaluate=true, HideResult=true, choices(checkBox=true), Dialog(tab="Friction"));
-  parameter Modelica.Units.SI.Temperature T = 293.15 "Temperature of the lubricant, if useHeatPort = false"
+  parameter Modelica.Units.SI.Temperature T = data.T "Temperature of the lubricant, if useHeatPort = false"
     annotation (Dialog(tab="Friction", enable=not useHeatPort));
   parameter Modelica.Units.SI.Angle error_1 = data.error_1 "kinematic error at the output, amplitude, one period per turn of the wave generator"
     annotation (Dialog(tab="Kinematic error"));

@@ -20,6 +20,7 @@ record CD_14_100_of_Hu_2023 "CD-14-100 of Hu 2023"
     final error_2_phase=0,
     final error_4=0,
     final error_4_phase=0,
+    final T=293.15,
     final K_FTS0=19393.50698,
     final hysteresis_friction=0,
     final hysteresis_stiffness=1862.06202,

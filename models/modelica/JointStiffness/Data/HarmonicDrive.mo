@@ -17,6 +17,7 @@ record HarmonicDrive "A harmonic drive"
   parameter Real temperature_factor(min=0, unit="1")=1 "factor of all friction";
   parameter Modelica.Units.SI.LinearTemperatureCoefficient viscous_temperature_coefficient=0 "fall of friction_viscous per kelvin above 293.15 K, over its value";
   parameter Modelica.Units.SI.LinearTemperatureCoefficient dry_temperature_coefficient=0 "fall of dry friction per kelvin above 293.15 K, over its value";
+  parameter Modelica.Units.SI.Temperature T "Temperature of the lubricant";
   parameter Modelica.Units.SI.Angle error_1=0 "kinematic error at the output, amplitude, one period per turn of the wave generator";
   parameter Modelica.Units.SI.Angle error_1_phase=0 "phase of error_1 at phi1 = 0";
   parameter Modelica.Units.SI.Angle error_2=0 "the same with two periods per turn";

@@ -33,6 +33,7 @@ def _records(file: ParameterFile, points: Sequence[WorkingPoint]) -> list[Modeli
     drive = file.values
     spring = HarmonicDriveSpring.of(drive)
     own = given({name: getattr(drive, name) for name in _OWN})
+    own |= given({"T": file.start("temperature")})
     found = computed({"K_FTS0": drive.K_FTS} | _hysteresis(spring))
     sliders = np.array(shares(exponent(drive)), dtype=np.float64).T
     return [
@@ -61,6 +62,7 @@ COMPONENT = ModelicaComponent(
     of_system=lambda file: (
         computed(_hysteresis(HarmonicDriveSpring.of(file.values))) | {"stateSelect": "StateSelect.default"}
     ),
+    held={"temperature": "T"},
     special=("hysteresis_loss", "hysteresis_stiffness"),
     texts=lambda drive: {
         "end": f"{drive.end:g} N m",

@@ -17,6 +17,7 @@ record HarmonicDrive "A harmonic drive"
   parameter Real temperature_factor(min=0, unit="1")=1 "<< meta.temperature_factor >>";
   parameter Modelica.Units.SI.LinearTemperatureCoefficient viscous_temperature_coefficient=0 "<< meta.viscous_temperature_coefficient.split(";")[0] >>";
   parameter Modelica.Units.SI.LinearTemperatureCoefficient dry_temperature_coefficient=0 "<< meta.dry_temperature_coefficient.split(";")[0] >>";
+  parameter Modelica.Units.SI.Temperature T "Temperature of the lubricant";
   parameter Modelica.Units.SI.Angle error_1=0 "<< meta.error_1 >>";
   parameter Modelica.Units.SI.Angle error_1_phase=0 "<< meta.error_1_phase >>";
   parameter Modelica.Units.SI.Angle error_2=0 "<< meta.error_2 >>";
