@@ -64,7 +64,7 @@ def _uncertainty(args: argparse.Namespace) -> Answer:
     A, B = propagate.design(task, count, args.seed)
     bands = propagate.bands(task, A)
     rows = min(count, max(1024, count // 32))
-    indices = sensitivity(task, A[:rows], B[:rows]) if len(task.uncertain) > 1 else None
+    indices = sensitivity(task, A[:rows], B[:rows]) if len(task.uncertain) > 1 and bands.moved else None
     if args.csv:
         write_text(args.csv, report.bands_csv(task, bands))
     if args.plot:
