@@ -14,7 +14,8 @@ from jointfmu.quantity import flatten
 
 from ..command_line.common import Answer, Commands, argument, command, settings
 from ..judgement import judge, known_height, law_height
-from ..laws import ROW, first_joint, joints_of, law_file, law_parameters
+from ..laws import ROW, UNITS, first_joint, joints_of, law_file, law_parameters
+from ..shown import aligned
 
 
 def add(commands: Commands) -> None:
@@ -41,10 +42,11 @@ def _law(args: argparse.Namespace) -> Answer:
     count = len(args.pressure or args.largest_spot)
     rows = [{n: _json_number(state[n], i) if n in state else None for n in names} for i in range(count)]
     found = judge(law, np.ravel(state["pressure"]).tolist(), _height(args, law, file))
-    cells = [names, *(["-" if row[n] is None else f"{row[n]:.6g}" for n in names] for row in rows)]
+    heads = [f"{name} [{UNITS[name]}]" for name in names]
+    cells = [heads, *(["-" if row[n] is None else f"{row[n]:.6g}" for n in names] for row in rows)]
     return Answer(
         document={"law": args.law, "parameters": flatten(law), "rows": rows},
-        lines=["  ".join(f"{cell:>12}" for cell in line) for line in cells],
+        lines=aligned(cells, 0),
         judgement=found,
     )
 
