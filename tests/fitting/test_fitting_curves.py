@@ -284,6 +284,13 @@ def test_units_of_a_record_do_not_matter(force, times, turn, by, tmp_path):
         assert found[1][name] == pytest.approx(column, rel=1e-14, abs=1e-18)
 
 
+def test_titles_are_those_of_loops(tmp_path):
+    path = tmp_path / "curve.csv"
+    rows = (f"{T / 5e3 - T**3 / 1e6};{T}" for T in np.linspace(-5.0, 5.0, 30))
+    path.write_text("\n".join(["Winkel (rad);Drehmoment / Nm", *rows]))
+    assert torque_angle.read(path, None, None).line.torque == pytest.approx(np.linspace(-5.0, 5.0, 30))
+
+
 RISING = ["1e3,1e9", "2e3,2e9", "3e3,3e9", "4e3,4e9"]
 
 
