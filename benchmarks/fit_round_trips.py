@@ -6,6 +6,7 @@ its own standard deviations, and the middle relative error of each parameter.
 """
 
 import tempfile
+from functools import cache
 from itertools import pairwise
 from pathlib import Path
 
@@ -14,8 +15,8 @@ import memory_measurements
 import numpy as np
 from jointfmu_tools.joints.bolted_joint.fit import preload
 from jointfmu_tools.joints.harmonic_drive.fit import torque_angle
-from jointfmu_tools.joints.harmonic_drive.fit.drive import windup
 
+from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import default
 from jointfmu.progress import track
 
@@ -26,18 +27,29 @@ ARCMIN = np.pi / 10800.0
 
 
 def loops(rng, values=DRIVE, amplitude=25.0, noise=0.03 * ARCMIN, gap=1.0 * ARCMIN, drift=0.3 * ARCMIN):
-    """Torque [N.m] and angle [rad] of two loops 0, A, -A, A, -A, A, with an offset of 5 arcmin.
+    """Torque [N.m] and angle [rad] of two loops 0, A, -A, A, -A, A of the drive, with an offset of 5 arcmin.
 
-    The branches lie `gap` [rad] apart at zero torque and meet at the ends; 0.5 mN.m of noise in T.
+    gap : hysteresis_loss [rad]; 0.5 mN.m of noise in T
     """
-    ends = amplitude * np.array([0.0, 1.0, -1.0, 1.0, -1.0, 1.0])
-    pairs = list(pairwise(ends))
-    torque = np.concatenate([np.linspace(a, b, 200, endpoint=False) for a, b in pairs])
-    way = np.concatenate([np.full(200, np.sign(b - a)) for a, b in pairs])
-    drive = default("harmonic_drive").with_values(values, "user", "synthetic").values
-    angle = windup(drive, torque) - 0.5 * gap * way * (1.0 - (torque / amplitude) ** 2) + 5.0 * ARCMIN
-    angle += drift * np.linspace(-0.5, 0.5, torque.size) + noise * rng.standard_normal(torque.size)
+    torque, angle = moved(tuple((values | {"hysteresis_loss": gap}).items()), amplitude)
+    angle = angle + 5.0 * ARCMIN + drift * np.linspace(-0.5, 0.5, torque.size)
+    angle += noise * rng.standard_normal(torque.size)
     return torque + 5e-4 * rng.standard_normal(torque.size), angle
+
+
+@cache
+def moved(values, amplitude):
+    """Torque and angle of these loops as they are, values: ((name, value), ...)."""
+    ends = amplitude * np.array([0.0, 1.0, -1.0, 1.0, -1.0, 1.0])
+    torque = np.concatenate([np.linspace(a, b, 200, endpoint=False) for a, b in pairwise(ends)])
+    spring = HarmonicDriveSpring.of(
+        default("harmonic_drive").with_values(dict(values), "user", "synthetic").values
+    )
+    angle, memory = np.empty(torque.size), spring.rest()
+    for i, T in enumerate(torque):
+        state, memory = spring.loaded(T, memory)
+        angle[i] = state["phi_rel"]
+    return torque, angle
 
 
 def preloads(rng, of, noise, series=np.inf, points=20):

@@ -19,6 +19,17 @@ ROW = ("largest_spot", "pressure", "F", "K_N", "K_T", "A_r", "eta_n", "eta_t")
 """Columns of every law; a law that does not define one gives null."""
 PROFILE = ("surface.D", "surface.G")
 """Parameters of a profile that belong together."""
+UNITS = {
+    **dict.fromkeys(("largest_spot", "A_r"), "m2"),
+    "pressure": "Pa",
+    **dict.fromkeys(("F", "friction_limit"), "N"),
+    **dict.fromkeys(("K_N", "K_T", "K_loading"), "N/m"),
+    **dict.fromkeys(("C_N", "C_T"), "N.s/m"),
+    **dict.fromkeys(("W_NP", "W_NE", "W_d", "W_e", "W"), "J"),
+    **dict.fromkeys(("approach", "slip_length"), "m"),
+    **dict.fromkeys(("eta_n", "eta_t", "elastic_fraction"), "1"),
+}
+"""{what a law gives: unit}."""
 
 
 def law_parameters(law: str, file: ParameterFile | None, settings: dict[str, Any]) -> Any:

@@ -74,6 +74,7 @@ def _page(model: Model, parameters: ParameterFile, page: Path) -> str:
     """That of a joint; the template `page` may extend and import what lies beside this file."""
     spring = model.spring(parameters.values)
     rest = {v.name: parameters.start(v.name) for v in model.inputs}
+    model = model.loaded(spring, rest)
     variables = listed(model, parameters)
     exposed = model.parameter_fields()
     rows = _rows(parameters)
@@ -199,8 +200,7 @@ def panels(model: Model) -> tuple[RampPanel, ...]:
 
 def _figure(model: Model, spring: Spring, rest: Mapping[str, float]) -> str:
     """The load ramp, evaluated by the package; the other inputs stay at rest, their start values."""
-    ramp = model.ramp.end * np.linspace(0.0, 1.0, _POINTS) ** 2  # dense where the curves bend
-    points = [{**rest, model.ramp.input: float(x)} for x in ramp]
+    points = [{**rest, model.ramp.input: float(x)} for x in model.ramp.points(_POINTS)]
     rows = [point | evaluated(model, spring, point) for point in points]
     variables = {v.name: v for v in (*model.inputs, *model.outputs)}
 

@@ -49,6 +49,7 @@ def experiments(model: Model, parameters: ParameterFile) -> list[ReferenceExperi
 
     Raises ValueError or RuntimeError if the joint refuses its own parameter file.
     """
+    model = model.loaded(model.spring(parameters.values), start_of(model, parameters))
     return [
         _experiment(model, parameters, "smoke-test", "smoke test", "a few loads", {}, FEW),
         _experiment(model, parameters, "validation", "load ramp", "the default experiment", {}, RAMP),
@@ -113,14 +114,15 @@ def _experiment(
     settings: Mapping[str, object],
     levels: int,
 ) -> ReferenceExperiment:
-    """The load ramp in some levels; a model with states rests under the ramp's end."""
+    """The load ramp in some levels, but the first where it loads; a model with states rests under its end."""
     settings = {**model.ramp.settings, **settings}
     start, end = start_of(model, parameters)[model.ramp.input], model.ramp.end
     if model.states:
         places = np.full(levels + 1, end)
         settings = {**settings, model.ramp.input: end}
     else:
-        places = np.array([rounded(x) for x in np.linspace(start, end, levels + 1)])
+        loading = np.linspace(max(start, model.ramp.begin), end, levels + 1)[1:]
+        places = np.array([rounded(x) for x in (start, *loading)])
     interval = model.ramp.interval * (FRACTION if model.moves else 1.0)
     drive = Stimulus(model.ramp.input, places, interval)
     return ReferenceExperiment(

@@ -249,11 +249,13 @@ def test_parameter_file(law_json, tmp_path, law):
 
 @each_law
 def test_law_as_text(run, law):
-    """A header and one line of numbers per pressure; a dash where the law defines nothing."""
+    """A header with units and one line of numbers per pressure; a dash where the law defines nothing."""
     status, out, err = run("law", law, "--pressure", 1e6, 2e6)
     assert (status, err) == (0, "")
-    head, *lines = (line.split() for line in out.splitlines())
-    assert head[: len(ROW)] == list(ROW)
+    heads, *lines = (re.split(r"\s\s+", line.strip()) for line in out.splitlines())
+    head, units = zip(*(cell.removesuffix("]").split(" [") for cell in heads), strict=True)
+    assert head[: len(ROW)] == ROW
+    assert units[: len(ROW)] == ("m2", "Pa", "N", "N/m", "N/m", "m2", "1", "1")
     # the last is the level beside the roughness, where that is known
     assert len(lines) == 2 + (law in ("zhao2018", "roughness"))
     values = dict(zip(head, lines[1], strict=True))

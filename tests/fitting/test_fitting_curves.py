@@ -79,14 +79,30 @@ def test_the_script_counts(monkeypatch, capsys):
 
 
 def test_loop_is_taken_apart(loops):
-    """What the script put in: gap 1 arcmin, area 2/3 gap 2A, drift 0.3 arcmin, offset 5 arcmin."""
+    """What the script put in: its loop without noise, drift 0.3 arcmin, offset 5 arcmin."""
     facts = torque_angle.fit(loops).facts
-    expected = {"backlash": ARCMIN, "loop_area": 2.0 / 3.0 * ARCMIN * 50.0, "drift": 0.3 * ARCMIN}
+    torque, angle = trips.loops(np.random.default_rng(1), noise=0.0, drift=0.0)
+    (fall, up), (rise, down) = (
+        (torque[k][::way], angle[k][::way]) for k, way in ((slice(200, 400), -1), (slice(400, 600), 1))
+    )
+    grid = np.linspace(-24.0, 24.0, 2001)
+    gap = np.interp(grid, fall, up) - np.interp(grid, rise, down)
+    expected = {"backlash": gap[1000], "loop_area": 0.024 * np.sum(gap), "drift": 0.3 * ARCMIN}
     for name, value in expected.items():
-        # four standard deviations, and half a percent: the gap is found as a polygon of 40 pieces
-        assert abs(facts[name][0] - value) < 4.0 * facts[f"{name}_deviation"][0] + 5e-3 * value, name
+        # four standard deviations, and what the gap loses as a polygon of 40 pieces, most at its peak
+        lost = 6e-2 if name == "backlash" else 5e-3
+        assert abs(facts[name][0] - value) < 4.0 * facts[f"{name}_deviation"][0] + lost * value, name
     assert facts["offset"][0] == pytest.approx(5.0 * ARCMIN, abs=0.01 * ARCMIN)
     assert facts["noise"][0] == pytest.approx(0.03 * ARCMIN, rel=0.1)
+
+
+def test_the_loop_of_a_drive_has_its_midline():
+    """At the tips friction acts on both branches: their mean is half the gap at zero torque off there."""
+    line = backbone(*trips.loops(np.random.default_rng(1), noise=0.0, drift=0.0))
+    drive = default("harmonic_drive").with_values(trips.DRIVE, "user", "true").values
+    rest = line.angle - 5.0 * ARCMIN - windup(drive, line.torque)
+    # 0.5 mN m of noise in the torque moves the angle by 2e-3 arcmin where the drive is soft
+    assert np.max(np.abs(rest)) < 0.01 * ARCMIN
 
 
 def test_torque_before_angle_before_unit(loops, tmp_path):
@@ -151,7 +167,7 @@ def test_another_size_of_drive(tmp_path):
     path = trips.save(tmp_path / "big.csv", "torque [N.m], angle [rad]", 50.0 * torque, angle)
     found = torque_angle.fit(path, rated_torque=250.0)
     assert found.parameters.values.max_torque == pytest.approx(1500.0)
-    assert found.solution.values["K_FTS0"] == pytest.approx(50.0 * trips.DRIVE["K_FTS0"], rel=0.05)
+    assert found.solution.values["K_FTS0"] == pytest.approx(50.0 * trips.DRIVE["K_FTS0"], rel=0.1)
 
 
 def test_written_file_says_where_it_comes_from(loops, tmp_path, monkeypatch, capsys):
@@ -282,6 +298,13 @@ def test_units_of_a_record_do_not_matter(force, times, turn, by, tmp_path):
         found.append(columns.read(path, torque_angle.COLUMNS, 10).columns)
     for name, column in found[0].items():
         assert found[1][name] == pytest.approx(column, rel=1e-14, abs=1e-18)
+
+
+def test_titles_are_those_of_loops(tmp_path):
+    path = tmp_path / "curve.csv"
+    rows = (f"{T / 5e3 - T**3 / 1e6};{T}" for T in np.linspace(-5.0, 5.0, 30))
+    path.write_text("\n".join(["Winkel (rad);Drehmoment / Nm", *rows]))
+    assert torque_angle.read(path, None, None).line.torque == pytest.approx(np.linspace(-5.0, 5.0, 30))
 
 
 RISING = ["1e3,1e9", "2e3,2e9", "3e3,3e9", "4e3,4e9"]

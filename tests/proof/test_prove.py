@@ -337,10 +337,16 @@ def test_a_manifest_of_an_older_draft_is_read(
 ) -> None:
     """Times as attributes, no tolerance, columns not quoted, an address with an escape, a start time."""
     with zipfile.ZipFile(fmu) as archive:
-        text = archive.read(f"{FOLDER}/experiments/01_load_ramp_ref.csv").decode()
+        text, drive = (
+            archive.read(f"{FOLDER}/experiments/01_load_ramp_{x}.csv").decode() for x in ("ref", "in")
+        )
+    f = drive.split(",")[-1].strip()
     rows = [line.split(",") for line in text.splitlines()]
     third = rows[21][rows[0].index('"s_rel"')]
-    files = {"u in.csv": b"time,f\n0,0\n1,3000\n3,3000\n", "y.csv": f"time,s_rel\n2,{third}\n".encode()}
+    files = {
+        "u in.csv": f"time,f\n0,0\n1,{f}\n3,{f}\n".encode(),
+        "y.csv": f"time,s_rel\n2,{third}\n".encode(),
+    }
     found = proved(capsys, other_manifest(fmu, tmp_path / "old.fmu", STEP, **files))
     assert [one["interface"] for one in found["experiments"]] == BOTH
     for one in found["experiments"]:

@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import refused_line
-from jointfmu_fmu_src.native.page import panels
+from jointfmu_fmu_src.native.page import documentation, panels
+from jointfmu_fmu_src.proof.experiments import experiments
 from jointfmu_tools import cli
 from jointfmu_tools.pressure import judge_file
 from jointfmu_tools.report.course import Course
@@ -58,7 +59,7 @@ def test_curves_are_those_of_the_spring(name: str, tmp_path: Path) -> None:
     spring = model.spring(file.values)
     rest = {v.name: file.start(v.name) for v in model.inputs}
     variables = {v.name: v for v in (*model.inputs, *model.outputs)}
-    ramp = model.ramp.end * np.linspace(0.0, 1.0, 101) ** 2
+    ramp = model.loaded(spring, rest).ramp.points(101)
     for panel, (over, names) in zip(drawn, panels(model), strict=True):
         shown = panel["y"].rpartition("[")[2].rstrip("]").replace("µ", "u").replace(" ", ".")
         factor = units.factor(variables[names[0]].unit, shown)
@@ -97,11 +98,41 @@ def test_loops_lose_what_the_joint_says_it_lost(name: str) -> None:
         assert row["loss"] > 0.0
 
 
-def test_the_ramp_goes_as_far_as_the_law_does() -> None:
-    """With the default parameters it is the model's own, and what is said of the law's end is so there."""
+CATALOGUE = default("harmonic_drive", "catalogue")
+FAR = [
+    ("GearMesh", default("gear_mesh").with_values({"backlash": 2e-3}, "user", "loose"), "K", 0.9),
+    ("HarmonicDriveSpring", CATALOGUE, "K_WTS", CATALOGUE.flat["K3"]),
+    ("HarmonicDriveCompliance", CATALOGUE, "K_WTS", CATALOGUE.flat["K3"]),
+]
+
+
+@pytest.mark.parametrize(("name", "file", "stiffness", "least"), FAR, ids=[name for name, *_ in FAR])
+def test_the_ramp_reaches_where_the_joint_is_loaded(
+    name: str, file: ParameterFile, stiffness: str, least: float
+) -> None:
+    """Report, page and proof show a mesh beyond its backlash, and the last of a catalogue's lines."""
+    model = MODELS[name].of(file.joint, file.values)
+    course = Course(model, file)
+    columns = course.ramp()
+    if name == "GearMesh":
+        assert np.count_nonzero(columns["f"]) >= columns["f"].size - 1
+        least *= file.flat["contact_ratio"] // 1.0 * file.flat["K_tooth"]
+    else:
+        assert columns["tau"][-1] == pytest.approx(file.flat["max_torque"], rel=1e-9)
+    assert columns[stiffness][-1] >= least * (1.0 - 1e-9)
+    stem = {"GearMesh": "phi1", "HarmonicDriveSpring": "phi2"}.get(name, "tau")
+    said = f"<code>{stem}</code> from 0 to {course.model.ramp.end:.6g} "
+    assert said in documentation(model, file)["index.html"].decode()
+    ramp = next(one for one in experiments(model, file) if one.name == "load ramp")
+    assert ramp.drive.levels[-1] == pytest.approx(course.model.ramp.end, rel=1e-8)
+    assert ramp.results.columns[stiffness][-1] == pytest.approx(columns[stiffness][-1], rel=1e-6)
+    assert np.all(ramp.results.columns[stiffness][1:] > 0.0)
+
+
+def test_what_is_said_of_the_end_of_the_law_is_so_there() -> None:
     for name, model in MODELS.items():
         course = Course(model, default(model.joint))
-        assert course.end == max(model.ramp.end, course.rest[model.ramp.input]), name
+        assert course.model.ramp.end > course.rest[model.ramp.input], name
         if course.limit:
             value, text = course.limit
             inputs = {**course.rest, model.ramp.input: value}

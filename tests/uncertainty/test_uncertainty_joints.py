@@ -168,7 +168,23 @@ def test_command(tmp_path, capsys):
     assert cli.main([*RUN, "--samples", "256", "--points", "3"]) == 0
     text = capsys.readouterr().out
     assert "256 samples, 0 refused by the law" in text
-    assert "surface.G" in text
+    assert "varied: surface.D = 2.45..2.6, surface.G = lognormal(20%)\n" in text
+
+
+def test_what_is_zero_is_left_out_and_what_moves_nothing_is_said(tmp_path, capsys):
+    plot = tmp_path / "bands.svg"
+    few = ["--samples", "64", "--points", "3"]
+    given = ["uncertainty", "bolted_joint", "--set", "H=+-5%"]
+    assert cli.main([*given, *few, "--plot", str(plot)]) == 0
+    text = capsys.readouterr().out
+    assert text.count("C_zz") == text.count("zero throughout: C_zz\n") == 1
+    assert plot.read_text().count('<g id="axes_') == 6
+    assert (
+        cli.main(["uncertainty", "gear_contact", "--set", "mu=0.1..0.3", "traction_ratio=0..0.5", *few]) == 0
+    )
+    text = capsys.readouterr().out
+    assert "varied: mu = 0.1..0.3, traction_ratio = 0..0.5: no output depends on that\n" in text
+    assert "Sobol" not in text
 
 
 def test_at_one_load(tmp_path, capsys):

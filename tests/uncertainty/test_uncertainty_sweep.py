@@ -7,6 +7,9 @@ import signal
 import subprocess
 import sys
 import time
+import zipfile
+from dataclasses import replace
+from fnmatch import fnmatch
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +22,7 @@ from jointfmu_tools.uncertainty.problem import pose
 from jointfmu_tools.uncertainty.sweep import plan, sweep
 from jointfmu_tools.uncertainty.worker import LoadRamp
 
-from jointfmu.parameters import default
+from jointfmu.parameters import default, dump
 
 pytestmark = pytest.mark.slow
 
@@ -265,9 +268,22 @@ def test_a_run_is_written_once(tmp_path):
         assert held.first_failure == {"run": 3, "error": "x"}
 
 
+def test_an_interval_is_that_of_the_file_that_the_fmu_carries(fmu, tmp_path):
+    known = replace(default("harmonic_drive"), ranges={"surface.D": (2.5, 2.55)})
+    own = tmp_path / "own.fmu"
+    with zipfile.ZipFile(fmu) as before, zipfile.ZipFile(own, "w") as after:
+        for path in before.namelist():
+            carried = fnmatch(path, "extra/*/parameters/*.toml") and not path.endswith("study.toml")
+            after.writestr(path, dump(known) if carried else before.read(path))
+    record, runs = plan(own, DRIVE, {"surface.D": "interval"}, 4, 0)
+    assert record["parameters"] == {"surface.D": "2.5..2.55"}
+    assert all(2.5 <= run["surface.D"] <= 2.55 for run in runs)
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
+        (["--input", "tau", "--set", "mu=interval"], "mu = interval: its source states none"),
         (["--input", "tau", "--set", "surface.X=1..2"], "unknown name 'surface.X', allowed are tau"),
         (["--input", "torque", "--set", "surface.D=2.4..2.6"], "unknown input 'torque', allowed are tau"),
         (["--input", "tau", "--set", "tau=1..2"], "tau is driven by the ramp"),

@@ -13,7 +13,8 @@ from jointfmu.quantity import flatten
 
 from ..command_line.common import Answer, Commands, argument, command, settings
 from ..judgement import judge
-from ..laws import ROW, joints_of, law_file, law_parameters, surfaces_height
+from ..laws import ROW, UNITS, joints_of, law_file, law_parameters, surfaces_height
+from ..shown import aligned
 
 
 def add(commands: Commands) -> None:
@@ -41,10 +42,11 @@ def _law(args: argparse.Namespace) -> Answer:
     rows = [{n: _json_number(state[n], i) if n in state else None for n in names} for i in range(count)]
     h = surfaces_height(args.law, law, file, dict(args.settings))
     found = judge(law, np.ravel(state["pressure"]).tolist(), h)
-    cells = [names, *(["-" if row[n] is None else f"{row[n]:.6g}" for n in names] for row in rows)]
+    heads = [f"{name} [{UNITS[name]}]" for name in names]
+    cells = [heads, *(["-" if row[n] is None else f"{row[n]:.6g}" for n in names] for row in rows)]
     return Answer(
         document={"law": args.law, "parameters": flatten(law), "rows": rows},
-        lines=["  ".join(f"{cell:>12}" for cell in line) for line in cells],
+        lines=aligned(cells, 0),
         judgement=found,
     )
 

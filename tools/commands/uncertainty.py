@@ -17,7 +17,8 @@ from . import check_files
 SYNTAX = (
     "distributions: LOW..HIGH (any value alike), VALUE+-PERCENT%, loguniform(LOW, HIGH), "
     "normal(MEAN, SD), lognormal(MEDIAN, FACTOR), triangular(LOW, MODE, HIGH); SD and FACTOR also in %; "
-    "+-5%, normal(2%), lognormal(20%) lie about the parameter file's value; quote the parentheses"
+    "+-5%, normal(2%), lognormal(20%) lie about the value in the file; interval: between the ends that its "
+    "source states; quote the parentheses"
 )
 
 
@@ -26,7 +27,7 @@ def add(commands: Commands) -> None:
     study = command(
         commands, "uncertainty", _uncertainty, "bands of a joint's curves from uncertain parameters"
     )
-    study.epilog = f"{SYNTAX}; NAME=interval: between the ends that the source in the file states"
+    study.epilog = SYNTAX
     argument(study, "joint", str, f"one of {', '.join(KINDS)}", "JOINT", nargs="?", choices=list(KINDS))
     argument(study, "--params", Path, "parameter file of the joint (TOML)")
     _drawn(study, "samples", 16384)
@@ -64,7 +65,7 @@ def _uncertainty(args: argparse.Namespace) -> Answer:
     A, B = propagate.design(task, count, args.seed)
     bands = propagate.bands(task, A)
     rows = min(count, max(1024, count // 32))
-    indices = sensitivity(task, A[:rows], B[:rows]) if len(task.uncertain) > 1 else None
+    indices = sensitivity(task, A[:rows], B[:rows]) if len(task.uncertain) > 1 and bands.moved else None
     if args.csv:
         write_text(args.csv, report.bands_csv(task, bands))
     if args.plot:

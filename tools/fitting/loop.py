@@ -8,6 +8,11 @@ h(T) of the branches, and a drift of the angle that is linear in the order of th
 
 with h = 0 where the torque turns around: the branches meet there. The drift is left out where the
 record does not determine it (a single loop that is not closed).
+
+The mid-line is not m: friction M is against the motion on both branches. After a reversal it turns round, and
+has done so on the way to the middle of the range. There M is half the torque between the branches at the same
+angle; on the half of a branch that leads away from the middle the spring carries T -+ M. These halves are the
+mid-line. At the tips, where the branches meet, m is M/K off.
 """
 
 from dataclasses import dataclass
@@ -24,6 +29,8 @@ from .branches import extremes
 
 PROMINENCE = 0.1
 """Least reversal of the torque, over its range [1], that counts as a turning point."""
+CENTRAL = 0.25
+"""Part of the range [1] about its middle in which the friction has turned round on both branches."""
 FULL = 0.9
 """Part of the range [1] that a whole branch spans."""
 MOST_KNOTS, POINTS_PER_KNOT = 41, 20
@@ -142,8 +149,20 @@ def _separated(torque: Array, angle: Array, used: list[_Branch], low: float, hig
     area[[0, -1]] = 0.5 * (grid[1] - grid[0])
     zero = measure(-2.0 * _hats(np.zeros(1), grid).toarray()[0]) if low <= 0.0 <= high else None
     drift = (float(values[-1]), float(np.sqrt(covariance[-1, -1]))) if drifts else None
-    clean = phi - gap[:, np.flatnonzero(free)] @ values[half] - (drift[0] * time if drift else 0.0)
-    return Backbone(*_grouped(T, clean), len(used), measure(-2.0 * area), zero, drift)
+    clean = phi - (drift[0] * time if drift else 0.0)
+    part = (T - 0.5 * (low + high)) / (0.5 * (high - low))
+    central = np.abs(part) <= CENTRAL
+    friction = _friction(T[central], clean[central], way[central])
+    loading = way * part >= 0.0
+    line = _grouped((T - friction * way)[loading], clean[loading])
+    return Backbone(*line, len(used), measure(-2.0 * area), zero, drift)
+
+
+def _friction(torque: Array, angle: Array, way: Array) -> float:
+    """Half of the torque between branches (n) at equal angles: it is the same for all of these."""
+    grid = np.linspace(np.min(angle), np.max(angle), max(angle.size // POINTS_PER_KNOT, 2))
+    design = np.column_stack([_hats(angle, grid).toarray(), way])
+    return float(np.linalg.lstsq(design, torque)[0][-1])
 
 
 def _hats(T: Array, grid: Array) -> scipy.sparse.csr_matrix:

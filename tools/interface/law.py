@@ -13,25 +13,13 @@ from jointfmu.quantity import Array, flat_fields, flatten
 
 from .. import plots
 from ..judgement import judge
-from ..laws import ROW, law_parameters, surfaces_height
+from ..laws import ROW, UNITS, law_parameters, surfaces_height
 from ..ramps.ramp import broadcast
 from ..shown import quantity
 from .frame import Frame, Table, Tabled
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-UNITS = {
-    **dict.fromkeys(("largest_spot", "A_r"), "m2"),
-    "pressure": "Pa",
-    **dict.fromkeys(("F", "friction_limit"), "N"),
-    **dict.fromkeys(("K_N", "K_T", "K_loading"), "N/m"),
-    **dict.fromkeys(("C_N", "C_T"), "N.s/m"),
-    **dict.fromkeys(("W_NP", "W_NE", "W_d", "W_e", "W"), "J"),
-    **dict.fromkeys(("approach", "slip_length"), "m"),
-    **dict.fromkeys(("eta_n", "eta_t", "elastic_fraction"), "1"),
-}
-"""{what a law gives: unit}."""
 
 
 @dataclass(frozen=True, repr=False)

@@ -7,7 +7,7 @@ import numpy as np
 from jointfmu_fmu_src.native.page import evaluated
 
 from jointfmu.joints.model import Model
-from jointfmu.parameters import ParameterFile, default
+from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
 
 from ..ramps.loops import HysteresisLoops, Swing, conjugate, of
@@ -26,29 +26,21 @@ _SETTLED = 0.95
 class Course:
     """What a joint does; all other inputs stay at the start values of the file.
 
+    model : with the ramp and the loop of the file
     rest  : {input: start value}
     limit : (value of the ramped input, warning) where the law ends; None if far from the ramp
-    end   : of the ramp: the model's, longer or shorter as the law reaches farther or less far than that of
-            the default parameters
     """
 
     def __init__(self, model: Model, file: ParameterFile) -> None:
-        self.model, self.file = model.of(file.joint, file.values), file
-        self.spring = model.spring(file.values)
+        self.file, self.spring = file, model.spring(file.values)
         self.rest = {v.name: file.start(v.name) for v in model.inputs}
+        self.model = model.of(file.joint, file.values).loaded(self.spring, self.rest)
         self.limit = _limit(self.model, self.spring, self.rest)
-        self.stretch = 1.0
-        usual = default(file.joint)
-        if self.limit and usual.values != file.values:
-            own = usual.start
-            found = _limit(model, model.spring(usual.values), {name: own(name) for name in self.rest})
-            self.stretch = float(f"{self.limit[0] / found[0]:.2g}") if found else 1.0
-        self.end = max(self.stretch * model.ramp.end, self.rest[model.ramp.input])
 
     def ramp(self) -> dict[str, Array]:
         """Inputs and outputs (n) along the load ramp, dense where curves bend."""
-        ramped = self.model.ramp.input
-        points = [{**self.rest, ramped: float(x)} for x in self.end * np.linspace(0.0, 1.0, _POINTS) ** 2]
+        ramp = self.model.ramp
+        points = [{**self.rest, ramp.input: float(x)} for x in ramp.points(_POINTS)]
         rows = [point | evaluated(self.model, self.spring, point) for point in points]
         return {name: np.array([row[name] for row in rows]) for name in rows[0]}
 
@@ -74,7 +66,7 @@ class Course:
         """Of the largest loop: the model's, or twice the way on which the output settles if that is less."""
         loop = self.model.loop
         assert loop
-        largest = loop.amplitude * (self.stretch if loop.input == self.model.ramp.input else 1.0)
+        largest = loop.amplitude
 
         def reached(amplitude: float) -> float:
             points = self.about[loop.input] + np.array([0.0, amplitude])

@@ -150,7 +150,7 @@ def _page(model: Model, file: ParameterFile) -> str:
         figures=[(figure, as_json(figure.panels)) for figure in figures],
         opening=opening(course, loops, stated(file)),
         beside=_beside_rows(own.BESIDE[model.name](model, file)) if own and model.name in own.BESIDE else [],
-        drawings=drawings(model, course.spring),
+        drawings=drawings(course.model, course.spring),
         rows=rows,
         origins=[(kind, MEANT[kind], [r.name for r in rows if r.kind == kind]) for kind in ORIGINS],
         judgement=judge_file(file),
@@ -197,7 +197,7 @@ def curves(course: Course) -> Figure:
         drawn.append(Panel(title, f"{over} [{x_unit}]", f"{', '.join(names)} [{unit}]", series))
         named |= {name: variables[name].doc for name in (over, *names)}
     ramped = variables[course.model.ramp.input]
-    end, unit = _scale(course.end, ramped.unit)
+    end, unit = _scale(course.model.ramp.end, ramped.unit)
     meaning = "; ".join(f"{name}: {doc}" for name, doc in named.items() if name != ramped.name)
     text = (
         f"{ramped.name} ({ramped.doc}) from 0 to {float(end):.4g} {unit}, all else at its start value. "

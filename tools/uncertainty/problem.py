@@ -111,7 +111,7 @@ def pose(file: ParameterFile, given: Mapping[str, object], to: float | None, poi
         allowed = ", ".join(name for name in [*declared, curves.load.name] if name in known)
         raise ValueError(f"unknown name {unknown[0]!r}, allowed are {allowed}")
     given = dict.fromkeys(file.ranges, INTERVAL) | dict(given)
-    given = {n: _of_source(n, file) if value == INTERVAL else value for n, value in given.items()}
+    given = {name: of_source(name, value, file) for name, value in given.items()}
     load_text = given.get(curves.load.name)
     relative = isinstance(load_text, str) and is_relative(load_text)
     plain, uncertain = split(given, base | ({curves.load.name: 1.0} if relative else {}))
@@ -129,11 +129,14 @@ def pose(file: ParameterFile, given: Mapping[str, object], to: float | None, poi
     return Problem(file.joint, type(file.values), stated.flat, order, loads, relative if load else None)
 
 
-def _of_source(name: str, file: ParameterFile) -> str:
-    """The distribution between the ends of a parameter's range, or those that its source states.
+def of_source(name: str, value: object, file: ParameterFile) -> object:
+    """A setting; INTERVAL becomes the distribution between the ends of the parameter's range, or those that
+    its source states.
 
     Raises ValueError if it states none.
     """
+    if value != INTERVAL:
+        return value
     if name in file.ranges:
         return "{!r}..{!r}".format(*file.ranges[name])
     source = file.sources.get(name, "")

@@ -26,6 +26,8 @@ Singles = NDArray[np.float32]
 QUANTILES = (0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99)
 BLOCK = 512
 """Samples that are evaluated at once: what fits the cache."""
+ROUND_OFF = 1e-6
+"""Of single precision [1]."""
 CHECKED = 4
 """Samples that are compared with the exported spring."""
 ACCURACY = 1e-2
@@ -96,6 +98,16 @@ class Bands:
     refused: Refused
     error: float
     units: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def shown(self) -> list[str]:
+        """Outputs that are not zero throughout."""
+        return [name for name in self.units if np.any(self.quantiles[name]) or np.any(self.nominal[name])]
+
+    @property
+    def moved(self) -> bool:
+        """Whether any output differs between samples, by more than single precision."""
+        return any(np.any(np.ptp(q, axis=0) > ROUND_OFF * np.abs(q[0])) for q in self.quantiles.values())
 
 
 def bands(task: Problem, points: Array) -> Bands:

@@ -1,5 +1,6 @@
 """Bands and indices as table, CSV, JSON and pictures."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -87,9 +88,9 @@ def table(task: Problem, bands: Bands, sensitivity: Sensitivity | None) -> str:
     lines = []
     picked = _shown(bands.loads)
     at = {q: QUANTILES.index(q) for q in (0.05, 0.5, 0.95)}
-    for name, unit in bands.units.items():
+    for name in bands.shown:
         head = f"{task.reduced.load.name} [{task.reduced.load.unit}]"
-        lines.append(f"{name} [{unit}]")
+        lines.append(f"{name} [{bands.units[name]}]")
         lines.append("".join(f"{x:>16}" for x in (head, "parameter file", "5 %", "50 %", "95 %")))
         for j in picked:
             row = [bands.loads[j], bands.nominal[name][j]]
@@ -97,7 +98,11 @@ def table(task: Problem, bands: Bands, sensitivity: Sensitivity | None) -> str:
             lines.append("".join(f"{x:16.5g}" for x in row))
         lines.append("")
     if sensitivity is not None:
-        lines += _indices_table(task, sensitivity)
+        lines += _indices_table(task, sensitivity, bands.shown)
+    varied = ", ".join(f"{parameter.name} = {parameter.text}" for parameter in task.uncertain)
+    lines.append(f"varied: {varied}{'' if bands.moved else ': no output depends on that'}")
+    if zero := [name for name in bands.units if name not in bands.shown]:
+        lines.append(f"zero throughout: {', '.join(zero)}")
     lines.append(f"{bands.samples} samples, {bands.refused.count} refused by the law")
     if bands.refused.count:
         example = ", ".join(f"{k} = {v:.6g}" for k, v in bands.refused.example.items())
@@ -108,14 +113,14 @@ def table(task: Problem, bands: Bands, sensitivity: Sensitivity | None) -> str:
     return "\n".join(lines)
 
 
-def _indices_table(task: Problem, sensitivity: Sensitivity) -> list[str]:
+def _indices_table(task: Problem, sensitivity: Sensitivity, outputs: Sequence[str]) -> list[str]:
     load = f"{task.reduced.load.name} = {sensitivity.loads[-1]:g} {task.reduced.load.unit}"
     lines = [f"Sobol' indices at {load}, first order / total, +- 95 % interval"]
     width = max(len(name) for name in sensitivity.names) + 2
-    lines.append(" " * width + "".join(f"{name:>32}" for name in sensitivity.outputs))
+    lines.append(" " * width + "".join(f"{name:>32}" for name in outputs))
     for i, parameter in enumerate(sensitivity.names):
         cells = []
-        for indices in sensitivity.outputs.values():
+        for indices in (sensitivity.outputs[name] for name in outputs):
             first = f"{indices.first[-1, i]:.3f} +- {indices.first_half[-1, i]:.3f}"
             total = f"{indices.total[-1, i]:.3f} +- {indices.total_half[-1, i]:.3f}"
             cells.append(f"{first} / {total}")
@@ -127,8 +132,10 @@ _COLOURS = (plots.BLUE, plots.RED, plots.GREEN, "#b8860b", "#7b4fa3", "#3a9ca6",
 
 
 def draw(path: Path, bands: Bands, sensitivity: Sensitivity | None, load: str) -> None:
-    """One column per output: bands, and total (line) and first-order (dashed) indices over the load."""
-    names = list(bands.quantiles)
+    """One column per output but those of zeros: bands, and total (line) and first-order (dashed) indices over
+    the load.
+    """
+    names = bands.shown
     rows = 1 if sensitivity is None or bands.loads.size == 1 else 2
     with plots.drawing(path, (4.2 * len(names), 3.6 * rows)) as figure:
         grid = figure.subplots(rows, len(names), squeeze=False)

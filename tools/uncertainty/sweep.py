@@ -5,14 +5,19 @@ from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import CancelledError
 from contextlib import suppress
 from dataclasses import asdict, dataclass
+from fnmatch import fnmatch
 from itertools import islice
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 from uuid import uuid4
+from zipfile import ZipFile
 
 import numpy as np
+from jointfmu_fmu_src.proof.standard import FOLDER
 
 from jointfmu.files.writing import write_text
+from jointfmu.parameters import ParameterFile, load
 from jointfmu.progress import track
 from jointfmu.quantity import Array
 from jointfmu.quantity.refusal import Refusal
@@ -23,6 +28,7 @@ from ..ramps import ramp
 from . import journal
 from .cluster import client
 from .journal import Journal
+from .problem import INTERVAL, of_source
 from .propagate import QUANTILES
 from .study import samples_of, split, unit_design
 from .worker import LoadRamp, one_run
@@ -62,6 +68,9 @@ def plan(
             raise ValueError(f"{fmu}: unknown name {name!r}, allowed are {', '.join(settable)}")
         if name == drive.input:
             raise ValueError(f"{fmu}: {name} is driven by the ramp and cannot be set as well")
+    if INTERVAL in given.values():
+        file = _declared(fmu)
+        given = {name: of_source(name, value, file) for name, value in given.items()}
     real = [name for name in settable if variables[name].type in ("Real", "Float64")]
     plain, uncertain = split(given, {name: float(variables[name].start or 0.0) for name in real})
     if not uncertain:
@@ -81,6 +90,18 @@ def plan(
         "parameters": {parameter.name: parameter.text for parameter in uncertain} | plain,
     }
     return record, runs
+
+
+def _declared(fmu: Path) -> ParameterFile:
+    """The parameter file that an FMU carries in its proof.
+
+    Raises ValueError if it has none.
+    """
+    with ZipFile(fmu) as archive, TemporaryDirectory() as folder:
+        inside = [name for name in archive.namelist() if fnmatch(name, f"{FOLDER}/parameters/*.toml")]
+        if own := [name for name in inside if Path(name).name != "study.toml"]:
+            return load(archive.extract(own[0], folder))
+    raise ValueError(f"{fmu}: carries no parameter file; expected LOW..HIGH in place of {INTERVAL}")
 
 
 def sweep(

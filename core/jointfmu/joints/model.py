@@ -66,7 +66,10 @@ class Variable:
 class Ramp:
     """Load ramp: the default experiment, one step per interval [s].
 
-    settings : of parameters with which a course over time shows in experiments
+    end, step : of the main job's
+    reach     : (spring, start values) -> begin and end that show what a parameter set does; None: as above
+    begin     : where the load begins
+    settings  : of parameters with which a course over time shows in experiments
     """
 
     input: str
@@ -74,6 +77,14 @@ class Ramp:
     step: float
     interval: float = 1.0
     settings: Mapping[str, float] = field(default_factory=dict)
+    reach: Callable[..., tuple[float, float]] | None = None
+    begin: float = 0.0
+
+    def points(self, count: int) -> NDArray[np.float64]:
+        """Inputs (count) from 0 to the end, dense where the load begins and curves bend."""
+        points = self.begin + (self.end - self.begin) * np.linspace(0.0, 1.0, count) ** 2
+        points[0] = 0.0
+        return points
 
 
 @dataclass(frozen=True, slots=True)
@@ -182,6 +193,21 @@ class Model:
             raise ValueError(f"{self.name}: the parameter file is of a {joint!r}, expected a {self.joint!r}")
         own = replace(self, parameters=type(parameters))
         return self.variant(own, parameters) if self.variant else own
+
+    def loaded(self, spring: Spring, start: Values) -> "Model":
+        """The model with its ramp, and a loop over the same input, as far as they reach with a parameter set
+        and start values of the inputs.
+        """
+        ramp, loop = self.ramp, self.loop
+        if ramp.reach is None:
+            return self
+        begin, end = (float(x) for x in ramp.reach(spring, start))
+        end = max(end, start[ramp.input])
+        stretch = end / ramp.end
+        if loop and loop.input == ramp.input:
+            loop = replace(loop, amplitude=stretch * loop.amplitude)
+        ramp = replace(ramp, begin=max(begin, 0.0), end=end, step=stretch * ramp.step)
+        return replace(self, ramp=ramp, loop=loop)
 
     def warnings(self, spring: Spring, values: Values) -> dict[int, str]:
         """Warnings about a state of inputs and outputs outside the tables, by number."""

@@ -17,7 +17,6 @@ from jointfmu_tools.joints.harmonic_drive.efficiency import bench, printed_drive
 from jointfmu_tools.joints.harmonic_drive.friction import SPEED, PrintedFriction, efficiency, scaled
 from jointfmu_tools.joints.harmonic_drive.new import NEW
 from jointfmu_tools.joints.harmonic_drive.report import beside
-from jointfmu_tools.report.course import Course
 from jointfmu_tools.report.figure import OWN, PREDICTED, SET
 from jointfmu_tools.report.joint import write_joint_report
 from jointfmu_tools.uncertainty.problem import pose
@@ -114,12 +113,6 @@ def test_the_page_of_a_drive_says_what_friction_costs(tmp_path: Path) -> None:
     plain = (tmp_path / "plain.html").read_text(encoding="utf-8")
     assert "None with these parameters" in plain
     assert "Beside what is published" not in plain
-
-
-def test_a_law_that_reaches_twice_as_far_has_twice_the_ramp() -> None:
-    model = MODELS["HarmonicDriveCompliance"]
-    course = Course(model, drive_file(max_torque=2.0 * default("harmonic_drive").values.max_torque))
-    assert course.end == pytest.approx(2.0 * model.ramp.end, rel=1e-9)
 
 
 SCATTER = 0.03

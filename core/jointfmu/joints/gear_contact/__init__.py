@@ -6,6 +6,9 @@ from ..kind import Kind, RoughSurface
 from ..model import BEYOND, Model, Outside, Ramp, Variable
 from .spring import GearContact, GearContactSpring, RoughGearContact
 
+_PART = 0.05
+"""Mean pressure over the hardness [1] that the ramp reaches, and twice a stated load."""
+
 MODELS = (
     Model(
         name="GearContact",
@@ -25,7 +28,9 @@ MODELS = (
             Outside("f", lambda j, end, v: (0.0, math.inf), "it pulls, the flanks are apart"),
             Outside("f", lambda j, end, v: (-math.inf, j.A_0 * end[1]), BEYOND),
         ),
-        ramp=Ramp("f", 3e3, 10.0),
+        ramp=Ramp(
+            "f", 3e3, 10.0, reach=lambda s, v: (0.0, max(2.0 * v["f"], _PART * s.joint.A_0 * s.curve.end[1]))
+        ),
         dependencies={},
         hidden=("mu", "traction_ratio"),
     ),

@@ -2,10 +2,20 @@
 
 from ...mechanics.steps import STEPS
 from ..kind import Kind, RoughSurface
-from ..model import BEYOND, Model, Outside, Ramp, Variable
+from ..model import BEYOND, Model, Outside, Ramp, Values, Variable
 from .spring import GearMesh, GearMeshSpring, RoughGearMesh
 
 _ANGLES = ("phi1", "phi2")
+_PART = 0.3
+"""Of the deflection at the hardness [1], which the ramp reaches: gears are loaded less."""
+
+
+def _reach(spring: GearMeshSpring, v: Values) -> tuple[float, float]:
+    """phi1 [rad] at which the driving flanks touch, and at which they are loaded."""
+    mesh = spring.joint
+    touch = 0.5 * mesh.backlash - mesh.r_b2 * v["phi2"]
+    return touch / mesh.r_b1, (touch + _PART * spring.curve.end[0]) / mesh.r_b1
+
 
 MODELS = (
     Model(
@@ -32,7 +42,7 @@ MODELS = (
         ),
         evaluate=lambda s, v: s.motion(v["phi1"], v["w1"], v["phi2"], v["w2"]),
         outside=(Outside("s_rel", lambda j, end, v: (-end[0], end[0]), BEYOND),),
-        ramp=Ramp("phi1", 1.5e-3, 5e-6),
+        ramp=Ramp("phi1", 1.5e-3, 5e-6, reach=_reach),
         dependencies=dict.fromkeys(("s_rel", "K", "pairs", "E", *(name for name, _ in STEPS)), _ANGLES),
         hidden=("mu", "traction_ratio"),
     ),

@@ -129,6 +129,11 @@ class Drive(ABC):
         """Torque [N.m] at the end of the midline's table."""
 
     @property
+    def ramp_torque(self) -> Number:
+        """Torque [N.m] that load ramps reach: the rated one."""
+        return self.rated_torque
+
+    @property
     @abstractmethod
     def K_FTS(self) -> Number:
         """K_FTS [N.m/rad], the part of K_WTS that the torque does not change; more than any K_WTS."""

@@ -63,6 +63,11 @@ class Given(Drive):
         """None: it has no interface law."""
         return
 
+    @property
+    def ramp_torque(self) -> Number:
+        """reach: all that is given."""
+        return self.reach
+
     def pressure(self, torque: Number) -> Number:
         """0 [Pa]."""
         return 0.0 * torque

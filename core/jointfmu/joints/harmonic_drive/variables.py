@@ -80,7 +80,7 @@ MODELS = (
             Outside("phi_rel", lambda j, end, v: (-end[0], end[0]), BEYOND),
             Outside("temperature", lambda j, end, v: LUBRICANTS, "no lubricant's; it is in kelvin"),
         ),
-        ramp=Ramp("phi2", 1.5e-3, 3e-6),
+        ramp=Ramp("phi2", 1.5e-3, 3e-6, reach=lambda s, v: (0.0, s.curve.inverse(s.joint.ramp_torque))),
         loop=Loop("phi2", 1e-3, _LOSSY),
         dependencies={
             "tau2": _DRIVEN,
@@ -113,7 +113,7 @@ MODELS = (
         rest=lambda s: s.rest(),
         evolve=lambda s, v, memory: s.loaded(v["tau"], memory),
         outside=(Outside("tau", lambda j, end, v: (-end[1], end[1]), BEYOND),),
-        ramp=Ramp("tau", 5.0, 0.01),
+        ramp=Ramp("tau", 5.0, 0.01, reach=lambda s, v: (0.0, s.joint.ramp_torque)),
         loop=Loop("tau", 5.0, _LOSSY),
         dependencies={"K_FTS": ()},
         hidden=(*_HIDDEN, *_SPRING_ONLY),

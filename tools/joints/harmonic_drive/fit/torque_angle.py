@@ -17,6 +17,7 @@ from .... import columns
 from ....catalogue import Printed
 from ....fitting import loop
 from ....fitting.least_squares import NOTHING, Solution, solve
+from ....fitting.measurement import OTHERS
 from ....fitting.outcome import Facts, FitResult, Picture, fitted, model, systematic, unknowns
 from . import drive
 from .drive import ARCMIN, COLUMNS
@@ -83,7 +84,7 @@ def fit(
 
 def read(path: str | Path, start: ParameterFile | None, rated_torque: float | None) -> Record:
     """The mid-line of a file and the drive to start from; ValueError as `fit`."""
-    table = columns.read(path, COLUMNS, LEAST)
+    table = columns.read(path, COLUMNS, LEAST, OTHERS)
     torque, angle = (table.require(name, COLUMNS) for name in COLUMNS)
     try:
         line = loop.backbone(torque, angle)
