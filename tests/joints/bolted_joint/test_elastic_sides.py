@@ -15,6 +15,7 @@ from jointfmu_tools.fem.whole_joint import WholeJoint
 from jointfmu_tools.fields.joint_parameters import with_field
 from jointfmu_tools.fields.nodal_result import ContactField
 from jointfmu_tools.joints.bolted_joint import report
+from jointfmu_tools.joints.bolted_joint.fit import preload as over_preload
 from jointfmu_tools.joints.bolted_joint.new import computed
 from jointfmu_tools.report.course import Course
 
@@ -451,3 +452,24 @@ def test_an_assembly_makes_the_whole_joint(made, plates, tmp_path, capsys, monke
     ):
         assert told in refused_line(capsys, *again, *wrong, "--out", str(tmp_path / "none.toml"))
         assert not (tmp_path / "none.toml").exists()
+
+
+# Fits of the whole
+
+
+def test_stiffness_over_preload_gives_the_roughness_of_the_whole(made, tmp_path):
+    """Of the file's own law, by default; an interface alone cannot follow, which is said."""
+    joint, path = made(*FOUR, preload=15e3), tmp_path / "curve.csv"
+    preload = np.linspace(1e3, 15e3, 12)
+    noise = 1.0 + 5e-3 * np.random.default_rng(1).standard_normal(12)
+    stiffness = noise * [at(joint.spring, *STILL, preload=P)[0]["K_zz"] for P in preload.tolist()]
+    rows = np.stack([preload, stiffness], axis=1)
+    np.savetxt(path, rows, delimiter=",", header="preload [N], stiffness [N/m]", comments="")
+    start, true = joint.file.with_values({"h": 4e-6}, "user", "test"), joint.file.values.h
+    found = over_preload.fit(path, start)
+    assert found.parameters.values.elastic
+    assert abs(np.log(found.solution.values["h"] / true)) < 3.0 * found.solution.deviations["h"]
+    assert found.solution.deviations["h"] < 0.01
+    assert not found.warnings()
+    alone = over_preload.fit(path, replace(start, values=interface_alone(start.values)))
+    assert "the law misses the curve systematically" in alone.warnings()[-1]
