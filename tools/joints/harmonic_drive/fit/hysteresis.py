@@ -94,7 +94,7 @@ def fit(
 
     model = memory.model(data, own, "inertia", inertia, 0.0)
     starts = {LOSS: LOSSES, STIFFNESS: tuple(rest * np.array(STIFFNESSES))}
-    solution, scale = memory.search(data, unknowns(file, names, drive.bounds(file)), model, starts)
+    solution, scale, _ = memory.search(data, unknowns(file, names, drive.bounds(file)), model, starts)
     result = fitted(file, solution.values, "calibration", data.path.name, data.span)
     found = law(result.values)
     limit = float(found.friction(np.array([np.inf]))[0])
