@@ -222,6 +222,13 @@ def fit(
 
     model = memory.model(data, law_of, "modal_mass", modal_mass, damping_ratio)
     seen = data.rest_stiffness(modal_mass)
+
+    def rest(values: Mapping[str, float]) -> float:
+        series = beside(values)
+        return 1.0 / (1.0 / rest_stiffness(joint(values), force) + (0.0 if series is None else 1.0 / series))
+
+    if data.kind == "loops":
+        HEADS.check_level(data.path, seen / rest({}), data.units, file)
     if series_stiffness is not None and SERIES not in names and series_stiffness <= seen:
         raise Refusal(
             f"series stiffness = {series_stiffness:g} N/m is outside ({seen:.4g}, inf): the data "
@@ -231,11 +238,6 @@ def fit(
     wanted = unknowns(file, [name for name in names if name not in BESIDE], {})
     wanted += [memory.DAMPING_UNKNOWN] * (memory.DAMPING in names)
     wanted += [Unknown(SERIES, "N/m", SERIES_STARTS[0] * seen, 0.0, np.inf)] * (SERIES in names)
-
-    def rest(values: Mapping[str, float]) -> float:
-        series = beside(values)
-        return 1.0 / (1.0 / rest_stiffness(joint(values), force) + (0.0 if series is None else 1.0 / series))
-
     level = _level(file, names, rest)
     moved = data.kind != "loops" and set(FREE[file.law][1:]) <= set(names)
     starts = {**STARTS, SERIES: [times * seen for times in SERIES_STARTS[1:]]}
