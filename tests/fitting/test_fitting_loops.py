@@ -311,6 +311,21 @@ def test_options_that_are_refused(options, message, tmp_path, capsys):
     assert message in refused_line(capsys, "fit", "loop", ringing(tmp_path), *options)
 
 
+@pytest.mark.parametrize(
+    ("heading", "message"),
+    [
+        ("run [1], displacement [mm], force [N]", "in um, where the heading says mm, or the force is in kN"),
+        ("run [1], displacement [um], force [kN]", "in mm, where the heading says um, or the force is in N,"),
+    ],
+)
+def test_a_stiffness_of_another_unit_is_asked_back(heading, message, tmp_path, capsys):
+    run, motion, force = joint_loops()
+    path = write(tmp_path, heading, run, 1e6 * motion, force)
+    line = refused_line(capsys, "fit", "loop", path, "--preload", "9e3", "--out", tmp_path / "joint.toml")
+    assert f"likely the displacement is {message}" in line
+    assert not (tmp_path / "joint.toml").exists()
+
+
 def test_a_mass_says_nothing_about_loops(tmp_path, capsys):
     run, motion, force = joint_loops()
     path = write(tmp_path, TURNS, run, 1e6 * motion, force)

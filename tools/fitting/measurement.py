@@ -6,8 +6,11 @@ from pathlib import Path
 
 import numpy as np
 
+from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
+from jointfmu.quantity.refusal import Refusal
 from jointfmu.quantity.units import Sizes, sizes
+from jointfmu.quantity.units import measured as measured_in
 
 from .. import columns
 from .branches import Loops, cut
@@ -28,6 +31,11 @@ OTHERS = {
     "damping": ("zeta", "dämpfung", "dämpfungsgrad"),
 }
 """{column: other names of it, in lower case}."""
+FAR = 50.0
+"""Stiffness of a measurement over the start's [1], either way, from which on a wrong unit is likelier than
+such a joint: less than degrees in the place of radians make, 57."""
+NEAR = 5.0
+"""The same [1] within which another unit explains it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +62,34 @@ class Heads:
     def unit(self) -> tuple[str, str]:
         """SI units of force and motion."""
         return next(iter(self.forces)), next(iter(self.motions))
+
+    def check_level(self, path: Path, ratio: float, units: Mapping[str, str], start: ParameterFile) -> None:
+        """Refuse a measurement whose stiffness is `ratio` times the start's, if that is FAR off.
+
+        units : {column: unit in the heading}
+        """
+        if 1.0 / FAR < ratio < FAR:
+            return
+        raise Refusal(
+            f"{path}: the stiffness is {ratio:.3g} times that of {start.name}, "
+            f"allowed are {1.0 / FAR:g} to {FAR:g}: "
+            f"{self.likely_unit(ratio, units)}; if both are right, start from a joint of its size",
+            "params",
+        )
+
+    def likely_unit(self, ratio: float, units: Mapping[str, str]) -> str:
+        """Which unit of a column, or of either where both do as well, would bring a stiffness that is `ratio`
+        times what it should be to its place."""
+        found = []
+        for column, power, own in ((self.motion, -1.0, self.motions), (self.force, 1.0, self.forces)):
+            said, text = measured_in(units[column], own), f"where the heading says {units[column]}"
+            left = {unit: abs(np.log(ratio * (size / said) ** power)) for unit, size in own.items()}
+            unit = min(left, key=left.__getitem__)
+            found.append((float(left[unit]), f"the {column} is in {unit}, {text}"))
+        least = min(found)[0]
+        if not least < np.log(NEAR):
+            return "check the units of both columns, no usual one explains it"
+        return "likely " + ", or ".join(text for left, text in found if left < least + 1e-6)
 
 
 def read(path: str | Path, heads: Heads) -> tuple[str, columns.Columns]:

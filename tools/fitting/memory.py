@@ -83,14 +83,16 @@ def search(
     starts: Mapping[str, Sequence[float]],
     level: Exchange | None = None,
     moved: bool = False,
-) -> tuple[Solution, Array]:
+    corrected: Callable[[Mapping[str, float]], Measurement] | None = None,
+) -> tuple[Solution, Array, Measurement]:
     """The best values; each group of data is weighted by its own noise, which a first fit finds.
 
     starts : {name: values beside the start's} at which the search may begin
     level  : the stiffness at rest and the unknown that carries it, which begins where the data have it
     moved  : whether the search moves that stiffness instead of the unknown
+    corrected : values that the first fit found -> the measurement as the law would have it
 
-    Returns the solution and the noise (n) of the data.
+    Returns the solution, the noise (n) of the data, and the measurement that it was fitted to.
 
     Raises ValueError and RuntimeError as `solve`; ValueError if the law allows none of the starts.
     """
@@ -121,11 +123,16 @@ def search(
     exchange = level if moved else None
     found = [exchange.unknown(own) if exchange and u.name == exchange.name else u for u in own.values()]
     first = solve(found, exchanged(residuals(rough)), noise=ROUGH_NOISE, tolerance=ROUGH)
-    square = np.bincount(data.groups, first.residuals[: rough.size] ** 2) / np.bincount(data.groups)
+    rest = first.residuals
+    if corrected is not None:
+        measurement = corrected(first.values)
+        data = measurement.data
+        rest = residuals(rough)(first.values)
+    square = np.bincount(data.groups, rest[: rough.size] ** 2) / np.bincount(data.groups)
     scale = rough * np.sqrt(np.maximum(square, QUIET**2 * np.max(square)))[data.groups]
     found = [replace(u, start=_inside(u, first.values[u.name])) for u in found]
     solution = solve(found, exchanged(residuals(scale)), nuisances=data.nuisances, tolerance=TOLERANCE)
-    return (exchange.back(solution, own) if exchange else solution), scale
+    return (exchange.back(solution, own) if exchange else solution), scale, measurement
 
 
 def _inside(unknown: Unknown, value: float) -> float:

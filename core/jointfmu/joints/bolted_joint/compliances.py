@@ -5,7 +5,6 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ...quantity import Array
-from .contact import STICKS
 
 if TYPE_CHECKING:
     from .spring import BoltedJointSpring
@@ -36,10 +35,7 @@ class Compliances(NamedTuple):
     def of(cls, spring: "BoltedJointSpring", preload: float, moment: float = 0.0) -> "Compliances":
         """Of a joint with elastic sides, tightened by the force of each bolt [N] and a moment [N.m]."""
         whole, modes, bolt = spring.whole, spring.modes, spring.joint.bolt_stiffness
-        there = spring.tightened_patches(preload, moment)
-        stick = spring.foundation().stick(there)[:, None] * STICKS
-        normal = spring.curve.derivatives(spring.tightened(preload, moment), 1)[1]
-        H = whole.slope(normal, stick)
+        H = spring.slope(preload, moment)
         motion = np.linalg.inv(whole.condensed(H))
         amplitude = -np.linalg.solve(H[6:, 6:], H[6:, :6] @ motion)
         force = bolt * (whole.seats @ motion[2:5] + modes.stretch @ amplitude)

@@ -241,6 +241,11 @@ class BoltedJointSpring:
         out = outputs(joint, sums, s_rel, theta, rates, np.max(at.derivatives[0]))
         return out | self._bolt_forces(preload, moment, place, amplitude), after
 
+    def slope(self, preload: float, moment: float = 0.0) -> Array:
+        """`Whole.slope` of elastic sides at tightening."""
+        stick = self.foundation().stick(self.tightened_patches(preload, moment))[:, None] * STICKS
+        return self.whole.slope(self.curve.derivatives(self.tightened(preload, moment), 1)[1], stick)
+
     def compliances(self, preload: float, moment: float = 0.0) -> Compliances:
         """Of elastic sides, tightened by the force of each bolt [N] and a moment [N.m]."""
         return Compliances.of(self, preload, moment)

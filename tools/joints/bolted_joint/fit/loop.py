@@ -8,30 +8,39 @@ At a constant preload the first loading of the joint's friction is its own norma
 F_N(s) the force of all nodes, moved apart by s from where the preload has them. So the stiffness at rest
 gives the level of the law, mu the force at which everything slips, and how the stiffness falls between
 the two the exponent of K_N over the load.
+
+Of elastic sides it is the way of the whole joint from rest, as exported; the modes of the bodies stay.
 """
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
-from scipy.interpolate import CubicHermiteSpline
+from scipy.interpolate import CubicHermiteSpline, CubicSpline
 
+from jointfmu.joints.bolted_joint.contact import Place
 from jointfmu.joints.bolted_joint.law import Bolted, pressures, shear_ratio
+from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.mechanics.curve import Curve, approach_curve
 from jointfmu.parameters import ParameterFile, default
+from jointfmu.progress import step
 from jointfmu.quantity import Array
 from jointfmu.quantity.refusal import Refusal
 from jointfmu.quantity.units import sizes
 
 from ....fitting import memory
+from ....fitting.branches import Loops
 from ....fitting.hysteresis import HysteresisLaw
 from ....fitting.least_squares import Exchange, Unknown
-from ....fitting.measurement import Heads, measured
+from ....fitting.measurement import Heads, Measurement, measured
 from ....fitting.outcome import Facts, FitResult, fitted, unknowns
-from .preload import SERIES, even_shape
+from .preload import FREE as INTERFACE
+from .preload import SERIES, even_shape, joint_stiffness
 
 HEADS = Heads("force", "displacement", sizes("N", "kN"), sizes("m", "mm", "um", "nm"))
-FREE: Mapping[str, tuple[str, ...]] = {"zhao2018": ("mu", "surface.G", "surface.D"), "roughness": ("mu", "h")}
+FREE = {law: ("mu", *names) for law, names in INTERFACE.items()}
 """What is fitted, of each law: friction, level and, where the law has one, exponent. Vibrations hardly see
 the exponent beside the level: without it."""
 STARTS: Mapping[str, Sequence[float]] = {"mu": (0.05, 0.15, 0.4), "surface.D": (1.2, 1.45)}
@@ -40,39 +49,51 @@ BESIDE = (memory.DAMPING, SERIES)
 """Unknowns that are no parameters of the joint."""
 SERIES_STARTS = (2.0, 1.1, 1.5, 5.0)
 """Series stiffness at which the search begins, over the whole at rest [1]."""
+REACH = 1.05
+"""Motion up to which the law of loops is needed, over half of their range [1]."""
 _NODES = 48
 """Steps of the table of first loading, graded towards rest."""
+_WHOLE_NODES, _SLIPPED = 24, 4.0
+"""The same of elastic sides, and the motion at which all of them slip, over friction_limit/K_xx [1]."""
 
 
-def first_loading(joint: Bolted, preload: float, series: float | None = None) -> tuple[HysteresisLaw, Facts]:
+def first_loading(
+    joint: Bolted, preload: float, series: float | None = None, reach: float = np.inf
+) -> tuple[HysteresisLaw, Facts]:
     """The law of the joint's loops in shear at a preload [N] of each bolt, and what describes it.
 
     series : stiffness [N/m] of a structure in series; the motion is that of both, B(u) of the force that both
              bear, and Masing's rule holds for them as for the joint. What describes is the joint's alone.
+    reach  : motion [m] up to which the law of elastic sides is needed
 
-    Raises ValueError if nothing is in contact or a pressure is beyond the law.
+    Raises ValueError if nothing is in contact or a pressure is beyond the law, or if elastic sides find no
+    equilibrium.
     """
     curve, approach, weight = _tightened(joint, preload)
     kappa, mu = float(shear_ratio(joint)), joint.mu
     apart = (float(np.max(approach)) - curve.displacement[0]) * np.linspace(0.0, 1.0, _NODES + 1) ** 2
     load, stiffness, bend = (value @ weight for value in curve.derivatives(approach - apart[:, None], 2))
+    motion, force, slope = apart * mu / kappa, mu * (load[0] - load), kappa * stiffness
+    limit = float(mu * load[0])
+    if joint.elastic:
+        even = _SLIPPED * limit / rest_stiffness(joint, preload)
+        motion, force, slope = _first_loading_of_whole(joint, preload, even, float(motion[-1]), reach)
     beside = 0.0 if series is None else 1.0 / series
-    force, slope = mu * (load[0] - load), kappa * stiffness
-    moved = apart * mu / kappa + beside * force
+    moved = motion + beside * force
     table = CubicHermiteSpline(moved, force, slope / (1.0 + beside * slope))
     whole = table.antiderivative()
-    end, limit = float(moved[-1]), float(mu * load[0])
+    end, most = float(moved[-1]), float(force[-1])
 
     def friction(motion: Array) -> Array:
-        return np.where(motion < end, table(np.minimum(motion, end)), limit)
+        return np.where(motion < end, table(np.minimum(motion, end)), most)
 
     def work(motion: Array) -> Array:
         inside = np.minimum(motion, end)
-        return np.asarray(whole(inside) + limit * (motion - inside))
+        return np.asarray(whole(inside) + most * (motion - inside))
 
     return HysteresisLaw(friction, work), {
         "friction_limit": (limit, "N", "mu times the normal force"),
-        "shear_stiffness": (float(kappa * stiffness[0]), "N/m", "K_xx of the joint at rest: the level"),
+        "shear_stiffness": (float(slope[0]), "N/m", "K_xx of the joint at rest: the level"),
         "exponent": (
             float(bend[0] * load[0] / stiffness[0] ** 2),
             "1",
@@ -81,9 +102,62 @@ def first_loading(joint: Bolted, preload: float, series: float | None = None) ->
     }
 
 
+@lru_cache(maxsize=8)
+def _first_loading_of_whole(
+    joint: Bolted, preload: float, even: float, graded: float, reach: float
+) -> tuple[Array, Array, Array]:
+    """Motions (n) along x from rest [m], force [N] and its slope [N/m] of elastic sides.
+
+    The motions, to `even` [m] in equal steps and as far as `graded` [m] beyond that in growing ones, end at
+    `reach` [m].
+    """
+    spring, part = BoltedJointSpring.of(joint), np.linspace(0.0, 1.0, _WHOLE_NODES + 1)
+    motion = (even * part + graded * part**2) * min(1.0, reach / (even + graded))
+    force, stiffness, _ = _moved(spring, preload, motion, spring.at_rest())
+    curve = CubicSpline(motion, force, bc_type=((1, stiffness[0]), (1, stiffness[-1])))
+    return motion, force, curve(motion, 1)
+
+
+def _moved(
+    spring: BoltedJointSpring, preload: float, way: Array, memory: Array
+) -> tuple[Array, Array, Array]:
+    """Force (n) [N] and K_xx (n) [N/m] on a way along x (n) [m], and the memory behind it."""
+    found = np.empty((2, way.size))
+    for i, x in enumerate(way.tolist()):
+        place = Place(np.array([x, 0.0, 0.0, 0.0, 0.0, 0.0]))
+        out, memory = spring.evolve(preload, 0.0, place, (0.0,) * 6, memory)
+        found[:, i] = -out["f_x"], out["K_xx"]
+    return found[0], found[1], memory
+
+
+def _off_masing(joint: Bolted, preload: float, loops: Loops, law: HysteresisLaw) -> Array:
+    """Force (n) [N] by which elastic sides on the way of loops differ from Masing's rule.
+
+    Patches turn as the bodies bend, and slip that turns does not run back the way it came: after gross slip
+    about half a percent of the friction.
+    """
+    spring, found = BoltedJointSpring.of(joint), np.empty_like(loops.force)
+    for run in range(loops.run[-1] + 1):
+        every = np.unique(loops.branch[loops.run == run])
+        middle = 0.5 * (np.max(loops.start[every]) + np.min(loops.start[every]))
+        first = np.linspace(0.0, loops.start[every[0]] - middle, _WHOLE_NODES + 1)
+        memory = _moved(spring, preload, first, spring.at_rest())[2]
+        for k in every:
+            start, motion = loops.start[k], loops.motion[loops.branch == k]
+            far = np.abs(motion - start)
+            end = motion[np.argmax(far)]
+            way = np.linspace(start, end, _WHOLE_NODES + 1)
+            force, _, memory = _moved(spring, preload, way - middle, memory)
+            off = force - force[0] - law.change(way, np.full_like(way, start))
+            found[loops.branch == k] = np.interp(far, np.abs(way - start), off)
+    return found
+
+
 def rest_stiffness(joint: Bolted, preload: float) -> float:
     """K_xx [N/m] at a preload [N] of each bolt; ValueError as `first_loading`."""
     curve, approach, weight = _tightened(joint, preload)
+    if joint.elastic:
+        return float(joint_stiffness(joint, np.array([preload]), "tangential")[0])
     return float(shear_ratio(joint) * (curve.derivatives(approach, 1)[1] @ weight))
 
 
@@ -140,11 +214,21 @@ def fit(
     def beside(values: Mapping[str, float]) -> float | None:
         return values.get(SERIES, series_stiffness)
 
+    reach = REACH * data.amplitude if data.kind == "loops" else np.inf
+
     def law_of(values: Mapping[str, float]) -> HysteresisLaw:
-        return first_loading(joint(values), force, beside(values))[0]
+        step("tries " + ", ".join(f"{name} = {value:.4g}" for name, value in values.items()))
+        return first_loading(joint(values), force, beside(values), reach)[0]
 
     model = memory.model(data, law_of, "modal_mass", modal_mass, damping_ratio)
     seen = data.rest_stiffness(modal_mass)
+
+    def rest(values: Mapping[str, float]) -> float:
+        series = beside(values)
+        return 1.0 / (1.0 / rest_stiffness(joint(values), force) + (0.0 if series is None else 1.0 / series))
+
+    if data.kind == "loops":
+        HEADS.check_level(data.path, seen / rest({}), data.units, file)
     if series_stiffness is not None and SERIES not in names and series_stiffness <= seen:
         raise Refusal(
             f"series stiffness = {series_stiffness:g} N/m is outside ({seen:.4g}, inf): the data "
@@ -154,19 +238,30 @@ def fit(
     wanted = unknowns(file, [name for name in names if name not in BESIDE], {})
     wanted += [memory.DAMPING_UNKNOWN] * (memory.DAMPING in names)
     wanted += [Unknown(SERIES, "N/m", SERIES_STARTS[0] * seen, 0.0, np.inf)] * (SERIES in names)
-
-    def rest(values: Mapping[str, float]) -> float:
-        series = beside(values)
-        return 1.0 / (1.0 / rest_stiffness(joint(values), force) + (0.0 if series is None else 1.0 / series))
-
     level = _level(file, names, rest)
     moved = data.kind != "loops" and set(FREE[file.law][1:]) <= set(names)
     starts = {**STARTS, SERIES: [times * seen for times in SERIES_STARTS[1:]]}
-    solution, scale = memory.search(data, wanted, model, starts, level, moved and level is not None)
+    alone = series_stiffness is None and SERIES not in names
+    exact = data.kind == "loops" and file.values.elastic and alone
+
+    def corrected(values: Mapping[str, float]) -> Measurement:
+        assert isinstance(data.data, Loops)
+        off = _off_masing(joint(values), force, data.data, law_of(values))
+        return replace(data, data=replace(data.data, force=data.data.force - off))
+
+    solution, scale, data = memory.search(
+        data,
+        wanted,
+        model,
+        starts,
+        level,
+        moved and level is not None,
+        corrected if exact else None,
+    )
     result = fitted(
         file, _own(solution.values), "calibration", data.path.name, f"{data.span}, preload {force:g} N"
     )
-    law, described = first_loading(result.values, force, beside(solution.values))
+    law, described = first_loading(joint(solution.values), force, beside(solution.values), reach)
     reached = float(law.friction(np.array([data.amplitude]))[0]) / described["friction_limit"][0]
     text = "largest friction force of the data over friction_limit"
     facts = described | {"slip_reached": (reached, "1", text)}

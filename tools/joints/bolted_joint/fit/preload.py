@@ -1,14 +1,15 @@
 """Stiffness or resonance over preload to the bolted joint's parameters.
 
-The joint is the spring of one degree of freedom, in series with the structure where that is stated:
+The joint, of elastic sides with its members and bolts, is the spring of one degree of freedom, in series with
+the structure where that is stated:
 
     1/K = 1/K_joint(preload) + 1/K_series,        f = sqrt(K/mass)/(2 pi).
 
 K_joint grows nearly as a power of the preload, `K_N ~ P^(D/(3-D))` for D below 1.5 and `~ P` above,
 so that a curve gives an exponent (D, below about 1.5) and a level. The level is that of G, of the moduli
 and, weakly, of H together: G is fitted, the others are taken from the start; A_0 has no effect, the law
-knows loads, no pressures. A resonance gives K/mass; without a stated mass the level goes into `mass`
-and G stays as it is.
+knows loads, no pressures. Of a roughness the level is that of h; it has no exponent. A resonance gives
+K/mass; without a stated mass the level goes into `mass` and G or h stays as it is.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -20,6 +21,7 @@ import numpy as np
 
 from jointfmu.contact.interface import stiffness_curve
 from jointfmu.joints.bolted_joint.law import Bolted, pressures, shear_ratio
+from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.mechanics.curve import approach_curve
 from jointfmu.mechanics.footprint.bolts import PressureSource, pressure_shape
 from jointfmu.mechanics.footprint.shape import MergedShape
@@ -29,7 +31,7 @@ from jointfmu.quantity.units import Sizes, factor, sizes
 
 from .... import columns
 from ....fitting.least_squares import Solution, Unknown, best_start, solve
-from ....fitting.outcome import Facts, FitResult, Picture, fitted, unknowns
+from ....fitting.outcome import Facts, FitResult, Picture, fitted, systematic, unknowns
 
 SERIES = "series_stiffness"
 """Unknown that is no parameter of the joint: the structure's own stiffness [N/m]."""
@@ -40,15 +42,21 @@ COLUMNS: Mapping[str, Sizes] = {
 }
 LEAST = 4
 """Fewest points of a curve."""
+FREE: Mapping[str, tuple[str, ...]] = {"zhao2018": ("surface.G", "surface.D"), "roughness": ("h",)}
+"""What is fitted, of each law: level and, where the law has one, exponent."""
 STARTS: Mapping[str, tuple[float, ...]] = {
     "surface.D": (1.25, 1.42, 1.6),
     "surface.G": tuple(1.21e-8 * np.logspace(-3.0, 3.0, 7)),
+    "h": (1e-7, 1e-6, 1e-5),
 }
 """Where the fit looks for a start, beside the start file's values."""
 
 
 def joint_stiffness(joint: Bolted, preload: Array, direction: str = "normal") -> Array:
-    """K_zz or K_xx (...) [N/m] of the tightened joint at preloads (...) [N]: exactly the exported ones."""
+    """K_zz or K_xx (n) [N/m] of the tightened joint at preloads (n) [N]: exactly the exported ones."""
+    if joint.elastic:
+        spring, axis = BoltedJointSpring.of(joint), 2 if direction == "normal" else 0
+        return np.array([spring.whole.condensed(spring.slope(P))[axis, axis] for P in preload.tolist()])
     shape = even_shape(joint.pattern)
     p = pressures(joint, shape, preload, 0.0)
     curve = approach_curve(joint)
@@ -80,7 +88,7 @@ def fit(
 
     Parameters
     ----------
-    free       : names to fit; None: surface.D with surface.G, or with mass if it is not stated
+    free       : names to fit; None: those of FREE, mass in the place of the level if it is not stated
     direction  : of the motion, normal or tangential
     modal_mass : [kg] what vibrates on the joint, for frequencies; replaces `mass`
     series_stiffness : [N/m] of the structure, in series; None: rigid, unless SERIES is in `free`
@@ -91,7 +99,8 @@ def fit(
     curve = _measured(Path(path))
     file = _stated(start or default("bolted_joint"), curve, modal_mass, series_stiffness)
     mass = curve.of == "frequency" and modal_mass is None
-    names = list(free if free is not None else ("surface.D", "mass" if mass else "surface.G"))
+    level, *exponent = FREE[file.law]
+    names = list(free if free is not None else (*exponent, "mass" if mass else level))
 
     def predict(values: Mapping[str, float]) -> Array:
         own = {name: value for name, value in values.items() if name != SERIES}
@@ -117,7 +126,13 @@ def fit(
         line=(grid / kN, finer.predicted(result.values, stiffness, direction) * size),
         labels=("preload of each bolt [kN]", f"{curve.of} [{unit}]", "data / law - 1 [%]"),
     )
-    return FitResult(result, solution, _facts(curve, solution), [picture], notes=_notes(names, mass))
+    notes = systematic(solution.residuals, "curve")
+    if mass and "mass" in names and level not in names:
+        notes.append(
+            f"frequencies without a stated mass give K/mass only: the level is in mass, {level} is kept; "
+            f"state the modal mass to fit {level}"
+        )
+    return FitResult(result, solution, _facts(curve, solution), [picture], notes=notes)
 
 
 @dataclass(frozen=True, slots=True)
@@ -209,13 +224,3 @@ def _facts(curve: PreloadCurve, solution: Solution) -> Facts:
         "noise": (solution.noise, "1", "relative standard deviation of a point about the fitted law"),
         "largest_misfit": (float(np.max(np.abs(solution.residuals))), "1", "relative"),
     }
-
-
-def _notes(names: Sequence[str], mass: bool) -> list[str]:
-    """What the kind of data leaves open."""
-    if mass and "mass" in names and "surface.G" not in names:
-        return [
-            "frequencies without a stated mass give K/mass only: the level is in mass, surface.G is kept; "
-            "state the modal mass to fit surface.G"
-        ]
-    return []

@@ -7,7 +7,6 @@ Catalogue practice is K1 up to T1, K2 up to T2, K3 beyond,
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -18,10 +17,10 @@ from jointfmu.joints.harmonic_drive.law import PairDrive
 from jointfmu.joints.harmonic_drive.spring import torque_curve
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array, build, check, flat_fields, quantity
-from jointfmu.quantity.refusal import Refusal
-from jointfmu.quantity.units import Sizes, factor, measured, sizes
+from jointfmu.quantity.units import Sizes, factor, sizes
 
 from ....catalogue import Printed
+from ....fitting.measurement import Heads
 from ....fitting.outcome import Picture
 
 LEVELS: Mapping[str, tuple[str, ...]] = {"hu2023": ("K_FTS0", "drive_scale"), "catalogue": ("K1", "K2", "K3")}
@@ -34,46 +33,13 @@ WINDUP = (1e-5, 0.1)
 """Wind-up at rated torque [rad] that a drive may have: a hundredth to a hundred times the usual 1e-3."""
 
 
-FAR = 50.0
-"""Stiffness of a measurement over the start's [1], either way, from which on a wrong unit is likelier than
-such a drive: less than degrees in the place of radians make, 57."""
-NEAR = 5.0
-"""The same [1] within which another unit explains it."""
-
-
 COLUMNS: Mapping[str, Sizes] = {
     "torque": sizes("N.m", "mN.m", "kN.m"),
     "angle": sizes("rad", "mrad", "deg", "arcmin", "arcsec"),
 }
 """Of a measured torque and wind-up."""
+HEADS = Heads("torque", "angle", *COLUMNS.values())
 ARCMIN = COLUMNS["angle"]["arcmin"]
-
-
-def check_level(path: Path, ratio: float, units: Mapping[str, str], start: ParameterFile) -> None:
-    """Refuse a measurement whose stiffness is `ratio` times the start's, if that is FAR off.
-
-    units : of COLUMNS in the heading
-    """
-    if 1.0 / FAR < ratio < FAR:
-        return
-    raise Refusal(
-        f"{path}: the stiffness is {ratio:.3g} times that of {start.name}, "
-        f"allowed are {1.0 / FAR:g} to {FAR:g}: "
-        f"{likely_unit(ratio, units)}; if both are right, start from a drive of its size",
-        "params",
-    )
-
-
-def likely_unit(ratio: float, units: Mapping[str, str]) -> str:
-    """Which unit of a column would bring a stiffness that is `ratio` times what it should be to its place."""
-    found = []
-    for column, power in (("angle", -1.0), ("torque", 1.0)):
-        said = measured(units[column], COLUMNS[column])
-        found += [(ratio * (size / said) ** power, column, unit) for unit, size in COLUMNS[column].items()]
-    left, column, unit = min(found, key=lambda one: abs(np.log(one[0])))
-    if not 1.0 / NEAR < left < NEAR:
-        return "check the units of both columns, no usual one explains it"
-    return f"likely the {column} is in {unit}, where the heading says {units[column]}"
 
 
 def windup(drive: Drive, torque: Array) -> Array:

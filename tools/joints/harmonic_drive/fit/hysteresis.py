@@ -25,13 +25,12 @@ from ....fitting import memory
 from ....fitting.branches import Loops
 from ....fitting.hysteresis import HysteresisLaw, NonlinearSpring
 from ....fitting.least_squares import Solution, Unknown, solve
-from ....fitting.measurement import Heads, measured
+from ....fitting.measurement import measured
 from ....fitting.outcome import FitResult, Picture, fitted, undetermined, unknowns
 from . import drive
-from .drive import ARCMIN, COLUMNS
+from .drive import ARCMIN, HEADS
 from .log_reading import Samples
 
-HEADS = Heads("torque", "angle", *COLUMNS.values())
 LOSS, STIFFNESS = FREE = ("hysteresis_loss", "hysteresis_stiffness")
 FIRST = {LOSS: ARCMIN, STIFFNESS: 1.0}
 """Where the fit starts if the file has no hysteresis: [rad], and over K_WTS without torque [1]."""
@@ -86,7 +85,7 @@ def fit(
     if isinstance(data.data, Loops):
         reach = 0.5 * float(np.ptp(data.data.force))
         wound = float(drive.windup(begun.values, np.array(reach)))
-        drive.check_level(data.path, wound / data.amplitude, data.units, begun)
+        HEADS.check_level(data.path, wound / data.amplitude, data.units, begun)
     file, rest = _begun(begun, names)
 
     def own(values: Mapping[str, float]) -> HysteresisLaw:
@@ -94,7 +93,7 @@ def fit(
 
     model = memory.model(data, own, "inertia", inertia, 0.0)
     starts = {LOSS: LOSSES, STIFFNESS: tuple(rest * np.array(STIFFNESSES))}
-    solution, scale = memory.search(data, unknowns(file, names, drive.bounds(file)), model, starts)
+    solution, scale, _ = memory.search(data, unknowns(file, names, drive.bounds(file)), model, starts)
     result = fitted(file, solution.values, "calibration", data.path.name, data.span)
     found = law(result.values)
     limit = float(found.friction(np.array([np.inf]))[0])

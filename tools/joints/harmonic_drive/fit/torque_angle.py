@@ -20,7 +20,7 @@ from ....fitting.least_squares import NOTHING, Solution, solve
 from ....fitting.measurement import OTHERS
 from ....fitting.outcome import Facts, FitResult, Picture, fitted, model, systematic, unknowns
 from . import drive
-from .drive import ARCMIN, COLUMNS
+from .drive import ARCMIN, COLUMNS, HEADS
 
 FREE = ("K_FTS0", "drive_scale", "zero_torque_pressure")
 LEAST = 10
@@ -95,7 +95,7 @@ def read(path: str | Path, start: ParameterFile | None, rated_torque: float | No
     _check_size(line, file, table)
     size = begun.values.rated_torque / file.values.rated_torque
     usual = float(np.ptp(drive.windup(begun.values, size * line.torque)))
-    drive.check_level(table.path, usual / float(np.ptp(line.angle)), table.units, begun)
+    HEADS.check_level(table.path, usual / float(np.ptp(line.angle)), table.units, begun)
     return Record(table.path, line, file)
 
 
@@ -147,7 +147,7 @@ def _check_size(line: loop.Backbone, start: ParameterFile, table: columns.Column
         raise Refusal(
             f"{path}: the angle turns {turned:.3g} rad over {span:.3g} N.m, that is "
             f"{at_rated:.3g} rad at the rated torque {rated:g} N.m, allowed are {low:g} to {high:g}: "
-            f"{drive.likely_unit(usual / at_rated, table.units)}, or state the drive's rated torque",
+            f"{HEADS.likely_unit(usual / at_rated, table.units)}, or state the drive's rated torque",
             "rated_torque",
         )
     if line.loop_area is not None:
