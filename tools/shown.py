@@ -47,6 +47,19 @@ def aligned(rows: Sequence[Sequence[str]], words: int | None = None) -> list[str
     return [pattern.format(*row).rstrip() for row in rows]
 
 
+def fact_lines(facts: Mapping[str, tuple[float, str, str]]) -> list[str]:
+    """{name: (value, unit, meaning)} as lines."""
+    return [
+        f"{name:18} {value:.4g}{'' if unit == '1' else f' {unit}'}  {text}"
+        for name, (value, unit, text) in facts.items()
+    ]
+
+
+def fact_document(facts: Mapping[str, tuple[float, str, str]]) -> dict[str, object]:
+    """The same for --json."""
+    return {name: {"value": v, "unit": u, "text": t} for name, (v, u, t) in facts.items()}
+
+
 class Stated(NamedTuple):
     """A number or choice of a parameter file, in SI; `unit` is None of what has none."""
 

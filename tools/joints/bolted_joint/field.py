@@ -102,7 +102,15 @@ def _whole(
     return whole_of(file, lambda: assembly, preload, attached, shape).file
 
 
-FIELD = Clamping(pressures=_pressures, shear_ratio=shear_ratio, layout=PlaneLayout.of, whole=_whole)
+def _facts(file: ParameterFile, preload: float) -> dict[str, tuple[float, str, str]]:
+    from .new.computed import whole_facts
+
+    return whole_facts(file, preload)
+
+
+FIELD = Clamping(
+    pressures=_pressures, shear_ratio=shear_ratio, layout=PlaneLayout.of, whole=_whole, facts=_facts
+)
 
 
 FREQUENCIES = MeasuredFrequencies(points="zhao2018_modes", assembly="box_specimen_by_frequency")
