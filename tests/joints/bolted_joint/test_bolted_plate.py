@@ -12,6 +12,8 @@ from jointfmu_tools import cli
 from jointfmu_tools.commands.assembly import with_assembly
 from jointfmu_tools.fem.bolted_contact import BoltedContact
 from jointfmu_tools.fem.geometry import Assembly, BoltList, Plate
+from jointfmu_tools.joints.bolted_joint.field import PlaneLayout
+from jointfmu_tools.joints.bolted_joint.new import computed
 
 from jointfmu.contact.surface import Elastic
 from jointfmu.joints.bolted_joint.compliances import DIRECTIONS, Compliances
@@ -357,15 +359,23 @@ def test_four_bolts_share_a_load_evenly(capsys):
 
 @pytest.mark.slow
 def test_the_whole_of_a_computed_field_has_the_stiffness_of_all_its_nodes(capsys, tmp_path, monkeypatch):
-    """The file has few of them, with the same sums: the whole that the finite elements find is its own."""
+    """The file has few of them, with the same sums: the whole that the finite elements find is its own, and
+    the one that is told. Its picture has the plate's outline and holes."""
     monkeypatch.setattr(BoltedContact, "of", partial(BoltedContact.of, refinement=0.5))  # as the bodies' here
     path = tmp_path / "plate.toml"
     words = ["--plate", "60x30", "--bolts", "2xM8", "--at", "40x0", "--grip", "20", *M16[6:]]
+    seen, real = [], computed.whole_joint
+    monkeypatch.setattr(computed, "whole_joint", lambda *asked: seen.append(real(*asked)) or seen[-1])
     facts, _ = made(capsys, *words, "--preload", "15e3", "--field", "computed", "--out", str(path))
-    found = Compliances.of(BoltedJointSpring.of(load(path).values), 15e3)
+    values = load(path).values
+    found = Compliances.of(BoltedJointSpring.of(values), 15e3)
+    np.testing.assert_allclose(found.whole, seen[0].compliances.whole, rtol=2e-3)
     for name, compliance in zip(DIRECTIONS, found.whole, strict=True):
         whole = facts[f"whole_K_{name if name.startswith('r') else 2 * name}"]
-        assert 1.0 / compliance == pytest.approx(whole, rel=2e-3), name
+        assert 1.0 / compliance == pytest.approx(whole, rel=1e-9), name
+    drawn = PlaneLayout.of(values)
+    np.testing.assert_allclose(drawn.extent, [[-0.03, -0.015], [0.03, 0.015]], atol=1e-6)
+    assert (len(drawn.outline), drawn.hole) == (1, pytest.approx(0.009))
 
 
 def test_without_finite_elements_it_is_said(capsys, monkeypatch):

@@ -178,6 +178,8 @@ def test_a_tapped_joint_is_near_vdi_2230(made, capsys):
     assert out["F_bolt[1]"] == pytest.approx(-out["f_z"], rel=1e-6)
     picture = report.pictured(Course(KINDS["bolted_joint"].models[0], joint.file)).pictures[1]
     assert "side 2: 60 mm" in picture
+    assert "what lies under heads and at threads (hatched)" in picture
+    assert picture.count('stroke-dasharray="2 3"') == 3  # under its head, and both walls of the thread
     capsys.readouterr()
     for thick, told in (
         (["40", "16"], "thickness = 0.016 m is outside (0.016, inf): deeper than its threads"),

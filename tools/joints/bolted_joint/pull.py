@@ -11,9 +11,9 @@ CLOSE = 1e-10
 """Work of a step over that of the pull [1] at which there is equilibrium."""
 STEPS, PARTS = 100, 8
 """Most steps of Newton's method at a pull [1], and most parts of each that are tried."""
-LEAST_SHIFT, LEAST_STICK = 1e-12, 1e-6
-"""Shift of a patch [m] that counts as none, and friction's stiffness over the greatest one [1] that open
-patches keep."""
+LEAST_SHIFT, LEAST = 1e-12, 1e-6
+"""Shift of a patch [m] that counts as none, and stiffness over the greatest one of tightening [1] that open
+patches keep, and open points in the derivative: a joint that is open may shift, and turn on one bolt."""
 MOST = 2.0
 """Force of a bolt over that of tightening [1] beyond which nothing is told."""
 
@@ -31,7 +31,8 @@ def bolt_forces(spring: BoltedJointSpring, preload: float, moment: float, pulls:
     tension = working_preload(spring.joint, preload) + moment * modes.lever
     G = np.zeros((len(start), len(z)))
     G[:, 2:5], G[:, 6:] = whole.points, modes.opening
-    tight, found = spring.curve.derivatives(start, 0)[0], []
+    tight, stiff = spring.curve.derivatives(start, 1)
+    least, found = LEAST * law.stick(spring.pressed(start)).max(), []
 
     def left(z: Array, K: Array, pull: float) -> Array:
         p = spring.curve.derivatives(start - G @ z, 0)[0]
@@ -41,10 +42,9 @@ def bolt_forces(spring: BoltedJointSpring, preload: float, moment: float, pulls:
         for _ in range(STEPS):
             approach = start - G @ z
             shift = np.linalg.norm(spring.shift(z[[0, 1, 5]], z[6:]), axis=1) + LEAST_SHIFT
-            stick = law.backbone(spring.pressed(approach), shift) / shift
-            stick = np.maximum(stick, LEAST_STICK * law.stick(spring.pressed(start)).max())
+            stick = np.maximum(law.backbone(spring.pressed(approach), shift) / shift, least)
             K = whole.slope(np.zeros_like(start), stick[:, None] * STICKS)
-            normal = whole.weight * spring.curve.derivatives(approach, 1)[1]
+            normal = np.maximum(spring.curve.derivatives(approach, 1)[1], LEAST * stiff.max()) * whole.weight
             r = left(z, K, pull)
             step = -np.linalg.solve(K + G.T @ (normal[:, None] * G), r)
             falls, size = float(r @ step), 1.0

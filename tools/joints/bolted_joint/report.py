@@ -49,12 +49,11 @@ def pictured(course: Course) -> Figure:
     pictures = [plan(joint, preload, moment)]
     if joint.elastic and isinstance(bodies, ElasticBodies) and bodies.thickness:
         pictures.append(section(joint))
-    text = (
-        "The tightened interface from side 2, grey where it is open; crosses are the patches that carry the "
-        "friction. "
-    )
+    text = "The tightened interface from side 2, grey where it is open. "
     if isinstance(joint.pattern, NodalField):
-        text += "The pressure comes as points, whose discs have their areas: the outline is not in the file. "
+        text += "The pressure comes as points, some of the field's nodes, which stand for all of them. "
+    if not PlaneLayout.of(joint).outline:
+        text += "The outline is not in the file. "
     text += (
         "Bolts are numbered as the FMU's F_bolt. " if len(bolts) else "The file has no places of the bolts. "
     )

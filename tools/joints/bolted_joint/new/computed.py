@@ -122,11 +122,19 @@ def whole_of(
         bodies = replace(
             elastic_bodies(linear, BoltedJointSpring.of(file.values), springs[:, 2], preload),
             thickness=(clamped.side1.clamped, clamped.side2.clamped),
+            outline=_outline(clamped, joint.interface.centroid),
+            hole_diameter=clamped.bolts.hole_diameter,
             head_diameter=clamped.bolts.head_diameter,
             thread_depth=getattr(clamped.side2, "depth", 0.0),
         )
         compliances = linear.compliances()
     return ComputedJoint(compliances, with_bodies(file, bodies, attached))
+
+
+def _outline(clamped: "Assembly", centroid: Array) -> tuple[float, ...]:
+    """Lowest x and y, highest x and y [m] of a contact, from its centroid [m]."""
+    half = np.min([side.layers()[0].outer for side in (clamped.side1, clamped.side2)], axis=0)
+    return tuple(np.concatenate([-half - centroid, half - centroid]).tolist())
 
 
 def with_bodies(file: ParameterFile, bodies: ElasticBodies, attached: str) -> ParameterFile:
