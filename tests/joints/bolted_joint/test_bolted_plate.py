@@ -393,7 +393,7 @@ def test_without_finite_elements_it_is_said(capsys, monkeypatch):
 def test_heads_that_do_not_fit_are_said(capsys):
     _, found = made(capsys, *M16, *LOAD, "--bearing", "90")
     (line,) = found["warnings"]
-    assert "head_diameter = 0.09 m reaches beyond the flange" in line
+    assert "bolt 1 at (0, 0) mm with a head of 90 mm reaches beyond the plate of side1" in line
 
 
 def test_an_unknown_attachment_is_refused(capsys):

@@ -146,8 +146,9 @@ def whole_joint(course: Course) -> list[Figure]:
     uneven = share[most] > (1.0 + ALIKE) * np.mean(share)
     where = f"around bolt {most + 1}, which gets {share[most]:.3g} of it" if uneven else "around the bolts"
     text = _text(found, left, moment) + (
-        f" It takes {_told(opening, 'N')} along z to open the interface {where}, by these stiffnesses, "
-        f"and {_told(limit, 'N')} along x or y to slip wholly; slip begins at the edges far below, and what "
+        f" It takes {_told(opening, 'N')} along z to open the interface {where}, by these stiffnesses; "
+        "one that peels opens before, as drawn. It takes "
+        f"{_told(limit, 'N')} along x or y to slip wholly; slip begins at the edges far below, and what "
         f"it loses is under Loops. Drawn is a pull to {BEYOND:g} times that load, the other five motions "
         f"free, and to no more than {MOST:g} times the force of a bolt at tightening."
     )
