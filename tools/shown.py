@@ -30,6 +30,8 @@ def quantity(value: Any, unit: str | None, digits: int = 6) -> tuple[str, str]:
     """A value as text in the unit in which it reads best, and that unit."""
     if isinstance(value, bool | str):
         return str(value).lower(), ""
+    if value == ():
+        return "none", ""
     if np.ndim(value):
         return f"{len(value)} numbers from {min(value):.6g} to {max(value):.6g}", spelled(unit or "1")
     if unit is None:
@@ -47,6 +49,19 @@ def aligned(rows: Sequence[Sequence[str]], words: int | None = None) -> list[str
     signs = ["<" if words is None or i < words else ">" for i in range(len(widths))]
     pattern = "  ".join(f"{{:{sign}{width}}}" for sign, width in zip(signs, widths, strict=True))
     return [pattern.format(*row).rstrip() for row in rows]
+
+
+def fact_lines(facts: Mapping[str, tuple[float, str, str]]) -> list[str]:
+    """{name: (value, unit, meaning)} as lines."""
+    return [
+        f"{name:18} {value:.4g}{'' if unit == '1' else f' {unit}'}  {text}"
+        for name, (value, unit, text) in facts.items()
+    ]
+
+
+def fact_document(facts: Mapping[str, tuple[float, str, str]]) -> dict[str, object]:
+    """The same for --json."""
+    return {name: {"value": v, "unit": u, "text": t} for name, (v, u, t) in facts.items()}
 
 
 class Stated(NamedTuple):

@@ -105,16 +105,16 @@ def test_beyond_the_hardness_and_the_nominal_area():
     assert at_pressure(law, limit)["A_r"] == pytest.approx(law.A_0, rel=0.01)  # three digits are printed
 
 
-def test_the_law_roughness_ends_where_its_proof_does():
+def test_the_law_roughness_is_proven_in_a_range():
     """x = p A_0/(E* h longest_wave) from 0.3, y = p longest_wave/(E* h) to 1.5 (docs/validity.md)."""
     law = default("gear_mesh", "roughness").values
     modulus = 0.5 * 206e9 / (1.0 - 0.26**2) * law.h
     few, flat = 0.3 * modulus * law.longest_wave / law.A_0, 1.5 * modulus / law.longest_wave
     assert beyond(law, 1.01 * few) == []
     (line,) = beyond(law, 0.99 * few)
-    assert f"below {few:.3g} Pa" in line
+    assert f"below {few:.3g} Pa, from where the law roughness is proven" in line
     (line,) = [text for text in beyond(law, 1.01 * flat) if "wave" in text]
-    assert f"above {flat:.3g} Pa" in line
+    assert f"above {flat:.3g} Pa, up to which the law roughness is proven" in line
     assert not any("wave" in text for text in beyond(law, 0.99 * flat))
     (line,) = judge(law, [0.5 * few, 2.0 * few], law.h).warnings
     assert f"{0.5 * few:.4g} Pa is below" in line

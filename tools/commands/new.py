@@ -18,7 +18,7 @@ from ..interface.joint import Joint
 from ..interface.make import made
 from ..joint_parts import part
 from ..pressure import judge_file
-from ..shown import aligned
+from ..shown import aligned, fact_document, fact_lines
 from . import check_files, declare
 
 
@@ -52,15 +52,11 @@ def _make(drawing: Drawing, args: argparse.Namespace) -> Answer:
         joint = replace(joint, file=replace(joint.file, name=args.name))
     if args.out:
         joint.save(args.out)
-    facts = [
-        f"{name:18} {value:.4g}{'' if unit == '1' else f' {unit}'}  {text}"
-        for name, (value, unit, text) in joint.facts.items()
-    ]
     found = judge_file(joint.file).with_warnings(joint.notes)
     end = f"wrote {args.out}" if args.out else "nothing is written: state --out FILE"
     return Answer(
         document=_document(joint) | found.document() | {"written": [str(args.out)] if args.out else []},
-        lines=[*facts, *found.lines(), end],
+        lines=[*fact_lines(joint.facts), *found.lines(), end],
         notes=[f"warning: {text}" for text in found.warnings],
     )
 
@@ -72,7 +68,7 @@ def _document(joint: Joint) -> dict[str, object]:
         "name": joint.file.name,
         "parameters": joint.file.flat,
         "inputs": joint.file.inputs,
-        "facts": {name: {"value": v, "unit": u, "text": t} for name, (v, u, t) in joint.facts.items()},
+        "facts": fact_document(joint.facts),
     }
 
 

@@ -23,7 +23,12 @@ OPTIONS = (
     Option(
         "material", "of both sides, or of each (jointfmu new materials)", "NAME", many=True, required=True
     ),
-    Option("finish", "of both sides, or of each (jointfmu new finishes)", "NAME", many=True),
+    Option(
+        "finish",
+        "of both sides, or of each (jointfmu new finishes); beside --Ra or --Rq its slope alone",
+        "NAME",
+        many=True,
+    ),
     Option("Ra", "Ra of both sides, or of each [um]", "RA", many=True),
     Option("Rq", "Rq or Sq of both sides, or of each [um]", "RQ", many=True),
     Option("surface", "a scan of both sides, or of each", "SCAN", many=True),
@@ -35,6 +40,8 @@ OPTIONS = (
 """What every joint with rough faces takes."""
 MU, MU_RANGE = 0.15, (0.1, 0.3)
 """Coefficient of friction of faces of which nothing is said, and its range [1]."""
+MU_MOST = 2.0
+"""Greatest coefficient of friction that is taken [1]: clean like metals in air have 0.8 to 1.5."""
 MU_SOURCE = "dry machined metal: a table of usual values, no measurement; VDI 2230, Table A6 has 0.1 to 0.3"
 SLOPE = 0.1
 """Rms slope [1] of a surface of which only a height is known."""
@@ -102,7 +109,10 @@ def put(sheet: Sheet, given: Given) -> Heights:
         sheet.put("mu", MU, "estimate", MU_SOURCE)
         sheet.between("mu", *MU_RANGE)
     else:
-        sheet.stated("mu", number("mu", given["mu"], "1", "1"))
+        mu = number("mu", given["mu"], "1", "1")
+        if mu > MU_MOST:
+            raise ValueError(f"--mu = {given['mu']!r} is outside (0, {MU_MOST:g}]: no metals rub as much")
+        sheet.stated("mu", mu)
     sheet.put("traction_ratio", 0.1, "estimate", "vibration far below slip")
     return _heights(sheet, faces(given), given["longest_wave"])
 
@@ -165,6 +175,8 @@ def faces(given: Given) -> tuple[Face, Face]:
     finishes = both("finish", given["finish"])
     if len(heights) > 1:
         raise ValueError(f"{' beside '.join(map(flag, heights))}: expected one statement of the roughness")
+    if heights == ["surface"] and finishes:
+        raise ValueError("--surface beside --finish: expected one of them, the scan has its own slope")
     if not heights:
         if finishes is None:
             raise ValueError("the roughness is missing; expected --finish, --Ra, --Rq or --surface")

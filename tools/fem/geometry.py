@@ -260,13 +260,14 @@ def check_bolts(assembly: Assembly) -> None:
         for side in ("side1", "side2"):
             if text := _obstacle(getattr(assembly, side), x, y, head):
                 raise ValueError(
-                    f"bolt {i + 1} at ({x:g}, {y:g}) m with head_diameter = {2 * head:g} m {text} of {side}"
+                    f"bolt {i + 1} at ({1e3 * x:.4g}, {1e3 * y:.4g}) mm with a head of {2e3 * head:.4g} mm "
+                    f"{text} of {side}"
                 )
         near = np.hypot(*(at[:i] - at[i]).T)
         if near.size and near.min() < 2.0 * head:
             raise ValueError(
-                f"head_diameter = {2 * head:g} m is outside (0, {near.min():g}): bolts {near.argmin() + 1} "
-                f"and {i + 1} overlap"
+                f"heads of {2e3 * head:.4g} mm are outside (0, {1e3 * near.min():.4g}] mm: those of bolts "
+                f"{near.argmin() + 1} and {i + 1} overlap"
             )
 
 
@@ -287,7 +288,7 @@ def _obstacle(body: Body, x: float, y: float, radius: float) -> str | None:
     if isinstance(body, TappedPlate):
         return None  # nothing lies on it
     if not _within(x, y, radius, flange.outer) or _meets(x, y, radius, flange.inner):
-        return "reaches beyond the flange"
+        return f"reaches beyond the {'plate' if isinstance(body, Plate) else 'flange'}"
     if rest and _meets(x, y, radius, rest[0].outer) and not _within(x, y, radius, rest[0].inner):
         return "runs into a wall"
     return None

@@ -195,9 +195,8 @@ class Linear:
 
     def compliances(self) -> Compliances:
         """Of the joint about the centroid of its contact."""
-        parts = (self.contact, self.bodies, self.shanks)
-        shapes = self.moved @ np.linalg.inv(self.stiffness)
-        alone = np.linalg.inv(self.rigid.T @ (self.contact @ self.rigid))
-        stored = np.stack([np.sum(shapes * (part @ shapes), axis=0) for part in parts])
-        bolts = np.diag(self.rigid.T @ (self.shanks @ self.rigid))
-        return Compliances(stored, np.diag(alone), bolts, self.bolt * (self.joint.stretch.T @ shapes))
+        parts, held = (self.contact, self.bodies, self.shanks), np.diag(self.stiffness)
+        stored = np.stack([np.sum(self.moved * (part @ self.moved), axis=0) for part in parts])
+        contact, bolts = (np.diag(self.rigid.T @ (part @ self.rigid)) for part in (parts[0], parts[2]))
+        force = self.bolt * (self.joint.stretch.T @ self.moved) @ np.linalg.inv(self.stiffness)
+        return Compliances(stored / held**2, 1.0 / contact, bolts, force)

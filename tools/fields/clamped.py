@@ -68,12 +68,14 @@ class Clamping:
     layout      : places of its bolts and sizes of holes and heads, as far as parameters have them
     whole       : a parameter file with the bodies of an assembly between attachments of a name, at the
                   force [N] that tightens each bolt and the pressure of all nodes
+    facts       : {name: (value, unit, meaning)} of the whole joint of such a file at that force
     """
 
     pressures: Pressures
     shear_ratio: Callable[[Any], Number]
     layout: Callable[[Any], BoltLayout]
     whole: Callable[[ParameterFile, Any, float, str, PressureShape], ParameterFile]
+    facts: Callable[[ParameterFile, float], dict[str, tuple[float, str, str]]]
 
 
 def clamped() -> dict[str, Clamping]:

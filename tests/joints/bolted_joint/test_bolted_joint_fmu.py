@@ -5,6 +5,7 @@ from dataclasses import replace
 from importlib.resources import files
 from itertools import combinations
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 from xml.etree import ElementTree
 
@@ -14,7 +15,7 @@ from conftest import here_alone
 from joint_cases import RANGES, SAME, STATE, TABLE, parameters, random_inputs
 from jointfmu_fmu_src.building import build
 from jointfmu_tools.joints.bolted_joint.field import PlaneLayout
-from jointfmu_tools.joints.bolted_joint.picture import plan
+from jointfmu_tools.joints.bolted_joint.picture import SEAM, _cells, plan
 from jointfmu_tools.joints.bolted_joint.report import pictured
 from jointfmu_tools.laboratory.describe import modules
 from jointfmu_tools.ramps import ramp
@@ -28,6 +29,7 @@ from jointfmu.contact.interface import stiffness_curve
 from jointfmu.joints import MODELS
 from jointfmu.joints.bolted_joint.law import pressures, shear_ratio
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring, points
+from jointfmu.mechanics.footprint.plate import BoltedPlate
 from jointfmu.mechanics.footprint.shape import NodalField, as_lists
 from jointfmu.parameters import default, load
 
@@ -342,10 +344,11 @@ def test_the_picture_shows_pressure_and_bolts_where_they_are() -> None:
     shape = joint.pattern.shape()
     drawn = ElementTree.fromstring(plan(joint, 9e3, 0.0))
     cells = [rect for rect in drawn.iter(f"{SVG}rect") if rect.get("fill") not in ("#fff", "none", None)]
-    area = sum(float(rect.get("width")) * float(rect.get("height")) for rect in cells[: len(shape.share)])
+    sides = [[float(rect.get(side)) - SEAM for side in ("width", "height")] for rect in cells]
+    area = np.sum(np.prod(sides[: len(shape.share)], axis=1))
     outer = next(rect for rect in drawn.iter(f"{SVG}rect") if rect.get("fill") == "none")
     scale = float(outer.get("width")) / (joint.pattern.column_spacing + joint.pattern.flange_width)
-    assert area / (1.02 * scale) ** 2 == pytest.approx(joint.A_0, rel=0.03)  # drawn to tenths of 5 px
+    assert area / scale**2 == pytest.approx(joint.A_0, rel=0.03)  # drawn to tenths of 5 px
     (x, y), *_ = [
         np.array([float(rect.get("x")), float(rect.get("y"))]) for rect in cells if rect.get("fill") == YELLOW
     ]
@@ -354,11 +357,16 @@ def test_the_picture_shows_pressure_and_bolts_where_they_are() -> None:
     assert min(np.hypot(x - a, y - b) for a, b in holes) < scale * joint.pattern.hole_diameter
     told = [text.text for text in drawn.iter(f"{SVG}text")]
     assert [text for text in told if text and text.isdigit()][:8] == [str(i + 1) for i in range(8)]
+    strip = BoltedPlate(
+        length=0.15, width=0.04, x=(0.0,), y=(0.0,), hole_diameter=0.009, cone_diameter=0.02
+    )  # its cells are no squares: they are as wide as its columns
+    sides = _cells(SimpleNamespace(A_0=strip.area, pattern=strip), strip.shape().share)
+    np.testing.assert_allclose(sides.max(axis=0), np.array([0.15, 0.04]) / strip.coarse, rtol=1e-4)
 
 
 @pytest.mark.slow
 def test_the_picture_of_points_without_an_outline() -> None:
-    """One disc a point, of its area; no bolts, and the page says so."""
+    """One dot a point, where it is; no bolts, and the page says so."""
     file = default("bolted_joint")
     shape = file.values.pattern.shape()
     half = np.flatnonzero(shape.position[:, 1] > 0.0)
@@ -368,13 +376,14 @@ def test_the_picture_of_points_without_an_outline() -> None:
     moved = replace(moved, equal=some.equal / (share @ some.equal), tilt=some.tilt - share @ some.tilt)
     joint = replace(file.values, pattern=NodalField(**as_lists(moved)))
     drawn = ElementTree.fromstring(plan(joint, 9e3, 0.0))
-    discs = [circle for circle in drawn.iter(f"{SVG}circle") if circle.get("fill-opacity")]
+    discs = list(drawn.iter(f"{SVG}circle"))
     assert len(discs) == len(share)
-    radius = np.array([float(disc.get("r")) for disc in discs])
     places = np.array([[float(disc.get("cx")), -float(disc.get("cy"))] for disc in discs])
     scale = np.ptp(places, axis=0) / np.ptp(moved.position, axis=0)
     np.testing.assert_allclose(scale[0], scale[1], rtol=1e-2)
-    assert np.pi * np.sum(radius**2) / scale[0] ** 2 == pytest.approx(joint.A_0, rel=0.05)
+    told = [text.text for text in drawn.iter(f"{SVG}text")]
+    wide = 1e3 * np.ptp(moved.position[:, 0])
+    assert f"points over {wide:.4g} mm, x to the right" in told
     assert len(PlaneLayout.of(joint).bolts) == 0
     figure = pictured(Course(MODELS["BoltedJoint"], replace(file, values=joint)))
     assert "no places of the bolts" in figure.text

@@ -298,6 +298,8 @@ def test_a_scan_gives_height_and_slope(capsys, tmp_path):
         (["--bolts", "4xM13"], "thread M13 is unknown, allowed are M3, M4"),
         (["--bolts", "0xM12"], "--bolts = '0xM12' are no bolts"),
         (["--bolts", "5xM12"], "5 bolts on a rectangle: expected --grid"),
+        (["--bolts", "M12"], "--at LxW beside one bolt: expected the number of --bolts, as in 4xM12"),
+        (["--mu", "15"], "--mu = '15' is outside (0, 2]: no metals rub as much"),
         (["--at", "220x60"], "bolt 1 at (-110, -30) mm leaves the plate"),
         (["--at", "190x60"], "leaves the plate; allowed are |x| < 0.09325 m"),
         (["--at", "10x60"], "the holes of bolts 1 and 2 overlap"),
@@ -333,6 +335,9 @@ def test_what_does_not_fit_is_refused(capsys, tmp_path, words, text):
 def test_a_roughness_must_be_stated(capsys):
     line = refused_line(capsys, "new", "bolted-joint", *PLATE, *STEEL)
     assert "the roughness is missing; expected --finish, --Ra, --Rq or --surface" in line
+    both = ["--surface", "scan.csv", "--finish", "ground"]
+    line = refused_line(capsys, "new", "bolted-joint", *PLATE, *STEEL, *both)
+    assert "--surface beside --finish: expected one of them" in line
 
 
 def test_places_must_be_stated(capsys):

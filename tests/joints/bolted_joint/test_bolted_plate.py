@@ -12,6 +12,8 @@ from jointfmu_tools import cli
 from jointfmu_tools.commands.assembly import with_assembly
 from jointfmu_tools.fem.bolted_contact import BoltedContact
 from jointfmu_tools.fem.geometry import Assembly, BoltList, Plate
+from jointfmu_tools.joints.bolted_joint.field import PlaneLayout
+from jointfmu_tools.joints.bolted_joint.new import computed
 
 from jointfmu.contact.surface import Elastic
 from jointfmu.joints.bolted_joint.compliances import DIRECTIONS, Compliances
@@ -302,6 +304,19 @@ LOAD = ["--preload", "60e3", "--embedding", "0"]
 """These and the four bolts below are plates of test_elastic_sides.py, which are solved once."""
 
 
+def test_the_bolt_that_gets_most_decides_when_the_interface_opens():
+    """Of three bolts one has as much of a pull as the others together, and so has the interface around it.
+    Bolts in a line through the centroid have no stiffness about it, but for round-off."""
+    each = np.ones(6)
+    share = np.outer([0.02, 0.02, 0.04], each)
+    found = Compliances(np.stack([each, each, each]), each, np.array([0, 0, 1, 1e-28, 1, 0]), share)
+    assert found.opening_load(1e3) == pytest.approx(1e3 / (0.5 * (1.0 - 0.08)))
+    even = found._replace(bolt_force=np.full((3, 6), 0.02))
+    assert even.opening_load(1e3) == pytest.approx(3e3 / (1.0 - 0.06))
+    assert even._replace(bolt_force=np.zeros((3, 6))).opening_load(1e3) == pytest.approx(3e3)
+    assert [row[2][3] for row in found.rows()] == [0.0, 0.0, 1.0, 0.0, 1.0, 0.0]
+
+
 def made(capsys, *words):
     assert cli.main(["new", "bolted-joint", *words, "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
@@ -327,7 +342,9 @@ def test_the_load_at_the_faces_passes_the_bolts_by(capsys, fine_elements):
     faces, found = made(capsys, *M16, *LOAD)
     assert faces["whole_load_factor"] < 0.5 * heads["whole_load_factor"]
     assert heads["whole_K_zz"] < faces["whole_K_zz"] < faces["K_zz"]
-    assert "between the outer faces; of its energy" in found["facts"]["whole_K_zz"]["text"]
+    assert (
+        "between the outer faces, other motions held (the FMU's K_zz)" in found["facts"]["whole_K_zz"]["text"]
+    )
     assert "the FMU is the whole" in found["facts"]["interface_share"]["text"]
 
 
@@ -342,15 +359,23 @@ def test_four_bolts_share_a_load_evenly(capsys):
 
 @pytest.mark.slow
 def test_the_whole_of_a_computed_field_has_the_stiffness_of_all_its_nodes(capsys, tmp_path, monkeypatch):
-    """The file has few of them, with the same sums: the whole that the finite elements find is its own."""
+    """The file has few of them, with the same sums: the whole that the finite elements find is its own, and
+    the one that is told. Its picture has the plate's outline and holes."""
     monkeypatch.setattr(BoltedContact, "of", partial(BoltedContact.of, refinement=0.5))  # as the bodies' here
     path = tmp_path / "plate.toml"
     words = ["--plate", "60x30", "--bolts", "2xM8", "--at", "40x0", "--grip", "20", *M16[6:]]
+    seen, real = [], computed.whole_joint
+    monkeypatch.setattr(computed, "whole_joint", lambda *asked: seen.append(real(*asked)) or seen[-1])
     facts, _ = made(capsys, *words, "--preload", "15e3", "--field", "computed", "--out", str(path))
-    found = Compliances.of(BoltedJointSpring.of(load(path).values), 15e3)
+    values = load(path).values
+    found = Compliances.of(BoltedJointSpring.of(values), 15e3)
+    np.testing.assert_allclose(found.whole, seen[0].compliances.whole, rtol=2e-3)
     for name, compliance in zip(DIRECTIONS, found.whole, strict=True):
         whole = facts[f"whole_K_{name if name.startswith('r') else 2 * name}"]
-        assert 1.0 / compliance == pytest.approx(whole, rel=2e-3), name
+        assert 1.0 / compliance == pytest.approx(whole, rel=1e-9), name
+    drawn = PlaneLayout.of(values)
+    np.testing.assert_allclose(drawn.extent, [[-0.03, -0.015], [0.03, 0.015]], atol=1e-6)
+    assert (len(drawn.outline), drawn.hole) == (1, pytest.approx(0.009))
 
 
 def test_without_finite_elements_it_is_said(capsys, monkeypatch):
@@ -368,7 +393,7 @@ def test_without_finite_elements_it_is_said(capsys, monkeypatch):
 def test_heads_that_do_not_fit_are_said(capsys):
     _, found = made(capsys, *M16, *LOAD, "--bearing", "90")
     (line,) = found["warnings"]
-    assert "head_diameter = 0.09 m reaches beyond the flange" in line
+    assert "bolt 1 at (0, 0) mm with a head of 90 mm reaches beyond the plate of side1" in line
 
 
 def test_an_unknown_attachment_is_refused(capsys):

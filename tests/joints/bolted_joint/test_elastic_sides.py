@@ -19,6 +19,7 @@ from jointfmu_tools.joints.bolted_joint import report
 from jointfmu_tools.joints.bolted_joint.fit import loop
 from jointfmu_tools.joints.bolted_joint.fit import preload as over_preload
 from jointfmu_tools.joints.bolted_joint.new import computed
+from jointfmu_tools.joints.bolted_joint.pull import bolt_forces
 from jointfmu_tools.report.course import Course
 from jointfmu_tools.uncertainty import propagate
 from jointfmu_tools.uncertainty.problem import pose
@@ -137,6 +138,10 @@ def test_the_report_states_the_whole_beside_its_parts(made):
         assert series.y[-1] > 1.1 * 15.0
     whole_force = sum(np.array(series.y)[-1] for series in panel.series)
     assert whole_force == pytest.approx(panel.series[0].x[-1], rel=1e-3)  # open: the bolts alone carry
+    pulled = bolt_forces(joint.spring, 15e3, 100.0, np.array([0.0, 10.0, 80e3]))  # rows that are not alike
+    tilted = joint.spring.compliances(15e3, 100.0).bolt_force[:, 2]
+    np.testing.assert_allclose((pulled[1] - pulled[0]) / 10.0, tilted, rtol=1e-3)
+    np.testing.assert_allclose(pulled[2], 20e3, rtol=1e-3)  # open: no moment is left
     alone = interface_alone(joint.file.values)
     assert report.whole_joint(Course(model, replace(joint.file, values=alone))) == []
 
@@ -178,6 +183,8 @@ def test_a_tapped_joint_is_near_vdi_2230(made, capsys):
     assert out["F_bolt[1]"] == pytest.approx(-out["f_z"], rel=1e-6)
     picture = report.pictured(Course(KINDS["bolted_joint"].models[0], joint.file)).pictures[1]
     assert "side 2: 60 mm" in picture
+    assert "what lies under heads and at threads (hatched)" in picture
+    assert picture.count('stroke-dasharray="2 3"') == 3  # under its head, and both walls of the thread
     capsys.readouterr()
     for thick, told in (
         (["40", "16"], "thickness = 0.016 m is outside (0.016, inf): deeper than its threads"),
@@ -460,6 +467,10 @@ def test_an_assembly_makes_the_whole_joint(made, plates, tmp_path, capsys, monke
     assert cli.main([*words, "--refinement", "0.5", *both]) == 0
     spring = BoltedJointSpring.of(load(out).values)
     assert spring.joint.elastic
+    assert (
+        f"whole_K_zz         {spring.motion(15e3, 0.0, *[(0.0,) * 3] * 2)['K_zz']:.4g} N/m"
+        in capsys.readouterr().out
+    )
     found, before = spring.compliances(15e3), drawn.spring.compliances(15e3)
     assert np.all((found.whole < before.whole) & (found.whole > 0.6 * before.whole))
     assert found.bolts == pytest.approx(before.bolts, rel=1e-3)
@@ -472,6 +483,10 @@ def test_an_assembly_makes_the_whole_joint(made, plates, tmp_path, capsys, monke
     assert cli.main([*again, "--thickness", "10", "10", "--out", str(back)]) == 0
     returned = BoltedJointSpring.of(load(back).values)
     assert returned.joint.elastic
+    assert (
+        f"opening_load       {returned.compliances(15e3).opening_load(14.2e3):.4g} N"
+        in capsys.readouterr().out
+    )
     np.testing.assert_allclose(returned.compliances(15e3).whole, found.whole, rtol=0.05)
     np.testing.assert_allclose(returned.joint.pattern.bolt_means, spring.joint.pattern.bolt_means, atol=1e-6)
     capsys.readouterr()

@@ -12,6 +12,7 @@ from jointfmu.parameters import ParameterFile, dump
 from ...command_line.common import Answer, Commands, argument, command
 from ...fem import installed
 from ...fields.clamped import clamping
+from ...shown import fact_document, fact_lines
 from .. import check_files
 from . import assembly_arguments, check_bolts, joint_file, judge_assembly, with_assembly
 
@@ -66,12 +67,15 @@ def run(args: argparse.Namespace) -> Answer:
     with installed("the finite-element analysis"):
         curve = approach_curve(file.values)
         rows, solution = convergence.study(assembly, curve, args.preload, moment, levels)
-    written = _write(args, file, solution)
+    made = _with_field(args, file, solution) if args.out else file
+    whole = clamping(file.joint).facts(made, _tightening(args, made)) if args.attached else {}
+    written = _write(args, made, solution)
     facts = _findings(solution, moment, args.preload)
     found = judge_assembly(file, assembly, args.preload, facts["p_mean"], solution.peak)
     found = found.with_warnings(unlike_holes(solution.field, assembly.bolts.positions, moment != 0.0))
     document = facts | {"meshes": [_mesh(row) for row in rows], "written": written}
-    lines = [*_lines(facts), *_table(rows)]
+    document |= {"whole": fact_document(whole)} if whole else {}
+    lines = [*_lines(facts), *_table(rows), *fact_lines(whole)]
     return Answer(document=document, lines=lines, judgement=found, written=written)
 
 
@@ -91,7 +95,7 @@ def _write(args: argparse.Namespace, file: ParameterFile, solution: "JointSoluti
     from ...fem import results
 
     if args.out:
-        write_text(args.out, dump(_with_field(args, file, solution)))
+        write_text(args.out, dump(file))
     if args.field:
         results.write(solution, args.field)
     if args.plot:
@@ -106,8 +110,13 @@ def _with_field(args: argparse.Namespace, file: ParameterFile, solution: "JointS
     made, shape = with_solution(file, solution, args.preload, args.moment or 0.0)
     if not args.attached:
         return made
-    preload = args.preload + made.values.embedding
+    preload = _tightening(args, made)
     return clamping(made.joint).whole(made, solution.joint.assembly, preload, args.attached, shape)
+
+
+def _tightening(args: argparse.Namespace, file: ParameterFile) -> float:
+    """Force [N] of each bolt before embedding."""
+    return float(args.preload + file.values.embedding)
 
 
 def _findings(solution: "JointSolution", moment: float, preload: float) -> dict[str, Any]:

@@ -12,6 +12,7 @@ from jointfmu.parameters import ParameterFile, dump
 from ...command_line.common import Answer, Commands, Parser, argument, command
 from ...fields.clamped import clamping
 from ...judgement import judge, known_height
+from ...shown import fact_document, fact_lines
 from .. import check_files
 from . import bodies, compute, joint_file
 
@@ -84,9 +85,11 @@ def _run_import(args: argparse.Namespace) -> Answer:
         tolerance=FORCE_ERROR if args.force_tolerance is None else args.force_tolerance,
     )
     file = replace(file, name=f"{start.name}, field of {args.file.name}")
+    whole = {}
     if plates:
-        preload = args.preload + file.values.embedding
-        file = clamping(file.joint).whole(file, plates, preload, args.attached or "faces", reduction.field)
+        preload, own = args.preload + file.values.embedding, clamping(file.joint)
+        file = own.whole(file, plates, preload, args.attached or "faces", reduction.field)
+        whole = own.facts(file, preload)
     if args.plot:
         joint_parameters.draw(field, reduction, args.plot)
     if args.out:
@@ -101,7 +104,10 @@ def _run_import(args: argparse.Namespace) -> Answer:
     if abs(scaled) > FORCE_ERROR:
         text = f"the pressures are scaled by {100.0 * scaled:+.2g} % to the force of the bolts"
         found = found.with_warnings([f"{text}: ask the run's own contact force which of the two is wrong"])
-    return Answer(document=facts, lines=_lines(facts, start.values.A_0), judgement=found)
+    lines = [*_lines(facts, start.values.A_0), *fact_lines(whole)]
+    lines += [f"wrote {path}" for path in facts["written"]]
+    facts |= {"whole": fact_document(whole)} if whole else {}
+    return Answer(document=facts, lines=lines, judgement=found)
 
 
 def _reading(args: argparse.Namespace) -> Any:
@@ -180,4 +186,4 @@ def _lines(facts: dict[str, Any], before: float) -> list[str]:
         )
     if "outline" in facts:
         lines.append(facts["outline"])
-    return [*lines, *(f"wrote {path}" for path in facts["written"])]
+    return lines

@@ -29,6 +29,7 @@ class PlaneLayout:
 
     bolts   : (b, 2), none where the file does not say
     outline : rectangles (lower corner, upper corner) of the contact, the outer one first; none of a field
+              without bodies
     extent  : (2, 2) lowest and highest places
     hole, head : diameters, 0 where the file does not say
     """
@@ -43,15 +44,15 @@ class PlaneLayout:
     def of(cls, joint: Bolted) -> "PlaneLayout":
         """Of a joint's parameters."""
         pattern = joint.pattern
-        head = joint.bodies.head_diameter if isinstance(joint.bodies, ElasticBodies) else 0.0
+        bodies = joint.bodies if isinstance(joint.bodies, ElasticBodies) else None
+        head = bodies.head_diameter if bodies else 0.0
         if isinstance(pattern, NodalField):
-            shape = pressure_shape(pattern)
-            half = np.sqrt(joint.A_0 * shape.share / np.pi)[:, None]
-            extent = np.stack([np.min(shape.position - half, 0), np.max(shape.position + half, 0)])
-            bolts = np.zeros((0, 2))
-            if isinstance(joint.bodies, ElasticBodies):
-                bolts = np.column_stack([joint.bodies.bolt_x, joint.bodies.bolt_y])
-            return cls(bolts, (), extent, 0.0, head)
+            place = pressure_shape(pattern).position
+            known = bodies and bodies.outline
+            extent = np.reshape(known, (2, 2)) if known else np.stack([place.min(axis=0), place.max(axis=0)])
+            bolts = np.column_stack([bodies.bolt_x, bodies.bolt_y]) if bodies else np.zeros((0, 2))
+            hole = bodies.hole_diameter if bodies else 0.0
+            return cls(bolts, (extent,) if known else (), extent, hole, head)
         if isinstance(pattern, BoltedPlate):
             half = 0.5 * np.array([[-pattern.length, -pattern.width], [pattern.length, pattern.width]])
             outline = (half - pattern.centroid,)
@@ -102,7 +103,15 @@ def _whole(
     return whole_of(file, lambda: assembly, preload, attached, shape).file
 
 
-FIELD = Clamping(pressures=_pressures, shear_ratio=shear_ratio, layout=PlaneLayout.of, whole=_whole)
+def _facts(file: ParameterFile, preload: float) -> dict[str, tuple[float, str, str]]:
+    from .new.computed import whole_facts
+
+    return whole_facts(file, preload)
+
+
+FIELD = Clamping(
+    pressures=_pressures, shear_ratio=shear_ratio, layout=PlaneLayout.of, whole=_whole, facts=_facts
+)
 
 
 FREQUENCIES = MeasuredFrequencies(points="zhao2018_modes", assembly="box_specimen_by_frequency")

@@ -7,8 +7,8 @@ import numpy as np
 
 from jointfmu.joints.bolted_joint.bodies import ElasticBodies
 from jointfmu.joints.bolted_joint.law import Bolted, pressures
-from jointfmu.joints.bolted_joint.spring import patches
 from jointfmu.mechanics.footprint.bolts import pressure_shape
+from jointfmu.mechanics.footprint.plate import BoltedPlate
 from jointfmu.mechanics.footprint.shape import NodalField
 from jointfmu.quantity import Array
 
@@ -18,6 +18,10 @@ WIDE, HIGH = 420.0, 330.0
 """Most that the plan takes of the picture [px]."""
 EDGE, TICK = 64.0, 9.0
 """Free on all sides, and size of hatching [px]."""
+SEAM = 0.6
+"""By how much cells overlap, so that no line is between them [px]."""
+DOT = 0.22
+"""Radius of a point of a field over the distance of points that were spread evenly [1]."""
 THIN = 70.0
 """Least height of both sides in the section [px]: below it z is stretched."""
 VIRIDIS = np.array(
@@ -80,7 +84,7 @@ class Svg:
 
 
 def plan(joint: Bolted, preload: float, moment: float) -> str:
-    """The tightened interface from side 2: pressure, friction's patches, bolts with numbers, attachments."""
+    """The tightened interface from side 2: pressure, bolts with numbers, attachments."""
     shape, layout = pressure_shape(joint.pattern), PlaneLayout.of(joint)
     p = np.asarray(pressures(joint, shape, preload, moment))
     low, high = layout.extent
@@ -91,25 +95,20 @@ def plan(joint: Bolted, preload: float, moment: float) -> str:
     def at(place: Array) -> Array:
         return np.array([EDGE, EDGE]) + scale * np.array([place[0] - low[0], high[1] - place[1]])
 
-    cells, points = np.sqrt(joint.A_0 * shape.share), isinstance(joint.pattern, NodalField)
-    top = float(p.max())
-    for i in np.argsort(-cells, kind="stable"):
-        (x, y), side, value = at(shape.position[i]), float(scale * cells[i]), float(p[i])
+    points, top = isinstance(joint.pattern, NodalField), float(p.max())
+    dot = DOT * float(np.sqrt(np.prod(size) / len(p)))
+    cells = scale * _cells(joint, shape.share) + SEAM
+    for i in np.argsort(p if points else -shape.share, kind="stable"):
+        (x, y), value = at(shape.position[i]), float(p[i])
         fill = _colour(value / top) if value > 0.0 else OPEN
         if points:
-            sheet.put("circle", cx=x, cy=y, r=side / np.sqrt(np.pi), fill=fill, fill_opacity=0.85)
+            sheet.put("circle", cx=x, cy=y, r=dot, fill=fill)
         else:
-            corner = {"x": x - 0.51 * side, "y": y - 0.51 * side}
-            sheet.put("rect", **corner, width=1.02 * side, height=1.02 * side, fill=fill)
+            across, up = cells[i]
+            sheet.put("rect", x=x - 0.5 * across, y=y - 0.5 * up, width=across, height=up, fill=fill)
     for lower, upper in layout.outline:
         (x1, y2), (x2, y1) = at(lower), at(upper)
         sheet.put("rect", x=x1, y=y1, width=x2 - x1, height=y2 - y1, fill="none", stroke=INK)
-    friction = patches(joint.pattern)
-    for place in friction.position[np.asarray(pressures(joint, friction, preload, moment)) > 0.0]:
-        x, y = at(place)
-        for dx, dy in ((3.0, 0.0), (0.0, 3.0)):
-            sheet.put("line", x1=x - dx, y1=y - dy, x2=x + dx, y2=y + dy, stroke="#fff", stroke_width=3)
-            sheet.line(x - dx, y - dy, x + dx, y + dy)
     attached = _attached(joint)
     _bolts(sheet, np.array([at(bolt) for bolt in layout.bolts]), layout, scale, attached == "heads")
     (x1, y2), (x2, y1) = at(low), at(high)
@@ -121,23 +120,36 @@ def plan(joint: Bolted, preload: float, moment: float) -> str:
     if attached == "faces":
         for ends in ((x1, y1, x2, y1), (x2, y1, x2, y2), (x2, y2, x1, y2), (x1, y2, x1, y1)):
             sheet.held(*ends)
-    told = {"faces": "attached: outer faces of both sides", "heads": "attached: under heads and nuts"}
+    told = {"faces": "attached: outer faces of both sides", "heads": f"attached: {_seats(joint)}"}
     if attached in told:
         sheet.text(x1, y1 - 22.0, told[attached], "start", RED)
-    sheet.text(0.5 * (x1 + x2), y2 + 26.0, f"{1e3 * (high - low)[0]:.4g} mm, x to the right", "middle", SOFT)
+    over = "" if layout.outline else "points over "
+    width, height = (f"{over}{1e3 * way:.4g} mm" for way in high - low)
+    sheet.text(0.5 * (x1 + x2), y2 + 26.0, f"{width}, x to the right", "middle", SOFT)
     turned = f"rotate(-90 {x1 - 26.0:.1f} {0.5 * (y1 + y2):.1f})"
-    sheet.text(
-        x1 - 26.0, 0.5 * (y1 + y2), f"{1e3 * (high - low)[1]:.4g} mm, y up", "middle", SOFT, transform=turned
-    )
+    sheet.text(x1 - 26.0, 0.5 * (y1 + y2), f"{height}, y up", "middle", SOFT, transform=turned)
     _bar(sheet, sheet.width - 98.0, EDGE, sheet.height - 2.0 * EDGE, top)
     moved = f", {moment:g} N m" if moment else ""
     sheet.text(EDGE, 22.0, f"{preload / 1e3:.4g} kN in each bolt{moved}: up to {top / 1e6:.4g} MPa", "start")
     return sheet.svg("The interface from above: pressure, bolts, attachments")
 
 
+def _cells(joint: Bolted, share: Array) -> Array:
+    """Width and height (n, 2) [m] of the cells of a plate or a frame."""
+    side, plate = np.sqrt(joint.A_0 * share)[:, None], joint.pattern
+    if not isinstance(plate, BoltedPlate):
+        return side * np.ones(2)
+    step = np.array([plate.length, plate.width]) / plate.coarse
+    return np.asarray(side * step / np.sqrt(np.prod(step)))
+
+
 def _attached(joint: Bolted) -> str:
     bodies = joint.bodies
     return bodies.attached if joint.elastic and isinstance(bodies, ElasticBodies) else ""
+
+
+def _seats(joint: Bolted) -> str:
+    return "under heads and " + ("at threads" if getattr(joint.bodies, "thread_depth", 0.0) else "nuts")
 
 
 def _colour(part: float) -> str:
@@ -166,7 +178,7 @@ def _bolts(sheet: Svg, at: Array, layout: PlaneLayout, scale: float, held: bool)
         if hole:
             sheet.put("circle", cx=x, cy=y, r=hole, fill="#fff", stroke=INK)
         if head and held:
-            wide = max(head - hole, 4.0)
+            wide = max(head - hole, 4.0) if hole else 4.0
             ring = {"stroke_width": wide, "stroke_dasharray": "2 4", "stroke_opacity": 0.9}
             sheet.put("circle", cx=x, cy=y, r=head - 0.5 * wide, fill="none", stroke=RED, **ring)
         if head:
@@ -201,11 +213,12 @@ def section(joint: Bolted) -> str:
         sheet.text(x2 + 20.0, y + 4.0, f"{name}: {1e3 * thick:.4g} mm", "start", SOFT)
     places = x1 + scale * (layout.bolts[:, 0] - low)
     for x in np.unique(np.round(places, 1)):
-        ends = (middle - up * bodies.thread_depth if bodies.thread_depth else top, bottom)
-        _bolt(sheet, x, ends, 0.5 * scale * layout.head, head, attached == "heads", bodies.thread_depth > 0.0)
+        thread = up * bodies.thread_depth
+        ends = (middle - thread if thread else top, bottom)
+        _bolt(sheet, x, ends, 0.5 * scale * layout.head, head, attached == "heads", thread)
         names = ", ".join(str(j + 1) for j in np.flatnonzero(np.abs(places - x) < 0.1))
         sheet.text(x, bottom + head + 24.0, names)
-    enters = {"faces": "the outer faces", "edge": "the edges", "heads": "what lies under heads and nuts"}
+    enters = {"faces": "the outer faces", "edge": "the edges", "heads": f"what lies {_seats(joint)}"}
     if attached == "edge":
         sheet.held(x1, bottom, x1, middle)
         sheet.held(x2, top, x2, middle)
@@ -217,7 +230,8 @@ def section(joint: Bolted) -> str:
             sheet.held(x2, bottom, x1, bottom)
         for x in (x1, x2) if attached == "faces" else (np.min(places), np.max(places)):
             beside = 0.5 * scale * layout.head + 12.0 if attached == "heads" else 0.0
-            sheet.arrow(x + beside, top - 14.0, 0.0, -34.0)
+            seat = middle - 0.5 * up * bodies.thread_depth if beside and bodies.thread_depth else top - 14.0
+            sheet.arrow(x + beside, seat, 0.0, -34.0)
             sheet.arrow(x + beside, bottom + 14.0, 0.0, 34.0)
     if attached in enters:
         sheet.text(x1, 22.0, f"the load enters at {enters[attached]} (hatched)", "start", RED)
@@ -227,15 +241,17 @@ def section(joint: Bolted) -> str:
 
 
 def _bolt(
-    sheet: Svg, x: float, ends: tuple[float, float], half: float, head: float, held: bool, tapped: bool
+    sheet: Svg, x: float, ends: tuple[float, float], half: float, head: float, held: bool, thread: float
 ) -> None:
-    """One bolt with head and nut, or to the end of its thread; schematic."""
+    """One bolt with head and nut, or to the end of a thread [px]; schematic."""
     (top, bottom), shank = ends, 0.6 * half
     sheet.put("rect", x=x - shank, y=top, width=2.0 * shank, height=bottom - top, fill="#fff", stroke=INK)
-    for y in (bottom,) if tapped else (top - head, bottom):
+    for y in (bottom,) if thread else (top - head, bottom):
         sheet.put("rect", x=x - half, y=y, width=2.0 * half, height=head, fill="#fff", stroke=INK)
     if held:
         under = {"stroke": RED, "stroke_width": 5, "stroke_dasharray": "2 3"}
-        for y in (bottom,) if tapped else ends:
+        for y in (bottom,) if thread else ends:
             sheet.put("line", x1=x - half, y1=y, x2=x + half, y2=y, **under)
+        for wall in (x - shank, x + shank) if thread else ():
+            sheet.put("line", x1=wall, y1=top, x2=wall, y2=top + thread, **under)
     sheet.line(x, top - head - 8.0, x, bottom + head + 8.0, INK, "9 3 2 3")

@@ -9,7 +9,6 @@ from jointfmu_fmu_src.joint_parts.chart import Panel, Series
 
 from jointfmu.joints.bolted_joint.bodies import ElasticBodies
 from jointfmu.joints.bolted_joint.compliances import Compliances
-from jointfmu.joints.bolted_joint.contact import Place
 from jointfmu.joints.bolted_joint.law import (
     interface_alone,
     shaped_pressure,
@@ -27,9 +26,12 @@ from ...report.figure import Beside, Figure
 from ...shown import quantity
 from .field import PlaneLayout
 from .picture import plan, section
+from .pull import MOST, bolt_forces
 
-BEYOND = 4.0
-"""Way that is drawn over that at which all is open [1]."""
+BEYOND = 1.3
+"""Pull that is drawn over that at which the interface opens [1]."""
+ALIKE = 0.05
+"""How much more than on average [1] a bolt gets of a force along z that bolts share alike."""
 TOLD_AT = 0.1
 """Shear over mu times the normal force [1] at which the band of the friction is told."""
 
@@ -47,12 +49,11 @@ def pictured(course: Course) -> Figure:
     pictures = [plan(joint, preload, moment)]
     if joint.elastic and isinstance(bodies, ElasticBodies) and bodies.thickness:
         pictures.append(section(joint))
-    text = (
-        "The tightened interface from side 2, grey where it is open; crosses are the patches that carry the "
-        "friction. "
-    )
+    text = "The tightened interface from side 2, grey where it is open. "
     if isinstance(joint.pattern, NodalField):
-        text += "The pressure comes as points, whose discs have their areas: the outline is not in the file. "
+        text += "The pressure comes as points, some of the field's nodes, which stand for all of them. "
+    if not PlaneLayout.of(joint).outline:
+        text += "The outline is not in the file. "
     text += (
         "Bolts are numbered as the FMU's F_bolt. " if len(bolts) else "The file has no places of the bolts. "
     )
@@ -129,7 +130,7 @@ def _tight(course: Course) -> tuple[float, float]:
 
 
 def whole_joint(course: Course) -> list[Figure]:
-    """The whole joint beside its interface and its bolts, and the force of each bolt over a force along z."""
+    """The whole joint beside its interface and its bolts, and the force of each bolt over a pull along z."""
     joint, spring = course.file.values, course.spring
     if not joint.elastic:
         return []
@@ -139,11 +140,17 @@ def whole_joint(course: Course) -> list[Figure]:
     left = float(working_preload(joint, preload))
     opening = found.opening_load(left)
     limit = float(slip_force(joint, left))
-    panel = _bolt_forces(spring, preload, moment, opening * found.whole[2])
+    panel = _bolt_forces(spring, preload, moment, BEYOND * opening)
+    share = found.bolt_force[:, 2]
+    most = int(np.argmax(share))
+    uneven = share[most] > (1.0 + ALIKE) * np.mean(share)
+    where = f"around bolt {most + 1}, which gets {share[most]:.3g} of it" if uneven else "around the bolts"
     text = _text(found, left, moment) + (
-        f" It takes {_told(opening, 'N')} along z to open the interface everywhere, by these stiffnesses, "
-        f"and {_told(limit, 'N')} along x or y to slip wholly; slip begins at the edges far below, and what "
-        "it loses is under Loops."
+        f" It takes {_told(opening, 'N')} along z to open the interface {where}, by these stiffnesses; "
+        "one that peels opens before, as drawn. It takes "
+        f"{_told(limit, 'N')} along x or y to slip wholly; slip begins at the edges far below, and what "
+        f"it loses is under Loops. Drawn is a pull to {BEYOND:g} times that load, the other five motions "
+        f"free, and to no more than {MOST:g} times the force of a bolt at tightening."
     )
     return [Figure("The whole joint", text, [panel], table=_rows(found))]
 
@@ -169,24 +176,20 @@ def _text(found: Compliances, tension: float, moment: float) -> str:
     return (
         f"Small motions of the attachments about the tightened state, {_told(tension, 'N')} in each bolt"
         + (f" with a moment of {moment:g} N m" if moment else "")
-        + ". The last three columns are parts of the compliance, by the energy stored; members are a spring "
+        + ", each alone with the other five held: the stiffness of the whole is the FMU's. The last three "
+        "columns are parts of its compliance, by the energy stored; members are a spring "
         "in series with the rest, interface and bolts alone are between rigid sides. The interface has "
         f"{share[2]:.1%} of it along z and at most {most:.1%} in any direction: {matters}. Of a force along "
-        f"z the bolts take {found.load_factor:.3f} (load factor n Phi_K of VDI 2230); when the "
-        "interface opens they take all, as drawn."
+        f"z that leaves the other motions free the bolts take {found.load_factor:.3f} (load factor n Phi_K "
+        "of VDI 2230); where the interface opens they take all, as drawn."
     )
 
 
-def _bolt_forces(spring: BoltedJointSpring, preload: float, moment: float, opens: float) -> Panel:
-    """Force of each bolt over the force along z that pulls, to beyond the way [m] at which all is open."""
-    memory, pulls, forces = spring.at_rest(), [], []
-    names = [bolt_force(j) for j in range(len(spring.modes.bolts))]
-    for s in opens * np.linspace(0.0, BEYOND, 25):
-        place = Place(np.array([0.0, 0.0, s, 0.0, 0.0, 0.0]))
-        out, memory = spring.evolve(preload, moment, place, (0.0,) * 6, memory)
-        pulls.append(-1e-3 * float(out["f_z"]))
-        forces.append([1e-3 * float(out[name]) for name in names])
-    series = [Series(name, pulls, column) for name, column in zip(names, np.transpose(forces), strict=True)]
+def _bolt_forces(spring: BoltedJointSpring, preload: float, moment: float, most: float) -> Panel:
+    """Force of each bolt over the force along z that pulls, up to the most [N]."""
+    pulls = np.linspace(0.0, most, 27)
+    columns = 1e-3 * bolt_forces(spring, preload, moment, pulls).T
+    series = [Series(bolt_force(j), 1e-3 * pulls[: len(y)], y) for j, y in enumerate(columns)]
     return Panel("Bolts under a force along z", "force that pulls [kN]", "force of a bolt [kN]", series)
 
 

@@ -103,13 +103,15 @@ class Roughness(RoughSurfaces, Checked):
         found = []
         if least < few:
             found.append(
-                f"a pressure of {least:.4g} Pa is below {few:.3g} Pa, where the law roughness ends: one hill "
-                "carries, and surfaces of the same roughness differ by half and more (docs/validity.md)"
+                f"a pressure of {least:.4g} Pa is below {few:.3g} Pa, from where the law roughness is "
+                "proven: one hill carries, and surfaces of the same roughness differ by half and more "
+                "(docs/validity.md)"
             )
         if most > flat:
             found.append(
-                f"a pressure of {most:.4g} Pa is above {flat:.3g} Pa, where the law roughness ends: the "
-                "longest wave is pressed flat (docs/validity.md)"
+                f"a pressure of {most:.4g} Pa is above {flat:.3g} Pa, up to which the law roughness is "
+                "proven: the longest wave is pressed flat, the rest to its end is an extrapolation "
+                "(docs/validity.md)"
             )
         return found
 

@@ -57,6 +57,10 @@ class ElasticBodies:
     thickness: tuple[float, ...] = series(
         "m", "thickness of side 1 and 2 at the bolts, for pictures", gt=0.0, optional=True
     )
+    outline: tuple[float, ...] = series(
+        "m", "lowest x and y, highest x and y of the contact, from its centroid, for pictures", optional=True
+    )
+    hole_diameter: float = quantity("m", "clearance hole, for pictures", ge=0.0, default=0.0)
     head_diameter: float = quantity(
         "m", "outer diameter of what lies under heads and nuts, for pictures", ge=0.0, default=0.0
     )
@@ -72,7 +76,7 @@ class ElasticBodies:
         counts = {"y": patches, "bolt_y": bolts, "stretch": bolts * modes}
         counts |= {name: patches * modes for name in _MOVED if name.startswith("patch_")}
         counts["opening"] = modes * max(len(self.opening) // modes, 1)
-        counts |= {"thickness": 2} if self.thickness else {}
+        counts |= {name: n for name, n in (("thickness", 2), ("outline", 4)) if getattr(self, name)}
         for name, count in counts.items():
             if (given := len(getattr(self, name))) != count:
                 raise ValueError(f"bodies.{name} has {given} numbers, expected {count} with {modes} modes")

@@ -15,15 +15,20 @@ DIRECTIONS = {"x": "N/m", "y": "N/m", "z": "N/m", "rx": "N.m/rad", "ry": "N.m/ra
 PARTS = ("interface", "members", "bolts")
 MATTERS = 0.1
 """Part of the whole's compliance [1] from which on the interface is worth a law of its own."""
+ROUND_OFF = 1e-9
+"""Stiffness of bolts over that of the whole [1] up to which it is that of places rounded off an axis."""
 
 
 class Compliances(NamedTuple):
-    """Of a tightened joint, under a unit force along x, y, z and a unit moment about them.
+    """Of a tightened joint that moves along x, y, z or turns about them, the other five motions held, as K_xx
+    to K_rz of the FMU are.
 
-    parts      : (3, 6) [m/N, rad/(N.m)] twice the energy that interface, members and bolts store
+    parts      : (3, 6) [m/N, rad/(N.m)] twice the energy that interface, members and bolts store at a unit
+                 force or moment
     rigid      : (6) of the interface alone between rigid sides, without bolts
     bolts      : (6) [N/m, N.m/rad] stiffness of the bolts alone between rigid sides
-    bolt_force : (bolts, 6) [N per N, N per N.m] what each bolt gets of it
+    bolt_force : (bolts, 6) [N per N, N per N.m] what each bolt gets of a force or moment that leaves the
+                 other motions free
     """
 
     parts: Array
@@ -36,16 +41,14 @@ class Compliances(NamedTuple):
         """Of a joint with elastic sides, tightened by the force of each bolt [N] and a moment [N.m]."""
         whole, modes, bolt = spring.whole, spring.modes, spring.joint.bolt_stiffness
         H = spring.slope(preload, moment)
-        motion = np.linalg.inv(whole.condensed(H))
-        amplitude = -np.linalg.solve(H[6:, 6:], H[6:, :6] @ motion)
-        force = bolt * (whole.seats @ motion[2:5] + modes.stretch @ amplitude)
-        members = modes.stiffness @ amplitude**2
-        stretch = np.sum(force**2, axis=0) / bolt if bolt > 0.0 else np.zeros(6)
-        interface = np.diag(motion) - members - stretch
-        shanks = np.zeros((6, 6))
-        shanks[2:5, 2:5] = bolt * whole.seats.T @ whole.seats
-        alone = np.diag(np.linalg.inv(H[:6, :6] - shanks))
-        return cls(np.stack([interface, members, stretch]), alone, np.diag(shanks), force)
+        K, follow = whole.condensed(H), -np.linalg.solve(H[6:, 6:], H[6:, :6])
+        stretch = modes.stretch @ follow
+        stretch[:, 2:5] += whole.seats
+        members, bolts = modes.stiffness @ follow**2, bolt * np.sum(stretch**2, axis=0)
+        held, shanks = np.diag(K), np.zeros(6)
+        shanks[2:5] = bolt * np.sum(whole.seats**2, axis=0)
+        parts = np.stack([held - members - bolts, members, bolts]) / held**2
+        return cls(parts, 1.0 / (np.diag(H)[:6] - shanks), shanks, bolt * stretch @ np.linalg.inv(K))
 
     @property
     def whole(self) -> Array:
@@ -59,13 +62,15 @@ class Compliances(NamedTuple):
 
     @property
     def members(self) -> Array:
-        """Stiffness (6) [N/m, N.m/rad] of the members: springs in series with the rest in their place."""
+        """Stiffness (6) [N/m, N.m/rad] of the members: springs in series with the rest."""
         return np.asarray(1.0 / self.parts[1])
 
     def rows(self) -> list[tuple[str, str, list[float], list[float]]]:
         """Each direction's name and unit, stiffness of the whole, interface, members and bolts (0: none),
         and their shares [1] in the compliance."""
-        each = np.stack([1.0 / self.whole, 1.0 / self.rigid, self.members, self.bolts])
+        whole = 1.0 / self.whole
+        bolts = np.where(self.bolts > ROUND_OFF * whole, self.bolts, 0.0)
+        each = np.stack([whole, 1.0 / self.rigid, self.members, bolts])
         return [
             (_stiffness_name(name), unit, each[:, i].tolist(), self.shares[:, i].tolist())
             for i, (name, unit) in enumerate(DIRECTIONS.items())
@@ -82,9 +87,15 @@ class Compliances(NamedTuple):
         return float(self.bolt_force[:, 2].sum())
 
     def opening_load(self, tension: float) -> float:
-        """Force [N] along z that takes all pressure off the interface, linearly; tension [N] of a bolt."""
+        """Force [N] along z that takes the pressure off around the bolt that gets most, linearly; tension [N]
+        of a bolt.
+
+        What passes by its place, through bolt and interface, is as much of the force as the bolt has of what
+        all bolts get.
+        """
         force = self.bolt_force[:, 2]
-        return tension / (1.0 / len(force) - float(force.mean()))
+        part = force.max() / force.sum() if np.any(force) else 1.0 / len(force)
+        return tension / float(part * (1.0 - self.load_factor))
 
 
 def _stiffness_name(direction: str) -> str:

@@ -101,6 +101,12 @@ class BoltedPlate:
             return 1.0, _lever_of_one_row(self, *unit_pressures(self))
         return lever(self.bolts[:, 1])
 
+    @property
+    def coarse(self) -> Array:
+        """Cells along x and y (2) before any of them is halved both ways."""
+        plan = np.array([self.length, self.width])
+        return np.asarray(np.maximum(np.ceil(COARSE * plan / np.max(plan)), 2.0))
+
     def shape(self) -> PressureShape:
         """Shares, positions and pressures of the cells of the plate.
 
@@ -160,8 +166,7 @@ def cells(plate: BoltedPlate) -> tuple[Array, Array]:
 
     Cells that a bolt presses on are halved until they are small against its disc.
     """
-    reach, plan = plate.reach, np.array([plate.length, plate.width])
-    count = np.maximum(np.ceil(COARSE * plan / np.max(plan)), 2.0)
+    reach, plan, count = plate.reach, np.array([plate.length, plate.width]), plate.coarse
     index = np.stack(np.meshgrid(*(np.arange(n) for n in count), indexing="ij"), -1).reshape(-1, 2)
     side = plan / count
     middle = (index + 0.5) * side - 0.5 * plan

@@ -8,7 +8,7 @@ import numpy as np
 
 from jointfmu.joints.bolted_joint.bodies import ElasticBodies
 from jointfmu.joints.bolted_joint.compliances import PARTS, Compliances
-from jointfmu.joints.bolted_joint.law import pressures, shear_ratio
+from jointfmu.joints.bolted_joint.law import pressures, shear_ratio, working_preload
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.mechanics.curve import approach_curve
 from jointfmu.mechanics.footprint.bolts import pressure_shape
@@ -122,11 +122,19 @@ def whole_of(
         bodies = replace(
             elastic_bodies(linear, BoltedJointSpring.of(file.values), springs[:, 2], preload),
             thickness=(clamped.side1.clamped, clamped.side2.clamped),
+            outline=_outline(clamped, joint.interface.centroid),
+            hole_diameter=clamped.bolts.hole_diameter,
             head_diameter=clamped.bolts.head_diameter,
             thread_depth=getattr(clamped.side2, "depth", 0.0),
         )
         compliances = linear.compliances()
     return ComputedJoint(compliances, with_bodies(file, bodies, attached))
+
+
+def _outline(clamped: "Assembly", centroid: Array) -> tuple[float, ...]:
+    """Lowest x and y, highest x and y [m] of a contact, from its centroid [m]."""
+    half = np.min([side.layers()[0].outer for side in (clamped.side1, clamped.side2)], axis=0)
+    return tuple(np.concatenate([-half - centroid, half - centroid]).tolist())
 
 
 def with_bodies(file: ParameterFile, bodies: ElasticBodies, attached: str) -> ParameterFile:
@@ -186,10 +194,20 @@ def facts(
         if sides == "elastic":
             raise
         return NewJoint(file, {}, [f"members and bolts are not computed, {alone}: {error}"])
-    parts = found.compliances
-    rows = _stiffnesses(parts, attached) | _load(parts, plates.tension, attached)
-    rows |= _share(parts, sides == "rigid")
-    return NewJoint(file if sides == "rigid" else found.file, rows, [])
+    if sides == "rigid":
+        return NewJoint(file, _rows(found.compliances, plates.tension, attached, alone=True), [])
+    return NewJoint(found.file, whole_facts(found.file, plates.preload), [])
+
+
+def whole_facts(file: ParameterFile, preload: float) -> Facts:
+    """Of a joint with elastic sides, as report and FMU have it; preload [N] tightens each bolt."""
+    found = BoltedJointSpring.of(file.values).compliances(preload)
+    return _rows(found, float(working_preload(file.values, preload)), file.values.bodies.attached)
+
+
+def _rows(found: Compliances, tension: float, attached: str, alone: bool = False) -> Facts:
+    """The whole joint with a tension [N] of each bolt; `alone`: the interface is all that the FMU has."""
+    return _stiffnesses(found, attached) | _load(found, tension, attached) | _share(found, alone)
 
 
 def _stiffnesses(found: Compliances, attached: str) -> Facts:
@@ -200,15 +218,15 @@ def _stiffnesses(found: Compliances, attached: str) -> Facts:
         rows[f"whole_{name}"] = (
             whole,
             unit,
-            f"of the whole joint between {ATTACHED[attached]}; of its energy {shares}; the interface alone "
-            f"is {interface / whole:.3g} times as stiff",
+            f"of the whole joint between {ATTACHED[attached]}, other motions held (the FMU's {name}); of its "
+            f"energy {shares}; the interface alone is {interface / whole:.3g} times as stiff",
         )
         members[f"members_{name}"] = (alone, unit, "of its members, as a spring in series with the rest")
     return rows | members
 
 
 def _share(found: Compliances, alone: bool) -> Facts:
-    """Whether the interface matters for the whole; `alone`: it is all that the FMU has."""
+    """Whether the interface matters for the whole."""
     share = found.shares[0]
     rest = max(part for i, part in enumerate(share) if i != 2)
     text = f"part of the interface in the whole's compliance along z, at most {rest:.3g} in others; " + (
@@ -223,12 +241,17 @@ def _load(found: Compliances, tension: float, attached: str) -> Facts:
     """What an outer force along the axis does, without an eccentric one's bending."""
     where = f"a force along z at {ATTACHED[attached]}"
     opens = found.opening_load(tension)
+    free = f"{where}, other motions free"
     return {
-        "whole_load_factor": (found.load_factor, "1", f"n Phi_K: part that the bolts take of {where}"),
+        "whole_load_factor": (found.load_factor, "1", f"n Phi_K: part that the bolts take of {free}"),
         "whole_bolt_share": (
             float(found.bolt_force[:, 2].max()),
             "1",
-            f"part that one bolt takes at most of {where}",
+            f"part that one bolt takes at most of {free}",
         ),
-        "opening_load": (opens, "N", f"{where} that takes all pressure from the interface, linear"),
+        "opening_load": (
+            opens,
+            "N",
+            f"{where} that takes the pressure off around the bolt that gets most, linear",
+        ),
     }

@@ -63,6 +63,8 @@ def _rectangle(spans: Sequence[float], count: int, grid: str | None) -> Array:
     """A grid of bolts, all of it or its rim."""
     if min(spans) < 0.0:
         raise ValueError(f"--at = {min(spans):g} m is outside [0, inf): distance of the outermost bolts")
+    if count == 1 and max(spans) > 0.0:
+        raise ValueError("--at LxW beside one bolt: expected the number of --bolts, as in 4xM12")
     columns, rows = _grid(spans, count, grid)
     x, y = (
         0.5 * span * (np.linspace(-1.0, 1.0, n) if n > 1 else np.zeros(1))
