@@ -30,9 +30,9 @@ def quantity(value: Any, unit: str | None, digits: int = 6) -> tuple[str, str]:
     """A value as text in the unit in which it reads best, and that unit."""
     if isinstance(value, bool | str):
         return str(value).lower(), ""
-    if value == ():
-        return "none", ""
     if np.ndim(value):
+        if not len(value):
+            return "none", ""
         return f"{len(value)} numbers from {min(value):.6g} to {max(value):.6g}", spelled(unit or "1")
     if unit is None:
         return f"{value:g}", ""
