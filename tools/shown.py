@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 from jointfmu.contact.roughness import DECLARED
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile
-from jointfmu.quantity import flat_fields
+from jointfmu.quantity import flat_fields, span
 from jointfmu.quantity.units import display_unit, factor
 
 STIFFNESSES = {"N.m/rad": "N.m/rad", "N/m": "N/um"}
@@ -28,10 +28,8 @@ def quantity(value: Any, unit: str | None, digits: int = 6) -> tuple[str, str]:
     """A value as text in the unit in which it reads best, and that unit."""
     if isinstance(value, bool | str):
         return str(value).lower(), ""
-    if value == ():
-        return "none", ""
     if isinstance(value, tuple):
-        return f"{len(value)} numbers from {min(value):.6g} to {max(value):.6g}", spelled(unit or "1")
+        return span(value), spelled(unit or "1") if value else ""
     if unit is None:
         return f"{value:g}", ""
     shown = shown_unit(unit, value)
