@@ -9,7 +9,7 @@ import numpy as np
 from jointfmu.contact.roughness import DECLARED
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile
-from jointfmu.quantity import flat_fields
+from jointfmu.quantity import flat_fields, span
 from jointfmu.quantity.units import display_unit, factor
 
 STIFFNESSES = {"N.m/rad": "N.m/rad", "N/m": "N/um"}
@@ -31,9 +31,7 @@ def quantity(value: Any, unit: str | None, digits: int = 6) -> tuple[str, str]:
     if isinstance(value, bool | str):
         return str(value).lower(), ""
     if np.ndim(value):
-        if not len(value):
-            return "none", ""
-        return f"{len(value)} numbers from {min(value):.6g} to {max(value):.6g}", spelled(unit or "1")
+        return span(value), spelled(unit or "1") if len(value) else ""
     if unit is None:
         return f"{value:g}", ""
     shown = shown_unit(unit, value)

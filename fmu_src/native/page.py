@@ -11,7 +11,7 @@ from jointfmu import __version__
 from jointfmu.joints.model import Model, Spring
 from jointfmu.mechanics.steps import stable_steps
 from jointfmu.parameters import ParameterFile
-from jointfmu.quantity import flat_fields, problem
+from jointfmu.quantity import flat_fields, problem, span
 from jointfmu.quantity.units import UNITS, display_unit
 
 from ..folders import asset, parts_of
@@ -109,7 +109,7 @@ def _rows(parameters: ParameterFile) -> list[_ParameterRow]:
         else:
             allowed = "1, 2, 3, ..." if meta.get("whole") else str(meta["interval"])
         if isinstance(value, tuple):
-            value = f"{len(value)} numbers from {min(value):.6g} to {max(value):.6g}"
+            value = span(value)
         kind, source = parameters.origins.get(name, "user"), parameters.sources.get(name, "default choice")
         rows.append(_ParameterRow(name, value, meta.get("unit", ""), allowed, meta["doc"], kind, source))
     return rows

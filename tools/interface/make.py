@@ -105,7 +105,7 @@ def _given(option: Option, value: Any) -> object:
         return None
     each = value.tolist() if isinstance(value, np.ndarray) else value
     texts = [_text(v) for v in (each if isinstance(each, list | tuple) else [each])]
-    if option.by and not (option.many and any("," in text for text in texts)):
+    if option.by and not (option.many and any(sign in text for text in texts for sign in (",", option.by))):
         texts = [option.by.join(texts)]
     if not texts or (len(texts) > 1 and not option.many):
         raise ValueError(f"{option.name} = {value!r} are {len(texts)} values, expected one")

@@ -1,6 +1,6 @@
 """The one place where a physical field declares its SI unit, open or closed interval and meaning."""
 
-from .declaration import Checked, check, choice, group, problem, problems, quantity, series
+from .declaration import Checked, check, choice, group, problem, problems, quantity, series, span
 from .interval import Array, Interval, Number, erf, where
 from .parameter_set import Limit, assemble, build, changed, check_limits, flat_fields, flatten
 from .smooth import smooth_step, smooth_step_integral, smooth_step_slopes
@@ -28,5 +28,6 @@ __all__ = [
     "smooth_step",
     "smooth_step_integral",
     "smooth_step_slopes",
+    "span",
     "where",
 ]

@@ -1,6 +1,6 @@
 """A physical field declares its SI unit, open or closed interval and meaning, and is checked against them."""
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import MISSING, Field, field, fields
 from typing import Any
 
@@ -35,6 +35,11 @@ def series(unit: str, doc: str, *, optional: bool = False, **ends: float) -> Any
     meta = {"unit": unit, "doc": doc, "interval": Interval.of(**ends)}
     default: Any = () if optional else MISSING
     return field(default=default, metadata={**meta, "calibration": False, "whole": False, "series": True})
+
+
+def span(values: Sequence[float]) -> str:
+    """How many numbers a series has, and from where to where they go, in words."""
+    return f"{len(values)} numbers from {min(values):.6g} to {max(values):.6g}" if values else "none"
 
 
 def choice(*allowed: str | bool, doc: str) -> Any:

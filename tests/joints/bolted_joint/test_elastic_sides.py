@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from conftest import REFINEMENT, Fmu, here_alone, refused_line
 from jointfmu_fmu_src.building import build
+from jointfmu_fmu_src.native import page
 from jointfmu_tools import cli
 from jointfmu_tools.fem.whole_joint import WholeJoint
 from jointfmu_tools.fields.joint_parameters import with_field
@@ -21,6 +22,7 @@ from jointfmu_tools.joints.bolted_joint.fit import preload as over_preload
 from jointfmu_tools.joints.bolted_joint.new import computed
 from jointfmu_tools.joints.bolted_joint.pull import bolt_forces
 from jointfmu_tools.report.course import Course
+from jointfmu_tools.shown import quantity
 from jointfmu_tools.uncertainty import propagate
 from jointfmu_tools.uncertainty.problem import pose
 
@@ -142,6 +144,10 @@ def test_the_report_states_the_whole_beside_its_parts(made):
     tilted = joint.spring.compliances(15e3, 100.0).bolt_force[:, 2]
     np.testing.assert_allclose((pulled[1] - pulled[0]) / 10.0, tilted, rtol=1e-3)
     np.testing.assert_allclose(pulled[2], 20e3, rtol=1e-3)  # open: no moment is left
+    file = joint.file  # of before outlines were written
+    bare = replace(file, values=replace(file.values, bodies=replace(file.values.bodies, outline=())))
+    assert quantity((), "m") == ("none", "")
+    assert [row.value for row in page._rows(bare) if row.name == "bodies.outline"] == ["none"]
     alone = interface_alone(joint.file.values)
     assert report.whole_joint(Course(model, replace(joint.file, values=alone))) == []
 
@@ -215,8 +221,8 @@ def test_embedding_takes_of_the_preload(made):
     assert found == expected
     none, _ = at(lost, *STILL, preload=700.0)
     assert none["p_max"] == none["K_xx"] == none["F_bolt[1]"] == 0.0
-    page = report.whole_joint(Course(KINDS["bolted_joint"].models[0], replace(joint.file, values=lost.joint)))
-    assert "14.2 kN in each bolt" in page[0].text
+    told = report.whole_joint(Course(KINDS["bolted_joint"].models[0], replace(joint.file, values=lost.joint)))
+    assert "14.2 kN in each bolt" in told[0].text
 
 
 def test_bands_are_those_of_the_whole(made):
