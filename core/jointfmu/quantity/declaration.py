@@ -39,7 +39,7 @@ def series(unit: str, doc: str, *, optional: bool = False, **ends: float) -> Any
 
 def span(values: Sequence[float]) -> str:
     """How many numbers a series has, and from where to where they go, in words."""
-    return f"{len(values)} numbers from {min(values):.6g} to {max(values):.6g}" if values else "none"
+    return f"{len(values)} numbers from {min(values):.6g} to {max(values):.6g}" if len(values) else "none"
 
 
 def choice(*allowed: str | bool, doc: str) -> Any:
