@@ -101,7 +101,7 @@ def test_the_tightened_joint_is_as_stiff_as_by_finite_elements(made, words, prel
     """Within 3 %: modes are rounded to four digits, and few points stand for the contact."""
     joint = made(*words, preload=preload)
     out, _ = at(joint.spring, *STILL, preload=preload)
-    found = 1.0 / np.diag(np.linalg.inv(np.diag([out[name] for name in AXES])))
+    found = [out[name] for name in AXES]
     np.testing.assert_allclose(found, 1.0 / joint.fe.whole, rtol=0.03)
 
 
@@ -121,7 +121,7 @@ def test_the_report_states_the_whole_beside_its_parts(made):
     joint = made(*FOUR, preload=15e3)
     found = joint.spring.compliances(15e3)
     out, _ = at(joint.spring, *STILL, preload=15e3)
-    np.testing.assert_allclose(1.0 / found.whole, [out[name] for name in AXES], rtol=0.01)
+    np.testing.assert_allclose(1.0 / found.whole, [out[name] for name in AXES], rtol=1e-6)  # the same motions
     fe = joint.fe
     np.testing.assert_allclose(found.shares, fe.shares, atol=0.02)
     np.testing.assert_allclose(found.rigid, fe.rigid, rtol=0.03)
