@@ -18,7 +18,7 @@ from jointfmu_tools.fem.modes import REFINEMENT
 from jointfmu_tools.joints.bolted_joint.field import FREQUENCIES
 from scipy.optimize import least_squares
 
-from jointfmu.joints.bolted_joint.law import BoltedJoint, shear_ratio
+from jointfmu.joints.bolted_joint.law import BoltedJoint
 
 LENGTHS = ("length", "height", "wall", "flange_thickness", "overhang")
 STEP = 0.01
@@ -82,7 +82,7 @@ def frequencies(
     assembly: Assembly, joint: BoltedJoint, states: Sequence[tuple[float, float]], **options: Any
 ) -> Array:
     """As those of assembly_modes, with the joint's own shear."""
-    return modes.frequencies(assembly, joint, float(shear_ratio(joint)), states, **options)
+    return modes.frequencies(assembly, joint, float(joint.shear_ratio()), states, **options)
 
 
 def identify(

@@ -22,7 +22,7 @@ from scipy.optimize import least_squares
 from skfem import MeshHex, MeshQuad
 
 from jointfmu.contact.interface import stiffness_curve
-from jointfmu.joints.bolted_joint.law import BoltedJoint, shear_ratio
+from jointfmu.joints.bolted_joint.law import BoltedJoint
 from jointfmu.parameters import default
 from jointfmu.progress import track
 
@@ -90,7 +90,7 @@ class Box:
         """Normal and tangential stiffness per area (q) [N/m3]."""
         pressure = np.maximum(self.pressure(joint, force), 1e4)
         normal = np.maximum(stiffness_curve(joint, pressure)[0], 1e3)
-        return normal, float(shear_ratio(replace(joint, critical_area="continuity"))) * normal
+        return normal, float(replace(joint, critical_area="continuity").shear_ratio()) * normal
 
     def modes(self, joint: BoltedJoint, force: float) -> NaturalModes:
         """Six modes of two such halves."""

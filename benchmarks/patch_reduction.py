@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from scipy.stats import qmc
 
 from jointfmu.joints.bolted_joint.contact import shifts
-from jointfmu.joints.bolted_joint.law import shear_ratio
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.mechanics.curve import Curve
 from jointfmu.mechanics.footprint.bolts import pressure_shape
@@ -220,7 +219,7 @@ def friction(
     The joint's sliders, or fine ones, stand on a shape under the preload; `largest` [m] is the largest
     approach, over which the ways and the tilt are.
     """
-    ratio = float(shear_ratio(spring.joint))
+    ratio = float(spring.joint.shear_ratio())
     patches = shape if isinstance(shape, FrictionPatches) else shape.as_patches()
     gyration = np.sqrt(shape.share @ np.sum(shape.position**2, axis=1) + shape.share @ patches.radius**2)
     start = tightened(spring.curve, shape, (mean_pressure(spring), motion.moment))

@@ -31,7 +31,6 @@ from numpy.typing import NDArray
 from scipy import sparse as sp
 
 from jointfmu.joints.bolted_joint import bodies, memory, spring
-from jointfmu.joints.bolted_joint.law import shear_ratio
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 
 Array = NDArray[np.float64]
@@ -103,7 +102,7 @@ class Elements:
         pressure : (P) [Pa] at the points of its interface
         spring   : whose curve, friction and bolts it has
         """
-        values, ratio = spring.joint, float(shear_ratio(spring.joint))
+        values, ratio = spring.joint, float(spring.joint.shear_ratio())
         approach, at = spring.curve.inverse(pressure), whole.interface
         springs = np.outer(spring.curve.derivatives(approach, 1)[1], [ratio, ratio, 1.0])
         linear = whole.linear(springs, values.bolt_stiffness)

@@ -17,7 +17,6 @@ from jointfmu_tools.fitting.outcome import FitResult, Picture
 from jointfmu_tools.joints.bolted_joint.fit import loop
 from jointfmu_tools.joints.harmonic_drive.fit.hysteresis import HEADS as DRIVE_HEADS
 
-from jointfmu.joints.bolted_joint.law import shear_ratio
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.parameters import default, load
 from jointfmu.quantity.units import sizes
@@ -42,7 +41,7 @@ def test_first_loading_is_the_normal_curve_once_more():
         return spring.motion(PRELOAD, 0.0, (0.0, 0.0, apart), (0.0, 0.0, 0.0))
 
     rest = state(0.0)
-    kappa = float(shear_ratio(joint))
+    kappa = float(joint.shear_ratio())
     motion = np.array([1e-8, 1e-7, 1e-6, 5e-6, 9e-6])
     expected = [-joint.mu * state(kappa * u / joint.mu)["f_z"] for u in motion]
     np.testing.assert_allclose(law.friction(motion), expected, rtol=3e-6)  # the table of 48 steps

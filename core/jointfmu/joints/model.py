@@ -195,9 +195,7 @@ class Model:
         return self.variant(own, parameters) if self.variant else own
 
     def loaded(self, spring: Spring, start: Values) -> "Model":
-        """The model with its ramp, and a loop over the same input, as far as they reach with a parameter set
-        and start values of the inputs.
-        """
+        """The model with its ramp, and a loop over the same input, as far as they reach with these."""
         ramp, loop = self.ramp, self.loop
         if ramp.reach is None:
             return self

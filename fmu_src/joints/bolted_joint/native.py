@@ -18,7 +18,7 @@ def _functions(g: Graph, model: Model) -> None:
         g, joint, ("normal",), lambda s, u: [s.total("plastic_work", u), s.total("elastic_work", u)]
     )
     add_closing(g)
-    head = [joint.memory, joint.mu, law.shear_ratio(joint), joint.A_0, joint.bolt_stiffness, joint.damping]
+    head = [joint.memory, joint.mu, joint.shear_ratio(), joint.A_0, joint.bolt_stiffness, joint.damping]
     g.add("joint_head", "-> memory, mu, K_T/K_N, A_0, stiffness of a bolt, damping", [], head)
     _tightening(g)
     _shear(g)
@@ -46,7 +46,7 @@ def _tightening(g: Graph) -> None:
 def _shear(g: Graph) -> None:
     x = symbols("x", 7)
     doc = "limit, pressure and its derivatives, shift -> traction, tangent xx, xy, yy, lifted, stiffer"
-    y = contact.elastic_shear(x[0], law.shear_ratio(g.joint), x[1:5], x[5], x[6])
+    y = contact.elastic_shear(x[0], g.joint.shear_ratio(), x[1:5], x[5], x[6])
     g.add_with_seed("elastic_shear", doc, x, y)
     add_sliders(g)
     _loops(g)

@@ -22,7 +22,6 @@ from scipy.linalg import eigh
 from scipy.optimize import brentq
 
 from jointfmu.joints.bolted_joint.contact import Place
-from jointfmu.joints.bolted_joint.law import shear_ratio
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.parameters import default
 from jointfmu.quantity import flatten
@@ -48,7 +47,7 @@ def all_nodes(preload: float, moment: float) -> Array:
     none, one = np.zeros_like(x), np.ones_like(x)
     normal = np.array([none, none, one, y, -x, none])
     along = [np.array([one, none, none, none, none, -y]), np.array([none, one, none, none, none, x])]
-    ratio = shear_ratio(JOINT)
+    ratio = JOINT.shear_ratio()
     return np.asarray((normal * k) @ normal.T + ratio * sum((row * k) @ row.T for row in along))
 
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from jointfmu.contact.interface import at_pressure
 from jointfmu.contact.laws import mindlin
-from jointfmu.joints.bolted_joint.law import BoltedJoint, pressures, shear_ratio
+from jointfmu.joints.bolted_joint.law import BoltedJoint, pressures
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.mechanics.curve import MAX_ERROR
 from jointfmu.mechanics.footprint.bolts import PressureShape
@@ -118,7 +118,8 @@ def test_shear_ratio_is_that_of_the_law():
     for joint in (JOINT, changed(traction_ratio=0.6, spot_stiffness="hertz")):
         for p in (1e5, 1e8):
             law = at_pressure(joint, p)
-            assert shear_ratio(joint) == pytest.approx(float(law["K_T"] / law["K_N"]), rel=1e-13)  # round-off
+            found = float(law["K_T"] / law["K_N"])
+            assert joint.shear_ratio() == pytest.approx(found, rel=1e-13)  # round-off
 
 
 # Forces and stiffnesses away from the tightened state
@@ -134,7 +135,7 @@ def forces(spring, load, s):
 
 def potential(spring, load, s):
     """U(s) of the class: V is the exact integral of the table, piece by piece."""
-    curve, area, rho = spring.curve, JOINT.A_0 * spring.shape.share, shear_ratio(JOINT)
+    curve, area, rho = spring.curve, JOINT.A_0 * spring.shape.share, JOINT.shear_ratio()
     start = spring.tightened(*load)
     a, h = curve._coefficients, np.diff(curve.displacement)
     whole = np.concatenate([[0.0], np.cumsum(h * (a / np.arange(1.0, 7.0)[:, None]).sum(axis=0))])

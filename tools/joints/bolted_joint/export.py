@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointfmu.joints.bolted_joint import KIND
-from jointfmu.joints.bolted_joint.law import Bolted, pressures, shear_ratio
+from jointfmu.joints.bolted_joint.law import Bolted, pressures
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.joints.model import Variable
 from jointfmu.mechanics.footprint.shape import PressureShape
@@ -220,7 +220,7 @@ def _springs(
 
 
 def _contact(joint: Bolted) -> "tuple[Curve, Sequence[str]]":
-    ratio = float(shear_ratio(joint))
+    ratio = float(joint.shear_ratio())
     more = f"tangential stiffness of the law: {ratio:.9g} times the slope of the table"
     return BoltedJointSpring.of_nodes(joint).curve, [more]
 

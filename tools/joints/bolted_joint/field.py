@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from jointfmu.joints.bolted_joint.bodies import ElasticBodies
-from jointfmu.joints.bolted_joint.law import Bolted, bolt_pressures, pressures, shear_ratio
+from jointfmu.joints.bolted_joint.law import Bolted, bolt_pressures, pressures
 from jointfmu.mechanics.footprint.bolts import BoltPattern, pressure_shape
 from jointfmu.mechanics.footprint.plate import BoltedPlate
 from jointfmu.mechanics.footprint.shape import MergedShape, NodalField, PressureShape
@@ -110,7 +110,11 @@ def _facts(file: ParameterFile, preload: float) -> dict[str, tuple[float, str, s
 
 
 FIELD = Clamping(
-    pressures=_pressures, shear_ratio=shear_ratio, layout=PlaneLayout.of, whole=_whole, facts=_facts
+    pressures=_pressures,
+    shear_ratio=lambda joint: joint.shear_ratio(),
+    layout=PlaneLayout.of,
+    whole=_whole,
+    facts=_facts,
 )
 
 

@@ -19,7 +19,7 @@ from jointfmu.contact.laws import mindlin
 from jointfmu.joints.bolted_joint import KIND
 from jointfmu.joints.bolted_joint.bodies import Modes
 from jointfmu.joints.bolted_joint.contact import parts
-from jointfmu.joints.bolted_joint.law import Bolted, interface_alone, node_pressure, shear_ratio, slip_force
+from jointfmu.joints.bolted_joint.law import Bolted, interface_alone, node_pressure, slip_force
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring, patches, points
 from jointfmu.joints.bolted_joint.whole import Whole
 from jointfmu.joints.model import Variable
@@ -164,7 +164,7 @@ def _evaluate(
     force = joint.A_0 * mean * np.exp(places.force)
     compliance = force / (joint.A_0 * (scaled["k"] @ to_force))
     K = joint.A_0 * total("k")
-    rho = shear_ratio(joint)
+    rho = joint.shear_ratio()
     C = 0.0 * K
     if works:
         C = mindlin.viscous_equivalent(total(works[0]) / total(works[1]), joint.mass, K)
@@ -241,7 +241,7 @@ class Sides(NamedTuple):
             with np.errstate(divide="ignore"):
                 points, patches = (places.at(scaled, load + np.log(equal)) for equal in self.equal)
             normal = joint.A_0 * (points @ self.normal) + joint.bolt_stiffness * self.bolts
-            shear = shear_ratio(joint) * joint.A_0 * (patches @ self.shear)
+            shear = joint.shear_ratio() * joint.A_0 * (patches @ self.shear)
             H = np.stack([each.reshape(-1, size, size) for each in (normal, shear)])
             beside = np.moveaxis(H[:, :, 1:, 0], 0, -1)
             follow = np.linalg.solve(H.sum(axis=0)[:, 1:, 1:] + np.diag(self.modes), beside)

@@ -87,11 +87,8 @@ class Compliances(NamedTuple):
         return float(self.bolt_force[:, 2].sum())
 
     def opening_load(self, tension: float) -> float:
-        """Force [N] along z that takes the pressure off around the bolt that gets most, linearly; tension [N]
-        of a bolt.
-
-        What passes by its place, through bolt and interface, is as much of the force as the bolt has of what
-        all bolts get.
+        """Force [N] along z that takes the pressure off around the bolt that gets most, linearly: its place
+        has the part of the force that it has of what all bolts get; tension [N] of a bolt.
         """
         force = self.bolt_force[:, 2]
         part = force.max() / force.sum() if np.any(force) else 1.0 / len(force)

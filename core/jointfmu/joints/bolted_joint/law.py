@@ -197,8 +197,3 @@ def row_forces(joint: Bolted, preload: float, moment: float) -> tuple[float, flo
     """Bolt forces [N] of the two rows under a moment."""
     shift, left = moment / (joint.row_distance * joint.row_bolts), float(working_preload(joint, preload))
     return left + shift, left - shift
-
-
-def shear_ratio(joint: Bolted) -> Number:
-    """K_T/K_N [1], the same at every pressure."""
-    return joint.shear_ratio()

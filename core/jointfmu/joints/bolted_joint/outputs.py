@@ -7,7 +7,7 @@ import numpy as np
 from ...contact.laws import mindlin
 from ...mechanics.steps import STEPS, stable_steps
 from ...quantity import Number, where
-from .law import Bolted, shear_ratio
+from .law import Bolted
 
 SUMS = (
     "tightened", "tightened_x", "tightened_y",
@@ -58,7 +58,7 @@ def outputs(
     plane: Hu 2023, Eq. 45, corrected. The bolts act beside the interface, each at its place, by their tension
     alone.
     """
-    area, rho = joint.A_0, shear_ratio(joint)
+    area, rho = joint.A_0, joint.shear_ratio()
     bolts, (_, _, bolt_x2, bolt_y2, _) = joint.n_bolts * joint.bolt_stiffness, joint.pattern.bolt_means
     K_n = area * sums["stiffness"]
     eta_n, eta_t = sums["plastic"] / sums["elastic"], joint.loss_factor()

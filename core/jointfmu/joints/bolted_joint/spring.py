@@ -32,7 +32,7 @@ from .contact import (
     tangent_sums,
     traction_sums,
 )
-from .law import Bolted, interface_alone, pressures, shear_ratio, working_preload
+from .law import Bolted, interface_alone, pressures, working_preload
 from .memory import ALONG, FREE, RESTING, UNKNOWN, Memory, memory_of, moved_on, resting
 from .outputs import STRETCHES, bolt_force, outputs
 from .trials import Trial, Trials, Way, told
@@ -105,7 +105,7 @@ class BoltedJointSpring:
     @cached_property
     def _foundations(self) -> Callable[[bytes, bytes], Foundation]:
         """The sliders of the patches around approaches and above lowest ones, of which the last are kept."""
-        ratio, mu, shifts = float(shear_ratio(self.joint)), self.joint.mu, offsets(self.patches.equal)
+        ratio, mu, shifts = float(self.joint.shear_ratio()), self.joint.mu, offsets(self.patches.equal)
 
         def build(*approaches: bytes) -> Foundation:
             reference, lowest = (np.frombuffer(each) for each in approaches)
@@ -215,7 +215,7 @@ class BoltedJointSpring:
             shear, after = self._friction(at.way, amplitude, place, before)
             lifted = stiffer = np.zeros_like(tight)
         else:
-            limit, rho = joint.mu * tight, shear_ratio(joint)
+            limit, rho = joint.mu * tight, joint.shear_ratio()
             *parts, lifted, stiffer = elastic_shear(limit, rho, at.derivatives, *along(shape, place.rigid).T)
             none, nodes = np.zeros_like(tight), shape.as_patches()
             traction, tangent = (

@@ -21,7 +21,7 @@ import numpy as np
 from scipy.interpolate import CubicHermiteSpline, CubicSpline
 
 from jointfmu.joints.bolted_joint.contact import Place
-from jointfmu.joints.bolted_joint.law import Bolted, pressures, shear_ratio
+from jointfmu.joints.bolted_joint.law import Bolted, pressures
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.mechanics.curve import Curve, approach_curve
 from jointfmu.parameters import ParameterFile, default
@@ -70,7 +70,7 @@ def first_loading(
     equilibrium.
     """
     curve, approach, weight = _tightened(joint, preload)
-    kappa, mu = float(shear_ratio(joint)), joint.mu
+    kappa, mu = float(joint.shear_ratio()), joint.mu
     apart = (float(np.max(approach)) - curve.displacement[0]) * np.linspace(0.0, 1.0, _NODES + 1) ** 2
     load, stiffness, bend = (value @ weight for value in curve.derivatives(approach - apart[:, None], 2))
     motion, force, slope = apart * mu / kappa, mu * (load[0] - load), kappa * stiffness
@@ -158,7 +158,7 @@ def rest_stiffness(joint: Bolted, preload: float) -> float:
     curve, approach, weight = _tightened(joint, preload)
     if joint.elastic:
         return float(joint_stiffness(joint, np.array([preload]), "tangential")[0])
-    return float(shear_ratio(joint) * (curve.derivatives(approach, 1)[1] @ weight))
+    return float(joint.shear_ratio() * (curve.derivatives(approach, 1)[1] @ weight))
 
 
 def _tightened(joint: Bolted, preload: float) -> tuple[Curve, Array, Array]:

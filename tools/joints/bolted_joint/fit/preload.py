@@ -20,7 +20,7 @@ from pathlib import Path
 import numpy as np
 
 from jointfmu.contact.interface import stiffness_curve
-from jointfmu.joints.bolted_joint.law import Bolted, pressures, shear_ratio
+from jointfmu.joints.bolted_joint.law import Bolted, pressures
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.mechanics.curve import approach_curve
 from jointfmu.mechanics.footprint.bolts import PressureSource, pressure_shape
@@ -66,7 +66,7 @@ def joint_stiffness(joint: Bolted, preload: Array, direction: str = "normal") ->
     normal = joint.A_0 * np.sum(shape.share * k, axis=-1)
     if direction == "normal":
         return np.asarray(normal + joint.n_bolts * joint.bolt_stiffness)
-    return np.asarray(shear_ratio(joint) * normal)
+    return np.asarray(joint.shear_ratio() * normal)
 
 
 @cache

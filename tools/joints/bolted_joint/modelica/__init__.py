@@ -5,7 +5,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from jointfmu.joints.bolted_joint.law import shear_ratio
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.mechanics.curve import Curve
 from jointfmu.mechanics.footprint.reproducible import NOTHING
@@ -98,7 +97,7 @@ def tightened(spring: BoltedJointSpring, preload: float, moment: float) -> Tight
     heights = np.concatenate([[first], first * np.geomspace(1.0, EARLIEST, BELOW)[1:], [0.0], levels])
     force, normal, _ = total(heights)
     rows = np.column_stack([heights, force, normal])
-    ratio = float(shear_ratio(spring.joint))
+    ratio = float(spring.joint.shear_ratio())
     carried = Foundation(whole, ratio, spring.joint.mu, heights).carried(0.0)
     sliders = np.column_stack([np.concatenate([x[::2], x[1::2]]) for x in (carried.stiffness, carried.limit)])
     return Tightened(table, damping, ratio, at_rest, rows, sliders)

@@ -8,7 +8,7 @@ import numpy as np
 
 from jointfmu.joints.bolted_joint.bodies import ElasticBodies
 from jointfmu.joints.bolted_joint.compliances import PARTS, Compliances
-from jointfmu.joints.bolted_joint.law import pressures, shear_ratio, working_preload
+from jointfmu.joints.bolted_joint.law import pressures, working_preload
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.mechanics.curve import approach_curve
 from jointfmu.mechanics.footprint.bolts import pressure_shape
@@ -164,7 +164,7 @@ def _springs(file: ParameterFile, preload: float, joint: "WholeJoint", shape: Pr
     normal = curve.derivatives(curve.inverse(pressures(values, shape, preload, 0.0)), 1)[1]
     here = normal[cKDTree(shape.position).query(at.centred)[1]]
     here = here * (values.A_0 * (shape.share @ normal) / (at.area @ here))
-    ratio = float(shear_ratio(values))
+    ratio = float(values.shear_ratio())
     return np.stack([ratio * here, ratio * here, here], axis=1)
 
 
