@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,6 +11,9 @@ from jointfmu.quantity import Array
 from .. import plots
 from .elastic import ElasticAxis
 from .poses import frequencies, sag
+
+if TYPE_CHECKING:
+    from mujoco import MjModel
 
 POINTS, LOADS = 21, 11
 """Angles of an axis in the grid, and payloads."""
@@ -25,7 +28,7 @@ def swept(axes: Sequence[ElasticAxis]) -> Sequence[ElasticAxis]:
     return axes[1:3] if len(axes) > 2 else axes[-2:]
 
 
-def angles(model: Any, axis: ElasticAxis) -> Array:
+def angles(model: "MjModel", axis: ElasticAxis) -> Array:
     """Angles (POINTS) [rad] over the range of an axis, a whole turn without limits."""
     joint = model.joint(axis.joint)
     low, high = model.jnt_range[joint.id] if model.jnt_limited[joint.id] else (-np.pi, np.pi)
@@ -33,7 +36,7 @@ def angles(model: Any, axis: ElasticAxis) -> Array:
 
 
 def over_poses(
-    model: Any, axes: Sequence[ElasticAxis], pose: Array, payload: float, tip: int
+    model: "MjModel", axes: Sequence[ElasticAxis], pose: Array, payload: float, tip: int
 ) -> tuple[list[Array], Array]:
     """Angles [rad] of the swept axes, and all frequencies (..., n) [Hz] over their grid; the others stay."""
     grid = [angles(model, axis) for axis in swept(axes)]
@@ -42,7 +45,7 @@ def over_poses(
     return grid, np.reshape(found, (*map(len, grid), len(axes)))
 
 
-def turned(model: Any, axes: Sequence[ElasticAxis], pose: Array, grid: list[Array]) -> Array:
+def turned(model: "MjModel", axes: Sequence[ElasticAxis], pose: Array, grid: list[Array]) -> Array:
     """Poses (k, n) of the whole grid of the swept axes, the last one fastest; the other joints stay."""
     places = [int(model.joint(axis.joint).qposadr[0]) for axis in swept(axes)]
     mesh = np.stack(np.meshgrid(*grid, indexing="ij"), axis=-1).reshape(-1, len(grid))
@@ -52,7 +55,7 @@ def turned(model: Any, axes: Sequence[ElasticAxis], pose: Array, grid: list[Arra
 
 
 def lowest(
-    model: Any, axes: Sequence[ElasticAxis], pose: Array, grid: list[Array], payload: float, tip: int
+    model: "MjModel", axes: Sequence[ElasticAxis], pose: Array, grid: list[Array], payload: float, tip: int
 ) -> Array:
     """The pose of the grid at which the tip sinks most, to 1 nm, and of such poses the nearest to the given
     one; the other joints stay."""
@@ -78,7 +81,7 @@ def draw_frequencies(path: Path, axes: Sequence[ElasticAxis], grid: list[Array],
 
 
 def draw_payload(
-    path: Path, model: Any, axes: Sequence[ElasticAxis], pose: Array, payload: float, tip: int
+    path: Path, model: "MjModel", axes: Sequence[ElasticAxis], pose: Array, payload: float, tip: int
 ) -> tuple[Array, float]:
     """Wind-ups and tip error up to a payload; what they are there, [rad] (n) and [m]."""
     loads = np.linspace(0.0, payload, LOADS)

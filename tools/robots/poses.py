@@ -1,7 +1,7 @@
 """What elastic axes make of a robot: natural frequencies over poses, wind-up and tip error under weight."""
 
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,14 +10,17 @@ from jointfmu.quantity import Array
 from .elastic import ElasticAxis, mass_matrix
 from .fitted import FittedTendons
 
+if TYPE_CHECKING:
+    from mujoco import MjModel
 
-def dofs(model: Any, axes: Sequence[ElasticAxis]) -> list[int]:
+
+def dofs(model: "MjModel", axes: Sequence[ElasticAxis]) -> list[int]:
     """The degrees of freedom of the axes in the rigid robot."""
     return [int(model.joint(axis.joint).dofadr[0]) for axis in axes]
 
 
 def torques(
-    model: Any, axes: Sequence[ElasticAxis], pose: Array, payload: float, tip: int
+    model: "MjModel", axes: Sequence[ElasticAxis], pose: Array, payload: float, tip: int
 ) -> tuple[Array, Array]:
     """What weight asks of the drives (n) [N.m] with a payload [kg] at the origin of a body, and the rows of
     the body's Jacobian (3, n) [m/rad].
@@ -34,7 +37,7 @@ def torques(
     return weight[own], jacobian[:, own]
 
 
-def inertia(model: Any, axes: Sequence[ElasticAxis], pose: Array, payload: float, tip: int) -> Array:
+def inertia(model: "MjModel", axes: Sequence[ElasticAxis], pose: Array, payload: float, tip: int) -> Array:
     """Mass matrix (n, n) [kg.m2] of the links, without rotors, with a payload [kg] as a point of a body."""
     own = dofs(model, axes)
     _, jacobian = torques(model, axes, pose, payload, tip)
@@ -42,7 +45,9 @@ def inertia(model: Any, axes: Sequence[ElasticAxis], pose: Array, payload: float
     return np.asarray(mass + payload * jacobian.T @ jacobian)
 
 
-def frequencies(model: Any, axes: Sequence[ElasticAxis], pose: Array, payload: float, tip: int) -> Array:
+def frequencies(
+    model: "MjModel", axes: Sequence[ElasticAxis], pose: Array, payload: float, tip: int
+) -> Array:
     """Natural frequencies (n) [Hz], ascending, about a pose under weight: motors and other joints held.
 
     (K - omega^2 M) x = 0 with the drives' tangents K and the links' masses M, without rotors; the payload
@@ -55,7 +60,7 @@ def frequencies(model: Any, axes: Sequence[ElasticAxis], pose: Array, payload: f
     return np.asarray(np.sort(1.0 / (2.0 * np.pi * np.sqrt(squares))))
 
 
-def longest_step(model: Any, axes: Sequence[ElasticAxis], pose: Array) -> float:
+def longest_step(model: "MjModel", axes: Sequence[ElasticAxis], pose: Array) -> float:
     """Step [s] beyond which MuJoCo's default integrator diverges: 2 over the highest natural frequency of
     links and free motors at a pose, its springs at the torques of their fits.
     """
@@ -69,7 +74,7 @@ def longest_step(model: Any, axes: Sequence[ElasticAxis], pose: Array) -> float:
 
 
 def sag(
-    model: Any,
+    model: "MjModel",
     axes: Sequence[ElasticAxis],
     pose: Array,
     payload: float,
