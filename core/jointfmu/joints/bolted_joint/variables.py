@@ -18,7 +18,7 @@ from .spring import BoltedJointSpring
 LINEAR = 0.5**0.5
 """Friction force used [1] without memory, where the linear shear force would be the limit."""
 _PRELOAD = 30e3
-"""End of the ramp [N] where no preload is stated; else it is twice that."""
+"""End of the ramp [N] where no preload is stated; else it is that one: bolts are tightened near to yield."""
 _APART = ("preload", "moment", "s_rel_z", "theta_x", "theta_y")
 _PLACE = (*_APART, "s_rel_x", "s_rel_y", "theta_z")
 
@@ -125,7 +125,7 @@ MODELS = (
                 "the shear is beyond what friction holds: none if open; without memory the joint would slip",
             ),
         ),
-        ramp=Ramp("preload", _PRELOAD, 100.0, reach=lambda s, v: (0.0, 2.0 * v["preload"] or _PRELOAD)),
+        ramp=Ramp("preload", _PRELOAD, 100.0, reach=lambda s, v: (0.0, v["preload"] or _PRELOAD)),
         loop=Loop("s_rel_x", 5e-6, {"preload": 9e3}),
         dependencies={
             "f_x": (*_PLACE, "v_rel_x", "omega_z"),
