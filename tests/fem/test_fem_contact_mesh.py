@@ -186,7 +186,7 @@ REFUSED = [
     (
         entry("head_diameter", "0.024"),
         entry("head_diameter", "0.05"),
-        r"bolt 1 at \(-100, 60\) mm with a head of 50 mm reaches beyond the flange of side1",
+        r"bolt 1 at \(-100, -150\) mm with a head of 50 mm reaches beyond the flange of side1",
     ),
     (entry("wall_inset", "0.04"), entry("wall_inset", "0.02"), r"bolt 1 at .* runs into a wall of side1"),
     (entry("column_spacing", "0.2"), entry("column_spacing", "0.04"), r"bolts 1 and 2 overlap"),
