@@ -76,6 +76,16 @@ def judge_file(file: ParameterFile, loads: Sequence[float] | None = None) -> Jud
     return found.with_warnings(overload(how.load, max(loads, default=0.0), how.borne(file.values)))
 
 
+def interface_alone(file: ParameterFile) -> list[str]:
+    """The warning where what is made of a whole joint is its interface alone."""
+    if not getattr(file.values, "elastic", False):
+        return []
+    return [
+        f"{file.name!r} is a whole joint (sides = elastic), this its interface alone: between rigid bodies "
+        "far too stiff without the members, which the FMU has"
+    ]
+
+
 def overload(name: str, load: float, borne: tuple[float, str] | None) -> list[str]:
     """The warning if a load [N] is more than what carries it bears: (most [N], what that is)."""
     if borne is None or load <= borne[0]:

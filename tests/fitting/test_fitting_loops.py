@@ -429,6 +429,15 @@ def test_a_structure_in_series_is_told_from_the_joint(tmp_path):
         fitted(series_stiffness=0.1 * joint)
 
 
+@pytest.mark.parametrize(("end", "areas"), [(1.5, []), (1.76, [0.4])])
+def test_an_area_is_that_of_a_loop_that_closes(end, areas):
+    """From a tip on; half a branch after the last whole one closes none."""
+    t = np.linspace(0.25, end, 400)
+    motion = np.sin(2.0 * np.pi * t)
+    found = branches.cut([("", motion, motion + 0.1 * np.sign(np.cos(2.0 * np.pi * t)))]).areas
+    assert [area for area, _ in found] == pytest.approx(areas, rel=0.02)
+
+
 def test_runs_of_their_own_size_have_their_own_noise():
     run, motion, force = joint_loops()
     force[run == 2.0] += 1e3 * np.random.default_rng(2).standard_normal(np.count_nonzero(run == 2.0))

@@ -128,6 +128,9 @@ def test_the_command_prints_json(native, capsys):
     assert row["motion"] == pytest.approx(1e-6)
     assert len(row["forces"]) == 51
     assert row["closed"] == 10
+    assert cli.main(["ramp", fmu, *words[:-2], "--json"]) == 0  # without preload nothing holds it
+    (row,) = json.loads(capsys.readouterr().out)["rows"]
+    assert (row["force"], row["loss_factor"]) == (0.0, 0.0)
 
 
 GEAR = ["--input", "f"]

@@ -29,6 +29,8 @@ CREATED = 4.0
 """Energy that a loop may create, in its own standard deviations [1]."""
 ROUNDING = 1e-9
 """The same over the energy of the loop's box [1], for data without noise."""
+CLOSED = 0.9
+"""Motion that two branches share over that of the longer one [1] from which on they close a loop."""
 _GRID = 200
 _SEARCH, _WIDTH = 6, 1e-4
 """Steps to the place of rest, and half the width of its differences over the range of the motion [1]."""
@@ -220,12 +222,12 @@ def _check_sign(name: str, motion: Array, force: Array) -> None:
 
 
 def _check_energy(name: str, motion: Array, force: Array, ends: Sequence[int]) -> list[tuple[float, float]]:
-    """Area and range of the run's widest loop; refuse loops whose mean creates energy beyond its noise."""
+    """Area and range of the run's widest closed loop; refuse loops that create energy beyond their noise."""
     sides = [(motion[a : b + 1], force[a : b + 1]) for a, b in pairwise(ends)]
-    found = [loop for one, other in pairwise(sides) if (loop := _area(one, other))]
+    found = [(*loop, one, other) for one, other in pairwise(sides) if (loop := _area(one, other))]
     if not found:
         return []
-    areas, ranges = np.array(found).T
+    areas, ranges = (np.array([loop[i] for loop in found]) for i in (0, 1))
     area, size = float(np.mean(areas)), float(np.max(ranges))
     slope = float(np.ptp(force) / np.ptp(motion))
     spread = np.hypot(noise(force), slope * noise(motion)) * size / np.sqrt(0.5 * motion.size)
@@ -234,7 +236,12 @@ def _check_energy(name: str, motion: Array, force: Array, ends: Sequence[int]) -
             f"{name}the loop creates energy, area = {area:.3g} J, expected is 0 or more: the force has to "
             "lead the motion; reverse the order of the rows if they run back in time"
         )
-    return [found[int(np.argmax(ranges))]]
+    closed = [
+        (work, size)
+        for work, size, *both in found
+        if size >= CLOSED * max(float(np.ptp(motion)) for motion, _ in both)
+    ]
+    return [max(closed, key=lambda loop: loop[1])] if closed else []
 
 
 def _area(one: tuple[Array, Array], other: tuple[Array, Array]) -> tuple[float, float] | None:

@@ -105,7 +105,7 @@ class HysteresisLoop:
             "force": force,
             "secant_stiffness": stiffness,
             "loss": self.loss,
-            "loss_factor": self.loss / (np.pi * stiffness * motion**2),
+            "loss_factor": self.loss / (np.pi * force * motion) if force else 0.0,
         }
         if "E_loss" in self.result.columns:
             found["E_loss"] = float(np.diff(self.result.columns["E_loss"][[self.closed, -1]])[0])

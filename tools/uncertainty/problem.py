@@ -125,7 +125,8 @@ def pose(file: ParameterFile, given: Mapping[str, object], to: float | None, poi
         raise Refusal("no parameter has a distribution; expected NAME=LOW..HIGH or a study file", "settings")
     load = next((parameter for parameter in order if parameter.name == curves.load.name), None)
     at = fixed if fixed is not None else None if load is None or relative else float(load.law.median())
-    loads = _ramp(curves, stated.values, at, to, points, load)
+    end = to if to is not None or at is not None else file.start(curves.load.name) or None
+    loads = _ramp(curves, stated.values, at, end, points, load)
     return Problem(file.joint, type(file.values), stated.flat, order, loads, relative if load else None)
 
 

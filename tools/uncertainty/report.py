@@ -100,6 +100,7 @@ def table(task: Problem, bands: Bands, sensitivity: Sensitivity | None) -> str:
     if sensitivity is not None:
         lines += _indices_table(task, sensitivity, bands.shown)
     varied = ", ".join(f"{parameter.name} = {parameter.text}" for parameter in task.uncertain)
+    lines.append(f"over {task.reduced.load.name}: {task.reduced.load.doc}")
     lines.append(f"varied: {varied}{'' if bands.moved else ': no output depends on that'}")
     if zero := [name for name in bands.units if name not in bands.shown]:
         lines.append(f"zero throughout: {', '.join(zero)}")

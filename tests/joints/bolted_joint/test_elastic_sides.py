@@ -1,5 +1,6 @@
 """Elastic sides: the whole joint against finite elements and VDI 2230, energy, FMU, what is refused."""
 
+import json
 import re
 from dataclasses import replace
 from functools import partial
@@ -223,6 +224,20 @@ def test_embedding_takes_of_the_preload(made):
     assert none["p_max"] == none["K_xx"] == none["F_bolt[1]"] == 0.0
     told = report.whole_joint(Course(KINDS["bolted_joint"].models[0], replace(joint.file, values=lost.joint)))
     assert "14.2 kN in each bolt" in told[0].text
+
+
+def test_what_is_made_of_the_interface_alone_says_so(made, tmp_path, capsys):
+    path = str(made(*FOUR, preload=15e3).path)
+    capsys.readouterr()
+    out = str(tmp_path / "springs.csv")
+    words = ["export", "csv", "springs", "--params", path, "--preload", "15e3", "--out", out, "--json"]
+    assert cli.main(words) == 0
+    (line,) = json.loads(capsys.readouterr().out)["warnings"]
+    assert line.startswith("'plate 80x80 with 4xM8' is a whole joint (sides = elastic), this its interface")
+    docs = {
+        v.name: v.doc for v in KINDS["bolted_joint"].models[0].of("bolted_joint", load(path).values).outputs
+    }
+    assert docs["C_xx"].endswith("along x; of the interface alone")
 
 
 def test_bands_are_those_of_the_whole(made):

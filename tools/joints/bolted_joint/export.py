@@ -131,7 +131,7 @@ def _split(
     if not (np.isfinite(preload + moment) and 0.0 < np.max(p) <= highest):
         raise ValueError(
             f"preload = {preload:g} N per bolt with moment = {moment:g} N.m is outside the law: expected "
-            f"some contact and a pressure of at most {highest:g} Pa"
+            f"contact after embedding ({joint.embedding:g} N), and at most {highest:g} Pa"
         )
     each = shape.share * spring.curve.derivatives(spring.curve.inverse(p), 1)[1]
     closed = each > 0.0

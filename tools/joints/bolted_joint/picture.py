@@ -6,7 +6,7 @@ from html import escape
 import numpy as np
 
 from jointfmu.joints.bolted_joint.bodies import ElasticBodies
-from jointfmu.joints.bolted_joint.law import Bolted, pressures
+from jointfmu.joints.bolted_joint.law import Bolted, pressures, working_preload
 from jointfmu.mechanics.footprint.bolts import pressure_shape
 from jointfmu.mechanics.footprint.plate import BoltedPlate
 from jointfmu.mechanics.footprint.shape import NodalField
@@ -129,8 +129,8 @@ def plan(joint: Bolted, preload: float, moment: float) -> str:
     turned = f"rotate(-90 {x1 - 26.0:.1f} {0.5 * (y1 + y2):.1f})"
     sheet.text(x1 - 26.0, 0.5 * (y1 + y2), f"{height}, y up", "middle", SOFT, transform=turned)
     _bar(sheet, sheet.width - 98.0, EDGE, sheet.height - 2.0 * EDGE, top)
-    moved = f", {moment:g} N m" if moment else ""
-    sheet.text(EDGE, 22.0, f"{preload / 1e3:.4g} kN in each bolt{moved}: up to {top / 1e6:.4g} MPa", "start")
+    moved, left = f", {moment:g} N m" if moment else "", float(working_preload(joint, preload))
+    sheet.text(EDGE, 22.0, f"{left / 1e3:.4g} kN in each bolt{moved}: up to {top / 1e6:.4g} MPa", "start")
     return sheet.svg("The interface from above: pressure, bolts, attachments")
 
 

@@ -352,7 +352,7 @@ def approach(spring: BoltedJointSpring, loads: Array) -> Array:
 
 _OUTPUTS = ("K_zz", "K_xx", "C_zz", "C_xx")
 REDUCED = Reduced(
-    load=KIND.variables["preload"],
+    load=replace(KIND.variables["preload"], doc="force of each bolt that embedding has left"),
     outputs=(
         *(KIND.variables[name] for name in _OUTPUTS),
         Variable("approach", "m", "approach of the two sides by tightening, from no preload", 1e-6),

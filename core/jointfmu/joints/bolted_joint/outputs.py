@@ -99,7 +99,7 @@ def outputs(
         "slip": _slip(sums, joint.mu),
         "E_loss": area * sums["loss"],
         "eta_loop": eta_loop,
-        "C_loop": mindlin.viscous_equivalent(eta_loop, joint.mass, rho * K_n),
+        "C_loop": mindlin.viscous_equivalent(eta_loop, joint.mass, K[0] if joint.elastic else rho * K_n),
         **shortest,
     }
 

@@ -163,7 +163,7 @@ class BoltedJointSpring:
         if not (np.isfinite(preload + moment) and low < np.max(start) < high):
             raise ValueError(
                 f"preload = {preload:g} N per bolt with moment = {moment:g} N.m is outside the law: expected "
-                f"some contact and a pressure of at most {self.curve.end[1]:g} Pa"
+                f"contact after embedding ({self.joint.embedding:g} N), and at most {self.curve.end[1]:g} Pa"
             )
         return start
 

@@ -20,6 +20,7 @@ LINEAR = 0.5**0.5
 _PRELOAD = 30e3
 """End of the ramp [N] where no preload is stated; else it is that one: bolts are tightened near to yield."""
 _APART = ("preload", "moment", "s_rel_z", "theta_x", "theta_y")
+_INTERFACE = ("C_xx", "C_yy", "C_zz", "eta_t", "eta_n")
 _PLACE = (*_APART, "s_rel_x", "s_rel_y", "theta_z")
 
 
@@ -39,7 +40,9 @@ def _row_moment(joint: Any, preload: Number) -> Number:
 
 
 def _whole(model: Model, joint: Bolted) -> Model:
-    """With the forces of the bolts where the sides are elastic; then all outputs follow all motions."""
+    """With the forces of the bolts where the sides are elastic; then all outputs follow all motions, but
+    eta and C of a vibration, which are those of the interface.
+    """
     if not joint.elastic:
         return model
     meaning = "working force of bolt {}: preload less embedding, what the moment adds, its share of the load"
@@ -49,7 +52,11 @@ def _whole(model: Model, joint: Bolted) -> Model:
         name: (*inputs, *(v for v in given if v not in inputs)) for name, given in model.dependencies.items()
     }
     dependencies = {**known, "eta_t": (), **{force.name: inputs for force in forces}}
-    return replace(model, outputs=(*model.outputs, *forces), dependencies=dependencies)
+    outputs = [
+        replace(o, doc=f"{o.doc}{'; of the interface alone' if o.name in _INTERFACE else ''}")
+        for o in model.outputs
+    ]
+    return replace(model, outputs=(*outputs, *forces), dependencies=dependencies)
 
 
 MODELS = (

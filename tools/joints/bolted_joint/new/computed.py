@@ -195,22 +195,25 @@ def facts(
             raise
         return NewJoint(file, {}, [f"members and bolts are not computed, {alone}: {error}"])
     if sides == "rigid":
-        return NewJoint(file, _rows(found.compliances, plates.tension, attached, alone=True), [])
+        return NewJoint(file, _rows(found.compliances, plates.tension, attached), [])
     return NewJoint(found.file, whole_facts(found.file, plates.preload), [])
 
 
 def whole_facts(file: ParameterFile, preload: float) -> Facts:
     """Of a joint with elastic sides, as report and FMU have it; preload [N] tightens each bolt."""
     found = BoltedJointSpring.of(file.values).compliances(preload)
-    return _rows(found, float(working_preload(file.values, preload)), file.values.bodies.attached)
+    tension = float(working_preload(file.values, preload))
+    told = f" at preload = {preload:.5g} N"
+    return _rows(found, tension, file.values.bodies.attached, told)
 
 
-def _rows(found: Compliances, tension: float, attached: str, alone: bool = False) -> Facts:
-    """The whole joint with a tension [N] of each bolt; `alone`: the interface is all that the FMU has."""
-    return _stiffnesses(found, attached) | _load(found, tension, attached) | _share(found, alone)
+def _rows(found: Compliances, tension: float, attached: str, told: str = "") -> Facts:
+    """The whole joint with a tension [N] of each bolt, and where its FMU has this; empty: the interface is
+    all that the FMU has."""
+    return _stiffnesses(found, attached, told) | _load(found, tension, attached) | _share(found, not told)
 
 
-def _stiffnesses(found: Compliances, attached: str) -> Facts:
+def _stiffnesses(found: Compliances, attached: str, told: str) -> Facts:
     """Of the whole joint, then of its members, in all directions."""
     rows, members = {}, {}
     for name, unit, (whole, interface, alone, _), parts in found.rows():
@@ -218,8 +221,9 @@ def _stiffnesses(found: Compliances, attached: str) -> Facts:
         rows[f"whole_{name}"] = (
             whole,
             unit,
-            f"of the whole joint between {ATTACHED[attached]}, other motions held (the FMU's {name}); of its "
-            f"energy {shares}; the interface alone is {interface / whole:.3g} times as stiff",
+            f"of the whole joint between {ATTACHED[attached]}, other motions held"
+            + (f" (the FMU's {name}{told})" if told else "")
+            + f"; of its energy {shares}; the interface alone is {interface / whole:.3g} times as stiff",
         )
         members[f"members_{name}"] = (alone, unit, "of its members, as a spring in series with the rest")
     return rows | members
@@ -252,6 +256,7 @@ def _load(found: Compliances, tension: float, attached: str) -> Facts:
         "opening_load": (
             opens,
             "N",
-            f"{where} that takes the pressure off around the bolt that gets most, linear",
+            f"{where} that takes the pressure off around the bolt that gets most, linear; a joint that peels "
+            "opens before, as the report draws",
         ),
     }

@@ -255,7 +255,8 @@ def _embedding(sheet: Sheet, given: Given, one: Clamped, heights: faces.Heights)
 def _friction(file: ParameterFile, preload: float) -> dict[str, tuple[float, str, str]]:
     """The shear at which all slips and the loss factor at a part of it, with the range of mu beside them."""
     shear, rows = friction_band(file, preload)
-    slip, loss = "shear force at which all of the interface slips", f"loss factor at {shear:.3g} N of shear"
+    slip = "shear force at which all of the interface slips"
+    loss = f"loss factor of the interface between rigid sides at {shear:.3g} N of shear"
     facts = {}
     for name, row in zip(("", "_low", "_high"), rows, strict=False):
         text = f"; with mu = {row.mu:g}"
