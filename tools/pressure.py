@@ -76,7 +76,7 @@ def judge_file(file: ParameterFile, loads: Sequence[float] | None = None) -> Jud
     return found.with_warnings(overload(how.load, max(loads, default=0.0), how.borne(file.values)))
 
 
-def interface_alone(file: ParameterFile) -> list[str]:
+def without_members(file: ParameterFile) -> list[str]:
     """The warning where what is made of a whole joint is its interface alone."""
     if not getattr(file.values, "elastic", False):
         return []

@@ -14,7 +14,7 @@ from ..export import exports
 from ..export.exports import ERROR, FORMS, ROBOTS, WHAT
 from ..export.placing import AXES, SI, UNITS, Placing
 from ..judgement import Judgement, judge, known_height
-from ..pressure import interface_alone, judge_file, nominal_pressure
+from ..pressure import judge_file, nominal_pressure, without_members
 
 if TYPE_CHECKING:
     from ..export.writing import Written
@@ -97,7 +97,7 @@ def _export(args: argparse.Namespace) -> Answer:
     for name, value in written.facts.items():
         number = f"{value:.6g}" if isinstance(value, float) else value
         lines.append(f"  {name:<24}  {number} {_SI.get(name[:2], '')}".rstrip())
-    found = _judged(args, file).with_warnings([*written.warnings, *interface_alone(file)])
+    found = _judged(args, file).with_warnings([*written.warnings, *without_members(file)])
     return Answer(document={**facts, **written.facts}, lines=lines, judgement=found)
 
 

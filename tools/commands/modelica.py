@@ -10,7 +10,7 @@ from jointfmu.parameters import ParameterFile, load
 
 from ..command_line.common import Answer, Commands, argument, command, flag, needing
 from ..judgement import Judgement
-from ..pressure import interface_alone, judge_file
+from ..pressure import judge_file, without_members
 
 
 def add(commands: Commands) -> None:
@@ -43,7 +43,7 @@ def _modelica(args: argparse.Namespace) -> Answer:
 def _judged(file: ParameterFile, points: dict[str, list[tuple[float, ...]]]) -> Judgement:
     """The judgement of the user's joint at its working points."""
     found = judge_file(file, [point[0] for point in points.get(file.joint, [])] or None)
-    return found.with_warnings(interface_alone(file))
+    return found.with_warnings(without_members(file))
 
 
 def _inputs() -> dict[str, list[Kind]]:

@@ -83,11 +83,9 @@ def run(args: argparse.Namespace) -> Answer:
     longest = poses.longest_step(model, axes, pose)
     weight, jacobian = poses.torques(model, axes, pose, args.payload, tip)
     plain, plain_sunk = poses.sag(model, axes, pose, args.payload, tip, [axis.fitted for axis in axes])
-    under = [
-        (axis.joint, axis, axis.fitted, torque) for axis, torque in zip(axes, weight.tolist(), strict=True)
-    ]
+    under = list(zip(axes, weight.tolist(), strict=True))
     notes = [line for axis in axes for line in axis.noted]
-    notes += [line for _, axis, _, torque in under for line in axis.overload(torque)]
+    notes += [line for axis, torque in under for line in axis.overload(torque)]
     last = axes[-1].joint
     if args.payload and not jacobian[:, -1].any() and model.jnt_bodyid[model.joint(last).id] == tip:
         notes.append(
@@ -111,13 +109,13 @@ def run(args: argparse.Namespace) -> Answer:
             for name in dict.fromkeys([*(axis.joint for axis in axes), *angles])
         },
         "frequencies": {"lowest": float(found.min()), "highest": float(found.max())},
-        "torque": {name: torque for name, _, _, torque in under},
+        "torque": {axis.joint: torque for axis, torque in under},
         "wind_up": dict(zip([axis.joint for axis in axes], wound.tolist(), strict=True)),
-        "stiffness": {name: axis.stiffness(torque) for name, axis, _, torque in under},
+        "stiffness": {axis.joint: axis.stiffness(torque) for axis, torque in under},
         "tip_error": sunk,
         "plain": {
             "wind_up": dict(zip([axis.joint for axis in axes], plain.tolist(), strict=True)),
-            "stiffness": {name: fitted.stiffness(torque) for name, _, fitted, torque in under},
+            "stiffness": {axis.joint: axis.fitted.stiffness(torque) for axis, torque in under},
             "tip_error": plain_sunk,
         },
         "longest_step": longest,

@@ -224,10 +224,10 @@ def _check_sign(name: str, motion: Array, force: Array) -> None:
 def _check_energy(name: str, motion: Array, force: Array, ends: Sequence[int]) -> list[tuple[float, float]]:
     """Area and range of the run's widest closed loop; refuse loops that create energy beyond their noise."""
     sides = [(motion[a : b + 1], force[a : b + 1]) for a, b in pairwise(ends)]
-    found = [(*loop, one, other) for one, other in pairwise(sides) if (loop := _area(one, other))]
+    found = [loop for one, other in pairwise(sides) if (loop := _area(one, other))]
     if not found:
         return []
-    areas, ranges = (np.array([loop[i] for loop in found]) for i in (0, 1))
+    areas, ranges, _ = np.array(found).T
     area, size = float(np.mean(areas)), float(np.max(ranges))
     slope = float(np.ptp(force) / np.ptp(motion))
     spread = np.hypot(noise(force), slope * noise(motion)) * size / np.sqrt(0.5 * motion.size)
@@ -236,23 +236,20 @@ def _check_energy(name: str, motion: Array, force: Array, ends: Sequence[int]) -
             f"{name}the loop creates energy, area = {area:.3g} J, expected is 0 or more: the force has to "
             "lead the motion; reverse the order of the rows if they run back in time"
         )
-    closed = [
-        (work, size)
-        for work, size, *both in found
-        if size >= CLOSED * max(float(np.ptp(motion)) for motion, _ in both)
-    ]
+    closed = [(work, shared) for work, shared, longer in found if shared >= CLOSED * longer]
     return [max(closed, key=lambda loop: loop[1])] if closed else []
 
 
-def _area(one: tuple[Array, Array], other: tuple[Array, Array]) -> tuple[float, float] | None:
-    """Area [J] between two branches that follow each other, and the range that they share."""
+def _area(one: tuple[Array, Array], other: tuple[Array, Array]) -> tuple[float, float, float] | None:
+    """Area [J] between two branches that follow each other, the range that they share and that of the longer
+    one."""
     (u, F), (v, G) = (one, other) if one[0][-1] > one[0][0] else (other, one)
     low, high = max(u.min(), v.min()), min(u.max(), v.max())
     if not high > low or min(u.size, v.size) < LEAST:
         return None
     grid = np.linspace(low, high, _GRID)
     up, down = (np.interp(grid, *ordered(x, y)) for x, y in ((u, F), (v, G)))
-    return float(trapezoid(up - down, grid)), float(high - low)
+    return float(trapezoid(up - down, grid)), float(high - low), float(max(np.ptp(u), np.ptp(v)))
 
 
 def ordered(x: Array, y: Array) -> tuple[Array, Array]:

@@ -68,7 +68,7 @@ def run(args: argparse.Namespace) -> Answer:
         curve = approach_curve(file.values)
         rows, solution = convergence.study(assembly, curve, args.preload, moment, levels)
     made = _with_field(args, file, solution) if args.out else file
-    whole = clamping(file.joint).facts(made, _tightening(args, made)) if args.attached else {}
+    whole = clamping(file.joint).facts(made, tightening(args, made)) if args.attached else {}
     written = _write(args, made, solution)
     facts = _findings(solution, moment, args.preload)
     found = judge_assembly(file, assembly, args.preload, facts["p_mean"], solution.peak)
@@ -110,11 +110,11 @@ def _with_field(args: argparse.Namespace, file: ParameterFile, solution: "JointS
     made, shape = with_solution(file, solution, args.preload, args.moment or 0.0)
     if not args.attached:
         return made
-    preload = _tightening(args, made)
+    preload = tightening(args, made)
     return clamping(made.joint).whole(made, solution.joint.assembly, preload, args.attached, shape)
 
 
-def _tightening(args: argparse.Namespace, file: ParameterFile) -> float:
+def tightening(args: argparse.Namespace, file: ParameterFile) -> float:
     """Force [N] of each bolt before embedding."""
     return float(args.preload + file.values.embedding)
 

@@ -12,7 +12,7 @@ from jointfmu.parameters import ParameterFile, dump
 from ...command_line.common import Answer, Commands, Parser, argument, command
 from ...fields.clamped import clamping
 from ...judgement import judge, known_height
-from ...pressure import interface_alone
+from ...pressure import without_members
 from ...shown import fact_document, fact_lines
 from .. import check_files
 from . import bodies, compute, joint_file
@@ -88,7 +88,7 @@ def _run_import(args: argparse.Namespace) -> Answer:
     file = replace(file, name=f"{start.name}, field of {args.file.name}")
     whole = {}
     if plates:
-        preload, own = args.preload + file.values.embedding, clamping(file.joint)
+        preload, own = compute.tightening(args, file), clamping(file.joint)
         file = own.whole(file, plates, preload, args.attached or "faces", reduction.field)
         whole = own.facts(file, preload)
     if args.plot:
@@ -100,7 +100,7 @@ def _run_import(args: argparse.Namespace) -> Answer:
         KINDS[file.joint].law_of(file.values), [facts["p_mean"]], known_height(file), facts["p_max"]
     )
     facts |= {"outline": told[0]} if told else {}
-    found = found.with_warnings([*told[1:], *([] if plates else interface_alone(start))])
+    found = found.with_warnings([*told[1:], *([] if plates else without_members(start))])
     scaled = facts["force_of_the_bolts"] / field.force - 1.0
     if abs(scaled) > FORCE_ERROR:
         text = f"the pressures are scaled by {100.0 * scaled:+.2g} % to the force of the bolts"

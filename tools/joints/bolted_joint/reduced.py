@@ -18,7 +18,7 @@ from scipy.interpolate import CubicSpline
 from jointfmu.contact.laws import mindlin
 from jointfmu.joints.bolted_joint import KIND
 from jointfmu.joints.bolted_joint.bodies import Modes
-from jointfmu.joints.bolted_joint.contact import parts
+from jointfmu.joints.bolted_joint.contact import pressing
 from jointfmu.joints.bolted_joint.law import Bolted, interface_alone, node_pressure, slip_force
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring, patches, points
 from jointfmu.joints.bolted_joint.whole import Whole
@@ -210,7 +210,6 @@ class Sides(NamedTuple):
         shape, few = points(pattern), patches(pattern)
         modes = Modes.of(joint.bodies, shape.share.size, few.position)
         whole = Whole.of(modes, shape, few, 1.0, 1.0)
-        pressing = parts(shape, few) * shape.share / few.share[:, None]
 
         def products(weight: Array, *motions: tuple[Array, Array]) -> Array:
             rows = [np.column_stack(motion) for motion in motions]
@@ -219,7 +218,7 @@ class Sides(NamedTuple):
             )
 
         return cls(
-            (shape.equal, pressing @ shape.equal),
+            (shape.equal, pressing(shape, few) @ shape.equal),
             products(whole.weight, (whole.points[:, :1], modes.opening)),
             products(whole.patch, *zip(whole.patches[:, :, :1], modes.patch, strict=True)),
             products(np.ones(len(whole.seats)), (whole.seats[:, :1], modes.stretch)).sum(axis=0),

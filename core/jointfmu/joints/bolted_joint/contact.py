@@ -99,6 +99,11 @@ def parts(points: PressureShape, patches: FrictionPatches) -> Array:
     return np.asarray(np.where(near > 0.0, rounded, 0.0))
 
 
+def pressing(points: PressureShape, patches: FrictionPatches) -> Array:
+    """Pressure of patches over that of points (m, n) [1], by these parts."""
+    return parts(points, patches) * points.share / patches.share[:, None]
+
+
 _TRACTIONS, _TANGENTS = ("traction_x", "traction_y", "torsion"), ("tangent_x", "tangent_y", "tangent_z")
 STICKS = np.array([1.0, 0.0, 1.0, 0.0, 0.0, 1.0])
 """Tangent of sliders that stick, over their stiffness [1]."""

@@ -27,7 +27,7 @@ from .contact import (
     loop_sums,
     normal_sums,
     over_plane,
-    parts,
+    pressing,
     shifts,
     tangent_sums,
     traction_sums,
@@ -147,7 +147,7 @@ class BoltedJointSpring:
     @cached_property
     def pressing(self) -> Array:
         """(m, n) [1] pressure of the patches over that of the points, where sides are elastic."""
-        return parts(self.shape, self.patches) * self.shape.share / self.patches.share[:, None]
+        return pressing(self.shape, self.patches)
 
     def pressed(self, approach: Array) -> Array:
         """Approach (m) [m] of the patches to points at approaches (n) [m]: that at which they have the normal
