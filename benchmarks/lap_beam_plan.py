@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass, field
 
-import gmsh
 import numpy as np
 
 GROWTH = 1.6
@@ -68,6 +67,8 @@ def plan(beam, size):
 
 def _lap(beam, size):
     """Points (2, n) [m] and cells (4, m) of half the width of the lap."""
+    import gmsh
+
     half = 0.5 * beam.lap
     gmsh.initialize(interruptible=False)
     try:
@@ -102,6 +103,8 @@ def _lap(beam, size):
 
 def _graded(beam, size):
     """Element sizes that grow with the distance from the holes; gmsh halves what is asked for."""
+    import gmsh
+
     mesh = gmsh.model.mesh.field
     rims = []
     for x in beam.holes:

@@ -3,17 +3,19 @@
 import gc
 import os
 import pickle
+import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from functools import cache, partial, wraps
 from hashlib import sha256
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
+import clients
 import pytest
 from filelock import FileLock
 from fmpy import platform_tuple
@@ -43,6 +45,23 @@ SLOW_FIXTURES = frozenset({"fmus", "native", "tutorial", "site"})
 """Fixtures that build FMUs or run commands; `fmu`, `host` and others stand on them."""
 
 
+RUN = "JOINTFMU_TEST_RUN"
+"""Names the folder of a run of pytest, which its processes share."""
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Make the folder in which all processes of this run keep what the probes of clients find."""
+    if RUN not in os.environ:
+        os.environ[RUN] = tempfile.mkdtemp(prefix="jointfmu-tests-")
+        config.add_cleanup(lambda: shutil.rmtree(os.environ.pop(RUN)))
+    clients.share_results(Path(os.environ[RUN]))
+
+
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    """Skip a test without the clients that it needs, before its fixtures are made."""
+    clients.skip_without(*(name for mark in item.iter_markers("needs") for name in mark.args))
+
+
 @pytest.hookimpl(wrapper=True)
 def pytest_collection() -> Iterator[None]:
     """What is imported and collected stays: no search for garbage looks through it, then or later."""
@@ -54,6 +73,7 @@ def pytest_collection() -> Iterator[None]:
         gc.enable()
 
 
+@pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Mark as slow what uses a slow fixture; other tests of more than a second or two say it themselves.
 
@@ -62,6 +82,8 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:
         if not SLOW_FIXTURES.isdisjoint(getattr(item, "fixturenames", ())):
             item.add_marker(pytest.mark.slow)
+        for mark in item.iter_markers("needs"):
+            clients.count_tests(mark.args)
     slow = {item.path for item in items if item.get_closest_marker("slow")}
     items.sort(key=lambda item: item.path not in slow)
 
@@ -166,12 +188,6 @@ def run_host(script: str, *arguments: object) -> subprocess.CompletedProcess[str
     )
 
 
-@cache
-def importable(package: str) -> bool:
-    """Whether a package is installed and can be loaded, tried in a process of its own."""
-    return find_spec(package) is not None and run_host(f"import {package}").returncode == 0
-
-
 def made_once(factory: pytest.TempPathFactory, name: str, make: Callable[[Path], object]) -> Path:
     """A folder that `make` fills, once for all processes that share the tests."""
     parallel = "PYTEST_XDIST_WORKER" in os.environ
@@ -179,6 +195,7 @@ def made_once(factory: pytest.TempPathFactory, name: str, make: Callable[[Path],
     with FileLock(folder.with_suffix(".lock")):
         if not folder.exists():
             unfinished = folder.with_suffix(".part")
+            shutil.rmtree(unfinished, ignore_errors=True)  # of an attempt that failed
             make(unfinished)
             unfinished.rename(folder)
     return folder

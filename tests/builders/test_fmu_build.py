@@ -21,7 +21,8 @@ from typing import NamedTuple
 
 import pytest
 import pythonfmu
-from browser import PROGRAM, browser
+from browser import browser
+from clients import needs
 from conftest import refused_line, run_host
 from fmpy import read_model_description
 from fmpy.validation import validate_fmu
@@ -438,7 +439,7 @@ def test_the_main_job_builds_checks_and_reports(job: Job) -> None:
     assert f"<p>{counted}.</p>" in page
 
 
-@pytest.mark.skipif(PROGRAM is None, reason="no Chromium is installed")
+@needs("Chromium")
 def test_the_report_can_be_read_on_a_phone(job: Job) -> None:
     """A tab per joint: charts with lines, no text below 11 px, nothing wider than the screen, all checks."""
     with browser() as shown:
@@ -526,7 +527,7 @@ def test_the_main_job_fails_when_a_check_or_a_proof_misses(
     assert '<td class="miss">miss</td>' in (tmp_path / "index.html").read_text(encoding="utf-8")
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="no process groups")
+@needs("Linux or macOS")
 def test_the_main_job_ends_with_its_processes_on_ctrl_c(tmp_path: Path) -> None:
     script = Path(__file__).parents[2] / "build_fmus.py"
     command = [sys.executable, str(script), "--out", str(tmp_path / "dist")]

@@ -2,13 +2,14 @@
 
 import io
 import json
-import shutil
+import re
 import subprocess
 import sys
 import time
 from pathlib import Path
 
 import pytest
+from clients import needs
 from conftest import refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.parser import COMMANDS, GROUPS, SHELLS, parser
@@ -49,7 +50,6 @@ def test_long_work_says_what_it_does_on_a_terminal(
 
 @pytest.mark.parametrize("shell", SHELLS)
 def test_a_shell_has_its_script(shell: str, capsys: pytest.CaptureFixture[str]):
-    pytest.importorskip("shtab")
     with pytest.raises(SystemExit) as left:
         cli.main(["--completion", shell])
     assert left.value.code == 0
@@ -58,7 +58,7 @@ def test_a_shell_has_its_script(shell: str, capsys: pytest.CaptureFixture[str]):
 
 def completed(script: str, *words: str) -> list[str]:
     """What bash offers for the last of the words."""
-    function = script.partition("complete -o bashdefault -F ")[2].split()[0]
+    function = re.findall(r"^complete .*-F (\w+)", script, re.MULTILINE)[0]
     line = " ".join(f"'{word}'" for word in words)
     ask = f"COMP_WORDS=({line}); COMP_CWORD={len(words) - 1}; {function}"
     shown = "printf '%s\\n' \"${COMPREPLY[@]}\""
@@ -68,9 +68,8 @@ def completed(script: str, *words: str) -> list[str]:
     return done.stdout.split()
 
 
-@pytest.mark.skipif(shutil.which("bash") is None, reason="needs bash")
+@needs("bash")
 def test_bash_completes_commands_options_and_choices(capsys: pytest.CaptureFixture[str]):
-    pytest.importorskip("shtab")
     with pytest.raises(SystemExit):
         cli.main(["--completion", "bash"])
     script = capsys.readouterr().out

@@ -4,17 +4,17 @@ The tables of docs/validity.md come from benchmarks/roughness_law.py; here are f
 their own, and every measured joint. Bounds are those that the law has to keep.
 """
 
+import interface_laws
 import numpy as np
 import pytest
-
-pytest.importorskip("tamaas", reason="tamaas has wheels for Linux x86_64 only")
-import interface_laws
 import roughness_cases as cases
+from clients import needs
 from measured_joints import GAMMA, joint_law, level, measured
 
 SEEDS = {1: range(400, 408), 4: range(400, 403)}
 """Of surfaces with waves up to side/1 and side/4: the few hills of the first differ more."""
 slow = pytest.mark.slow
+pytestmark = needs("tamaas")
 
 
 @pytest.fixture(scope="module")

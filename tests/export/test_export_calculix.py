@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from clients import needs
 
 ROOT = Path(__file__).resolve().parents[2]
 SPEC = importlib.util.spec_from_file_location("calculix", ROOT / "benchmarks/calculix.py")
@@ -20,7 +21,7 @@ SPEC.loader.exec_module(calculix)
 
 pytestmark = [
     pytest.mark.slow,
-    pytest.mark.skipif(calculix.calculix() is None, reason="needs ccx (calculix-ccx)"),
+    needs("CalculiX"),
 ]
 # seven digits are printed, and nine of each spring are written
 PRINTED = 1e-6
@@ -79,7 +80,6 @@ def test_the_decks_run_as_they_say(tmp_path):
 
 
 def test_abaqus_files_give_the_same_after_conversion(cases, tmp_path):
-    pytest.importorskip("abq2ccx")
     for what, deck, more in (
         ("contact", "two_blocks", ()),
         ("springs", "two_bodies", ("--preload", calculix.STATES[0][0])),

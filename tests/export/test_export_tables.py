@@ -244,7 +244,8 @@ def test_modelica_text(joint, state):
 
 
 def test_rumoca_runs_a_combi_table_of_the_rows(drive):
-    rumoca = pytest.importorskip("rumoca")
+    import rumoca
+
     text = writing.curve("modelica", default("harmonic_drive"), None, SI, 1e-3).text
     rows = modelica_table(text)[1]
     matrix = "[" + "; ".join(", ".join(map(repr, row)) for row in rows.tolist()) + "]"

@@ -5,6 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from clients import needs
 from jointfmu_tools.fem import installed, newton
 from jointfmu_tools.fem.balance import RigidBalance
 from jointfmu_tools.fem.bolted_contact import BoltedContact, elastic_body, midway
@@ -156,6 +157,7 @@ def plates():
     return BoltedContact.of(Assembly("plates", PLATE, PLATE, BOLTS), 0.5)
 
 
+@needs("gmsh")
 def test_contact_carries_the_bolts(plates, law):
     solution = plates.solve(law, 4e3)
     field = solution.field
@@ -167,12 +169,14 @@ def test_contact_carries_the_bolts(plates, law):
         assert np.abs(out).max() < ROUND_OFF * 8e3
 
 
+@needs("gmsh")
 def test_pressures_balance_the_moment(plates, law):
     field = plates.solve(law, 4e3, 30.0).field
     assert (field.area * field.pressure) @ field.position[:, 1] == pytest.approx(30.0, rel=ROUND_OFF)
     assert field.force == pytest.approx(8e3, rel=ROUND_OFF)
 
 
+@needs("gmsh")
 def test_another_load_is_found_from_the_first(plates, law, monkeypatch):
     """The same as from the beginning, without a factorisation, in fewer steps."""
     expected = plates.solve(law, 4e3, 30.0)
@@ -187,6 +191,7 @@ def test_another_load_is_found_from_the_first(plates, law, monkeypatch):
     assert not factorised
 
 
+@needs("gmsh")
 def test_a_mirror_image_equals_two_bodies(plates, law):
     assembly = plates.assembly
     sides = [elastic_body(plates.plan, assembly, side, 0.5) for side in (1, 2)]
@@ -200,6 +205,7 @@ def test_a_mirror_image_equals_two_bodies(plates, law):
     assert two.node_pressure == pytest.approx(one.node_pressure, rel=1e-7)
 
 
+@needs("gmsh")
 def test_bodies_of_different_kind(law):
     thick = replace(PLATE, thickness=0.02, length=0.16, E=7e10)
     joint = BoltedContact.of(Assembly("plates", PLATE, thick, BOLTS), 0.5)
@@ -232,12 +238,14 @@ def factor(request, monkeypatch):
         monkeypatch.setattr(newton, "Cholesky", perturbed)
 
 
+@needs("gmsh")
 def test_without_a_load_to_close_it_the_contact_is_refused(plates, law, factor):
     model, loads = pulled(plates, law, 1.0, 1.0)
     with pytest.raises(RuntimeError, match=r"only pushes leaves 0\.\d+ of them over, allowed is 1e-06$"):
         model.solve(loads, 1e5)
 
 
+@needs("gmsh")
 def test_a_contact_that_flew_apart_is_refused(plates, law, factor, monkeypatch):
     """Without the look at the loads: by the solver, or by the look at the contact that it returns."""
     monkeypatch.setattr(RigidBalance, "check_loads", lambda self: None)
@@ -246,6 +254,7 @@ def test_a_contact_that_flew_apart_is_refused(plates, law, factor, monkeypatch):
         model.solve(loads, 1e5)
 
 
+@needs("gmsh")
 def test_contact_forces_are_checked_by_their_sums(plates, law):
     model, loads = pulled(plates, law, -4e3, -4e3)
     solution, balance = model.solve(loads, 1e6), model.balance(loads)
@@ -259,6 +268,7 @@ def test_contact_forces_are_checked_by_their_sums(plates, law):
         balance.check_contact(np.where(np.arange(force.size) == 7, np.nan, force))
 
 
+@needs("gmsh")
 def test_the_resultant_must_meet_the_contact(plates, law):
     """Bolts at y = 15 mm, faces to 30 mm: forces f1, f2 have their resultant at 15 mm (f1 - f2)/(f1 + f2)."""
     model, inside = pulled(plates, law, 0.3e3, -1e3)  # at 27.9 mm
@@ -270,6 +280,7 @@ def test_the_resultant_must_meet_the_contact(plates, law):
             model.solve(loads, 1e6)
 
 
+@needs("gmsh")
 def test_a_side_load_is_refused(plates, law):
     """Without friction nothing carries it: the supports must not do so in silence."""
     model, loads = pulled(plates, law, -4e3, -4e3)
@@ -278,12 +289,14 @@ def test_a_side_load_is_refused(plates, law):
         model.solve(loads, 1e6)
 
 
+@needs("gmsh")
 def test_bodies_without_supports_are_refused(plates, law):
     model, loads = pulled(plates, law, -4e3, -4e3, held=(np.zeros(0, dtype=np.int64),))
     with pytest.raises(RuntimeError, match="leave a rigid motion of a body free"):
         model.solve(loads, 1e6)
 
 
+@needs("gmsh")
 def test_loads_within_a_body_close_no_contact(plates, law):
     model, loads = pulled(plates, law, 0.0, 0.0)
     with pytest.raises(RuntimeError, match="all loads are 0 N"):
@@ -306,6 +319,7 @@ def test_neighbours_of_bolts():
 # Threads in side 2: its body is held by their walls
 
 
+@needs("gmsh")
 def test_a_stiff_side_does_not_tell_how_a_bolt_holds_it(law):
     """Head and nut, or head and thread: the same pressure, also off the middle."""
     stiff = STEEL | {"E": 1e5 * STEEL["E"]}
@@ -320,6 +334,7 @@ def test_a_stiff_side_does_not_tell_how_a_bolt_holds_it(law):
     np.testing.assert_allclose(thread.pressure, nut.pressure, atol=1e-3 * nut.pressure.max())
 
 
+@needs("gmsh")
 def test_a_thread_pulls_beside_its_hole(law):
     """Two halves whose bolts pull at the wall of the hole press nearer to it than halves under heads, in the
     mirror image alike; the wall bears all of the force in the bolt's own axis."""

@@ -1,6 +1,5 @@
 """The same two plates, opening at their ends, in CalculiX: its own elements, its own contact."""
 
-import shutil
 import subprocess
 from collections.abc import Iterator
 from dataclasses import replace
@@ -8,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from calculix_meshes import body_lines, displacements
+from clients import needs
 from jointfmu_tools.fem.bolted_contact import BoltedContact
 from jointfmu_tools.fem.contact import ContactModel
 from jointfmu_tools.fem.geometry import Assembly
@@ -35,7 +35,7 @@ def deck(model: ContactModel, loads: list[np.ndarray], overclosure: float) -> It
     yield "*NODE PRINT, NSET=N1\nU\n*NODE PRINT, NSET=N2\nU\n*END STEP"
 
 
-@pytest.mark.skipif(shutil.which("ccx") is None, reason="needs CalculiX (Debian: calculix-ccx)")
+@needs("CalculiX")
 def test_calculix_finds_the_same_contact(tmp_path):
     other = replace(PLATE, thickness=0.02, E=7e10)
     joint = BoltedContact.of(Assembly("plates", PLATE, other, BOLTS), 0.5)

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from clients import needs
 from jointfmu_tools.cli import main
 from jointfmu_tools.fem.convergence import COLUMNS, MeshResult, changes, orders, refinements
 
@@ -68,6 +69,7 @@ def computed(plates) -> tuple[dict, Path]:
     return json.loads(pipe.read_text()), folder
 
 
+@needs("gmsh")
 def test_what_is_computed(computed):
     found, _ = computed
     assert found["force"] == pytest.approx(20e3, rel=1e-9)  # four bolts
@@ -81,6 +83,7 @@ def test_what_is_computed(computed):
     ]
 
 
+@needs("gmsh")
 def test_the_field_as_csv(computed):
     found, folder = computed
     table = np.genfromtxt(folder / "field.csv", delimiter=",", skip_header=1)
@@ -90,10 +93,12 @@ def test_the_field_as_csv(computed):
     assert table[:, 2].sum() == found["area"]
 
 
+@needs("gmsh")
 def test_the_picture(computed):
     assert (computed[1] / "field.png").read_bytes().startswith(b"\x89PNG")
 
 
+@needs("gmsh")
 def test_the_joint_has_the_field(computed):
     found, folder = computed
     joint = load(folder / "joint.toml", "bolted_joint").values
@@ -104,8 +109,10 @@ def test_the_joint_has_the_field(computed):
         assert state[name] == pytest.approx(found[sum_], rel=1e-6), name  # what the reduction keeps
 
 
+@needs("gmsh")
 def test_vtu_for_paraview(plates, tmp_path):
-    meshio = pytest.importorskip("meshio")
+    import meshio
+
     path = tmp_path / "field.vtu"
     assert main([*COARSE, str(plates), "--refinement", "1", "--field", str(path)]) == 0
     mesh = meshio.read(path)
@@ -116,6 +123,7 @@ def test_vtu_for_paraview(plates, tmp_path):
     assert area @ mean == pytest.approx(20e3, rel=5e-3)  # trapezoidal rule; 1e-2 is refused by an import
 
 
+@needs("gmsh")
 def test_a_pressure_beyond_the_hardness_is_said(plates, capsys):
     assert main([*COARSE, str(plates), "--preload", "1e9"]) == 0
     said = capsys.readouterr()
@@ -127,6 +135,7 @@ def test_a_pressure_beyond_the_hardness_is_said(plates, capsys):
     assert f"above the hardness of the softer body, {hardness:.4g} Pa" in said.err
 
 
+@needs("gmsh")
 def test_refinement_prints_changes(plates, capsys):
     assert main([*COARSE, str(plates), "--refine", "2", "--moment", "100"]) == 0
     out = capsys.readouterr().out

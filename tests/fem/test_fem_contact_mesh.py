@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from clients import needs
 from jointfmu_tools.fem.assembly import load
 from jointfmu_tools.fem.elasticity import ElasticBody
 from jointfmu_tools.fem.geometry import Assembly, BoltGrid, BoltList, BoxSection, Plate
@@ -46,6 +47,7 @@ def box_on_plate():
     return assembly, plan_of(assembly, 0.6)
 
 
+@needs("gmsh")
 def test_the_mesh_has_the_bodies_volumes(box_on_plate):
     assembly, plan = box_on_plate
     plate, box = (body_mesh(plan, assembly, side, 0.6) for side in (1, 2))
@@ -58,6 +60,7 @@ def test_the_mesh_has_the_bodies_volumes(box_on_plate):
     assert plate.p[2].max() == box.p[2].min() == 0.0
 
 
+@needs("gmsh")
 def test_the_contact_has_the_nodes_of_both_bodies(box_on_plate):
     assembly, plan = box_on_plate
     contact = contact_mesh(plan, contact_cells(plan, assembly))
@@ -67,6 +70,7 @@ def test_the_contact_has_the_nodes_of_both_bodies(box_on_plate):
         assert wanted <= {tuple(p) for p in mesh.p[:2, mesh.p[2] == 0.0].T.tolist()}
 
 
+@needs("gmsh")
 def test_heads_are_annuli(box_on_plate):
     assembly, plan = box_on_plate
     body = ElasticBody(body_mesh(plan, assembly, 2, 0.6), 1.5e11, 0.28, 7800.0)
@@ -80,6 +84,7 @@ def test_heads_are_annuli(box_on_plate):
         assert radius.max() == pytest.approx(0.012, rel=1e-6)
 
 
+@needs("gmsh")
 def test_refinement_divides_the_sizes():
     assembly = Assembly("boxes", BOX, BOX, FRAME)
     counts = [plan_of(assembly, refinement).cells.shape[1] for refinement in (0.5, 1.0, 2.0)]

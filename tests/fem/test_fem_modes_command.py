@@ -4,6 +4,7 @@ import json
 
 import numpy as np
 import pytest
+from clients import needs
 from jointfmu_tools.cli import main
 from test_fem_contact_command import BOLTS, PLATE, PLATES, entries
 
@@ -22,6 +23,7 @@ def ring(plates, capsys, *options):
     return json.loads(capsys.readouterr().out)
 
 
+@needs("gmsh")
 def test_frequencies_rise_with_preload_and_fall_with_uneven_pressure(plates, capsys):
     found = ring(plates, capsys, "--count", "5")
     tighter = ring(plates, capsys, "--count", "5", "--preload", "1e4")
@@ -38,8 +40,10 @@ def test_frequencies_rise_with_preload_and_fall_with_uneven_pressure(plates, cap
     assert found["mass"] == pytest.approx(mass, rel=5e-3)  # holes are polygons
 
 
+@needs("gmsh")
 def test_shapes_for_paraview(plates, capsys, tmp_path):
-    meshio = pytest.importorskip("meshio")
+    import meshio
+
     path = tmp_path / "modes.vtu"
     found = ring(plates, capsys, "--count", "2", "--vtu", str(path))
     mesh = meshio.read(path)
@@ -54,6 +58,7 @@ def test_shapes_for_paraview(plates, capsys, tmp_path):
         assert np.linalg.norm(moved, axis=1).max() == pytest.approx(1.0)
 
 
+@needs("gmsh")
 def test_text(plates, capsys):
     assert main(["modes", str(plates), "--refinement", "0.5", "--count", "2"]) == 0
     lines = capsys.readouterr().out.splitlines()

@@ -5,6 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from clients import needs
 from jointfmu_tools.fem.geometry import Assembly, BoltList, Plate
 from jointfmu_tools.fem.reduction.states import Cells
 from jointfmu_tools.fem.whole_joint import ATTACHED, WholeJoint
@@ -28,6 +29,7 @@ def block(nu=0.0):
     return lap(length=0.05, width=0.05, thickness=0.02, nu=nu, hole=8e-3)
 
 
+@needs("gmsh")
 @pytest.mark.parametrize("reach", [0.5, 2.0, 6.0])
 def test_a_lap_has_the_compliance_of_shear_lag(reach):
     """d'' = beta^2 d with beta^2 = 2 k/(E t): the displacement at an end against the other one is
@@ -46,6 +48,7 @@ def test_a_lap_has_the_compliance_of_shear_lag(reach):
     assert found == pytest.approx(expected, rel=0.01)
 
 
+@needs("gmsh")
 @pytest.mark.parametrize("attached", ATTACHED)
 def test_bodies_without_compliance_leave_the_interface(attached):
     """Plates 1e6 times as stiff: what is left of them is 1e-6 of the compliance that they had, which is up to
@@ -58,6 +61,7 @@ def test_bodies_without_compliance_leave_the_interface(attached):
     assert found.parts[0] == pytest.approx(found.rigid, rel=1e-4)
 
 
+@needs("gmsh")
 def test_each_stiffer_part_makes_a_stiffer_joint():
     joint = WholeJoint.of(block(nu=0.3), "heads")
     springs = even(joint, 1e12, 1e12)
@@ -73,6 +77,7 @@ def test_each_stiffer_part_makes_a_stiffer_joint():
     assert 1.0 / bolted.whole[2] == pytest.approx(bolt + members, rel=1e-9)
 
 
+@needs("gmsh")
 def test_a_mirrored_side_moves_as_the_mirror_image(monkeypatch):
     """It is not solved for. A softer side is none, nor other heads, nor edges, held at opposite ends."""
     joint = WholeJoint.of(block(nu=0.3), "heads")

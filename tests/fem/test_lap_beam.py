@@ -9,6 +9,7 @@ import brake_reuss
 import brake_reuss_cases as cases
 import numpy as np
 import pytest
+from clients import needs
 from lap_beam_loops import Joint, damping, foundation, frequency, masing
 from lap_beam_plan import Fineness
 from lap_beam_reduction import Structure, reduced, spectrum
@@ -21,6 +22,7 @@ BAR = replace(cases.beam(), lap=cases.beam().length, bolts=())
 """A lap as long as the beam, without bolts: two bars, one on the other."""
 
 
+@needs("gmsh")
 @pytest.mark.parametrize(("shear", "height"), [(brake_reuss.GLUED, 1.0), (0.0, 0.5)])
 def test_bars_on_each_other_have_the_frequency_of_timoshenko(shear, height):
     """Glued they are one bar, sliding two of half the height, which slide rigidly too; 0.05 %: the mesh."""
@@ -41,12 +43,14 @@ def joint():
     return Joint(part, foundation(curve, shear, brake_reuss.FRICTION))
 
 
+@needs("gmsh")
 def test_the_bolts_press_with_their_preload(joint):
     pressure = joint.sliders.curve.derivatives(joint.beam.approach, 0)[0]
     force = 2.0 * joint.beam.area @ pressure
     assert force == pytest.approx(3.0 * cases.data()["beam"]["preload"], rel=1e-8)
 
 
+@needs("gmsh")
 def test_small_loads_meet_the_linear_mode(joint):
     """A load of which the patches slip by less than 1e-4 of their displacement."""
     q = 1e-9
@@ -55,6 +59,7 @@ def test_small_loads_meet_the_linear_mode(joint):
     assert np.allclose(state.moved, q * joint.beam.shape, atol=1e-3 * q * np.abs(joint.beam.shape).max())
 
 
+@needs("gmsh")
 def test_frequency_falls_and_damping_rises_with_amplitude(joint):
     """The loss of a small cycle grows with the third power of amplitude at constant pressure, so the damping
     ratio with the first; patches of little pressure slip wholly, which takes up to 0.15 off the exponent, and
@@ -67,6 +72,7 @@ def test_frequency_falls_and_damping_rises_with_amplitude(joint):
     assert slope == pytest.approx(0.9, abs=0.2)
 
 
+@needs("gmsh")
 def test_a_whole_cycle_closes_and_its_area_is_its_loss(joint):
     """The area by trapezia over 8 steps each way is known to 3 %; Masing's rules leave out that bending opens
     one end of the lap and closes the other, 10 % at most, and 5 loads take 5 % off their loss."""
@@ -89,6 +95,7 @@ def test_the_benchmark_needs_no_boundary_elements():
     assert done.returncode == 0, done.stderr
 
 
+@needs("gmsh")
 def test_damping_by_masing_is_never_negative(joint):
     """With much friction little slips; the contact then stiffens under the load, which is no loss."""
     states = brake_reuss.rubbing(joint, 0.6).backbone(brake_reuss.AMPLITUDES)

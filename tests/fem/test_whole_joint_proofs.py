@@ -7,6 +7,7 @@ import brake_reuss_cases as cases
 import measured_beam
 import numpy as np
 import pytest
+from clients import needs
 from coulomb_springs import Springs
 from elastic_sides import Joint, stiffnesses
 from jointfmu_tools.fem.whole_joint import WholeJoint
@@ -78,6 +79,7 @@ def test_springs_of_coulomb_have_backbone_and_loop_of_the_theorem():
         np.testing.assert_allclose(down.loss + again.loss, heat, rtol=2e-3 if part > 0.1 else 0.05)
 
 
+@needs("gmsh")
 @pytest.mark.slow
 def test_elements_with_friction_are_linear_first_and_slip_at_last():
     """A thin lap under an even pressure: its linear stiffness, then Coulomb's force, over any mesh."""
@@ -99,6 +101,7 @@ def test_elements_with_friction_are_linear_first_and_slip_at_last():
     assert work < loss[-1] - loss[STEPS - 1] < 1.05 * work
 
 
+@needs("gmsh")
 @pytest.mark.slow
 def test_a_bracket_slips_under_a_lever_as_its_elements_do(monkeypatch):
     """To its slip, three times as far, and back: 1.2 % of either force were measured, 0.7 % of the heat.

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import slip_cases as cases
 import slip_solver
+from clients import needs
 
 pytestmark = pytest.mark.slow
 
@@ -106,8 +107,8 @@ def test_no_traction_exceeds_the_friction_and_slip_works_against_it():
     assert work[~sticks] == pytest.approx((largest * limit)[~sticks], rel=1e-3, abs=1e-4 * work.max())
 
 
+@needs("tamaas")
 def test_the_normal_contact_is_that_of_another_solver():
-    pytest.importorskip("tamaas", reason="tamaas has wheels for Linux x86_64 only")
     from boundary_element import press
 
     contact = cases.rough(MANY, 0.3)

@@ -51,7 +51,9 @@ def files() -> dict[str, str]:
 
 @pytest.fixture(scope="module")
 def rumoca() -> Any:
-    return pytest.importorskip("rumoca")
+    import rumoca
+
+    return rumoca
 
 
 @pytest.fixture(scope="module")
@@ -268,7 +270,8 @@ def test_command_refuses(arguments: list[str], said: str, tmp_path: Path, capsys
 
 
 def test_pymoca_reads_every_file_and_flattens_every_model():
-    parser, tree, ast = (pytest.importorskip(f"pymoca.{name}") for name in ("parser", "tree", "ast"))
+    from pymoca import ast, parser, tree
+
     root = parser.parse((STAND_IN / "Modelica/package.mo").read_text(encoding="utf-8"))
     for path in sorted(COMMITTED.rglob("*.mo"), key=lambda p: (len(p.parts) - (p.name == "package.mo"), p)):
         read = parser.parse(path.read_text(encoding="utf-8"))
@@ -456,7 +459,6 @@ def test_bolted_component_slips_as_the_package(rumoca: Any, bolted: BoltedJointS
 
 def test_the_bolted_component_read_by_another_parser_holds_along_the_solution(rumoca: Any):
     """All equations as pymoca reads them, at what rumoca found; states by trapezia over the corners."""
-    pytest.importorskip("pymoca")
     body = "JointStiffness.Components.BoltedJoint joint;\n  Circle way;"
     wires = " ".join(f"connect(joint.flange_{a}, way.{a});" for a in "xyz")
     found = simulate(rumoca, top(body, wires, _CIRCLE), 0.7, 4e-3, rtol=1e-6)

@@ -19,6 +19,7 @@ from typing import NamedTuple
 
 import fmpy
 import pytest
+from clients import needs
 from conftest import RELEASED
 from joint_cases import JOINTS
 from jointfmu_fmu_src.native.code.generate import RUNTIME, runtime, sources, token
@@ -195,12 +196,13 @@ every_version = pytest.mark.parametrize("version", VERSIONS)
     ("compiler", "name"),
     [
         *(("zig", name) for name in (*MODELS, *FEW_PARTNERS, *ALONE)),
-        *(("gcc", name) for name in ("BoltedJoint", "GearMesh", "HarmonicDriveSpring", "dummy")),
+        *(
+            pytest.param("gcc", name, marks=needs("gcc"))
+            for name in ("BoltedJoint", "GearMesh", "HarmonicDriveSpring", "dummy")
+        ),
     ],
 )
 def test_no_warning(compiler: str, builder: Builder, name: str) -> None:
-    if shutil.which(COMPILERS[compiler][0]) is None:
-        pytest.skip(f"{compiler} is not installed")
     assert builder.objects(compiler, name, *PLAIN[compiler])
 
 

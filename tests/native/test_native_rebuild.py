@@ -1,7 +1,6 @@
 """Native FMUs compiled again from their own sources, as a recipient of the sources would."""
 
 import os
-import shutil
 import subprocess
 import sys
 import zipfile
@@ -9,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from clients import needs
 from jointfmu_tools.ramps import ramp
 
 from jointfmu.joints import MODELS
@@ -19,10 +19,7 @@ COMPILER_TOLERANCE = 1e-9
 """Largest relative difference that another compiler may make, which may contract a*b + c [1]."""
 
 
-MISSING = [tool for tool in ("cc", "make") if shutil.which(tool) is None]
-
-
-@pytest.mark.skipif(bool(MISSING), reason=f"needs {', '.join(MISSING)}")
+@needs("cc and make")
 @pytest.mark.parametrize(("name", "version"), [("BoltedJoint", "fmi2"), ("HarmonicDriveSpring", "fmi3")])
 def test_fmpy_compiles_the_sources_to_the_same_fmu(
     native: Path, tmp_path: Path, name: str, version: str

@@ -1,12 +1,12 @@
 """What a running FMU takes: no allocation after initialization, less than a page of stack in any function."""
 
 import ctypes
-import sys
 from pathlib import Path
 
 import fmpy
 import numpy as np
 import pytest
+from clients import needs
 from joint_cases import CASES
 from jointfmu_fmu_src.native.compiled import compiler
 from jointfmu_tools.systems.fmu.assembly import assembly
@@ -17,7 +17,7 @@ from jointfmu.joints import MODELS
 
 pytestmark = [
     pytest.mark.slow,
-    pytest.mark.skipif(sys.platform != "linux", reason="the counted library is built for Linux"),
+    needs("Linux"),
 ]
 COUNTED = """
 #include <stdlib.h>

@@ -8,11 +8,11 @@ import subprocess
 import sys
 import time
 import zipfile
-from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
 import pytest
+from clients import needs
 from conftest import here_alone, refused_line
 from fmpy.cross_check import validate_result
 from fmpy.util import read_csv, read_ref_opt_file
@@ -23,7 +23,7 @@ from jointfmu_fmu_src.proof.standard import FOLDER
 from jointfmu_tools import cli
 from jointfmu_tools.proof.importers import VERSIONS as KNOWN
 from natives import VERSIONS
-from proofs import BOTH, MEASURED, copy, needs, other_manifest, proved, replaced
+from proofs import BOTH, ECOS, MEASURED, copy, other_manifest, proved, replaced
 
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.parameters import default
@@ -31,7 +31,7 @@ from jointfmu.parameters import default
 pytestmark = pytest.mark.slow
 
 RUNS = [
-    (name, importer, version)
+    pytest.param(name, importer, version, marks=[] if importer == "fmpy" else needs(importer))
     for name in ("GearContact", "BoltedJoint")
     for importer, known in KNOWN.items()
     for version in VERSIONS
@@ -54,7 +54,6 @@ def assert_all_pass(found: dict) -> None:
 def test_an_fmu_proves_itself(
     native: Path, capsys: pytest.CaptureFixture[str], name: str, importer: str, version: str
 ) -> None:
-    needs(importer)
     found = proved(capsys, native / version / f"{name}.fmu", "--in", importer)
     assert_all_pass(found)
     assert {one["purpose"] for one in found["experiments"]} == {
@@ -134,12 +133,11 @@ def test_the_library_of_another_joint_fails_in_one_line(
     assert line.endswith(f"that of {OTHER}")
 
 
-@pytest.mark.parametrize("importer", ["fmpy", "ecos"])
+@pytest.mark.parametrize("importer", ["fmpy", ECOS])
 def test_a_library_that_computes_something_else_fails_by_name(
     fmu: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], importer: str
 ) -> None:
     """Another number in the constants of the law: pi."""
-    needs(importer)
     number = np.float64(np.pi).tobytes()
 
     def change(name: str, data: bytes) -> bytes:
@@ -221,16 +219,15 @@ def test_a_changed_reference_fails_by_name(
     assert {one["name"] for one in found["experiments"] if one["verdict"] == "missed"} == {"load ramp"}
 
 
-def test_a_refused_parameter_is_told_in_the_fmus_own_words(
-    fmu: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+@pytest.mark.parametrize("importer", ["fmpy", ECOS])
+def test_a_refused_parameter_is_reported_in_the_words_of_the_fmu(
+    fmu: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], importer: str
 ) -> None:
     change = replaced("e_0_999999.ssv", b'value="0.999999"', b'value="1.0"')
-    for importer in ("fmpy", "ecos"):
-        needs(importer)
-        found = proved(capsys, copy(fmu, tmp_path / fmu.name, change), "--in", importer, status=1)
-        for line, interface in zip(found["misses"], found["interfaces"], strict=True):
-            assert line.startswith(f"e = 0.999999, {interface}: ")
-            assert "e = 1 is outside [0, 1)" in line
+    found = proved(capsys, copy(fmu, tmp_path / fmu.name, change), "--in", importer, status=1)
+    for line, interface in zip(found["misses"], found["interfaces"], strict=True):
+        assert line.startswith(f"e = 0.999999, {interface}: ")
+        assert "e = 1 is outside [0, 1)" in line
 
 
 @pytest.mark.parametrize(
@@ -264,12 +261,30 @@ def test_what_cannot_be_proved_is_refused_in_one_line(
     assert "absent.fmu: cannot be read (No such" in refused_line(capsys, "prove", tmp_path / "absent.fmu")
     assert "is no FMU" in refused_line(capsys, "prove", text)
     assert "invalid choice: 'simulink'" in refused_line(capsys, "prove", text, "--in", "simulink")
-    if find_spec("libcosimpy"):
-        line = refused_line(capsys, "prove", native / "fmi3" / f"{NAME}.fmu", "--in", "libcosim")
-        assert "is of FMI 3.0, libcosim takes 2.0" in line
     monkeypatch.setattr("jointfmu_tools.proof.run.find_spec", lambda name: None)
     line = refused_line(capsys, "prove", native / "fmi2" / f"{NAME}.fmu", "--in", "ecos")
     assert "the package ecospy is missing" in line
+
+
+def test_an_importer_whose_library_does_not_load_is_refused(
+    native: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As on a machine without a library that the importer loads."""
+    (tmp_path / "ecospy.py").write_text("raise OSError('libtbb.so.12: cannot open shared object file')\n")
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    line = refused_line(capsys, "prove", native / "fmi2" / f"{NAME}.fmu", "--in", "ecos")
+    assert line.endswith(
+        "ecos cannot be loaded (OSError: libtbb.so.12: cannot open shared object file); "
+        "on Debian, install libtbb12\n"
+    )
+
+
+@needs("libcosim")
+def test_an_fmu_of_another_version_than_the_importer_takes_is_refused(
+    native: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    line = refused_line(capsys, "prove", native / "fmi3" / f"{NAME}.fmu", "--in", "libcosim")
+    assert "is of FMI 3.0, libcosim takes 2.0" in line
 
 
 def resealed(source: Path, target: Path, parameter: str, value: float) -> Path:

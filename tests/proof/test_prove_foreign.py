@@ -8,10 +8,11 @@ from pathlib import Path
 import fmpy
 import numpy as np
 import pytest
+from clients import needs
 from conftest import RELEASED, refused_line
 from jointfmu_fmu_src.proof.standard import CO_SIMULATION, FOLDER, MANIFEST, MODEL_EXCHANGE
 from numpy.typing import NDArray
-from proofs import BOTH, copy, needs, other_manifest, proved, replaced
+from proofs import BOTH, ECOS, LIBCOSIM, copy, other_manifest, proved, replaced
 
 pytestmark = pytest.mark.slow
 
@@ -76,12 +77,11 @@ FILES = '<Stimuli source="u.csv"/><References source="y.csv"/>'
 INPUT = csv(np.array([0.0, 3.0]), {"u": np.array([2.0, 2.0])})
 
 
-@pytest.mark.parametrize("importer", ["fmpy", "ecos", "libcosim"])
+@pytest.mark.parametrize("importer", ["fmpy", ECOS, LIBCOSIM])
 def test_events_of_all_kinds_are_met(
     neuron: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], importer: str
 ) -> None:
     """It fires four times; an integer output is compared; an enumeration is given by the name of its item."""
-    needs(importer)
     files = {"u.csv": INPUT, "y.csv": csv(TIME, exact(TIME)), "double.csv": csv(TIME, exact(TIME, gain=2.0)),
              "double.ssv": ssv('name="gain"><v:Enumeration value="double"/>')}  # fmt: skip
     double = '<Parameters source="double.ssv"/><Stimuli source="u.csv"/><References source="double.csv"/>'
@@ -158,18 +158,27 @@ def test_a_label_says_for_which_interface_an_experiment_is(
     assert [one["interface"] for one in found["experiments"]] == runs
 
 
-def test_an_fmu_for_model_exchange_only_is_proved(
-    neuron: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def exchange_only(neuron: Path, tmp_path: Path) -> Path:
+    """An FMU with one experiment, without co-simulation."""
     files = {"u.csv": INPUT, "y.csv": csv(TIME, exact(TIME))}
     path = other_manifest(neuron, tmp_path / "all.fmu", experiment("one", FILES), **files)
     line = b'<CoSimulation modelIdentifier="Neuron" canHandleVariableCommunicationStepSize="true"/>'
-    path = copy(path, tmp_path / "me.fmu", replaced("modelDescription.xml", line, b""))
-    found = proved(capsys, path)
+    return copy(path, tmp_path / "me.fmu", replaced("modelDescription.xml", line, b""))
+
+
+def test_an_fmu_for_model_exchange_only_is_proved(
+    neuron: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    found = proved(capsys, exchange_only(neuron, tmp_path))
     assert found["interfaces"] == BOTH[1:]
     assert [one["verdict"] for one in found["experiments"]] == ["passed"]
-    needs("ecos")
-    refused = refused_line(capsys, "prove", path, "--in", "ecos")
+
+
+@needs("ecos")
+def test_an_fmu_for_model_exchange_only_is_refused_for_ecos(
+    neuron: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    refused = refused_line(capsys, "prove", exchange_only(neuron, tmp_path), "--in", "ecos")
     assert refused.endswith("is for model exchange, ecos runs co-simulation\n")
 
 

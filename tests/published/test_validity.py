@@ -6,18 +6,17 @@ of 64 and 128 points, whose answers were seen to lie within a factor of two of t
 
 from dataclasses import replace
 
+import boundary_element
+import interface_laws
 import numpy as np
 import pytest
 from band_of_waves import periodic, rms_height, rms_slope
+from clients import needs
+from measured_joints import measured
 
 from jointfmu.contact.interface import at_pressure, stiffness_curve
 
-pytest.importorskip("tamaas", reason="tamaas has wheels for Linux x86_64 only")
-import boundary_element
-import interface_laws
-from measured_joints import measured
-
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, needs("tamaas")]
 
 
 def test_hertz_is_met_and_better_on_a_finer_grid():

@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from browser import PROGRAM, Browser, browser
+from browser import Browser, browser
+from clients import needs
 from conftest import made_once
 from joint_cases import JOINTS
 from jointfmu_tools import cli
@@ -18,7 +19,7 @@ from jointfmu.parameters import default, dump, load
 
 pytestmark = pytest.mark.slow
 
-needed = pytest.mark.skipif(PROGRAM is None, reason="no Chromium is installed")
+needed = needs("Chromium")
 LARGEST = 1.5e6
 """Of the page [bytes]."""
 PHONE, DESKTOP = (390, 800), (1400, 1000)

@@ -11,7 +11,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from browser import PROGRAM, browser
+from browser import browser
+from clients import needs
 from conftest import Fmu
 from joint_cases import random_inputs
 from jointfmu_tools.laboratory.assemble import write_laboratory
@@ -20,7 +21,7 @@ from webassembly import Instance, native_fmu, random_values, refused_values
 
 pytestmark = pytest.mark.slow
 
-needed = pytest.mark.skipif(PROGRAM is None, reason="no Chromium is installed")
+needed = needs("Chromium")
 SETS, REFUSED, STEPS = 22, 2, 4
 """Parameter sets that are accepted but for the few whose law has no table, those that are not, and steps."""
 ACCEPTED = 20
@@ -97,7 +98,6 @@ def compare(case: Case, found: list[dict[str, float]]) -> None:
 
 @pytest.fixture(scope="module")
 def instance(module: Module) -> Instance:
-    pytest.importorskip("wasmtime")
     return Instance(module, module.compiled())
 
 

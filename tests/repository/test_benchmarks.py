@@ -1,13 +1,13 @@
 """The benchmarks run and compare the right things; their times are not tested."""
 
 import importlib.util
-import platform
 import re
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+from clients import needs
 
 from jointfmu.joints import MODELS
 
@@ -31,7 +31,7 @@ def test_pressure_inversion(monkeypatch, capsys):
     assert all(float(line.split()[-1]) > 0.0 for line in lines[2:])
 
 
-@pytest.mark.skipif((sys.platform, platform.machine()) != ("linux", "x86_64"), reason="needs Linux on x86_64")
+@needs("Linux on x86_64")
 def test_native_fmus(fmus, tmp_path, monkeypatch, capsys):
     """Of FMI 2.0: 3.0 is compiled and timed by the same lines."""
     module = benchmark("native_fmus")
@@ -58,7 +58,6 @@ def test_native_fmus(fmus, tmp_path, monkeypatch, capsys):
 @pytest.mark.slow
 def test_mujoco_plugin():
     """In a process of its own: MuJoCo takes a plugin of a name once, and dies of a second one."""
-    pytest.importorskip("mujoco")
     names = benchmark("mujoco_plugin").CASES
     few = "import mujoco_plugin as m; m.REPEATS = m.PYTHON_STEPS = 2; m.main()"
     done = subprocess.run([sys.executable, "-c", few], cwd=BENCHMARKS, capture_output=True, text=True)

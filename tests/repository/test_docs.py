@@ -7,19 +7,19 @@ import io
 import json
 import re
 import shlex
-import shutil
 import subprocess
 import sys
 import tomllib
 from contextlib import redirect_stdout
 from dataclasses import fields
 from html.parser import HTMLParser
-from importlib.util import find_spec, module_from_spec, spec_from_file_location
+from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from typing import NamedTuple
 from urllib.parse import unquote, urlsplit
 
 import pytest
+from clients import CHROMIUM_OPTIONS, chromium, needs
 from conftest import here_alone
 from jointfmu_fmu_src.joint_parts import Parts
 from jointfmu_tools import cli
@@ -116,7 +116,6 @@ def test_pictures_are_small_and_used() -> None:
 
 def test_the_house_is_drawn_as_it_is_built() -> None:
     """Words and colours of the committed picture (matplotlib leaves each word in a comment)."""
-    pytest.importorskip("matplotlib")
     spec = spec_from_file_location("figures", DOCS / "figures.py")
     assert spec is not None
     assert spec.loader is not None
@@ -224,7 +223,6 @@ def test_a_tools_page_says_what_a_user_needs(path: Path) -> None:
 @pytest.fixture(scope="module")
 def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The built site; the generator stops at links between pages that lead nowhere."""
-    pytest.importorskip("zensical")
     out = tmp_path_factory.mktemp("site")
     made = subprocess.run(
         [sys.executable, str(DOCS / "make_site.py"), "--out", str(out)],
@@ -312,18 +310,15 @@ setTimeout(() => {
 """Asks the site's search, and puts into the title where it leads."""
 
 
+@needs("Chromium")
 def test_search_works_from_a_file(site: Path, tmp_path: Path) -> None:
     """Opened as a file, where browsers start no worker: docs/javascripts/iframe-worker.js stands in."""
-    browser = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
-    if browser is None:
-        pytest.skip("needs Chromium")
     start = (site / "index.html").read_text(encoding="utf-8")
     page = site / "asked.html"
     page.write_text(start.replace("</body>", f"{SEARCHED}</body>"), encoding="utf-8")
-    quiet = "no-first-run disable-gpu disable-quic disable-sync disable-background-networking"
-    options = [f"--{name}" for name in f"headless no-sandbox {quiet} virtual-time-budget=12000".split()]
+    command = [chromium(), *CHROMIUM_OPTIONS, "--virtual-time-budget=12000"]
     done = subprocess.run(
-        [browser, *options, f"--user-data-dir={tmp_path}", "--dump-dom", page.as_uri()],
+        [*command, f"--user-data-dir={tmp_path}", "--dump-dom", page.as_uri()],
         capture_output=True,
         text=True,
         timeout=100,
@@ -410,11 +405,8 @@ def test_the_tutorial_ends_in_a_resonance_plot(tutorial: Tutorial) -> None:
     assert [row["load"] for row in json.loads(last)["rows"]] == [0.0, 1.0, 2.0, 4.0]
 
 
-@pytest.mark.parametrize("page", ["fmpy", "ecos", "mujoco"])
+@pytest.mark.parametrize("page", ["fmpy", pytest.param("ecos", marks=needs("ecos", "libcosim")), "mujoco"])
 def test_python_of_the_tools_that_were_run(tutorial: Tutorial, page: str) -> None:
     for block in blocks(DOCS / "tools" / f"{page}.md", "python"):
-        for client in ("ecospy", "libcosimpy", "mujoco"):
-            if client in block and find_spec(client) is None:
-                pytest.skip(f"needs {client}")
         done = subprocess.run([sys.executable, "-c", block], cwd=tutorial.folder, timeout=100)
         assert done.returncode == 0

@@ -4,25 +4,21 @@ import os
 import re
 import subprocess
 import sys
-from importlib.util import find_spec
 from pathlib import Path
 from runpy import run_path
+from typing import Any
 
 import numpy as np
 import pytest
+from clients import needs
 from conftest import here_alone
 from jointfmu_tools import cli
 from PIL import Image
 
 ROOT = Path(__file__).resolve().parents[2]
 SCRIPTS = sorted((ROOT / "examples").glob("*.py"))
-NEEDED = {
-    "scan_to_joint": ("SurfaceTopography",),
-    "sweep": ("distributed",),
-    "mujoco_arm": ("mujoco",),
-    "modelica_model": ("rumoca",),
-}
-"""{script: packages beside those of the extra `build`}."""
+NEEDED = {"bracket": needs("gmsh")}
+"""{script: what it needs beside the extra `test`}."""
 ALONE = {"mujoco_arm", "sweep"}
 """Scripts in a process of their own: MuJoCo takes a plugin of a name once, and a sweep starts processes. The
 others run in this one, where bodies that other tests have solved are found."""
@@ -34,27 +30,29 @@ def stem(path: Path) -> str:
     return path.stem
 
 
-def in_this_process(command: list[str], check: bool) -> None:
-    """`subprocess.run` of a script that runs `python -m jointfmu ...`, for this machine alone as what it
-    builds itself."""
-    assert check
-    assert command[:3] == [sys.executable, "-m", "jointfmu"]
+START_PROCESS = subprocess.run
+
+
+def run_in_this_process(command: list[str], **options: Any) -> Any:
+    """Replace `subprocess.run`: `python -m jointfmu ...` runs here, for this platform alone, as what a
+    script builds itself; other commands, such as the compiler, run in processes of their own."""
+    if command[:3] != [sys.executable, "-m", "jointfmu"]:
+        return START_PROCESS(command, **options)
+    assert options == {"check": True}
     assert cli.main(command[3:]) == 0
+    return None
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("script", SCRIPTS, ids=stem)
+@pytest.mark.parametrize("script", [pytest.param(s, marks=NEEDED.get(s.stem, ())) for s in SCRIPTS], ids=stem)
 def test_an_example_runs_and_writes_its_picture(
     script: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    for package in ("matplotlib", *NEEDED.get(script.stem, ())):
-        if find_spec(package) is None:
-            pytest.skip(f"needs {package}")
     if script.stem not in ALONE:
         import matplotlib.pyplot as plt
 
         monkeypatch.chdir(tmp_path)
-        monkeypatch.setattr(subprocess, "run", in_this_process)
+        monkeypatch.setattr(subprocess, "run", run_in_this_process)
         plt.switch_backend("agg")
         with here_alone():
             run_path(str(script), run_name="__main__")

@@ -16,11 +16,11 @@ from subprocess import PIPE
 import numbers_of_all
 import numpy as np
 import pytest
+from clients import needs
 from conftest import REFINEMENT
 from jointfmu_tools import cli
 from jointfmu_tools.joints.bolted_joint.new import computed
 from numbers_of_all import texts
-from numpy._core._multiarray_umath import __cpu_features__
 
 pytestmark = pytest.mark.slow
 
@@ -79,7 +79,7 @@ def here(tmp_path_factory, paths) -> dict[str, str]:
     return texts(tmp_path_factory.mktemp("here"), paths)
 
 
-newer = pytest.mark.skipif(not __cpu_features__.get("AVX2", False), reason="this processor has no AVX2")
+newer = needs("AVX2")
 
 
 @newer

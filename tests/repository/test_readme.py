@@ -10,6 +10,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from clients import needs
 from conftest import here_alone
 from jointfmu_fmu_src.native.build import build as native_build
 from jointfmu_fmu_src.partners import parameters as partner_parameters
@@ -47,10 +48,9 @@ def few_points(monkeypatch):
 
 
 @pytest.mark.slow
+@needs("git and a checkout")
 def test_every_block_of_the_readme_runs_top_to_bottom(tmp_path, few_points, monkeypatch):
     """In a clone; what installs and builds all is run by `.ci/run` in an environment of its own."""
-    if not (ROOT / ".git").exists() or shutil.which("git") is None:
-        pytest.skip("needs git and a checkout")
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
     environment = os.environ | {"URL": str(ROOT), "PATH": path}
     found = re.findall(r"```(sh|python)\n(.*?)```", README, flags=re.DOTALL)
@@ -126,10 +126,19 @@ commands = [
 ELSEWHERE = ("jointfmu build --systems ", "jointfmu system six_axis_robot ", "jointfmu report ")
 """Commands that make what tests/systems/test_systems.py looks at, that examples/robot.py runs, and that stand
 in the README as well, above."""
+MESHED = ("jointfmu footprint compute ", "jointfmu modes ")
+"""Commands that mesh bodies."""
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("line", [line for line in commands if not line.startswith(ELSEWHERE)])
+@pytest.mark.parametrize(
+    "line",
+    [
+        pytest.param(line, marks=needs("gmsh") if line.startswith(MESHED) else ())
+        for line in commands
+        if not line.startswith(ELSEWHERE)
+    ],
+)
 def test_commands_run(line, folder, monkeypatch, capsys):
     monkeypatch.chdir(folder)
     with here_alone():

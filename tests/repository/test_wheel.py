@@ -10,6 +10,7 @@ from pathlib import Path
 from shutil import copytree, ignore_patterns
 
 import pytest
+from clients import needs
 from conftest import Fmu, made_once
 from joint_cases import CASES, STATE, law, random_inputs
 from jointfmu_fmu_src.native.compiled import ahead
@@ -105,7 +106,7 @@ def run(clean: Path, folder: Path, *words: str) -> subprocess.CompletedProcess[s
     )
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="links packages")
+@needs("Linux or macOS")
 def test_the_wheel_alone_builds_variants_for_every_platform(clean: Path, tmp_path: Path) -> None:
     for package in ("casadi", "ziglang", "matplotlib", "pythonfmu"):
         assert run(clean, tmp_path, "-c", f"import {package}").returncode

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from conftest import importable
+from clients import needs
 from jointfmu_fmu_src.proof.standard import ATTRIBUTES, FOLDER, MANIFEST, NAME
 from jointfmu_tools import cli
 
@@ -18,10 +18,8 @@ MEASURED = 2e-3
 elsewhere 5e-10, from the digits of the files, and 4e-10 by the solver of model exchange."""
 
 
-def needs(importer: str) -> None:
-    package = {"ecos": "ecospy", "libcosim": "libcosimpy"}.get(importer, "fmpy")
-    if not importable(package):
-        pytest.skip(f"needs {package} (in the extra 'test' on Linux x86_64), ecos Debian's libtbb12")
+ECOS, LIBCOSIM = (pytest.param(name, marks=needs(name)) for name in ("ecos", "libcosim"))
+"""Importers that only some machines have, as cases of a test."""
 
 
 def copy(source: Path, target: Path, change: Change, **more: bytes) -> Path:

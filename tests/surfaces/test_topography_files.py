@@ -5,7 +5,6 @@ import re
 import subprocess
 import sys
 from dataclasses import replace
-from importlib.util import find_spec
 
 import numpy as np
 import pytest
@@ -21,9 +20,6 @@ from jointfmu.contact.interface import at_pressure
 from jointfmu.contact.roughness import FACTOR
 from jointfmu.joints import KINDS
 from jointfmu.parameters import default, dump, load
-
-if find_spec("SurfaceTopography") is None:  # whose import takes a second
-    pytest.skip("needs SurfaceTopography", allow_module_level=True)
 
 
 @pytest.fixture(scope="module")

@@ -1,7 +1,6 @@
 """Made surfaces are identified again; intervals, ranges, pairs and joints are what they claim to be."""
 
 import json
-import time
 from dataclasses import replace
 
 import numpy as np
@@ -385,11 +384,8 @@ def test_maps_without_any_chance_do_not_crash(shape):
     }
 
 
-def test_a_million_points_take_seconds_where_no_range_is_straight():
-    """Roll-off at long waves, a low-pass at short ones, texture, noise, gaps: hundreds of windows are tried.
-
-    Processor time, of all threads: 2 s on the machine where this was written.
-    """
+def test_a_million_points_without_a_straight_range_are_identified_with_doubt():
+    """Roll-off at long waves, a low-pass at short ones, texture, noise, gaps: hundreds of windows."""
     n, rng = 1024, np.random.default_rng(1)
     frequency = np.hypot(np.fft.fftfreq(n)[:, None], np.fft.rfftfreq(n))
     amplitude = (frequency**2 + 0.01**2) ** -0.9 * np.exp(-((frequency / 0.15) ** 2))
@@ -397,6 +393,6 @@ def test_a_million_points_take_seconds_where_no_range_is_straight():
     z *= 1e-6 / z.std()
     z += 3e-7 * np.sin(2.0 * np.pi * np.arange(n) / 37.0)[:, None] + rng.normal(0.0, 2e-8, z.shape)
     z[rng.random(z.shape) < 0.02] = np.nan
-    start = time.process_time()
-    identify([Areal(z=z, dx=1e-6, dy=1e-6, name="scan")])
-    assert time.process_time() - start < 5.0
+    found = identify([Areal(z=z, dx=1e-6, dy=1e-6, name="scan")])
+    assert found.doubt() is not None
+    assert found.h == pytest.approx(np.nanstd(z), rel=0.05)

@@ -9,8 +9,10 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import fmpy
+import mujoco
 import numpy as np
 import pytest
+from clients import needs
 from conftest import here_alone, refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.interface import drive
@@ -18,8 +20,6 @@ from jointfmu_tools.robots import elastic, pictures, poses
 from jointfmu_tools.robots.transmission import transmission
 
 from jointfmu.parameters import dump
-
-mujoco = pytest.importorskip("mujoco")
 
 ROBOT = Path(__file__).parents[2] / "models/robots/six_axis.xml"
 SIZES = ("CSG-32-100", "CSG-40-100", "CSG-25-100", "CSG-20-100", "CSG-17-100", "CSG-14-100")
@@ -314,20 +314,23 @@ OTHERS = {
 """{wheel: files of robots with their axes}."""
 
 
-def files_of(wheel):
-    """Those installed; robosuite's are half a gigabyte, so it is no part of the extra `test`."""
-    try:
-        return [file for file in metadata.files(wheel) or [] if file.suffix in (".xml", ".urdf")]
-    except metadata.PackageNotFoundError:
-        pytest.skip(f"{wheel} is not installed")
+def robot_files(wheel):
+    """Files of robots in an installed wheel."""
+    return [file for file in metadata.files(wheel) or [] if file.suffix in (".xml", ".urdf")]
 
 
 @pytest.mark.parametrize(
-    ("wheel", "end", "count"), [(wheel, *robot) for wheel, robots in OTHERS.items() for robot in robots]
+    ("wheel", "end", "count"),
+    [
+        # robosuite takes half a gigabyte, so it is no part of the extra `test`
+        pytest.param(wheel, *robot, marks=needs("robosuite") if wheel == "robosuite" else ())
+        for wheel, robots in OTHERS.items()
+        for robot in robots
+    ],
 )
 def test_robots_of_others(wheel, end, count, tmp_path, capsys, few_poses):
     """With 1 kg; it falls with a step that it is said to bear."""
-    (robot,) = (file.locate() for file in files_of(wheel) if file.as_posix().endswith(end))
+    (robot,) = (file.locate() for file in robot_files(wheel) if file.as_posix().endswith(end))
     rigid = mujoco.MjModel.from_xml_path(str(robot))
     joints = [rigid.joint(i).name for i in range(rigid.njnt)]
     arm = [joint for joint in joints if rigid.joint(joint).type == mujoco.mjtJoint.mjJNT_HINGE][:count]

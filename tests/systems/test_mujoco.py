@@ -5,14 +5,11 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+import mujoco
 import numpy as np
 import pytest
 from conftest import Fmu
-
-mujoco = pytest.importorskip("mujoco")
-pytest.importorskip("ziglang")
-
-from jointfmu_tools.mujoco import plugin  # noqa: E402
+from jointfmu_tools.mujoco import plugin
 
 NAME = "HarmonicDriveSpring"
 STEP = 5e-4

@@ -8,22 +8,21 @@ import shlex
 import shutil
 import subprocess
 import sys
-from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
+from clients import needs
 from conftest import here_alone
 from jointfmu_tools import cli
 
 ROOT = Path(__file__).parents[2]
 
 
-@pytest.mark.parametrize(("page", "package"), [("drake", "pydrake"), ("pinocchio", "pinocchio")])
-def test_the_page_gives_wind_up_and_tip_error(page, package, capsys, tmp_path, monkeypatch):
+@pytest.mark.parametrize(
+    "page", [pytest.param("drake", marks=needs("Drake")), pytest.param("pinocchio", marks=needs("Pinocchio"))]
+)
+def test_the_page_gives_wind_up_and_tip_error(page, capsys, tmp_path, monkeypatch):
     """By the drives' own law, as it is printed."""
-    if find_spec(package) is None:
-        pytest.skip(f"{package} is not installed")
-    pytest.importorskip("mujoco")
     monkeypatch.chdir(ROOT)
     (code,) = re.findall(r"```python\n(.*?)```", (ROOT / f"docs/tools/{page}.md").read_text(), re.DOTALL)
     exec(compile(code, page, "exec"), {})
@@ -44,7 +43,6 @@ def test_the_page_gives_wind_up_and_tip_error(page, package, capsys, tmp_path, m
 )
 def test_what_the_page_has_runs_top_to_bottom(page, found, capsys, tmp_path, monkeypatch):
     """But for what installs."""
-    pytest.importorskip("mujoco")
     shutil.copytree(ROOT / "models/robots", tmp_path / "models/robots")
     monkeypatch.chdir(tmp_path)
     text = (ROOT / f"docs/tools/{page}.md").read_text()

@@ -4,6 +4,7 @@ import json
 import re
 from xml.etree import ElementTree
 
+import mujoco
 import numpy as np
 import pytest
 from conftest import refused_line
@@ -12,8 +13,6 @@ from jointfmu_tools.robots.fitted import fit
 from jointfmu_tools.robots.transmission import area, transmission
 
 import jointfmu
-
-mujoco = pytest.importorskip("mujoco")
 
 STEPS = 4000
 """Of a quarter of the loop."""

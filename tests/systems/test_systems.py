@@ -20,6 +20,7 @@ from xml.etree.ElementTree import fromstring, tostring
 import fmpy
 import numpy as np
 import pytest
+from clients import needs
 from conftest import Fmu, made_once, refused_line
 from fmpy import read_model_description, simulate_fmu
 from fmpy.ssp.simulation import simulate_ssp
@@ -374,7 +375,6 @@ def test_a_reader_of_both_versions_opens_the_archives(
     built: Path, name: str, version: str, master: Master
 ) -> None:
     """pyssp_standard, which brings schemas of its own: connections, numbers and the FMUs' descriptions."""
-    pytest.importorskip("pyssp_standard")
     from pyssp_standard.ssp import SSP
     from pyssp_standard.ssv import SSV
 
@@ -512,7 +512,11 @@ np.save(out, np.array(rows))
 
 
 @pytest.mark.parametrize(
-    ("client", "script"), [("ecospy", ECOS), ("libcosimpy", COSIM)], ids=["ecos", "cosim"]
+    "script",
+    [
+        pytest.param(ECOS, marks=needs("ecos"), id="ecos"),
+        pytest.param(COSIM, marks=needs("libcosim"), id="libcosim"),
+    ],
 )
 @pytest.mark.parametrize(
     ("name", "wanted"),
@@ -525,13 +529,11 @@ np.save(out, np.array(rows))
 def test_other_simulators_run_the_archive_as_fmpy_does(
     built: Path,
     tmp_path: Path,
-    client: str,
     script: str,
     name: str,
     wanted: list[str],
 ) -> None:
     """The same equations step by step: they differ by round-off, which the motion does not amplify."""
-    pytest.importorskip(client)
     out, path = tmp_path / "rows.npy", built / "ssp" / f"{name}.ssp"
     arguments = [path, name, system(name).interval, STEPS, out, *wanted]
     subprocess.run([sys.executable, "-c", script, *map(str, arguments)], check=True, timeout=100)
@@ -716,7 +718,8 @@ def test_the_modelica_example_moves_as_the_archive(
     What the extrapolation to h = 0 leaves, is of the layer in which the component's sliders cease to stick
     (drive, 1.7e-4), and of the number of sliders (bolted joint, 0.5 %).
     """
-    rumoca = pytest.importorskip("rumoca")
+    import rumoca
+
     found = simulate(rumoca, top(f"extends JointStiffness.Examples.{model};"), stop, stop / 300, rtol=1e-8)
     times, first = np.unique(found.time, return_index=True)
 
@@ -979,7 +982,8 @@ def test_the_command_builds_a_system_of_ones_own(
 
 def test_the_robot_in_modelica_winds_up_as_the_fmus_do(built: Path) -> None:
     """Until the middle of the motion; the layer in which sliders cease to stick leaves 1e-3 of friction."""
-    rumoca = pytest.importorskip("rumoca")
+    import rumoca
+
     stop = 0.6
     found = simulate(rumoca, top("extends JointStiffness.Examples.SixAxisRobot;"), stop, 1e-2, rtol=1e-8)
     own = system("six_axis_robot")
@@ -1194,6 +1198,7 @@ def test_ring_refuses(
 # The page
 
 
+@needs("ecos")
 def test_the_examples_of_the_page_run(built: Path, tmp_path: Path) -> None:
     page = (Path(__file__).parents[2] / "docs" / "systems.md").read_text(encoding="utf-8")
     (tmp_path / "dist").symlink_to(built)
@@ -1201,6 +1206,4 @@ def test_the_examples_of_the_page_run(built: Path, tmp_path: Path) -> None:
     assert blocks
     for block in blocks:
         code = block.partition("```")[0]
-        if "ecospy" in code:
-            pytest.importorskip("ecospy")
         subprocess.run([sys.executable, "-c", code], cwd=tmp_path, check=True, timeout=100)

@@ -14,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from clients import needs
 from conftest import refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.ramps import ramp
@@ -105,7 +106,7 @@ def state(pid):
         return "gone"
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
+@needs("Linux")
 @pytest.mark.parametrize("moment", ["workers start", "runs"])
 def test_ctrl_c_ends_it_at_once_and_it_resumes(moment, fmu, tmp_path, capsys):
     """Sent to all processes, as a terminal does: 130, one line, no worker left."""
@@ -150,7 +151,7 @@ def test_ctrl_c_ends_it_at_once_and_it_resumes(moment, fmu, tmp_path, capsys):
     assert sorted(indices(out)) == list(range(64))
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="processes there share no stream")
+@needs("Linux or macOS")
 def test_a_worker_that_dies_as_it_starts_prints_nothing():
     code = (
         "import subprocess, sys\n"

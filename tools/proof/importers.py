@@ -109,6 +109,18 @@ def libcosim(task: Task, messages: list[str]) -> Rows:
     return rows
 
 
+def load(importer: str) -> None:
+    """Load the library of an importer; raises ImportError or OSError if a library is missing."""
+    if importer == "ecos":
+        from ecospy import EcosSimulationStructure
+
+        EcosSimulationStructure()
+    elif importer == "libcosim":
+        from libcosimpy.CosimExecution import CosimExecution
+
+        CosimExecution.from_step_size(step_size=1e9)
+
+
 def _known(task: Task) -> None:
     """Raise ValueError for a variable of a type that ecos leaves as it is and libcosim does not list."""
     variables = {v.name: v for v in description(task.fmu).modelVariables}
@@ -125,6 +137,8 @@ IMPORTERS: Mapping[str, Mapping[str, Execute]] = {
 """{importer: {interface: what executes an experiment}}."""
 PACKAGES = {"fmpy": "fmpy", "ecos": "ecospy", "libcosim": "libcosimpy"}
 """{importer: its package}."""
+SYSTEM_LIBRARIES = {"ecos": "libtbb12", "libcosim": "libatomic1"}
+"""{importer: package of Debian with a library that the importer loads}."""
 VERSIONS = {"fmpy": "23", "ecos": "23", "libcosim": "2"}
 """{importer: versions of FMI, first digits}; libcosim crashes on others."""
 

@@ -15,7 +15,7 @@ from jointfmu_fmu_src.proof.standard import CO_SIMULATION, MODEL_EXCHANGE
 from jointfmu.progress import track
 
 from ..host import unpacked
-from .importers import PACKAGES, VERSIONS, interfaces
+from .importers import PACKAGES, SYSTEM_LIBRARIES, VERSIONS, interfaces
 from .manifest import Experiment, Related
 from .outcome import Proof
 from .plan import ExperimentPlan, task
@@ -46,11 +46,7 @@ def prove(fmu: Path, importer: str = "fmpy", expected: Expected | None = None) -
     not installed or does not know the FMU's version of FMI.
     """
     experiments = Related(fmu, expected.members if expected else None).experiments()
-    if find_spec(PACKAGES[importer]) is None:
-        raise ValueError(
-            f"the package {PACKAGES[importer]} is missing, needed to run FMUs in {importer}; "
-            "install it with: pip install 'jointfmu[test]'"
-        )
+    _check_importer(importer)
     with unpacked(fmu, exchange=True) as (folder, description):
         if description.fmiVersion[0] not in VERSIONS[importer]:
             raise ValueError(
@@ -87,6 +83,23 @@ def prove(fmu: Path, importer: str = "fmpy", expected: Expected | None = None) -
         bar = track(plans, fmu.stem, len(plans))
         outcomes = [plan.outcome(next(answers) if plan.task else None) for plan in bar]
     return Proof(fmu, importer, common, len(starting), differing, outcomes)
+
+
+def _check_importer(importer: str) -> None:
+    """Raise ValueError, one line, if the package of an importer or a library that it loads is missing."""
+    if find_spec(PACKAGES[importer]) is None:
+        raise ValueError(
+            f"the package {PACKAGES[importer]} is missing, needed to run FMUs in {importer}; "
+            "install it with: pip install 'jointfmu[test]'"
+        )
+    if importer in SYSTEM_LIBRARIES:
+        code = f"from {__package__}.importers import load; load({importer!r})"
+        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, errors="replace")
+        if done.returncode:
+            reason = (done.stderr.strip() or f"exit status {done.returncode}").splitlines()[-1]
+            raise ValueError(
+                f"{importer} cannot be loaded ({reason}); on Debian, install {SYSTEM_LIBRARIES[importer]}"
+            )
 
 
 def _differing(found: Mapping[str, object], expected: Expected) -> list[str]:

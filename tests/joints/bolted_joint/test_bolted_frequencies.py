@@ -13,6 +13,7 @@ from typing import Any
 import box_specimen_lengths as box
 import numpy as np
 import pytest
+from clients import needs
 from conftest import Fmu
 from jointfmu_tools.cli import main
 from jointfmu_tools.fem.geometry import Plate
@@ -293,6 +294,7 @@ def ringing(lengths, **options):
     return box.frequencies(assembly, joint, [(9e3, 0.0)], refinement=COARSE, **options)[0]
 
 
+@needs("gmsh")
 def test_table_3(capsys):
     # status 1: two predictions miss the 5.1 % of the paper's own model, as docs/finite_elements.md says
     assert main(["validate", "--frequencies", "--json"]) == 1
@@ -327,6 +329,7 @@ def test_what_is_no_box_is_refused():
         box.specimen(plates, box.lengths_of(shipped).tolist())
 
 
+@needs("gmsh")
 def test_identification_finds_the_lengths_of_a_known_box(monkeypatch):
     """Frequencies of a box that differs in what they determine best, length and overhang, are met again.
 

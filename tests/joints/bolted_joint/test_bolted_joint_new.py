@@ -7,6 +7,7 @@ from functools import partial
 
 import numpy as np
 import pytest
+from clients import needs
 from conftest import Fmu, here_alone, refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.drawing import vdi2230
@@ -387,6 +388,7 @@ def test_the_fmu_of_a_drawing_is_the_package(capsys, tmp_path):
             assert found[name] == pytest.approx(float(value), rel=1e-9, abs=scale), name
 
 
+@needs("gmsh")
 @pytest.mark.slow
 def test_a_computed_field_is_near_the_cones(capsys, tmp_path, monkeypatch):
     """By elements of thrice the size, whose error is far below what is asked."""
@@ -401,6 +403,7 @@ def test_a_computed_field_is_near_the_cones(capsys, tmp_path, monkeypatch):
         assert float(files["cones"][name]) == pytest.approx(float(files["computed"][name]), rel=within), name
 
 
+@needs("gmsh")
 @pytest.mark.slow
 def test_a_computed_field_of_a_tapped_joint_is_near_the_cone(capsys, tmp_path, monkeypatch):
     """As wide as VDI 2230's cone for a thread, in a joint without symmetry whose rims of the holes come to

@@ -7,6 +7,7 @@ from functools import partial
 
 import numpy as np
 import pytest
+from clients import needs
 from conftest import refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.commands.assembly import with_assembly
@@ -323,6 +324,7 @@ def made(capsys, *words):
     return {name: fact["value"] for name, fact in found["facts"].items()}, found
 
 
+@needs("gmsh")
 @pytest.mark.slow
 def test_a_bolt_loaded_at_its_heads_is_that_of_vdi_2230(capsys, fine_elements):
     """The cone of VDI 2230 is within 15 to 20 % of finite elements, which hold what lies under a head as one
@@ -335,6 +337,7 @@ def test_a_bolt_loaded_at_its_heads_is_that_of_vdi_2230(capsys, fine_elements):
     assert facts["interface_share"] < 0.05
 
 
+@needs("gmsh")
 @pytest.mark.slow
 def test_the_load_at_the_faces_passes_the_bolts_by(capsys, fine_elements):
     """VDI's factor n: the nearer to the interface a load enters, the less of it the bolts take."""
@@ -349,6 +352,7 @@ def test_the_load_at_the_faces_passes_the_bolts_by(capsys, fine_elements):
     assert "the FMU is the whole" in found["facts"]["interface_share"]["text"]
 
 
+@needs("gmsh")
 @pytest.mark.slow
 def test_four_bolts_share_a_load_evenly(capsys):
     """Of coarse elements, too."""
@@ -358,6 +362,7 @@ def test_four_bolts_share_a_load_evenly(capsys):
     assert facts["whole_K_xx"] == pytest.approx(facts["whole_K_yy"], rel=0.02)  # gmsh's mesh is not symmetric
 
 
+@needs("gmsh")
 @pytest.mark.slow
 def test_the_whole_of_a_computed_field_has_the_stiffness_of_all_its_nodes(capsys, tmp_path, monkeypatch):
     """The file has few of them, with the same sums: the whole that the finite elements find is its own, and

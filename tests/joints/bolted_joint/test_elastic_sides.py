@@ -9,6 +9,7 @@ from types import SimpleNamespace
 import elastic_sides
 import numpy as np
 import pytest
+from clients import needs
 from conftest import REFINEMENT, Fmu, here_alone, refused_line
 from jointfmu_fmu_src.building import build
 from jointfmu_fmu_src.native import page
@@ -34,7 +35,7 @@ from jointfmu.joints.bolted_joint.law import interface_alone
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.parameters import dump, load
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, needs("gmsh")]
 
 PRELOAD = 60e3
 M16 = ["--plate", "80x80", "--bolts", "M16", "--grip", "40", "--material", "steel", "--Ra", "0.8"]

@@ -255,7 +255,8 @@ def test_the_model_gives_its_outputs_and_depends_as_it_says():
 @pytest.mark.parametrize("name", ["default", "soft teeth"])
 def test_symbols(name):
     """The same equations with symbols, as the C is made from them."""
-    casadi = pytest.importorskip("casadi")
+    import casadi
+
     from jointfmu.joints.gear_mesh.spring import deflection, torques
 
     spring = SPRINGS[name]

@@ -44,7 +44,9 @@ AT_REST = "phi(fixed=true, start=0, nominal=1e-3), w(fixed=true, start={w}, nomi
 
 @pytest.fixture(scope="module")
 def rumoca() -> Any:
-    return pytest.importorskip("rumoca")
+    import rumoca
+
+    return rumoca
 
 
 def spring(**changes: float) -> HarmonicDriveSpring:
@@ -155,7 +157,6 @@ def test_a_drive_begins_where_it_is(rumoca: Any, speed: float):
 
 def test_the_text_read_by_another_parser_holds_along_the_solution(rumoca: Any):
     """All equations as pymoca reads them, at what rumoca found; states by trapezia over the corners."""
-    pytest.importorskip("pymoca")
     values = {**DRY, "ratio": -80.0, "friction_viscous": 1e-3, "error_2": 2e-4, "hysteresis_loss": 2e-4}
     law = spring(**values)
     body = f"{component(law, values)}\n  Way way(ratio=-80);"

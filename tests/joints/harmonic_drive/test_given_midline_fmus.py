@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from conftest import Fmu, here_alone, importable, made_once, run_host
+from clients import needs
+from conftest import Fmu, here_alone, made_once, run_host
 from fmpy import read_model_description
 from fmpy.ssp.simulation import simulate_ssp
 from fmpy.validation import validate_fmu
@@ -300,9 +301,8 @@ def test_fmpy_runs_a_system_of_both(arm: Path, expected: dict[str, float]) -> No
 
 
 @pytest.mark.slow
+@needs("ecos")
 def test_ecos_runs_a_system_of_both(arm: Path, tmp_path: Path, expected: dict[str, float]) -> None:
-    if not importable("ecospy"):
-        pytest.skip("needs ecospy (in the extra 'test' on Linux x86_64) and Debian's libtbb12")
     out = tmp_path / "found.json"
     done = run_host(ECOS, arm, out, *(f"{alias}::phi_rel" for alias in FILES))
     assert done.returncode == 0, done.stderr

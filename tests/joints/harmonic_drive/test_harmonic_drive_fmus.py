@@ -7,7 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from browser import PROGRAM, Browser, browser
+from browser import Browser, browser
+from clients import needs
 from conftest import made_once
 from joint_cases import SAME, TABLE, law, parameters, random_inputs
 from jointfmu_tools.joints.harmonic_drive.efficiency import spring_bench
@@ -242,7 +243,7 @@ SCRIPT = """(async () => {
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(PROGRAM is None, reason="no Chromium is installed")
+@needs("Chromium")
 @pytest.mark.parametrize("ratio", [100.0, -80.0])
 def test_efficiency_is_that_of_the_bench(shown: Browser, ratio: float) -> None:
     given = {"ratio": ratio, "hysteresis_loss": 0.0, "error_2": 0.0, "temperature_factor": 1.3}
@@ -258,7 +259,7 @@ def test_efficiency_is_that_of_the_bench(shown: Browser, ratio: float) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(PROGRAM is None, reason="no Chromium is installed")
+@needs("Chromium")
 def test_the_error_comes_twice_a_turn_and_takes_no_work(shown: Browser) -> None:
     amplitude = 1.5e-4
     losses = ("friction_coulomb", "friction_viscous", "load_loss", "load_loss_back", "hysteresis_loss")
