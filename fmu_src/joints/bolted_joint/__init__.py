@@ -104,7 +104,8 @@ _POINTS = 13
 
 def _loops(spring: Any, end: float) -> list[chart.Panel]:
     """Loops of several amplitudes, and their loss factor over the amplitude; `end` of the ramp [N]."""
-    preload = PART * end
+    left = spring.joint.embedding
+    preload = left + PART * (end - left)
     approach = spring.tightened(preload, 0.0)
     foundation, share = spring.foundation(), spring.shape.share
     mean = share @ np.maximum(approach - spring.curve.displacement[0], 0.0)

@@ -651,6 +651,10 @@ static Pairs pairs_at(const Foundation *f, int i, const Point *p, double rate, d
             pairs.rate.limit[late] = f->mu / f->ratio * pairs.at.K * rate;
         return pairs;
     }
+    if (p->approach == f->height[i]) { /* springs begin to touch, with no load yet */
+        pairs.rate.K = pairs.at.slope * rate;
+        return pairs;
+    }
     entered(f, i, p, x);
     const double rates[] = {(p->y[1] - f->stiffness[i]) * rate, p->y[2] * rate, bend * rate, rate};
     memcpy(x + N_TOUCHING, rates, sizeof rates);
@@ -741,18 +745,36 @@ static void full_rates(const Foundation *f, int n, const PatchPath *path, const 
     }
 }
 
+/* Rates of a range i > 0 whose springs begin to touch at the end of a path. Their limits are of second order: where the
+ * path shifts they slip along the shift, and are stiff across it alone. Where it does not, springs just below them lift
+ * off as well in a motion the other way, so each goes along as its neighbour: it slips where that is at its limit. */
+static void touching_rate(const Foundation *f, int i, const PatchPath *path, const PathRate *rates, bool still, Shear *rate)
+{
+    const double K = pairs_at(f, i, path->to, rates->ends[1], 0.0).rate.K;
+    const Pair below = pair_at(f, i - 1, path->to);
+    for (int late = 0; late < 2; late++) {
+        const int k = 2 * (still ? i - 1 : i) + late;
+        const double u = still ? path->force[0][k] : shift_of(f->turning, k, path->shift, 0);
+        const double v = still ? path->force[1][k] : shift_of(f->turning, k, path->shift, 1);
+        const double square = u * u + v * v, least = (1.0 - SLIDER_AT_LIMIT) * below.limit[late];
+        const double per = square > (still ? least * least : 0.0) ? K / square : 0.0;
+        const double dy[N_SLID] = {0.0, 0.0, K - per * u * u, -per * u * v, K - per * v * v};
+        add_one(dy, f->turning[0][k], f->turning[1][k], rate);
+    }
+}
+
 void foundation_rates(const Foundation *f, const PatchPath *path, const double rates[2],
                       const double shift[3], Shear *rate)
 {
     const int full = full_on_way(path);
     const double approach = fmax(path->from->approach, path->to->approach);
     const PathRate moves = {{rates[0], rates[1]}, {shift[0], shift[1], shift[2]}};
-    int touched = touched_on(path);
+    const int touched = touched_on(path);
     Middle middle = {.known = false};
     const bool still = path->shift[0] == 0.0 && path->shift[1] == 0.0 && path->shift[2] == 0.0;
-    if (still && touched < HEIGHTS && approach == f->height[touched]) /* about to touch; where it shifts they slip */
-        touched++;
     *rate = (Shear){.loss = 0.0};
+    if (touched > 0 && touched < HEIGHTS && approach == f->height[touched])
+        touching_rate(f, touched, path, &moves, still, rate);
     full_rates(f, 2 * full, path, &moves, rate);
     if (touched > full)
         middle_of(f, path, &middle);

@@ -219,7 +219,7 @@ static double residual(const Joint *joint, const double *inputs, const double *a
     for (int d = 0; d < 3; d++)
         dense_add_rows(fours, (int)data.n_patches, shear[d], (const double(*)[WIDE])kind->patch[d], r);
     dense_add_rows(fours, (int)data.n_bolts, bolts, (const double(*)[WIDE])kind->stretch, r);
-    return WHOLE_CLOSE * (forces + stiffness * apart * WHOLE_CANCELS);
+    return WHOLE_CLOSE * (forces + stiffness * apart * WHOLE_CANCELS + kind->area * kind->approach.closed);
 }
 
 /* The derivative by what the memory says; in a further motion where that after it is given. */
@@ -240,7 +240,7 @@ static void exact(Joint *joint, const double *inputs, const double *memory, cons
 static void jacobian(Joint *joint, const double *inputs, const double *memory)
 {
     Kind *kind = &joint->kind;
-    double deepest = 0.0;
+    double deepest = -joint->curve.first.x; /* where the contact has closed */
     for (int j = 0; j < (int)data.n_patches; j++)
         deepest = fmax(deepest, kind->patch_start[j] - joint->curve.first.x);
     patch_slopes(joint, inputs, memory, WHOLE_DIFFERENCE * deepest, kind->slope);
@@ -262,7 +262,7 @@ static void follow(Kind *kind, const double (*tangent)[6], Followed *followed)
         for (int k = 0; k < MODES; k++)
             z[k] = -h[k];
         dense_solve(kind->work.abreast.fours, &followed->factors, z);
-        kind->whole[d] = h[at] + dense_dot(h, z);
+        kind->whole[d] = fmax(h[at] + dense_dot(h, z), 0.0); /* not below by round-off */
     }
     followed->known = true;
 }

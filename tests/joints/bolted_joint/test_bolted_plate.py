@@ -2,6 +2,7 @@
 
 import json
 import sys
+import warnings
 from dataclasses import replace
 from functools import partial
 
@@ -9,6 +10,7 @@ import numpy as np
 import pytest
 from clients import needs
 from conftest import refused_line
+from jointfmu_fmu_src.native.page import documentation
 from jointfmu_tools import cli
 from jointfmu_tools.commands.assembly import with_assembly
 from jointfmu_tools.fem.bolted_contact import BoltedContact
@@ -17,6 +19,7 @@ from jointfmu_tools.joints.bolted_joint.field import PlaneLayout
 from jointfmu_tools.joints.bolted_joint.new import computed
 
 from jointfmu.contact.surface import Elastic
+from jointfmu.joints import MODELS
 from jointfmu.joints.bolted_joint.compliances import DIRECTIONS, Compliances
 from jointfmu.joints.bolted_joint.law import RoughBoltedJoint, contradictions, pressures
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring, points
@@ -406,3 +409,41 @@ def test_an_unknown_attachment_is_refused(capsys):
     line = refused_line(capsys, "new", "bolted-joint", *M16, "--attached", "bolts")
     assert "--attached" in line
     assert "heads" in line
+
+
+THIN = ["--plate", "40x25.4", "--bolts", "2xM6", "--at", "20x0", "--grip", "3.175", "3.175"]
+THIN += ["--material", "aluminium", "--Ra", "0.8"]
+
+
+@pytest.mark.parametrize("sides", ["rigid", pytest.param("elastic", marks=pytest.mark.slow)])
+def test_a_joint_of_which_embedding_takes_much_has_a_page_and_a_report(tmp_path, capsys, sides):
+    """1745 N of 4000 and of 1800 N: loops are drawn under a preload of which embedding leaves some."""
+    for preload in {"rigid": ("4000", "1800"), "elastic": ("4000",)}[sides]:
+        path, page = (tmp_path / f"{preload}.{kind}" for kind in ("toml", "html"))
+        words = ["--preload", preload, "--attached", "edge", "--out", str(path)]
+        assert cli.main(["new", "bolted-joint", *THIN, "--sides", sides, *words]) == 0
+        file = load(path)
+        assert file.values.embedding == pytest.approx(1745.0, rel=1e-3)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            model = MODELS["BoltedJoint"].of(file.joint, file.values)
+            assert b"Loops at preload" in documentation(model, file)["index.html"]
+            assert cli.main(["report", str(path), "--out", str(page)]) == 0
+        capsys.readouterr()
+
+
+def test_embedding_that_takes_all_of_the_preload_is_refused(tmp_path, capsys):
+    path = tmp_path / "joint.toml"
+    file = default("bolted_joint").with_values({"embedding": 12e3}, "user", "test")
+    path.write_text(dump(replace(file, inputs={**file.inputs, "preload": 9e3})))
+    for words in (["build", "BoltedJoint", "--params", path, "--out", tmp_path], ["report", path]):
+        line = refused_line(capsys, *words)
+        assert (
+            "preload = 9000 N is outside (12000, inf) N: embedding takes all of it; state more preload"
+            in line
+        )
+    # none is stated: the ramp and the loops begin with a bolt that embedding does not slacken
+    page = documentation(MODELS["BoltedJoint"], replace(file, inputs={}))["index.html"]
+    assert b"Loops at preload = 17.4 kN" in page
+    model = MODELS["BoltedJoint"].of("bolted_joint", file.values)
+    assert model.loop.settings["preload"] == 24e3

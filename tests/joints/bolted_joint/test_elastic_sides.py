@@ -342,6 +342,83 @@ def test_the_fmu_is_the_package(made, tmp_path, flavour):
     fmu.free()
 
 
+def random_preloads(rng, preload, embedding, steps):
+    """Preload and motion of random steps, of which many leave the joint without preload, or pull it apart."""
+    unit, six = np.array([1e-6, 1e-6, 5e-7, 1e-5, 1e-5, 2e-5]), np.zeros(6)
+    for _ in range(steps):
+        parts = (0.0, rng.uniform(0.0, 1.0), 1.0, 1.0 + 10.0 ** rng.uniform(-9.0, -1.0))
+        if rng.random() < 0.6:
+            size = 10.0 ** rng.uniform(-3.0, 1.0) * (rng.random(6) < 0.6)
+            six = rng.uniform(-1.0, 1.0, 6) * unit * size
+        if rng.random() < 0.2:
+            six = np.where(np.arange(6) == 2, 10.0 ** rng.uniform(-7.0, -3.0), six)
+        given = parts[rng.integers(4)] * embedding, rng.uniform(0.1, 1.2) * preload
+        yield given[rng.integers(2)], six
+
+
+def test_a_joint_without_preload_has_no_contact_force_and_gets_it_back(made, tmp_path):
+    spring = embedded(made(*FOUR, preload=15e3), tmp_path / "joint.toml").spring
+    first, memory = at(spring, *1e-7 * AXIS_X, preload=15e3)
+    assert first["f_x"] < -100.0
+    for preload in (800.0, 700.0, 0.0):
+        out, memory = at(spring, *1e-7 * AXIS_X, memory=memory, preload=preload)
+        assert [out[name] for name in ("p_max", "K_xx", "K_rz", "slip", "eta_loop")] == [0.0] * 5
+        assert abs(out["f_x"]) == abs(out["m_z"]) == 0.0
+        np.testing.assert_allclose([out[n] for n in ("f_z", "m_x", "m_y", "F_bolt[1]")], 0.0, atol=1e-9)
+    closed, memory = at(spring, *1e-7 * AXIS_X, memory=memory, preload=15e3)
+    assert abs(closed["f_x"]) < 1e-9 * abs(first["f_x"])  # what touches again has no force along the surface
+    assert closed["K_xx"] == pytest.approx(at(spring, *STILL, preload=15e3)[0]["K_xx"], rel=1e-12)
+    moved, _ = at(spring, *STILL, memory=memory, preload=15e3)
+    assert moved["f_x"] == pytest.approx(-first["f_x"], rel=1e-3)
+
+
+def test_a_bolt_of_no_stiffness_leaves_an_open_joint_without_force(made):
+    values = made(*FOUR, preload=15e3).file.values
+    spring = BoltedJointSpring.of(replace(values, bolt_stiffness=0.0))
+    _, memory = at(spring, *1e-7 * AXIS_X, preload=15e3)
+    for apart in (1e-4, 2e-4):
+        out, memory = at(spring, 1e-7, 0, apart, 0, 0, 0, memory=memory, preload=15e3)
+    forces = [out[n] for n in ("f_x", "f_y", "m_x", "m_y", "m_z", "p_max", "K_zz")]
+    np.testing.assert_allclose(forces, 0.0, atol=1e-9)
+    back, _ = at(spring, *1e-7 * AXIS_X, memory=memory, preload=15e3)
+    assert back["p_mean"] > 1e6
+
+
+@pytest.mark.parametrize("flavour", ["fmi2", "fmi3"])
+def test_the_fmu_loses_and_regains_preload_as_the_package(made, tmp_path, flavour):
+    """Co-simulation and model exchange, over random histories. Absolute: forces and stiffnesses vanish."""
+    joint = embedded(made(*FOUR, preload=15e3), tmp_path / "joint.toml")
+    with here_alone():
+        build(["BoltedJoint"], [flavour], joint.file, tmp_path)
+    (path,) = tmp_path.rglob("BoltedJoint.fmu")
+    least = {"f": 1e-5, "m": 1e-6, "F": 1e-5, "K": 100.0, "s": 1e-9, "C": 1e-2, "E": 1e-12, "e": 1e-9}
+    for seed, exchange in enumerate((False, True, False, True)):
+        rng, memory = np.random.default_rng(seed), joint.spring.at_rest()
+        fmu = Fmu(path, exchange=exchange).start({"preload": 15e3})
+        _, memory = at(joint.spring, *STILL, preload=15e3, memory=memory)
+        for preload, six in random_preloads(rng, 15e3, 800.0, 30):
+            expected, memory = at(joint.spring, *six, memory=memory, preload=preload)
+            fmu.set({"preload": preload, **dict(zip(MOTIONS, six, strict=True))})
+            accept(fmu)
+            for name, found in fmu.get(*expected).items():
+                allowed = least.get(name[0], 0.0)  # of 1e4 N, 1e3 N.m, 1e9 N/m
+                wanted = pytest.approx(float(expected[name]), rel=1e-8, abs=allowed)
+                assert found == wanted, (name, preload, six)
+        fmu.free()
+
+
+def accept(fmu):
+    """End a step at the inputs that were set."""
+    if not fmu.exchange:
+        fmu.step()
+        return
+    fmu.fmu.enterContinuousTimeMode()
+    fmu.time += 1.0
+    fmu.fmu.setTime(fmu.time)
+    fmu.fmu.completedIntegratorStep()
+    fmu.fmu.enterEventMode()
+
+
 # What is refused
 
 

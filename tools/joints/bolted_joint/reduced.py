@@ -209,7 +209,7 @@ class Sides(NamedTuple):
         """Raises ValueError for bodies that were computed for another contact."""
         shape, few = points(pattern), patches(pattern)
         modes = Modes.of(joint.bodies, shape.share.size, few.position)
-        whole = Whole.of(modes, shape, few, 1.0, 1.0)
+        whole = Whole.of(modes, shape, few, area=1.0, bolt=1.0, closed=0.0)
 
         def products(weight: Array, *motions: tuple[Array, Array]) -> Array:
             rows = [np.column_stack(motion) for motion in motions]

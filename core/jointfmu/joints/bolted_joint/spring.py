@@ -254,7 +254,8 @@ class BoltedJointSpring:
     def whole(self) -> Whole:
         """The contact with what gives way around it."""
         joint = self.joint
-        return Whole.of(self.modes, self.shape, self.patches, joint.A_0, joint.bolt_stiffness)
+        bolt, closed = joint.bolt_stiffness, self.curve.closed
+        return Whole.of(self.modes, self.shape, self.patches, joint.A_0, bolt, closed)
 
     def shift(self, rigid: Array, amplitude: Array) -> Array:
         """`shifts` (m, 3) [m] of the patches by a rigid motion (3) and amplitudes (k) [m] of the modes."""
@@ -334,7 +335,7 @@ class BoltedJointSpring:
         """Sums of elastic sides: stiffnesses of the whole without the bolts' own part, see `outputs`."""
         joint, area, modes = self.joint, self.joint.A_0, self.modes
         bolts, (_, _, x2, y2, _) = joint.n_bolts * joint.bolt_stiffness, joint.pattern.bolt_means
-        K = np.diag(self.whole.condensed(self.whole.slope(at.stiffness, at.tangent)))
+        K = np.maximum(np.diag(self.whole.condensed(self.whole.slope(at.stiffness, at.tangent))), 0.0)
         stretch, whole = modes.stretch @ amplitude, self.whole.stretch(place, amplitude)
         energy = 0.5 * (modes.stiffness @ amplitude**2 + joint.bolt_stiffness * (whole @ whole))
         values = [np.sum(stretch), *(stretch @ modes.bolts)]

@@ -15,7 +15,8 @@ if TYPE_CHECKING:
     from .spring import BoltedJointSpring
 
 DIFFERENCE = 1e-7
-"""Part of the largest approach [1] by which patches move to find the slopes of their tractions."""
+"""Part of the largest approach at tightening [1] by which patches move to find the slopes of their tractions;
+or of the approach at which the contact has closed, if it is larger: without preload all patches are open."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,7 +131,8 @@ class Trials:
         By differences, at the end of the way; FMUs have the derivative of the rule.
         """
         approach = self.approaches(place, amplitude)[1]
-        step = DIFFERENCE * float(np.max(self.starts[1] - self.spring.curve.displacement[0]))
+        first = self.spring.curve.displacement[0]
+        step = DIFFERENCE * float(np.max(np.maximum(self.starts[1], 0.0) - first))
 
         def traction(further: Array) -> Array:
             return self._way(place, amplitude, approach - further[3], further[:3]).traction

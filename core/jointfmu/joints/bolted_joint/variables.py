@@ -18,7 +18,9 @@ from .spring import BoltedJointSpring
 LINEAR = 0.5**0.5
 """Friction force used [1] without memory, where the linear shear force would be the limit."""
 _PRELOAD = 30e3
-"""End of the ramp [N] where no preload is stated; else it is that one: bolts are tightened near to yield."""
+"""Least end of the ramp [N] where no preload is stated: bolts are tightened near to yield."""
+_LOOP_PRELOAD = 9e3
+"""Least preload [N] of loops where none is stated: that of the published pressures."""
 _APART = ("preload", "moment", "s_rel_z", "theta_x", "theta_y")
 _INTERFACE = ("C_xx", "C_yy", "C_zz", "eta_t", "eta_n")
 _PLACE = (*_APART, "s_rel_x", "s_rel_y", "theta_z")
@@ -34,9 +36,32 @@ def _evolve(spring: BoltedJointSpring, v: Values, memory: Any) -> tuple[Mapping[
     return spring.evolve(v["preload"], v["moment"], place, rates, memory)
 
 
+def _reach(spring: BoltedJointSpring, v: Values) -> tuple[float, float]:
+    """Ends of the ramp [N]: to the stated preload.
+
+    Raises ValueError if one is stated of which embedding leaves nothing.
+    """
+    preload, embedding = v["preload"], spring.joint.embedding
+    if 0.0 < preload <= embedding:
+        raise ValueError(
+            f"preload = {preload:g} N is outside ({embedding:g}, inf) N: embedding takes all of it; state "
+            "more preload or less embedding"
+        )
+    return 0.0, preload or max(_PRELOAD, 2.0 * embedding)
+
+
 def _row_moment(joint: Any, preload: Number) -> Number:
     """The largest moment [N.m] that both bolt rows carry without a negative bolt force."""
     return working_preload(joint, preload) * joint.row_distance * joint.row_bolts
+
+
+def _variant(model: Model, joint: Bolted) -> Model:
+    """With a loop under a preload of which embedding leaves some, where none is stated; with elastic sides
+    as `_whole`.
+    """
+    assert model.loop
+    loop = replace(model.loop, settings={"preload": max(_LOOP_PRELOAD, 2.0 * joint.embedding)})
+    return _whole(replace(model, loop=loop), joint)
 
 
 def _whole(model: Model, joint: Bolted) -> Model:
@@ -132,8 +157,8 @@ MODELS = (
                 "the shear is beyond what friction holds: none if open; without memory the joint would slip",
             ),
         ),
-        ramp=Ramp("preload", _PRELOAD, 100.0, reach=lambda s, v: (0.0, v["preload"] or _PRELOAD)),
-        loop=Loop("s_rel_x", 5e-6, {"preload": 9e3}),
+        ramp=Ramp("preload", _PRELOAD, 100.0, reach=_reach),
+        loop=Loop("s_rel_x", 5e-6, {"preload": _LOOP_PRELOAD}),
         dependencies={
             "f_x": (*_PLACE, "v_rel_x", "omega_z"),
             "f_y": (*_PLACE, "v_rel_y", "omega_z"),
@@ -146,6 +171,6 @@ MODELS = (
             **dict.fromkeys(("C_xx", "C_yy", "C_zz", "eta_n", "p_mean", "p_max"), _APART),
         },
         hidden=("pattern", "plate", "field", "bodies"),
-        variant=_whole,
+        variant=_variant,
     ),
 )

@@ -24,7 +24,8 @@ from .contact import Place, shifts
 from .trials import Trial, Trials
 
 CLOSE = 1e-13
-"""Residual over the sum of all forces [1] at which the bodies are in equilibrium: round-off of the sums."""
+"""Residual over the sum of all forces [1] at which the bodies are in equilibrium: round-off of the sums. All
+forces vanish where the joint is open, so the load at which the contact closes is added to them."""
 CANCELS = 0.02
 """Forces of points that come apart by rigid motion and modes alike, whose difference is left [1] in CLOSE."""
 ROUGH = 1e7
@@ -45,6 +46,7 @@ class Whole:
     seats   : (b, 3) stretch by s_z, theta_x, theta_y
     weight  : (n) [m2] area of the points, `patch` (m) of the patches
     bolt    : [N/m] stiffness of each bolt
+    closed  : [N] load of the whole area at which the contact closes, see `Curve.closed`
     """
 
     modes: Modes
@@ -54,12 +56,19 @@ class Whole:
     weight: Array
     patch: Array
     bolt: float
+    closed: float
 
     @classmethod
     def of(
-        cls, modes: Modes, shape: PressureShape, patches: FrictionPatches, area: float, bolt: float
+        cls,
+        modes: Modes,
+        shape: PressureShape,
+        patches: FrictionPatches,
+        area: float,
+        bolt: float,
+        closed: float,
     ) -> "Whole":
-        """Of points and patches of a nominal area [m2]."""
+        """Of points and patches of a nominal area [m2]; the contact closes under a pressure `closed` [Pa]."""
         turns = np.eye(3)
         return cls(
             modes,
@@ -69,6 +78,7 @@ class Whole:
             area * shape.share,
             area * patches.share,
             bolt,
+            area * closed,
         )
 
     def stretch(self, place: Place, amplitude: Array) -> Array:
@@ -87,7 +97,7 @@ class Whole:
         sizes = self.weight @ (at.pressure + tight), np.sum(np.abs(bolts)), self.patch @ np.abs(at.traction)
         apart = np.max(np.abs(self.points @ place.normal))
         forces = sum(np.sum(size) for size in sizes) + (self.weight @ at.stiffness) * apart * CANCELS
-        return r, float(CLOSE * forces)
+        return r, float(CLOSE * (forces + self.closed))
 
     def slope(self, stiffness: Array, tangent: Array) -> Array:
         """H (6 + k, 6 + k) [N/m] over s_x, s_y, s_z, theta_x, theta_y, theta_z and the amplitudes.
