@@ -34,3 +34,15 @@ def test_the_description_leads_to_the_address_that_is_given() -> None:
         path = re.sub(r"https://example\.org/joints/(blob|raw)/HEAD/", "", link)
         assert ("/raw/" in link) == (link in pictures), link
         assert path.startswith("https:") or (ROOT / path).exists(), link
+
+
+def test_workflows_pin_every_action_by_commit() -> None:
+    uses = [
+        line
+        for path in sorted((ROOT / ".github/workflows").glob("*.yml"))
+        for line in re.findall(r"uses: (.+)", path.read_text(encoding="utf-8"))
+        if not line.startswith("./")
+    ]
+    assert uses
+    for line in uses:
+        assert re.fullmatch(r"[\w./-]+@[0-9a-f]{40} # v\d+\.\d+\.\d+", line), line
