@@ -1,7 +1,7 @@
 """The SBOM of a release, CycloneDX: python .ci/sbom.py PYTHON FILE, with the extra `release`.
 
-PYTHON is that of a bare environment with the wheel: its distributions are what the wheel needs. The headers that
-are compiled into the FMUs are added: those of the versions of fmpy and ziglang that run this script.
+PYTHON is that of a bare environment with the wheel: its distributions are what the wheel needs. The headers
+that are compiled into the FMUs are added: those of the versions of fmpy and ziglang that run this script.
 """
 
 import json
