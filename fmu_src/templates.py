@@ -1,9 +1,12 @@
 """Pages and C from jinja templates."""
 
+from base64 import b64encode
 from functools import cache
+from hashlib import sha256
 from pathlib import Path
 
 import jinja2
+from markupsafe import Markup
 
 from jointfmu.contact.laws import ROUGHNESS_LAW
 from jointfmu.contact.laws.roughness import FEW_SPOTS
@@ -14,7 +17,8 @@ FRAME = Path(__file__).with_name("native")
 
 
 def template(path: Path, *shared: Path) -> jinja2.Template:
-    """A template; a page escapes what it prints, an unknown name is an error; `number` prints a value.
+    """A template; a page escapes what it prints, an unknown name is an error; `number` prints a value,
+    `policy` the Content-Security-Policy.
 
     shared : folders of templates that it extends or imports, beside its own
     """
@@ -32,7 +36,24 @@ def _environment(folders: tuple[Path, ...], escapes: bool) -> jinja2.Environment
         undefined=jinja2.StrictUndefined,
     )
     environment.globals["number"] = _number
+    environment.globals["policy"] = _policy
     return environment
+
+
+def _policy(script: str = "", webassembly: bool = False, images: str = "data:") -> Markup:
+    """The Content-Security-Policy of a self-contained page: no network, and no script but the page's own.
+
+    script      : the whole text of the page's script element
+    webassembly : whether the script compiles WebAssembly
+    images      : sources of images, as the policy names them
+    """
+    digest = b64encode(sha256(script.encode()).digest()).decode()
+    allowed = f"'sha256-{digest}'" + (" 'wasm-unsafe-eval'" if webassembly else "") if script else "'none'"
+    content = (
+        f"default-src 'none'; script-src {allowed}; style-src 'unsafe-inline'; img-src {images}; "
+        "base-uri 'none'; form-action 'none'"
+    )
+    return Markup('<meta http-equiv="Content-Security-Policy" content="{}">').format(Markup(content))
 
 
 def _number(value: float | str) -> str:

@@ -1,6 +1,7 @@
 """What the model descriptions of all flavours say alike: variables, units, dependencies."""
 
 import math
+import re
 from collections.abc import Sequence
 from typing import NamedTuple
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
@@ -124,6 +125,11 @@ def serialized(root: Element) -> bytes:
     """An XML file, indented, the same bytes for the same content."""
     indent(root)
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{tostring(root, encoding="unicode")}\n'.encode()
+
+
+def comment(lines: Sequence[str]) -> str:
+    """Lines as an XML comment, in which no two hyphens follow each other."""
+    return "<!--\n" + "".join(f"  {re.sub('-(?=-)', '- ', line)}\n" for line in lines) + "-->\n"
 
 
 def _shown(unit: str, typical: float) -> dict[str, str]:

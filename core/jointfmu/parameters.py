@@ -12,7 +12,6 @@ A section `[roughness]` states what is known of the surfaces, see `roughness`: a
 from there. Another law has none; there `[comparison]` states the same, and the level is judged by it.
 """
 
-import json
 import tomllib
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import Field, dataclass, field, replace
@@ -20,6 +19,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from .contact import roughness
+from .files.text import MAX_NAME_LENGTH, check_document, check_text, toml_string
 from .joints import KINDS
 from .quantity import build, changed, flat_fields, flatten, problem, problems, quantity
 
@@ -44,7 +44,7 @@ class ParameterFile:
     """A parameter set with where it comes from.
 
     joint   : a key of joints.KINDS
-    name    : of this parameter set
+    name    : of this parameter set; it and the sources are lines that `check_text` allows, else ValueError
     values  : the parameter set, an instance of a value of KINDS[joint].laws
     origins, sources : {structured name: one of ORIGINS, text}, also of `inputs.NAME`, `roughness.NAME` or
         `comparison.NAME`
@@ -65,6 +65,9 @@ class ParameterFile:
     flat: Mapping[str, Any] = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
+        check_text("name", self.name, MAX_NAME_LENGTH)
+        for name, text in self.sources.items():
+            check_text(f"{name}: source", text)
         object.__setattr__(self, "flat", flatten(self.values))
 
     @property
@@ -204,7 +207,8 @@ def _height_of_law(
 def read_document(path: Path, expected: str) -> dict[str, Any]:
     """A TOML document of our schema; `expected` names what it should be.
 
-    Raises ValueError with one line if the file cannot be read, is no TOML or of another schema.
+    Raises ValueError with one line if the file cannot be read, is no TOML or of another schema, or if a key
+    or a text is too long or has control characters.
     """
     try:
         document = tomllib.loads(path.read_text(encoding="utf-8-sig"))
@@ -214,6 +218,10 @@ def read_document(path: Path, expected: str) -> dict[str, Any]:
         raise ValueError(f"{path}: is no text file; expected {expected} (TOML, UTF-8)") from None
     except tomllib.TOMLDecodeError as error:
         raise ValueError(f"{path}: is no valid TOML ({error})") from None
+    try:
+        check_document(document)
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from None
     if type(document.get("schema")) is not int or document["schema"] != SCHEMA:
         raise ValueError(f"{path}: schema = {document.get('schema')!r}, allowed is {SCHEMA}")
     return document
@@ -329,7 +337,7 @@ def dump(parameters: ParameterFile) -> str:
     lines = [f"schema = {SCHEMA}", f'joint = "{parameters.joint}"']
     if parameters.joint in KINDS:  # else a partner of a joint
         lines.append(f'law = "{parameters.law}"')
-    lines.append(f"name = {_quoted(parameters.name)}")
+    lines.append(f"name = {toml_string(parameters.name)}")
     section = ""
     for name, value in values:
         if value == ():  # not stated
@@ -343,7 +351,7 @@ def dump(parameters: ParameterFile) -> str:
         if name in parameters.ranges:
             fields += [f"range = [{', '.join(map(repr, parameters.ranges[name]))}]"]
         fields += [f'kind = "{parameters.origins.get(name, "user")}"']
-        fields += [f"source = {_quoted(parameters.sources.get(name, 'default choice'))}"]
+        fields += [f"source = {toml_string(parameters.sources.get(name, 'default choice'))}"]
         lines.append(f"{leaf} = {{ {', '.join(fields)} }}")
     return "\n".join(lines) + "\n"
 
@@ -354,12 +362,7 @@ def _toml(value: Any) -> str:
     if isinstance(value, tuple):
         rows = [", ".join(map(repr, value[i : i + _PER_LINE])) for i in range(0, len(value), _PER_LINE)]
         return "[\n  " + ",\n  ".join(rows) + ",\n]"
-    return _quoted(value) if isinstance(value, str) else repr(float(value))
-
-
-def _quoted(text: str) -> str:
-    """A TOML basic string: the escapes of JSON, and DEL."""
-    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
+    return toml_string(value) if isinstance(value, str) else repr(float(value))
 
 
 def default(joint: str, law: str | None = None) -> ParameterFile:

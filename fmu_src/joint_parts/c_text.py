@@ -1,6 +1,7 @@
 """Numbers, texts and arrays as C writes them."""
 
 import math
+import re
 from collections.abc import Iterable
 
 
@@ -17,6 +18,16 @@ def number(value: float) -> str:
 
 
 def string(text: str) -> str:
-    """A string literal."""
-    escaped = text.replace("\\", "\\\\").replace('"', '\\"')
-    return f'"{escaped}"'
+    """A string literal: plain ASCII without trigraphs; other characters as the bytes of UTF-8."""
+    return '"' + re.sub(rb'[^ -~]|["\\]|(?<=\?)\?', _escaped, text.encode()).decode("ascii") + '"'
+
+
+def comment(text: str) -> str:
+    """A text inside a comment: printable ASCII that neither ends nor begins a comment."""
+    plain = re.sub(r"[^ -~]", "?", text)
+    return re.sub(r"\*(?=/)|/(?=\*)|\?(?=\?)", r"\g<0> ", plain)
+
+
+def _escaped(found: re.Match[bytes]) -> bytes:
+    character = found[0]
+    return b"\\" + character if character in b'"\\?' else b"\\%03o" % ord(character)

@@ -18,7 +18,7 @@ from jointfmu.parameters import ParameterFile, dump
 from jointfmu.quantity import Array, flat_fields
 
 from ..folders import parts_of
-from ..joint_parts.c_text import number, string
+from ..joint_parts.c_text import comment, number, string
 from ..joint_parts.data import NO_TABLES, Split, Tables
 from ..naming import LONGEST
 
@@ -85,7 +85,7 @@ class Data(NamedTuple):
     def source(self, of: str = "") -> str:
         """data.c; `of` says whose data it is."""
         rows = "".join(f"    .{m.name} = {m.text},\n" for m in self.members)
-        head = GENERATED.format(version=__version__, of=of)
+        head = GENERATED.format(version=__version__, of=comment(of))
         return f'{head}#include "data.h"\n\nconst Data data = {{\n{rows}}};\n'
 
 

@@ -1,6 +1,16 @@
-"""The licence that every FMU carries: the one of the package."""
+"""The licences that every FMU carries: that of the package, and those of others' work in its binaries.
 
+No library of the compiler is linked in (`compiled/compiler.py`): Linux and macOS bind the system's libraries,
+Windows the system's runtime by import stubs of mingw-w64. Of others the binaries have what the headers
+of FMI and of mingw-w64 declare.
+"""
+
+from collections.abc import Iterator
 from importlib.metadata import PackageNotFoundError, files
+from pathlib import Path
+
+_OTHERS = Path(__file__).with_name("licenses")
+"""Folder of licence texts as their owners wrote them; the wheel lists them as its licence files too."""
 
 
 def licence() -> str:
@@ -13,6 +23,16 @@ def licence() -> str:
         return texts[0].read_text(encoding="utf-8")
     except (PackageNotFoundError, IndexError, OSError):
         raise ValueError("LICENSE: missing in the installed package jointfmu; install it again") from None
+
+
+def licences() -> dict[str, bytes]:
+    """{path in the folder documentation of an FMU: content} of all licence texts. ValueError as `licence`."""
+    return {"licenses/license.txt": licence().encode()} | dict(_others())
+
+
+def _others() -> Iterator[tuple[str, bytes]]:
+    for path in sorted(_OTHERS.glob("*.txt")):
+        yield f"licenses/{path.name}", path.read_bytes()
 
 
 def copyright_line() -> str:

@@ -19,7 +19,7 @@ from ..joint_parts import RampPanel, chart
 from ..joint_parts.terminals import Terminal
 from ..templates import law_terms, template
 from ..xml_parts import listed
-from .licence import licence
+from .licence import licences
 from .terminals import terminals
 
 _POINTS = 41
@@ -57,7 +57,7 @@ def documentation(model: Model, parameters: ParameterFile) -> dict[str, bytes]:
     own = asset(model, "page.html")
     given = model, parameters, own
     page = plain_page(*given, terminals(model)) if model.moves else _page(*given)
-    return {"index.html": page.encode(), "licenses/license.txt": licence().encode()}
+    return {"index.html": page.encode(), **licences()}
 
 
 def plain_page(model: Model, parameters: ParameterFile, page: Path, flanges: Sequence[Terminal] = ()) -> str:
@@ -95,7 +95,7 @@ def _page(model: Model, parameters: ParameterFile, page: Path) -> str:
         drawings=drawings(model, spring),
         steps=_steps(model, spring, rest, parameters),
         style=chart.style(),
-        script=chart.script("figures"),
+        script=chart.script("figures") + "drawAll();",
         ramp_unit=next(v.unit for v in model.inputs if v.name == model.ramp.input),
     )
 

@@ -9,7 +9,7 @@ from jointfmu_fmu_src.naming import LONGEST, checked_name
 from jointfmu.joints import MODELS
 
 NAME = next(iter(MODELS))
-ALLOWED = "allowed are at most 63 letters, digits and _, no digit first, no word of C or Python"
+ALLOWED = "allowed are at most 63 letters, digits and _, no digit first, no word of C, Python or Modelica"
 
 
 @pytest.mark.parametrize("name", ["A", "_", "ShoulderDrive", "drive_2", "x" * LONGEST])

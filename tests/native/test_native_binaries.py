@@ -5,6 +5,8 @@ macOS binaries cannot run here; their load commands and signatures are checked i
 
 import re
 import struct
+import subprocess
+import sys
 import zipfile
 from collections.abc import Iterator
 from hashlib import sha256
@@ -103,6 +105,28 @@ def test_each_exports_every_function_of_the_standard_and_nothing_else(native: Pa
         for image in images(content):
             prefix = "_" if isinstance(image, lief.MachO.Binary) else ""
             assert exported(image) == {prefix + f for f in functions}, path
+
+
+@pytest.mark.parametrize("platform", compiler.TARGETS)
+def test_no_static_library_of_the_compiler_is_linked_in(platform: str, tmp_path: Path) -> None:
+    """So that the licences of FMUs are complete: what links is our objects, and stubs of the system's."""
+    source = "#include <math.h>\nint run(double x);\nint run(double x) { return sin(x) > 0.5; }\n"
+    (tmp_path / "run.c").write_text(source)
+    own = Path(compiler.__file__).with_name("windows.c")
+    (tmp_path / own.name).write_bytes(own.read_bytes())
+    options = [option for option in compiler._options(platform, "run") if option != "-s"]
+    command = [sys.executable, "-m", "ziglang", "cc", *options, "run.c", "-v", "-o", "run.bin"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True, timeout=300)
+    (line,) = [x for x in done.stderr.splitlines() if re.match(r"(zig ld|ld\.lld|lld-link) ", x)]
+    inputs = {re.split(r"[/\\]", word)[-1] for word in line.split() if re.search(r"^[^-].*\.(a|lib)$", word)}
+    stubs = {f"api-ms-win-crt-{part}-l1-1-0.lib" for part in compiler._UCRT}
+    assert inputs <= stubs | {"libc_nonshared.a"}
+    if platform.endswith("-linux"):  # the one archive with code, of which nothing is taken
+        import lief
+
+        image = lief.parse((tmp_path / "run.bin").as_posix())
+        ours = {s.name for s in image.symbols if s.value and s.type == lief.ELF.Symbol.TYPE.FUNC}
+        assert ours <= {"run"}
 
 
 @pytest.mark.parametrize("version", VERSIONS)

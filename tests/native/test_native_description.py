@@ -711,6 +711,11 @@ def test_the_licence_is_that_of_the_repository(name: str, monkeypatch: pytest.Mo
     text = (Path(__file__).parents[2] / "LICENSE").read_text(encoding="utf-8")
     assert pages(name)["licenses/license.txt"].decode() == text
     assert text.startswith("MIT License")
+    for file, words in (
+        ("fmi-headers", "Modelica Association Project"),
+        ("mingw-w64", "Zope Public License"),
+    ):
+        assert words in pages(name)[f"licenses/{file}.txt"].decode()
     monkeypatch.setattr(licence_module, "files", lambda package: [])
     with pytest.raises(ValueError, match="LICENSE: missing in the installed package jointfmu"):
         licence()

@@ -151,6 +151,11 @@ def _data(joints: Sequence[_Joint]) -> dict[str, str]:
         bases[base] = extended.render(meta=_meanings(joint.kind))
         filled = joint.templates.get_template("Data/record.mo")
         for record in joint.records.values():
+            if record.name in {other.component.base for other in joints}:
+                raise ValueError(
+                    f"name = {joint.file.name!r}: the library has a class {record.name}; "
+                    "expected another name"
+                )
             tables[record.name] = filled.render(record.content(base), version=__version__)
     return bases | tables
 

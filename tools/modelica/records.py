@@ -5,12 +5,14 @@ tables; how Modelica writes numbers and texts.
 import re
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
+from html import escape
 from itertools import pairwise
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from jointfmu_fmu_src.naming import reserved
 from numpy.typing import NDArray
 
 from jointfmu.mechanics.curve import Curve
@@ -38,14 +40,21 @@ def matrix(rows: NDArray[np.float64]) -> str:
 
 
 def text(content: str) -> str:
-    """The inside of a Modelica string."""
-    return content.replace("\\", "\\\\").replace('"', '\\"')
+    """The inside of a Modelica string; it ends with no backslash, which simple readers misread."""
+    content += " " * content.endswith("\\")
+    return content.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n")
+
+
+def html(content: str) -> str:
+    """A plain text in the HTML of a documentation annotation, which is a Modelica string."""
+    return text(escape(content, quote=False))
 
 
 def identifier(name: str) -> str:
     """A Modelica identifier of a title."""
     words = re.sub(r"[^A-Za-z0-9]+", "_", name).strip("_")
-    return words[0].upper() + words[1:] if words[:1].isalpha() else f"Joint_{words}"
+    plain = words[:1].isalpha() and not reserved(words) and words.lower() != "package"
+    return words[0].upper() + words[1:] if plain else f"Joint_{words}"
 
 
 def environment(*folders: Path) -> Environment:
@@ -169,7 +178,7 @@ class ModelicaRecord:
             "title": text(self.title),
             "base": base,
             "values": {**self.values, "table": matrix(self.table.rows)},
-            "about": text(f"From the parameters {self.title}."),
+            "about": html(f"From the parameters {self.title}."),
             "error": f"{max(self.table.error, TOLERANCE):.0e}",
             "more": self.more,
         }

@@ -14,7 +14,7 @@ from ..joint_parts import part as joint_part
 from ..systems.system import Component as Part
 from ..systems.system import System
 from ..systems.wiring import End, ends
-from .records import ModelicaComponent, ModelicaRecord, number, text
+from .records import ModelicaComponent, ModelicaRecord, html, number, text
 
 _MSL = "Modelica.Mechanics"
 _LIBRARY = "JointStiffness.Components"
@@ -87,7 +87,7 @@ def system_model(system: System, shared: Environment, library: Records, within: 
         lines=lines,
         stop=number(system.stop_time),
         interval=number(system.interval),
-        about=text(f"{system.description}."),
+        about=html(f"{system.description}."),
         sources=_sources(system),
     )
 
@@ -215,7 +215,7 @@ def _places(system: System, connected: Sequence[tuple[End, End]]) -> dict[str, t
 def _sources(system: System) -> str:
     rows = "".join(
         f"<tr><td><code>{part.name}.{name}</code></td><td>{number(value)} "
-        f"{part.units[name].replace('.', ' ')}</td><td>{text(part.sources[name])}</td></tr>\n"
+        f"{part.units[name].replace('.', ' ')}</td><td>{html(part.sources[name])}</td></tr>\n"
         for part in system.components.values()
         for name, value in part.values.items()
     )

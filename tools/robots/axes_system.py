@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from jointfmu.files.text import toml_string
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
 
@@ -60,8 +61,8 @@ def text(
     at = ", ".join(f"{axis.joint} = {pose[model.joint(axis.joint).qposadr[0]]:.4g} rad" for axis in axes)
     head = [
         "schema = 1",
-        f'name = "Axes of {title}"',
-        f'description = "Elastic axes with {payload:g} kg at {at}"',
+        f"name = {toml_string(f'Axes of {title}')}",
+        f"description = {toml_string(f'Elastic axes with {payload:g} kg at {at}')}",
         "connect = [",
         *wires,
         "]\n",
@@ -77,4 +78,4 @@ def text(
 
 
 def _entry(name: str, value: float, unit: str, source: str) -> str:
-    return f'{name} = {{ value = {value!r}, unit = "{unit}", kind = "derived", source = "{source}" }}'
+    return f'{name} = {{ value = {value!r}, unit = "{unit}", kind = "derived", source = {text} }}'

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
+from jointfmu_fmu_src.xml_parts import comment
 
 from jointfmu import __version__
 from jointfmu.quantity import Array
@@ -170,5 +171,4 @@ def text(drive: Transmission, torque: float) -> tuple[str, Miss, list[str]]:
         "it cannot carry:" if drive.lacks else "nothing of the drive is left out",
         *(f"  {line}" for line in drive.lacks),
     ]
-    comment = "\n".join(f"  {line.replace('--', '- -')}" for line in about)
-    return f"<!--\n{comment}\n-->\n{_model(drive, fitted, motor, link)}", miss, [*drive.lacks]
+    return f"{comment(about)}{_model(drive, fitted, motor, link)}", miss, [*drive.lacks]

@@ -3,12 +3,16 @@
 import re
 from collections.abc import Mapping
 
+from jointfmu_fmu_src.naming import reserved
+
 from jointfmu.parameters import ParameterFile, dump
 
 
 def identifier(name: str) -> str:
-    """A name of letters, digits and _."""
-    return re.sub(r"\W", "_", name if name[:1].isalpha() else f"_{name}", flags=re.ASCII)
+    """A name of letters, digits and _ that no language and no system keeps for itself."""
+    return re.sub(
+        r"\W", "_", f"_{name}" if not name[:1].isalpha() or reserved(name) else name, flags=re.ASCII
+    )
 
 
 def check_names(files: Mapping[str, ParameterFile]) -> None:

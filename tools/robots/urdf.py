@@ -3,6 +3,8 @@
 from collections.abc import Iterator
 from xml.sax.saxutils import quoteattr
 
+from jointfmu_fmu_src.xml_parts import comment
+
 from jointfmu import __version__
 
 from .transmission import Transmission, area
@@ -33,8 +35,7 @@ def text(drive: Transmission, torque: float) -> tuple[str, None, list[str]]:
         *(f"  {line}" for line in lacks),
         "limits: largest torque of the drive; speed at 2000 rpm of the motor; inertias stand for yours",
     ]
-    comment = "\n".join(f"  {line.replace('--', '- -')}" for line in about)
-    return f'<?xml version="1.0"?>\n<!--\n{comment}\n-->\n{_robot(drive)}', None, lacks
+    return f'<?xml version="1.0"?>\n{comment(about)}{_robot(drive)}', None, lacks
 
 
 def _friction(drive: Transmission) -> Iterator[str]:

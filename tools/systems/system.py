@@ -21,6 +21,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
+from jointfmu_fmu_src.naming import ALLOWED, is_identifier
 from jointfmu_fmu_src.partners import PARTNERS
 
 from jointfmu.joints import MODELS
@@ -162,8 +163,8 @@ def read(path: Path) -> System:
     Raises ValueError with one line that names the file, the entry and what is allowed.
     """
     document = read_document(path, "a system's file")
-    if not path.stem.isidentifier():
-        raise ValueError(f"{path}: the file's name is the system's; allowed are letters, digits and _")
+    if not is_identifier(path.stem):
+        raise ValueError(f"{path}: the file's name is the system's; allowed are {ALLOWED}")
     try:
         return _system(path, document)
     except ValueError as error:
@@ -219,8 +220,8 @@ def _component(path: Path, name: str, section: Any) -> Component:
     models = [*MODELS, *PARTNERS]
     if not isinstance(section, Mapping):
         raise ValueError(f"{name} = {section!r}, expected a section [{name}] with its model")
-    if not name.isidentifier() or name == GROUND:
-        raise ValueError(f"component {name!r}: allowed are names of letters, digits and _ but {GROUND!r}")
+    if not is_identifier(name) or name == GROUND:
+        raise ValueError(f"component {name!r}: allowed are {ALLOWED}, and not {GROUND!r}")
     model = section.get("model")
     if not isinstance(model, str) or model not in models:
         raise ValueError(f"{name}.model = {model!r}, allowed are {', '.join(models)}")

@@ -58,7 +58,7 @@ def element(panels: Sequence[Panel]) -> str:
 
 def script(*names: str) -> str:
     """The charts, and with `figures` those of the page's elements of class `figure`."""
-    return "".join(_own(f"{name}.js") for name in ("text", "chart", *names))
+    return '"use strict";\n' + "".join(_own(f"{name}.js") for name in ("text", "chart", *names))
 
 
 def style() -> str:

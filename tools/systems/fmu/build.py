@@ -8,7 +8,7 @@ from jointfmu_fmu_src.joint_parts.data import NO_TABLES, Split
 from jointfmu_fmu_src.native.build import core
 from jointfmu_fmu_src.native.compiled.compiler import TARGETS, exported, libraries
 from jointfmu_fmu_src.native.data import data_of
-from jointfmu_fmu_src.native.licence import licence
+from jointfmu_fmu_src.native.licence import licences
 from jointfmu_fmu_src.native.page import plain_page
 
 from ...host import runs
@@ -36,7 +36,7 @@ def build_system(
     data = data_of(model, parameters, Split((), {}, {}, model.parameters, NO_TABLES), files, of_file=False)
     files |= {"data.h": data.header(), "data.c": data.source(f" from the system {assembly.name!r}")}
     page = plain_page(model, parameters, Path(__file__).with_name("page.html")).encode()
-    pages = {"documentation/index.html": page, "documentation/licenses/license.txt": licence().encode()}
+    pages = {f"documentation/{path}": it for path, it in {"index.html": page, **licences()}.items()}
     written, found = [], None
     for version in versions:
         built = libraries(model.name, files, exported(sorted(files), version), platforms)

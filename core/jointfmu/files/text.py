@@ -1,0 +1,55 @@
+"""Texts of parameter files: what they may contain, and how TOML writes them."""
+
+import json
+import re
+from collections.abc import Iterator, Mapping
+
+MAX_NAME_LENGTH = 200
+"""Characters of a parameter set's or a system's name, and of a key [1]."""
+MAX_TEXT_LENGTH = 10_000
+"""Characters of any other text in a file [1]."""
+_FORBIDDEN = re.compile("[\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ud800-\udfff\ufffe\uffff]")
+"""Control characters, line separators, marks that reorder the text shown, and what XML cannot hold."""
+
+
+def check_text(what: str, text: str, max_length: int = MAX_TEXT_LENGTH) -> None:
+    """Raise ValueError, one line, if a text is too long or has a control character.
+
+    what : what the text is, for the error
+    """
+    if len(text) > max_length:
+        raise ValueError(f"{what} has {len(text)} characters; allowed are at most {max_length}")
+    if found := _FORBIDDEN.search(text):
+        raise ValueError(
+            f"{what} has the control character U+{ord(found[0]):04X} at position {found.start() + 1}; "
+            "expected one line of printable text"
+        )
+
+
+def check_document(document: Mapping[str, object]) -> None:
+    """Raise ValueError if a key or a text of a TOML document is none that `check_text` allows."""
+    for name, key, value in _items(document, ""):
+        check_text(f"a key of {name or 'the file'}", key, MAX_NAME_LENGTH)
+        if isinstance(value, str):
+            own = f"{name}.{key}" if name else key
+            check_text(own, value, MAX_NAME_LENGTH if own == "name" else MAX_TEXT_LENGTH)
+
+
+def toml_string(text: str) -> str:
+    """A basic string of TOML: the escapes of JSON, and DEL."""
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
+
+
+def _items(value: object, name: str) -> Iterator[tuple[str, str, object]]:
+    """(name of the table, key, value) of every item of a document; items of a list have its key."""
+    if isinstance(value, Mapping):
+        for key, item in value.items():
+            yield name, key, item
+            yield from _items(item, f"{name}.{key}" if name else key)
+    elif isinstance(value, list):
+        head, _, key = name.rpartition(".")
+        for item in value:
+            if isinstance(item, str):
+                yield head, key, item
+            elif isinstance(item, Mapping | list):
+                yield from _items(item, name)
