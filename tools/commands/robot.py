@@ -77,8 +77,8 @@ def run(args: argparse.Namespace) -> Answer:
     if args.plugin or args.fmu:
         check_names(files)
     if args.fmu:
-        names = [*(identifier(file.name) for file in files.values()), f"{identifier(args.robot.stem)}_axes"]
-        for path in (args.out / f"{name}.toml" for name in names):
+        outputs = [*(identifier(file.name) for file in files.values()), f"{identifier(args.robot.stem)}_axes"]
+        for path in (args.out / f"{name}.toml" for name in outputs):
             check_inputs([path], args, ("out",))
             check_output(path, PARAMETERS, args.force)
     axes = elastic.axes(spec, {joint: transmission(file) for joint, file in files.items()})

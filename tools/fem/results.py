@@ -25,8 +25,8 @@ def packed(points: Array, cell_type: str, cells: Index, data: Mapping[str, Array
     with tempfile.TemporaryDirectory() as folder:
         place = Path(folder) / "mesh.vtu"
         meshio.Mesh(points, [(cell_type, cells)], point_data=dict(data)).write(place)
-        data = place.read_bytes()
-    return data.replace(b"?>", f"?>\n<!-- {MARK} -->".encode(), 1)
+        written = place.read_bytes()
+    return written.replace(b"?>", f"?>\n<!-- {MARK} -->".encode(), 1)
 
 
 def check(path: str | Path) -> None:

@@ -26,7 +26,6 @@ OTHER_ENDINGS = frozenset(
         ".7z",
         ".bat",
         ".c",
-        ".cdb",
         ".cpp",
         ".dll",
         ".docx",
@@ -110,7 +109,7 @@ PARAMETERS = FileKind("parameter file", (".toml",), _is_unedited)
 PAGE = FileKind("page", (".html", ".htm"))
 PICTURE = FileKind("picture", (".png", ".svg"))
 ARCHIVE = FileKind("FMU or SSP archive", (".fmu", ".ssp"))
-TEXT = FileKind("text for another tool", (".csv", ".inp", ".mac", ".mo", ".mjcf", ".urdf", ".xml"))
+TEXT = FileKind("text for another tool", (".cdb", ".csv", ".inp", ".mac", ".mo", ".mjcf", ".urdf", ".xml"))
 MESH = FileKind("mesh", (".vtu",))
 FOLDER = FileKind("folder", ())
 _ENDINGS = OTHER_ENDINGS.union(*(kind.endings for kind in (PARAMETERS, PAGE, PICTURE, ARCHIVE, TEXT, MESH)))
