@@ -1,5 +1,6 @@
 """FMU files: zip archives whose bytes depend on their content alone, put in place in one go."""
 
+import os
 import tempfile
 import zipfile
 from collections.abc import Iterator, Mapping
@@ -11,17 +12,19 @@ from jointfmu.files.writing import made_folder
 
 @contextmanager
 def workshop(target: Path) -> Iterator[Path]:
-    """A temporary folder beside `target`; the file of that name made in it replaces `target` at the end.
+    """A temporary folder beside `target`; the file of that name made in it replaces `target` at the end, or
+    the file that it leads to as a symbolic link.
 
     Raises ValueError if the folder cannot be written; one that was made for it goes again on a failure.
     """
+    place = Path(os.path.realpath(target))
     try:
         with (
-            made_folder(target.parent),
-            tempfile.TemporaryDirectory(dir=target.parent, prefix=".build-") as folder,
+            made_folder(place.parent),
+            tempfile.TemporaryDirectory(dir=place.parent, prefix=".build-") as folder,
         ):
             yield Path(folder)
-            (Path(folder) / target.name).replace(target)
+            (Path(folder) / target.name).replace(place)
     except OSError as error:
         raise ValueError(
             f"{target}: cannot be written ({error.strerror}); expected a writable folder"

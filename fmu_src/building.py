@@ -5,6 +5,7 @@ from concurrent.futures import Executor
 from functools import partial
 from pathlib import Path
 
+from jointfmu.files.outputs import ARCHIVE, check_outputs
 from jointfmu.joints import MODELS
 from jointfmu.parameters import ParameterFile, default
 from jointfmu.progress import each
@@ -29,15 +30,17 @@ def build(
     variability: str = VARIABILITIES[0],
     alias: str | None = None,
     pool: Executor | None = None,
+    force: bool = False,
 ) -> list[Path]:
     """Build FMUs into `out/FLAVOUR/NAME.fmu`; with a parameter file and no names, those of its joint.
 
     variability : of the parameters, one of VARIABILITIES
     alias       : the name that one FMU has instead of its own
     pool        : processes that share the work; None: this one does it
+    force       : replace FMUs of these names that jointfmu did not write
 
     Raises ValueError for an unknown name or flavour, a parameter file of another joint, an alias that is
-    no identifier or for several FMUs, or a folder that cannot be written,
+    no identifier or for several FMUs, or files that may not or cannot be written,
     before anything is built where that can be known.
     """
     for noun, given, allowed in (("FMU", names, list(MODELS)), ("flavour", flavours, list(FLAVOURS))):
@@ -53,6 +56,8 @@ def build(
     for name in names:
         if parameters:
             MODELS[name].of(parameters.joint, parameters.values)
+    titles = [alias or name for name in names]
+    check_outputs((out / f / f"{title}.fmu" for f in flavours for title in titles), ARCHIVE, force)
     how = {"variability": variability, "alias": alias or ""}
     work = partial(_built, flavours, parameters, out, how)
     built = each(pool, work, "build", names)

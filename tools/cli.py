@@ -45,10 +45,12 @@ def _run(args: Any, name: str) -> int:
     from jointfmu.progress import told
     from jointfmu.quantity.refusal import Refusal
 
+    from .command_line import outputs
     from .command_line.common import option
 
     try:
         with told(name):
+            outputs.check(args.outputs, args)
             status = int(args.run(args).tell(args.json))
         print(end="", flush=True)
         return status

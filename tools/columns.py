@@ -19,6 +19,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from jointfmu.files.outputs import MESH, FileKind
 from jointfmu.quantity import Array
 from jointfmu.quantity.units import Sizes, measured
 
@@ -30,6 +31,10 @@ Head: TypeAlias = tuple[str, str | None]
 CONTROL = re.compile(rb"[\x00-\x08\x0e-\x1f]")
 """What no text has."""
 _HEADING = re.compile(r"\s*(?P<name>[^\[\]]*?)\s*(?:\[\s*(?P<unit>[^\[\]]*?)\s*\])?\s*$")
+_WRITTEN = re.compile(r"\S.* \[[^\[\]]+\]")
+"""The heading of a column as `text` writes it."""
+HEAD = 65536
+"""Bytes of a file in which its heading is looked for."""
 _OTHERWISE = re.compile(r"\s*(?P<name>[^()/]*?)\s*(?:\(\s*(?P<one>[^()]+?)\s*\)|/\s*(?P<two>\S+))\s*$")
 """`name (unit)` and `name / unit`."""
 
@@ -60,6 +65,18 @@ class Columns:
                 value = f"{name} = {self.columns[name][first]:g} {next(iter(spec[name]))}"
                 raise ValueError(f"{self.path}: line {self.lines[first]}: {value} is outside (0, inf)")
         return self
+
+
+def is_table(path: Path) -> bool:
+    """Whether a file has the heading of a table that `text` writes: every column as `name [unit]`."""
+    with path.open("rb") as file:
+        lines = file.read(HEAD).decode("utf-8", "replace").splitlines()
+    head = next((line for line in lines if not line.startswith("#")), "")
+    return all(_WRITTEN.fullmatch(cell) for cell in next(csv.reader([head]), [""]))
+
+
+TABLE = FileKind("table", (".csv",), is_table)
+FIELD = FileKind("field", (".csv", ".vtu"), lambda path: is_table(path) or MESH.is_own(path))
 
 
 def heading(spec: Mapping[str, Sizes]) -> str:

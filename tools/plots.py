@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from jointfmu.files.writing import check_writable, write_bytes
+from jointfmu.files.outputs import MARK
+from jointfmu.files.writing import write_bytes
 from jointfmu.quantity.units import UNITS, display_unit
 
 if TYPE_CHECKING:
@@ -34,13 +35,12 @@ RESOLUTION = 150
 
 
 def check(path: str | Path) -> None:
-    """Raise ValueError if a picture could not be saved there: suffix, place, or matplotlib missing.
+    """Raise ValueError if a picture could not be saved under this name, or matplotlib is missing.
 
     To be called before long work.
     """
     if Path(path).suffix.lower() not in FORMATS:
         raise ValueError(f"{path}: suffix {Path(path).suffix!r} is no picture, allowed are .png, .svg")
-    check_writable(path)
     _rc_context()
 
 
@@ -101,6 +101,6 @@ def save(figure: "Figure", path: str | Path) -> None:
     check(path)
     suffix = Path(path).suffix.lower()
     data = io.BytesIO()
-    metadata = {"Date": None} if suffix == ".svg" else None
+    metadata = {"Date": None, "Description": MARK} if suffix == ".svg" else {"Description": MARK}
     figure.savefig(data, format=suffix[1:], dpi=RESOLUTION, metadata=metadata)
     write_bytes(path, data.getvalue())

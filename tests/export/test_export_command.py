@@ -173,9 +173,10 @@ def test_a_joint_without_the_part_is_refused(monkeypatch):
 
 def test_what_can_be_written_and_fitted_is_known_without_scipy():
     program = (
-        "import argparse, sys\n"
+        "import sys\n"
         "from jointfmu_tools.commands import export, fit\n"
-        "words = argparse.ArgumentParser().add_subparsers()\n"
+        "from jointfmu_tools.command_line.common import Parser\n"
+        "words = Parser().add_subparsers()\n"
         "export.add(words), fit.add(words)\n"
         "print([name for name in ('scipy', 'matplotlib') if name in sys.modules])\n"
     )

@@ -8,7 +8,8 @@ import pytest
 from conftest import refused_line
 from jointfmu_tools import cli
 
-from jointfmu.files.writing import check_folder, check_writable, write_files
+from jointfmu.files.outputs import FOLDER, TEXT, check_output
+from jointfmu.files.writing import write_files
 
 FILES = {"package.mo": "one\n", "Data/package.mo": "two\n", "Data/order": "three\n"}
 
@@ -50,13 +51,13 @@ def test_a_full_disk_leaves_what_was_there(tmp_path, monkeypatch, there):
 
 
 def test_a_check_leaves_nothing_and_refuses_what_is_in_the_way(tmp_path):
-    check_writable(tmp_path / "a" / "b.csv")
-    check_folder(tmp_path / "a" / "b")
+    check_output(tmp_path / "a" / "b.csv", TEXT)
+    check_output(tmp_path / "a" / "b", FOLDER)
     assert everything(tmp_path) == []
     (tmp_path / "file").write_text("")
-    for check, path in ((check_writable, "file/a.csv"), (check_folder, "file"), (check_folder, "file/a")):
+    for kind, path in ((TEXT, "file/a.csv"), (FOLDER, "file"), (FOLDER, "file/a")):
         with pytest.raises(ValueError, match=r"cannot be written \(.*file: Not a directory\)"):
-            check(tmp_path / path)
+            check_output(tmp_path / path, kind)
 
 
 @pytest.mark.parametrize(

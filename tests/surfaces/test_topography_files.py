@@ -365,7 +365,7 @@ def test_synthesize(folder, capsys, shape, D, G):
         (["--points", "0"], "points = 0 is outside"),
         (["--seed", "-1"], "seed = -1 is negative"),
         (["--ridges", "0"], "ridges = 0"),
-        (["--out", "s.png"], "suffix '.png', allowed is .csv"),
+        (["--out", "s.png"], ".png is the ending of another kind of file; expected .csv"),
         (["--points", "1000000"], "points = 1000000 take 6.4e+04 GB, allowed are 2 GB: at most 5590 points"),
         (["--shape", "profile", "--points", "100000000"], "at most 10526315 points along a side of shape"),
         (["--ridges", "100000"], "ridges = 100000, allowed are 1, 2, 3, ... 1000"),

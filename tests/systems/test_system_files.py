@@ -369,7 +369,7 @@ def test_the_modelica_model_is_as_warm_and_as_tight_as_the_fmus(tmp_path):
 
 def test_an_interval_beyond_the_largest_stable_step_is_said(tmp_path, monkeypatch, capsys):
     """Of the motor and the link on the drive at rest, and at the largest torque of a run."""
-    monkeypatch.setattr(ssp, "build_systems", lambda out, wanted: [])
+    monkeypatch.setattr(ssp, "build_systems", lambda out, wanted, force: [])
     path, out = changed(tmp_path, ("value = 5.0e-4", "value = 3.0e-3")), tmp_path / "out"
     drive = HarmonicDriveSpring.of(read(path).joints["drive"].file.values)
 

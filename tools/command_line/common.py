@@ -11,6 +11,8 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, NoReturn, TypeAlias
 
+from jointfmu.files.outputs import FileKind
+
 from ..judgement import Judgement
 from .examples import BEFORE, EXAMPLES
 
@@ -71,12 +73,15 @@ class Parser(argparse.ArgumentParser):
     """argparse with one line for an error, negative numbers in any notation, and an example in the help.
 
     example : words after `jointfmu`; None: that of `EXAMPLES`
+    outputs : {argument: kind of the file} of what the command writes
     """
 
     example: str | None = None
+    outputs: dict[str, FileKind]
 
     def __init__(self, *args: Any, **options: Any) -> None:
         super().__init__(*args, **options)
+        self.outputs = {}
         self._negative_number_matcher = re.compile(r"^-(\d|\.\d|inf|nan)", re.IGNORECASE)
 
     def format_help(self) -> str:
@@ -100,19 +105,26 @@ _METAVARS: dict[type, str] = {float: "VALUE", int: "N", Path: "FILE", str: "NAME
 
 
 def argument(
-    sub: "argparse._ActionsContainer", name: str, kind: type, text: str, metavar: str = "", **more: Any
+    sub: "argparse._ActionsContainer",
+    name: str,
+    kind: type,
+    text: str,
+    metavar: str = "",
+    second: str | None = None,
+    **more: Any,
 ) -> None:
-    """Declare what takes values of a type; a default that is stated is told."""
+    """Declare what takes values of a type; a default that is stated is told. `second`: another name."""
     if "default" in more:
         default = more["default"]
         text += f" (default: {f'{default:g}' if kind is float else default})"
-    sub.add_argument(name, type=kind, metavar=metavar or _METAVARS[kind], help=text, **more)
+    names = [name, second] if second else [name]
+    sub.add_argument(*names, type=kind, metavar=metavar or _METAVARS[kind], help=text, **more)
 
 
 def command(commands: Commands, name: str, run: Run, text: str) -> Parser:
     """Declare a command with `--json`."""
     sub: Parser = commands.add_parser(name, help=text, description=text)
-    sub.set_defaults(run=run)
+    sub.set_defaults(run=run, outputs=sub.outputs)
     sub.add_argument("--json", action="store_true", help="print one JSON object and nothing else")
     return sub
 
@@ -130,11 +142,6 @@ def option(args: argparse.Namespace, setting: str) -> str:
 def joint_name(text: str) -> str:
     """A joint as `new` and as a parameter file name it."""
     return text.replace("-", "_")
-
-
-def written(sub: argparse.ArgumentParser, text: str = "write the parameter file (TOML)") -> None:
-    """Declare `--out FILE`, the parameter file to write, and its second name `--write`."""
-    sub.add_argument("--out", "--write", type=Path, dest="out", metavar="FILE", help=text)
 
 
 @contextmanager

@@ -5,8 +5,6 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from jointfmu.files.writing import check_writable
-
 from .. import plots
 from ..command_line.common import flag
 from ..joint_parts import Option
@@ -30,14 +28,6 @@ def declare(sub: argparse.ArgumentParser, option: Option) -> None:
         metavar=None if option.choices else option.metavar,
         help=option.text,
     )
-
-
-def check_files(*paths: Path | None, plot: Path | None = None) -> None:
-    """Raise ValueError, before the work, if a file could not be written; `plot` is a picture."""
-    for path in filter(None, paths):
-        check_writable(path)
-    if plot:
-        plots.check(plot)
 
 
 def draw(path: Path, panels: "Sequence[Panel]", size: tuple[float, float]) -> None:

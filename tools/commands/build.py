@@ -6,12 +6,13 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from xml.etree import ElementTree
 
-from jointfmu.files.writing import check_folder
+from jointfmu.files.outputs import FOLDER
 from jointfmu.joints import MODELS
 from jointfmu.parameters import default, load
 from jointfmu.progress import processes
 
 from ..command_line.common import Answer, Commands, argument, command, needing
+from ..command_line.outputs import output
 from ..pressure import judge_file
 
 SHOWN = 3
@@ -42,13 +43,12 @@ def add(commands: Commands) -> None:
     make.add_argument(
         "--systems", action="store_true", help="build the example systems (SSP) with the FMUs that they need"
     )
-    argument(make, "--out", Path, "folder", "DIR", default=Path("dist"))
+    output(make, "--out", FOLDER, "folder", default=Path("dist"))
 
 
 def _build(args: argparse.Namespace) -> Answer:
     if args.name is not None and args.systems:
         raise ValueError(f"--name {args.name} is for one FMU; expected no --systems beside it")
-    check_folder(args.out)
     file = load(args.params) if args.params else None
     with needing("build"):
         from jointfmu_fmu_src import building
@@ -58,12 +58,12 @@ def _build(args: argparse.Namespace) -> Answer:
         with processes() as pool:
             if args.names or not args.systems:
                 built += building.build(
-                    args.names, args.flavour, file, args.out, args.parameters, args.name, pool
+                    args.names, args.flavour, file, args.out, args.parameters, args.name, pool, args.force
                 )
             if args.systems:
                 from ..systems import ssp
 
-                built += ssp.build_systems(args.out, None, file, True, args.parameters, pool)
+                built += ssp.build_systems(args.out, None, file, True, args.parameters, pool, args.force)
     changed = _replaced(built, before)
     joints = dict.fromkeys(MODELS[name].joint for name in args.names or MODELS)
     found = {f.joint: judge_file(f) for f in ([file] if file else map(default, joints))}

@@ -5,11 +5,13 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from jointfmu.files.writing import check_writable, write_text
+from jointfmu.files.outputs import TEXT
+from jointfmu.files.writing import write_text
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile, default, load
 
 from ..command_line.common import Answer, Commands, argument, command, flag, joint_name, needing
+from ..command_line.outputs import output
 from ..export import exports
 from ..export.exports import ERROR, FORMS, ROBOTS, WHAT
 from ..export.placing import AXES, SI, UNITS, Placing
@@ -64,7 +66,7 @@ def add(commands: Commands) -> None:
     argument(export, "--error", float, f"tables: largest error by straight lines ({ERROR:g})", "E")
     text = f"{', '.join(ROBOTS)}: largest torque of the fit [N.m] (rated torque)"
     argument(export, "--torque", float, text, "T")
-    argument(export, "--out", Path, "file to write", required=True)
+    output(export, "--out", TEXT, "file to write", required=True)
 
 
 def _working_points() -> dict[str, list[str]]:
@@ -87,7 +89,6 @@ def _export(args: argparse.Namespace) -> Answer:
         raise ValueError(
             f"{args.form} {args.what} cannot be written; {args.form} has {', '.join(FORMS[args.form])}"
         )
-    check_writable(args.out)
     file = load(args.params) if args.params else default(args.joint)
     _refuse_idle(args, file)
     written = _written(args, file)
@@ -107,7 +108,6 @@ def _robots(args: argparse.Namespace) -> Answer:
     _refuse(args, dict.fromkeys(idle, args.form))
     if args.units != SI.name:
         raise ValueError(f"--units = {args.units}: {args.form} is in {SI.name}")
-    check_writable(args.out)
     from ..robots.writing import written
 
     with needing("measure the file", "mujoco"):

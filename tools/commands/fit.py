@@ -5,19 +5,21 @@ from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
 
+from jointfmu.files.outputs import PARAMETERS, PICTURE
 from jointfmu.joints import KINDS
 from jointfmu.parameters import load
 from jointfmu.progress import step
 
 from .. import columns, plots
-from ..command_line.common import Answer, Commands, Parser, argument, command, flag, written
+from ..command_line.common import Answer, Commands, Parser, argument, command, flag
+from ..command_line.outputs import FORCE, output
 from ..drawing.reading import number
 from ..fitting.outcome import percent
 from ..fitting.procedure import Procedure, procedures
 from ..interface.make import Fit
 from ..joint_parts import Option
 from ..pressure import judge_file
-from . import check_files, declare
+from . import declare
 
 
 def add(commands: Commands) -> None:
@@ -39,16 +41,16 @@ def _declare(ways: Commands, choices: Mapping[str, Procedure]) -> None:
         argument(sub, "file", Path, "CSV; the heading names columns and units", nargs=many)
     argument(sub, "--params", Path, "parameter file to start from (TOML)")
     argument(sub, "--free", str, "parameters to fit", nargs="+")
-    written(sub)
-    sub.add_argument("--force", action="store_true", help="write a fit that says nothing of the joint too")
-    argument(sub, "--plot", Path, "draw data, law and residuals (.png, .svg)")
+    text = f"{FORCE}; write a fit that says nothing of the joint too"
+    sub.add_argument("--force", action="store_true", help=text)
+    output(sub, "--out", PARAMETERS, "write the parameter file (TOML)", second="--write")
+    output(sub, "--plot", PICTURE, "draw data, law and residuals (.png, .svg)")
     for option in {option.name: option for p in choices.values() for option in p.options}.values():
         declare(sub, option)
 
 
 def _fit(choices: Mapping[str, Procedure], args: argparse.Namespace) -> Answer:
-    """Check what is to be written before the work, and fit."""
-    check_files(args.out, plot=args.plot)
+    """Fit, and write what was found."""
     joint = _joint(choices, args)
     procedure = choices[joint]
     start = load(args.params, joint) if args.params else None
@@ -103,7 +105,7 @@ def _finish(args: argparse.Namespace, fit: Fit) -> Answer:
         plots.save(fit.plot(), args.plot)
     doubt = None if args.force else outcome.doubt()
     if args.out and not doubt:
-        fit.joint.save(args.out)
+        fit.joint.save(args.out, force=args.force)
     lines = []
     for row in outcome.rows():
         spread = row["relative_deviation"]

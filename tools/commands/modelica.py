@@ -3,12 +3,13 @@
 import argparse
 from pathlib import Path
 
-from jointfmu.files.writing import check_folder
+from jointfmu.files.outputs import FOLDER
 from jointfmu.joints import KINDS
 from jointfmu.joints.kind import Kind
 from jointfmu.parameters import ParameterFile, load
 
 from ..command_line.common import Answer, Commands, argument, command, flag, needing
+from ..command_line.outputs import output
 from ..judgement import Judgement
 from ..pressure import judge_file, without_members
 
@@ -22,17 +23,16 @@ def add(commands: Commands) -> None:
         text = "; ".join(f"{kind.title}: {_meaning(kind, name)}" for kind in kinds)
         text += "" if first else " (default: 0)"
         argument(make, flag(name), float, text, nargs="+" if first else None)
-    argument(make, "--out", Path, "folder", "DIR", default=Path("dist"))
+    output(make, "--out", FOLDER, "folder", default=Path("dist"))
 
 
 def _modelica(args: argparse.Namespace) -> Answer:
-    check_folder(args.out)
     file = load(args.params) if args.params else None
     points = {kind.name: _points(kind, args) for kind in KINDS.values() if kind.working_point}
     with needing("write the library"):
         from ..modelica import library
 
-        written = library.write(args.out, file, points)
+        written = library.write(args.out, file, points, force=args.force)
     return Answer(
         document={"written": [str(path) for path in written]},
         lines=[f"wrote {args.out / library.NAME}: {len(written)} files"],

@@ -5,21 +5,22 @@ import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
-from pathlib import Path
 from typing import Any
 
+from jointfmu.files.outputs import PARAMETERS
 from jointfmu.joints import KINDS
 from jointfmu.quantity.units import factor
 
 from ..catalogue import Column, Item
 from ..command_line.common import Answer, Commands, Parser, argument, command
+from ..command_line.outputs import output
 from ..drawing.part import Drawing
 from ..interface.joint import Joint
 from ..interface.make import made
 from ..joint_parts import part
 from ..pressure import judge_file
 from ..shown import aligned, fact_document, fact_lines
-from . import check_files, declare
+from . import declare
 
 
 def add(commands: Commands) -> None:
@@ -41,17 +42,16 @@ def _declare(things: Commands, name: str, drawing: Drawing) -> None:
     for option in drawing.options:
         declare(sub, option)
     argument(sub, "--name", str, "of the parameter set (default: by its sizes)")
-    argument(sub, "--out", Path, "write the parameter file (TOML)")
+    output(sub, "--out", PARAMETERS, "write the parameter file (TOML)")
 
 
 def _make(drawing: Drawing, args: argparse.Namespace) -> Answer:
-    """Check what is to be written before the work, and make the joint."""
-    check_files(args.out)
+    """Make the joint."""
     joint = made(drawing, {option.name: getattr(args, option.name) for option in drawing.options})
     if args.name:
         joint = replace(joint, file=replace(joint.file, name=args.name))
     if args.out:
-        joint.save(args.out)
+        joint.save(args.out, force=args.force)
     found = judge_file(joint.file).with_warnings(joint.notes)
     end = f"wrote {args.out}" if args.out else "nothing is written: state --out FILE"
     return Answer(

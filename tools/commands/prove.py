@@ -4,11 +4,12 @@ import argparse
 from dataclasses import asdict
 from pathlib import Path
 
-from jointfmu.files.writing import check_folder
+from jointfmu.files.outputs import FOLDER
 from jointfmu.joints import KINDS
 from jointfmu.parameters import load
 
 from ..command_line.common import Answer, Commands, argument, command
+from ..command_line.outputs import output
 from ..fem import installed
 from ..fem.validation import natural_frequencies
 from ..proof import listing, report
@@ -26,7 +27,7 @@ def add(commands: Commands) -> None:
     choices = list(IMPORTERS)
     argument(sub, "--in", str, text, "IMPORTER", dest="importer", choices=choices, default="fmpy")
     text = "if all passes, write the files of the FMI cross-check for lists of exporting tools"
-    argument(sub, "--listing", Path, text, "DIR")
+    output(sub, "--listing", FOLDER, text)
     text = "parameter file: this package computes start values and references from it, those that the FMU "
     argument(sub, "--against", Path, text + "carries are not read")
 
@@ -34,10 +35,8 @@ def add(commands: Commands) -> None:
 def _prove(args: argparse.Namespace) -> Answer:
     if args.listing and args.against:
         raise ValueError("--listing is of the references that the FMU carries; expected it without --against")
-    if args.listing:
-        check_folder(args.listing)
     proof = prove(args.fmu, args.importer, _expected(args.fmu, args.against) if args.against else None)
-    folders = listing.write(proof, args.listing) if args.listing and proof.passed else []
+    folders = listing.write(proof, args.listing, args.force) if args.listing and proof.passed else []
     listed = {"listing": [str(folder) for folder in folders]} if args.listing else {}
     return Answer(
         document=report.document(proof) | listed,

@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from jointfmu.files.outputs import PICTURE
 from jointfmu.files.writing import write_text
 
-from .. import plots
+from .. import columns, plots
 from ..command_line.common import Answer, Commands, argument, command, flag, settings
+from ..command_line.outputs import output
 from ..ramps import loops, ramp
 from ..shown import aligned
-from . import check_files
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -44,8 +45,8 @@ def add(commands: Commands) -> None:
     argument(drive, "--output", str, "force or motion conjugate to the input of loops")
     argument(drive, "--columns", str, "outputs of a ramp (default: all)", nargs="+")
     settings(drive)
-    argument(drive, "--csv", Path, "write every point to a file")
-    argument(drive, "--plot", Path, "draw the outputs of a ramp, or loops, loss and stiffness (.png, .svg)")
+    output(drive, "--csv", columns.TABLE, "write every point to a file")
+    output(drive, "--plot", PICTURE, "draw the outputs of a ramp, or loops, loss and stiffness (.png, .svg)")
 
 
 def _run(args: argparse.Namespace) -> Answer:
@@ -61,7 +62,6 @@ def _run(args: argparse.Namespace) -> Answer:
         raise ValueError("the drive is not stated; expected --to with --step, or --loop")
     if args.loop and args.columns:
         raise ValueError("--columns is given with --loop; allowed is with a ramp only")
-    check_files(args.csv, plot=args.plot)
     return _loops(args) if args.loop else _ramp(args)
 
 

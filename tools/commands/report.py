@@ -3,9 +3,10 @@
 import argparse
 from pathlib import Path
 
-from jointfmu.files.writing import check_writable
+from jointfmu.files.outputs import PAGE, check_output
 
 from ..command_line.common import Answer, Commands, argument, command
+from ..command_line.outputs import output
 from ..interface.make import load
 
 
@@ -17,7 +18,7 @@ def add(commands: Commands) -> None:
     make = command(commands, "report", _report, text)
     argument(make, "file", Path, "parameter file (TOML), or a name")
     argument(make, "--fmu", str, "which of the joint's FMUs (default: its first)")
-    argument(make, "--out", Path, "page to write (.html; default: FILE.html in this folder)")
+    output(make, "--out", PAGE, "page to write (.html; default: FILE.html in this folder)")
 
 
 def _report(args: argparse.Namespace) -> Answer:
@@ -25,6 +26,6 @@ def _report(args: argparse.Namespace) -> Answer:
     out: Path = args.out or Path(f"{args.file.stem}.html")
     if out.suffix != ".html":
         raise ValueError(f"--out {out} has the ending {out.suffix!r}, allowed is .html")
-    check_writable(out)
-    joint.report(out, args.fmu)
+    check_output(out, PAGE, args.force)
+    joint.report(out, args.fmu, force=args.force)
     return Answer(document={"report": str(out)}, written=[out])

@@ -8,13 +8,15 @@ from typing import Any
 
 import numpy as np
 
+from jointfmu.files.outputs import PICTURE
 from jointfmu.files.writing import write_text
 from jointfmu.mechanics.steps import stable_steps
 
 from .. import columns
 from ..command_line.common import Answer, Commands, argument, command, needing, settings
+from ..command_line.outputs import output
 from ..systems.system import names, system
-from . import check_files, draw
+from . import draw
 
 
 def add(commands: Commands) -> None:
@@ -32,8 +34,8 @@ def add(commands: Commands) -> None:
     text += "the motion in which the joint slips (default load: the largest of the several)"
     argument(ring, "--amplitude", float, text)
     settings(ring)
-    argument(ring, "--csv", Path, "write the table to a file")
-    argument(ring, "--plot", Path, "draw resonance and decay (.png, .svg)")
+    output(ring, "--csv", columns.TABLE, "write the table to a file")
+    output(ring, "--plot", PICTURE, "draw resonance and decay (.png, .svg)")
 
 
 def _ring(args: argparse.Namespace) -> Answer:
@@ -123,7 +125,6 @@ def _check(args: argparse.Namespace, unit: str) -> None:
         raise ValueError(f"inertia = {args.inertia:g} {unit} is outside (0, inf)")
     if args.amplitude is not None and not 0.0 < args.amplitude < math.inf:
         raise ValueError(f"amplitude = {args.amplitude:g} is outside (0, inf)")
-    check_files(args.csv, plot=args.plot)
 
 
 def _row(point: Any) -> dict[str, float]:

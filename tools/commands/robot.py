@@ -5,11 +5,22 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from jointfmu.files.writing import check_folder, write_text
+from jointfmu.files.outputs import (
+    FOLDER,
+    MARK,
+    PARAMETERS,
+    PICTURE,
+    TEXT,
+    check_output,
+    check_outputs,
+    write_parameter_text,
+)
+from jointfmu.files.writing import write_text
 from jointfmu.parameters import dump
 
 from .. import plots
 from ..command_line.common import Answer, Commands, argument, command, needing
+from ..command_line.outputs import check_inputs, output
 
 MOST = 1e4
 """Largest payload [kg] that is taken."""
@@ -38,7 +49,7 @@ def add(commands: Commands) -> None:
     sub.add_argument("--plugin", action="store_true", help=text)
     text = "one FMU of the axes at the pose too, and the system's file of it"
     sub.add_argument("--fmu", action="store_true", help=text)
-    argument(sub, "--out", Path, "folder to write", "DIR", required=True)
+    output(sub, "--out", FOLDER, "folder to write", required=True)
 
 
 def run(args: argparse.Namespace) -> Answer:
@@ -46,29 +57,37 @@ def run(args: argparse.Namespace) -> Answer:
     names, angles = _pairs(args.drive, "--drive", "NAME"), _pairs(args.pose, "--pose", "ANGLE")
     if not 0.0 <= args.payload <= MOST:
         raise ValueError(f"--payload = {args.payload:g} kg is outside [0, {MOST:g}] kg")
-    check_folder(args.out)
     pictures = args.out / "frequencies.png", args.out / "payload.png"
     plots.check(pictures[0])
+    check_outputs(pictures, PICTURE, args.force)
+    written = args.out / f"{args.robot.stem}_elastic.xml"
+    models = [written, *([args.out / f"{args.robot.stem}_plugin.xml"] if args.plugin else [])]
+    check_inputs(models, args, ("out",))
+    check_outputs(models, TEXT, args.force)
     with needing("read robots", "mujoco"):
         import mujoco  # noqa: F401
     from ..interface import load
     from ..robots import elastic, poses
     from ..robots import pictures as drawn
-    from ..robots.names import check_names
+    from ..robots.names import check_names, identifier
     from ..robots.transmission import transmission
 
     spec = elastic.read(args.robot)
     files = {joint: load(name).file for joint, name in names.items()}
     if args.plugin or args.fmu:
         check_names(files)
+    if args.fmu:
+        outputs = [*(identifier(file.name) for file in files.values()), f"{identifier(args.robot.stem)}_axes"]
+        for path in (args.out / f"{name}.toml" for name in outputs):
+            check_inputs([path], args, ("out",))
+            check_output(path, PARAMETERS, args.force)
     axes = elastic.axes(spec, {joint: transmission(file) for joint, file in files.items()})
     model = spec.compile()
     pose, tip = elastic.posed(model, angles), elastic.body(model, args.tip, axes)
     made = elastic.with_drives(spec, axes)
     elastic.keep_folders(made, args.robot)
     made.compile()
-    written = args.out / f"{args.robot.stem}_elastic.xml"
-    write_text(written, made.to_xml())
+    write_text(written, f"<!-- {MARK} -->\n{made.to_xml()}")
     grid, found = drawn.over_poses(model, axes, pose, args.payload, tip)
     drawn.draw_frequencies(pictures[0], axes, grid, found)
     if not angles:
@@ -130,7 +149,7 @@ def _plugged(args: argparse.Namespace, spec: Any, axes: Any, files: Any) -> list
 
     elastic.keep_folders(spec, args.robot)
     written = args.out / f"{args.robot.stem}_plugin.xml"
-    write_text(written, plugged.text(spec, axes, files))
+    write_text(written, f"<!-- {MARK} -->\n{plugged.text(spec, axes, files)}")
     return [written, *plugged.plugins(files, args.out).values()]
 
 
@@ -145,9 +164,11 @@ def _system(args: argparse.Namespace, model: Any, axes: Any, files: Any, pose: A
     written = args.out / f"{identifier(args.robot.stem)}_axes.toml"
     given = {identifier(file.name): dump(file) for file in files.values()}
     for name, text in given.items():
-        write_text(args.out / f"{name}.toml", text)
-    write_text(written, axes_system.text(args.robot.stem, model, axes, files, pose, args.payload, tip))
-    return [written, *build_system(assembly(read(written)), args.out)]
+        write_parameter_text(args.out / f"{name}.toml", text)
+    write_parameter_text(
+        written, axes_system.text(args.robot.stem, model, axes, files, pose, args.payload, tip)
+    )
+    return [written, *build_system(assembly(read(written)), args.out, force=args.force)]
 
 
 def _lines(facts: dict[str, Any], model: Any) -> Sequence[str]:

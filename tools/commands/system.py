@@ -3,12 +3,14 @@
 import argparse
 from pathlib import Path
 
-from jointfmu.files.writing import check_folder, write_text
+from jointfmu.files.outputs import ARCHIVE, FOLDER, PICTURE, TEXT, check_output, check_outputs
+from jointfmu.files.writing import write_text
 
 from .. import columns
 from ..command_line.common import Answer, Commands, argument, command, needing
+from ..command_line.outputs import output
 from ..systems.system import System, names, system
-from . import check_files, draw
+from . import draw
 
 
 def add(commands: Commands) -> None:
@@ -16,18 +18,16 @@ def add(commands: Commands) -> None:
     text = "build a system of named joints: its FMUs, SSP archives and a Modelica model"
     make = command(commands, "system", _system, text)
     argument(make, "file", str, f"a system's file (TOML), or {', '.join(names())}", "FILE")
-    argument(make, "--out", Path, "folder", "DIR", default=Path("dist"))
+    output(make, "--out", FOLDER, "folder", default=Path("dist"))
     text = "one FMU of the whole system too: NAME.fmu, FMI 2.0 and 3.0"
     make.add_argument("--fmu", action="store_true", help=text)
-    argument(make, "--csv", Path, "run it and write all connected outputs")
+    output(make, "--csv", columns.TABLE, "run it and write all connected outputs")
     text = "run it and draw the joints' loads; of an arm wind-up and the tip's error (.png, .svg)"
-    argument(make, "--plot", Path, text)
+    output(make, "--plot", PICTURE, text)
 
 
 def _system(args: argparse.Namespace) -> Answer:
     found = system(args.file)
-    check_folder(args.out)
-    check_files(args.csv, plot=args.plot)
     with needing("build a system"):
         from ..modelica import library
         from ..modelica.systems import model_name
@@ -40,12 +40,15 @@ def _system(args: argparse.Namespace) -> Answer:
         step = longest_step(found)
         if (args.csv or args.plot) and (beyond := _beyond(found, *step)):
             raise ValueError(f"{args.file}: {beyond}; allowed is a shorter one, or neither --csv nor --plot")
-        made = ssp.build_systems(args.out, [found])
+        written = args.out / "modelica" / f"{model_name(found)}.mo"
+        check_output(written, TEXT, args.force)
         if whole:
-            from ..systems.fmu.build import build_system
+            from ..systems.fmu.build import build_system, targets
 
-            made += build_system(whole, args.out)
-    written = args.out / "modelica" / f"{model_name(found)}.mo"
+            check_outputs(targets(whole, args.out), ARCHIVE, args.force)
+        made = ssp.build_systems(args.out, [found], force=args.force)
+        if whole:
+            made += build_system(whole, args.out, force=args.force)
     write_text(written, model)
     paths = [*made, written]
     if args.csv or args.plot:

@@ -5,14 +5,16 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
+from jointfmu.files.outputs import FOLDER, PICTURE
 from jointfmu.files.writing import write_text
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile, default, load
 from jointfmu.quantity import build
 
+from .. import columns
 from ..command_line.common import Answer, Commands, Parser, argument, command, settings
+from ..command_line.outputs import output
 from ..pressure import judge_file
-from . import check_files
 
 SYNTAX = (
     "distributions: LOW..HIGH (any value alike), VALUE+-PERCENT%, loguniform(LOW, HIGH), "
@@ -33,8 +35,8 @@ def add(commands: Commands) -> None:
     _drawn(study, "samples", 16384)
     argument(study, "--to", float, "end of the load ramp (SI)")
     argument(study, "--points", int, "points of the ramp", default=201)
-    argument(study, "--csv", Path, "write the bands to a file")
-    argument(study, "--plot", Path, "draw bands and indices, .png or .svg")
+    output(study, "--csv", columns.TABLE, "write the bands to a file")
+    output(study, "--plot", PICTURE, "draw bands and indices, .png or .svg")
 
 
 def _drawn(sub: Parser, what: str, samples: int) -> None:
@@ -59,7 +61,6 @@ def _uncertainty(args: argparse.Namespace) -> Answer:
     file = chosen(args.joint, args.params)
     count = study.power_of_two(args.samples)
     study.check_seed(args.seed)
-    check_files(args.csv, plot=args.plot)
     given = study.settings(args.study, args.settings)
     task = problem.pose(file, given, args.to, args.points)
     A, B = propagate.design(task, count, args.seed)
@@ -86,7 +87,7 @@ def add_sweep(commands: Commands) -> None:
     argument(many, "--input", str, "input to drive", required=True)
     argument(many, "--to", float, "end of the ramp (SI)", required=True)
     argument(many, "--step", float, "step of the ramp (SI)", required=True)
-    argument(many, "--out", Path, "folder of the results", "DIR", required=True)
+    output(many, "--out", FOLDER, "folder of the results", forcible=False, required=True)
     where = many.add_mutually_exclusive_group()
     argument(where, "--scheduler", str, "dask scheduler of a cluster, tcp://HOST:PORT", "ADDRESS")
     argument(where, "--workers", int, "local processes (default: one per core)")

@@ -6,10 +6,12 @@ from pathlib import Path
 
 import numpy as np
 
-from jointfmu.files.writing import check_writable, write_bytes, write_text
+from jointfmu.files.outputs import MARK
+from jointfmu.files.writing import write_bytes, write_text
 from jointfmu.quantity import Array
 
 from .. import plots
+from ..columns import FIELD
 from ..fields import nodal_result
 from .bolted_contact import JointSolution
 from .elasticity import ElasticBody, Index
@@ -23,19 +25,16 @@ def packed(points: Array, cell_type: str, cells: Index, data: Mapping[str, Array
     with tempfile.TemporaryDirectory() as folder:
         place = Path(folder) / "mesh.vtu"
         meshio.Mesh(points, [(cell_type, cells)], point_data=dict(data)).write(place)
-        return place.read_bytes()
-
-
-SUFFIXES = (".csv", ".vtu")
+        written = place.read_bytes()
+    return written.replace(b"?>", f"?>\n<!-- {MARK} -->".encode(), 1)
 
 
 def check(path: str | Path) -> None:
-    """Raise ValueError if a field could not be written there: suffix, place. For use before long work."""
-    if Path(path).suffix.lower() not in SUFFIXES:
+    """Raise ValueError if no field is written under this name. For use before long work."""
+    if Path(path).suffix.lower() not in FIELD.endings:
         raise ValueError(
-            f"{path}: suffix {Path(path).suffix!r} is no field, allowed are {', '.join(SUFFIXES)}"
+            f"{path}: suffix {Path(path).suffix!r} is no field, allowed are {', '.join(FIELD.endings)}"
         )
-    check_writable(path)
 
 
 def write(solution: JointSolution, path: str | Path) -> None:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from jointfmu.files.outputs import check_output
 from jointfmu.files.writing import write_text
 from jointfmu.quantity import Array
 
@@ -137,8 +138,14 @@ class Frame(Tabled, Mapping[str, Array]):
         axes.set(xlabel=f"{x} [{x_unit}]", ylabel=f"{y} [{y_unit}]")
         return figure
 
-    def save(self, path: str | Path) -> Path:
-        """Write the columns as CSV with a header `name [unit]`, numbers exact."""
+    def save(self, path: str | Path, *, force: bool = False) -> Path:
+        """Write the columns as CSV with a header `name [unit]`, numbers exact.
+
+        force : replace a file that is no such table
+
+        Raises ValueError if the file may not or cannot be written.
+        """
+        check_output(path, columns.TABLE, force)
         heads = [(name, self.units[name]) for name in self]
         write_text(Path(path), columns.text(heads, list(self.values())))
         return Path(path)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from jointfmu.files.writing import write_text
+from jointfmu.files.outputs import PAGE, PARAMETERS, check_output, write_parameter_text
 from jointfmu.joints import KINDS
 from jointfmu.joints.model import Memory, Model, Spring
 from jointfmu.parameters import ParameterFile, dump
@@ -209,13 +209,19 @@ class Joint(Tabled):
         drawn(figure, panels)
         return figure
 
-    def save(self, path: str | Path) -> Path:
-        """Write the parameter file (TOML), above it its facts. ValueError if it cannot be written."""
+    def save(self, path: str | Path, *, force: bool = False) -> Path:
+        """Write the parameter file (TOML), above it its facts.
+
+        force : replace a file that jointfmu did not write, or that was edited
+
+        Raises ValueError if the file may not or cannot be written.
+        """
+        check_output(path, PARAMETERS, force)
         facts = [
             f"# {name} = {value:.6g} {unit}: {text}\n" for name, (value, unit, text) in self.facts.items()
         ]
         head = "# Computed beside the parameters:\n" if facts else ""
-        write_text(Path(path), head + "".join(facts) + dump(self.file))
+        write_parameter_text(path, head + "".join(facts) + dump(self.file))
         return Path(path)
 
     def build(
@@ -225,12 +231,14 @@ class Joint(Tabled):
         *,
         fmu: str | None = None,
         name: str | None = None,
+        force: bool = False,
     ) -> list[Path]:
         """Build the joint's FMUs into OUT/FLAVOUR/NAME.fmu; their paths.
 
         flavour : fmi2, fmi3, python, or several of them
         fmu     : one of `fmus`; all
         name    : that the one FMU has instead of its own
+        force   : replace FMUs of these names that jointfmu did not write
 
         Raises ValueError for an unknown name or flavour, or a folder that cannot be written.
         """
@@ -239,10 +247,16 @@ class Joint(Tabled):
         with needing("build"):
             from jointfmu_fmu_src import building
 
-            return building.build(names, flavours, self.file, Path(out), alias=name)
+            return building.build(names, flavours, self.file, Path(out), alias=name, force=force)
 
-    def report(self, path: str | Path, fmu: str | None = None) -> Path:
-        """Write a page about the joint that opens in a browser: curves, loops, sources of its numbers."""
+    def report(self, path: str | Path, fmu: str | None = None, *, force: bool = False) -> Path:
+        """Write a page about the joint that opens in a browser: curves, loops, sources of its numbers.
+
+        force : replace a file that jointfmu did not write
+
+        Raises ValueError if the file may not or cannot be written.
+        """
+        check_output(path, PAGE, force)
         with needing("write a report"):
             from ..report.joint import write_joint_report
         write_joint_report(Path(path), self.file, fmu)

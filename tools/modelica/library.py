@@ -13,6 +13,7 @@ from jointfmu_fmu_src.partners.laws import POINTS
 from jointfmu_fmu_src.templates import FRAME, law_terms, template
 
 from jointfmu import __version__
+from jointfmu.files.outputs import MARK, TEXT, check_output
 from jointfmu.files.writing import write_files
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.joints.kind import Kind
@@ -63,12 +64,20 @@ class _Joint:
         return next(iter(self.records.values()))
 
 
-def write(folder: Path, file: ParameterFile | None = None, points: Points | None = None) -> list[Path]:
+def write(
+    folder: Path,
+    file: ParameterFile | None = None,
+    points: Points | None = None,
+    *,
+    force: bool = False,
+) -> list[Path]:
     """Write the library into a folder; returns its files.
 
     file   : parameters of one joint, in place of its default
     points : of some joints, in place of their own
+    force  : replace a library of this name that jointfmu did not write
     """
+    check_output(folder / NAME / "package.mo", TEXT, force)
     return write_files(folder / NAME, library(file, points))
 
 
@@ -175,7 +184,7 @@ def _examples(joints: Sequence[_Joint], shared: Environment) -> dict[str, str]:
 
 def system_text(system: System) -> str:
     """A system as a model of its own, with the library's components."""
-    return system_model(system, environment(), lambda kind, file, point: None)
+    return f"// {MARK}\n{system_model(system, environment(), lambda kind, file, point: None)}"
 
 
 def _known(

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from jointfmu_fmu_src.proof.series import TimeSeries, text
 from jointfmu_fmu_src.proof.standard import CO_SIMULATION, FOLDER
 
+from jointfmu.files.outputs import MARK, FileKind, check_outputs
 from jointfmu.files.writing import made_folder, write_bytes
 
 from .. import host
@@ -22,14 +23,18 @@ from .plan import TOLERANCE
 if TYPE_CHECKING:
     from fmpy.model_description import ModelDescription
 
+README = "README.md"
+LISTING = FileKind("listing", (".md",))
 KNOWN = ("c-code", "darwin64", "linux32", "linux64", "win32", "win64")
 """Platforms of the rules, for FMI 2.0; those of FMI 3.0 are named as the FMU has them."""
 
 
-def write(proof: Proof, out: Path) -> list[Path]:
+def write(proof: Proof, out: Path, force: bool = False) -> list[Path]:
     """Write the files of a proof that passed, once for each platform of the FMU; the folders.
 
-    Raises ValueError if no experiment fits, or the folder cannot be written.
+    force : replace files of these names in a folder whose README.md jointfmu did not write
+
+    Raises ValueError if no experiment fits, or a file may not or cannot be written.
     """
     described = host.description(proof.fmu)
     files = _files(proof, _chosen(proof), described)
@@ -37,6 +42,7 @@ def write(proof: Proof, out: Path) -> list[Path]:
     below = [_safe(tool or version), _safe(version), _safe(described.modelName)]
     version = described.fmiVersion[:3]
     folders = [out.joinpath("fmus", version, "cs", p, *below) for p in _platforms(proof.fmu, version)]
+    check_outputs((folder / README for folder in folders), LISTING, force)
     for folder in folders:
         with made_folder(folder):
             for name, content in files.items():
@@ -84,7 +90,7 @@ def _files(proof: Proof, chosen: Outcome, description: "ModelDescription") -> di
         f"{name}.fmu": proof.fmu.read_bytes(),
         **{f"{name}_{key}.csv": text(values).encode() for key, values in series.items()},
         f"{name}_ref.opt": "".join(f"{key}, {value!r}\n" for key, value in options.items()).encode(),
-        "README.md": _readme(proof, chosen, description).encode(),
+        README: _readme(proof, chosen, description).encode(),
     }
 
 
@@ -104,6 +110,8 @@ and relative tolerance. Nothing else is set.
 
 Run in {proof.importer} by `jointfmu prove {name}.fmu`: of {len(chosen.points)} outputs at {chosen.compared}
 times `{worst.output}` is furthest off, by {worst.error:.1e}; allowed is {worst.allowed:.1e}.
+
+<!-- {MARK} -->
 """
 
 

@@ -160,7 +160,7 @@ def text(drive: Transmission, torque: float) -> tuple[str, Miss, list[str]]:
     link = stiffness / (2.0 * np.pi * FREQUENCY) ** 2
     motor = link / drive.ratio**2
     about = [
-        f"{drive.name} as plain MJCF, jointfmu {__version__}; needs MuJoCo 4.0 or newer, no plugin",
+        f"{drive.name} as plain MJCF, written by jointfmu {__version__}; MuJoCo 4.0 or newer, no plugin",
         f"torque = k x + k3 x^3 and {len(fitted.sliders)} springs that yield, x = link - motor/ratio, "
         f"by least squares up to {torque:g} N.m",
         f"measured in MuJoCo {mujoco.__version__} beside the FMU, motor locked:",

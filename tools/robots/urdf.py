@@ -29,7 +29,7 @@ def text(drive: Transmission, torque: float) -> tuple[str, None, list[str]]:
         *drive.lacks,
     ]
     about = [
-        f"{drive.name} as URDF, jointfmu {__version__}; not run in ROS",
+        f"{drive.name} as URDF, written by jointfmu {__version__}; not run in ROS",
         "friction of the motor is that of the joint, times the ratio and its square",
         "it cannot carry, as URDF has no springs:",
         *(f"  {line}" for line in lacks),

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
+from jointfmu.files.outputs import MARK, FileKind
 from jointfmu.quantity import Array
 from jointfmu.quantity.refusal import Refusal
 from jointfmu.quantity.units import measured, sizes
@@ -31,6 +32,7 @@ from ..columns import (
 from . import heights as grid
 from .heights import Areal, Heights, Profile
 
+SCAN = FileKind("surface", (".csv",))
 LENGTHS = sizes("m", "mm", "um", "µm", "μm", "nm")
 """Allowed length units in metres."""
 LAYOUTS = {"profile": ("x", "z"), "points": ("x", "y", "z"), "grid": ("z",)}
@@ -201,4 +203,4 @@ def text(heights: Heights) -> str:
     else:
         head = f"# grid: dx = {heights.dx!r} m, dy = {heights.dy!r} m, z [m]"
         body = rows(heights.z.T, [7] * heights.z.shape[1])
-    return "\n".join([head, *body, ""])
+    return "\n".join([head, f"# {MARK}", *body, ""])

@@ -5,6 +5,7 @@ FMUs of FMI 3.0.
 from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
 from functools import partial
+from itertools import product
 from pathlib import Path
 from typing import Any, NamedTuple
 from xml.etree.ElementTree import Element, SubElement
@@ -18,6 +19,7 @@ from jointfmu_fmu_src.ssv import NUMBER, SSP, Value, add_units, parameter_set
 from jointfmu_fmu_src.xml_parts import VARIABILITIES, serialized
 
 from jointfmu import __version__
+from jointfmu.files.outputs import ARCHIVE, check_outputs
 from jointfmu.files.timestamp import fixed_time
 from jointfmu.parameters import ParameterFile
 from jointfmu.progress import each
@@ -142,6 +144,7 @@ def build_systems(
     joints: bool = True,
     variability: str = VARIABILITIES[0],
     pool: Executor | None = None,
+    force: bool = False,
 ) -> list[Path]:
     """Write the archives of systems, and their components as `out/fmi2/NAME.fmu` and `out/fmi3/NAME.fmu`.
 
@@ -150,6 +153,7 @@ def build_systems(
     joints      : build the systems' joints beside the partners; else they are there
     variability : of the parameters, one of VARIABILITIES
     pool        : processes that share the work; None: this one does it
+    force       : replace files of these names that jointfmu did not write
 
     Raises what `native.build.build` and `pack_system` raise, and ValueError if no system has the joint, or
     two joints of one FMU differ in what is baked into it.
@@ -167,6 +171,9 @@ def build_systems(
         for name, fmu in fmu_names(system).items():
             used.setdefault(fmu, system.components[name])
     wanted_fmus = {fmu: one for fmu, one in used.items() if joints or one.own or not one.file}
+    fmus_out = [out / f"fmi{version}" / f"{fmu}.fmu" for version in VERSIONS for fmu in wanted_fmus]
+    archives = [_target(system, out, *kind) for system in chosen for kind in product(FOLDERS, MASTERS)]
+    check_outputs([*fmus_out, *archives], ARCHIVE, force)
     work = partial(_versions, out, variability)
     built = each(pool, work, "build FMUs of systems", [*wanted_fmus], [*wanted_fmus.values()])
     fmus = [path for paths in zip(*built, strict=True) for path in paths]
@@ -189,21 +196,26 @@ def pack_system(system: System, out: Path) -> list[Path]:
 
     Raises ValueError for flanges that do not fit, see `wiring.ends`, and folders that cannot be written.
     """
-    return [_pack(system, out, version, master) for version in FOLDERS for master in MASTERS]
+    return [_pack(system, out, version, master) for version, master in product(FOLDERS, MASTERS)]
+
+
+def _target(system: System, out: Path, version: str, master: Master) -> Path:
+    return out / FOLDERS[version][0] / f"{system.name}{master.suffix}.ssp"
 
 
 def _pack(system: System, out: Path, version: str, master: Master) -> Path:
-    folder, fmus = FOLDERS[version]
     late, names = lags(system), fmu_names(system)
     members = {"SystemStructure.ssd": structure(system, names, version, master)}
     every: dict[str, Value] = {}
     for name, component in system.components.items():
         own = values(component) | {lag: Value(master.lag, "1", master.doc) for lag in late.get(name, ())}
         every |= {f"{name}.{variable}": value for variable, value in own.items()}
-        members[f"resources/{names[name]}.fmu"] = (out / fmus / f"{names[name]}.fmu").read_bytes()
+        members[f"resources/{names[name]}.fmu"] = (
+            out / FOLDERS[version][1] / f"{names[name]}.fmu"
+        ).read_bytes()
         members[f"parameters/{name}.ssv"] = parameter_set(system.name, own, version, metadata())
     members[f"parameters/{system.name}.ssv"] = parameter_set(system.name, every, version, metadata())
-    target = out / folder / f"{system.name}{master.suffix}.ssp"
+    target = _target(system, out, version, master)
     with workshop(target) as work:
         pack(members, work / target.name)
     return target

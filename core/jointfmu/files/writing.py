@@ -1,6 +1,8 @@
 """Files and folders that are written whole or not at all."""
 
 import os
+import stat
+import sys
 import tempfile
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
@@ -20,17 +22,72 @@ def write_text(path: str | Path, text: str) -> None:
 def write_bytes(path: str | Path, data: bytes) -> None:
     """Write a file in one go: beside its place, then renamed; a failure leaves nothing behind.
 
+    A symbolic link stays, the file that it leads to is replaced. A device, a pipe or standard output is
+    written to.
+
     Raises ValueError naming the path if it cannot be written.
     """
-    beside = _beside(Path(path))
+    if is_stream(path):
+        _write_stream(path, data)
+        return
+    target = Path(os.path.realpath(path))
+    beside = _beside(path, target)
     try:
         beside.write_bytes(data)
         beside.chmod(0o644)
-        beside.replace(path)
+        beside.replace(target)
     except OSError as error:
         raise _unwritable(path, error) from None
     finally:
         beside.unlink(missing_ok=True)
+
+
+def is_stream(path: str | Path) -> bool:
+    """Whether a path is written to and not replaced: a device, a pipe, or an output of this process."""
+    try:
+        found = os.stat(path)
+    except OSError:
+        return False
+    return not (stat.S_ISREG(found.st_mode) or stat.S_ISDIR(found.st_mode)) or _own_output(found) is not None
+
+
+def is_standard_output(path: str | Path) -> bool:
+    """Whether a path leads to the standard output of this process, the null device aside."""
+    try:
+        found = os.stat(path)
+        return _own_output(found) == 1 and not os.path.samestat(found, os.stat(os.devnull))
+    except OSError:
+        return False
+
+
+def _own_output(found: os.stat_result) -> int | None:
+    """The descriptor, 1 or 2, of the standard output or error that is this file."""
+    for descriptor in (1, 2):
+        with suppress(OSError):  # closed
+            if os.path.samestat(found, os.fstat(descriptor)):
+                return descriptor
+    return None
+
+
+def _write_stream(path: str | Path, data: bytes) -> None:
+    """Write to a device or pipe; to an output of this process after what it has printed.
+
+    Raises BrokenPipeError if standard output is a pipe that nobody reads any more.
+    """
+    own = _own_output(os.stat(path))
+    try:
+        if own is None:
+            with open(path, "wb") as stream:
+                stream.write(data)
+        else:
+            for printed in (sys.stdout, sys.stderr):
+                printed.flush()
+            with open(own, "wb", closefd=False) as stream:
+                stream.write(data)
+    except OSError as error:
+        if own is not None and isinstance(error, BrokenPipeError):
+            raise
+        raise _unwritable(path, error) from None
 
 
 @contextmanager
@@ -66,35 +123,21 @@ def write_files(folder: Path, files: Mapping[str, str]) -> list[Path]:
                     file.parent.mkdir(parents=True, exist_ok=True)
                     file.write_text(text, encoding="utf-8", newline="\n")
                 for name in files:
-                    (folder / name).parent.mkdir(parents=True, exist_ok=True)
-                    (Path(work) / name).replace(folder / name)
+                    target = Path(os.path.realpath(folder / name))
+                    target.parent.mkdir(parents=True, exist_ok=True)
+                    (Path(work) / name).replace(target)
         except OSError as error:
             raise _unwritable(folder, error) from None
     return [folder / name for name in files]
 
 
-def check_writable(path: str | Path) -> None:
-    """Raise ValueError naming the path if `write_text` could not write it; leaves nothing.
+def check_place(path: Path, folder: Path) -> None:
+    """Raise ValueError naming the path if no file could be made in a folder, which need not exist yet.
 
-    To be called before long work.
+    Leaves nothing; to be called before long work.
     """
-    path = Path(path)
-    if path.is_dir():
-        raise ValueError(f"{path}: is a folder; expected a file to write")
-    _check_place(path, next(folder for folder in path.absolute().parents if folder.exists()))
-
-
-def check_folder(path: str | Path) -> None:
-    """Raise ValueError naming the path if no files could be written into this folder; leaves nothing.
-
-    To be called before long work.
-    """
-    path = Path(path).absolute()
-    _check_place(path, next(folder for folder in (path, *path.parents) if folder.exists()))
-
-
-def _check_place(path: Path, folder: Path) -> None:
-    """Try to make a file in a folder that exists."""
+    folder = folder.absolute()
+    folder = next(one for one in (folder, *folder.parents) if one.exists())
     try:
         if not folder.is_dir():
             raise OSError(ENOTDIR, os.strerror(ENOTDIR))
@@ -106,11 +149,11 @@ def _check_place(path: Path, folder: Path) -> None:
         ) from None
 
 
-def _beside(path: Path) -> Path:
-    """A new empty file in the folder of `path`, which is made if need be."""
+def _beside(path: str | Path, target: Path) -> Path:
+    """A new empty file in the folder of `target`, which is made if need be; errors name `path`."""
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+        target.parent.mkdir(parents=True, exist_ok=True)
+        handle, name = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.")
     except OSError as error:
         raise _unwritable(path, error) from None
     os.close(handle)

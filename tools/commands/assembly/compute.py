@@ -2,18 +2,18 @@
 
 import argparse
 from collections.abc import Iterator
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from jointfmu.files.writing import write_text
+from jointfmu.files.outputs import PARAMETERS, PICTURE, write_parameter_text
 from jointfmu.mechanics.curve import approach_curve
 from jointfmu.parameters import ParameterFile, dump
 
+from ...columns import FIELD
 from ...command_line.common import Answer, Commands, argument, command
+from ...command_line.outputs import output
 from ...fem import installed
 from ...fields.clamped import clamping
 from ...shown import fact_document, fact_lines
-from .. import check_files
 from . import assembly_arguments, check_bolts, joint_file, judge_assembly, with_assembly
 
 if TYPE_CHECKING:
@@ -33,15 +33,15 @@ def add(commands: Commands) -> None:
     sub = command(commands, "compute", run, text)
     assembly_arguments(sub)
     argument(sub, "--moment", float, "bending moment about x [N.m] (default: 0)", "M")
-    argument(sub, "--out", Path, "write the joint with this field, for FMUs (TOML)")
+    output(sub, "--out", PARAMETERS, "write the joint with this field, for FMUs (TOML)")
     sub.add_argument(
         "--attached",
         choices=("faces", "edge", "heads"),
         help="write the whole joint (sides = elastic) between these parts of the bodies: outer faces, edges "
         "(side 1 at -x, side 2 at +x), or what lies under the heads (default: the interface alone)",
     )
-    argument(sub, "--field", Path, "write the field (.csv, .vtu)")
-    argument(sub, "--plot", Path, "draw the pressure (.png, .svg)")
+    output(sub, "--field", FIELD, "write the field (.csv, .vtu)")
+    output(sub, "--plot", PICTURE, "draw the pressure (.png, .svg)")
     argument(sub, "--refine", int, f"number of meshes, 1 to {FINEST}", default=1)
     argument(sub, "--refinement", float, "divides the sizes of elements", "R", default=1.0)
 
@@ -87,7 +87,6 @@ def _check(args: argparse.Namespace) -> None:
         raise ValueError(f"--refinement = {args.refinement:g} is outside [{COARSEST:g}, 4]")
     if args.attached and not args.out:
         raise ValueError(f"--attached {args.attached} without --out: expected the file for the whole joint")
-    check_files(args.out, args.field, plot=args.plot)
 
 
 def _write(args: argparse.Namespace, file: ParameterFile, solution: "JointSolution") -> list[str]:
@@ -95,7 +94,7 @@ def _write(args: argparse.Namespace, file: ParameterFile, solution: "JointSoluti
     from ...fem import results
 
     if args.out:
-        write_text(args.out, dump(file))
+        write_parameter_text(args.out, dump(file))
     if args.field:
         results.write(solution, args.field)
     if args.plot:

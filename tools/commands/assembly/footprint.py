@@ -5,16 +5,16 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from jointfmu.files.writing import write_text
+from jointfmu.files.outputs import PARAMETERS, PICTURE, write_parameter_text
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile, dump
 
 from ...command_line.common import Answer, Commands, Parser, argument, command
+from ...command_line.outputs import output
 from ...fields.clamped import clamping
 from ...judgement import judge, known_height
 from ...pressure import without_members
 from ...shown import fact_document, fact_lines
-from .. import check_files
 from . import bodies, compute, joint_file
 
 if TYPE_CHECKING:
@@ -40,8 +40,8 @@ def _import(steps: Commands) -> None:
     argument(step, "file", Path, "CSV, CalculiX .frd, ANSYS or Abaqus listing or a mesh")
     argument(step, "--preload", float, "force of each bolt in the file [N]", "F", required=True)
     argument(step, "--params", Path, "parameters of the joint (default: Zhao 2018)")
-    argument(step, "--out", Path, "write the joint with the field (TOML)")
-    argument(step, "--plot", Path, "draw the field (.png, .svg)")
+    output(step, "--out", PARAMETERS, "write the joint with the field (TOML)")
+    output(step, "--plot", PICTURE, "draw the field (.png, .svg)")
     argument(step, "--format", str, "csv, mesh, ansys, abaqus or frd (default: by the name)", "FORMAT")
     argument(step, "--length-unit", str, "of the file: m, mm, um; a CSV file states it", "UNIT")
     argument(step, "--pressure-unit", str, "of the file: Pa, kPa, MPa, GPa", "UNIT")
@@ -63,7 +63,6 @@ def _import(steps: Commands) -> None:
 def _run_import(args: argparse.Namespace) -> Answer:
     if (args.moment is None) != (args.moment_file is None):
         raise ValueError("--moment and --moment-file belong together: expected both or none")
-    check_files(args.out, plot=args.plot)
     from ...fields import joint_parameters
     from ...fields.joint_parameters import FORCE_ERROR, with_field
 
@@ -94,7 +93,7 @@ def _run_import(args: argparse.Namespace) -> Answer:
     if args.plot:
         joint_parameters.draw(field, reduction, args.plot)
     if args.out:
-        write_text(args.out, dump(file))
+        write_parameter_text(args.out, dump(file))
     facts = _findings(args, file, field, reduction)
     found = judge(
         KINDS[file.joint].law_of(file.values), [facts["p_mean"]], known_height(file), facts["p_max"]

@@ -2,13 +2,14 @@
 
 import argparse
 from collections.abc import Iterator
-from pathlib import Path
 from typing import TYPE_CHECKING
 
-from jointfmu.files.writing import check_writable, write_bytes
+from jointfmu.files.outputs import MESH
+from jointfmu.files.writing import write_bytes
 from jointfmu.mechanics.curve import approach_curve
 
 from ...command_line.common import Answer, Commands, argument, command
+from ...command_line.outputs import output
 from ...fem import installed
 from ...fields.clamped import clamping
 from . import assembly_arguments, joint_file, judge_assembly, with_assembly
@@ -28,7 +29,7 @@ def add_modes(commands: Commands) -> None:
     argument(sub, "--moment", float, "about x [N.m]", "M", default=0.0)
     argument(sub, "--count", int, f"modes, 1 to {MOST}", default=6)
     argument(sub, "--refinement", float, "divides all element sizes", "R", default=1.0)
-    argument(sub, "--vtu", Path, "write the shapes of the modes (.vtu)")
+    output(sub, "--vtu", MESH, "write the shapes of the modes (.vtu)")
 
 
 def run(args: argparse.Namespace) -> Answer:
@@ -63,10 +64,8 @@ def _check(args: argparse.Namespace) -> None:
         raise ValueError(
             f"--refinement = {args.refinement:g} is outside [0.1, 4]: divides the sizes of elements"
         )
-    if args.vtu:
-        if args.vtu.suffix.lower() != ".vtu":
-            raise ValueError(f"{args.vtu}: suffix {args.vtu.suffix!r} is no mesh, allowed is .vtu")
-        check_writable(args.vtu)
+    if args.vtu and args.vtu.suffix.lower() not in MESH.endings:
+        raise ValueError(f"{args.vtu}: suffix {args.vtu.suffix!r} is no mesh, allowed is .vtu")
 
 
 def _document(

@@ -6,17 +6,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from jointfmu.contact.laws import ROUGHNESS_LAW
-from jointfmu.files.writing import write_text
+from jointfmu.files.outputs import PARAMETERS, PICTURE, write_parameter_text
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile, default, dump, load
 from jointfmu.quantity.refusal import Refusal
 
-from ...command_line.common import IMPLIED, Answer, Commands, Parser, argument, command, joint_name, written
+from ...command_line.common import IMPLIED, Answer, Commands, Parser, argument, command, joint_name
+from ...command_line.outputs import FORCE, output
 from ...judgement import known_height
 from ...surfaces.heights import FORMS
 from ...surfaces.reading import ROUGHEST, read
 from ...surfaces.spectrum import METHODS, SIDES
-from .. import check_files
 from . import synthesize
 
 if TYPE_CHECKING:
@@ -60,10 +60,10 @@ def add(commands: Commands) -> None:
     text += ", ".join(law for law in laws if law != ROUGHNESS_LAW)
     argument(find, "--law", str, text, "LAW", choices=[*laws])
     argument(find, "--params", Path, "parameter file to start from (TOML)")
-    written(find)
-    argument(find, "--plot", Path, "picture of data, law and range (.png, .svg)")
-    text = "take a field of any size; write D and G although they are not determined"
+    text = f"{FORCE}; take a field of any size; write D and G although they are not determined"
     find.add_argument("--force", action="store_true", help=text)
+    output(find, "--out", PARAMETERS, "write the parameter file (TOML)", second="--write")
+    output(find, "--plot", PICTURE, "picture of data, law and range (.png, .svg)")
     synthesize.add(steps, SUBCOMMANDS[1])
 
 
@@ -80,7 +80,7 @@ def _identify(args: argparse.Namespace) -> Answer:
     _usual(identified, args.force)
     file = with_surface(base, identified, args.method, args.force) if base else None
     if args.out and file:
-        write_text(args.out, dump(file))
+        write_parameter_text(args.out, dump(file))
     if args.plot:
         from ...surfaces.results import draw
 
@@ -101,7 +101,6 @@ def _usual(identified: "Identification", force: bool) -> None:
 
 def _check(args: argparse.Namespace) -> None:
     """Refuse options before any file is read."""
-    check_files(args.out, plot=args.plot)
     if not 1.0 < args.gamma < float("inf"):
         raise ValueError(f"gamma = {args.gamma:g} is outside (1, inf)")
     if args.span and not 0.0 < args.span[0] < args.span[1] < float("inf"):

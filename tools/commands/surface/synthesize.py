@@ -1,11 +1,11 @@
 """`jointfmu surface synthesize`: a seeded Weierstrass-Mandelbrot surface."""
 
 import argparse
-from pathlib import Path
 
-from jointfmu.files.writing import check_writable, write_text
+from jointfmu.files.writing import write_text
 
 from ...command_line.common import Answer, Commands, argument, command
+from ...command_line.outputs import output
 from ...surfaces import csvfile, synthesis
 from ...surfaces.heights import Areal, Heights
 
@@ -31,13 +31,12 @@ def add(steps: Commands, name: str) -> None:
     argument(make, "--gamma", float, "frequency ratio", "GAMMA", default=1.5)
     argument(make, "--ridges", int, "M of an isotropic surface, superposed directions", "RIDGES", default=20)
     argument(make, "--seed", int, "of the random phases", "SEED", default=0)
-    argument(make, "--out", Path, "file to write (.csv)", required=True)
+    output(make, "--out", csvfile.SCAN, "file to write (.csv)", required=True)
 
 
 def _synthesize(args: argparse.Namespace) -> Answer:
     if args.out.suffix.lower() != ".csv":
         raise ValueError(f"{args.out}: suffix {args.out.suffix!r}, allowed is .csv")
-    check_writable(args.out)
     heights = _made(args)
     write_text(args.out, csvfile.text(heights))
     shown = {

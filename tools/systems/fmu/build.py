@@ -11,10 +11,17 @@ from jointfmu_fmu_src.native.data import data_of
 from jointfmu_fmu_src.native.licence import licences
 from jointfmu_fmu_src.native.page import plain_page
 
+from jointfmu.files.outputs import ARCHIVE, check_outputs
+
 from ...host import runs
 from .code import sources
 from .model import SystemModel
 from .proof import proof
+
+
+def targets(assembly: SystemModel, out: Path, versions: Sequence[str] = ("2", "3")) -> list[Path]:
+    """Paths of the FMUs of a system below a folder."""
+    return [out / f"fmi{version}" / f"{assembly.model().title}.fmu" for version in versions]
 
 
 def build_system(
@@ -22,15 +29,19 @@ def build_system(
     out: Path,
     versions: Sequence[str] = ("2", "3"),
     platforms: Sequence[str] = tuple(TARGETS),
+    force: bool = False,
 ) -> list[Path]:
     """Write `out/fmi2/NAME.fmu` and `out/fmi3/NAME.fmu` with their proof; equal content gives equal files.
 
     platforms : of its binaries, names of FMI 3.0
+    force     : replace FMUs of its name that jointfmu did not write
 
     Raises ImportError if a package is missing, RuntimeError if the compiler fails, ValueError if a folder
     cannot be written or the system is too large.
     """
     model = assembly.model()
+    files_out = targets(assembly, out, versions)
+    check_outputs(files_out, ARCHIVE, force)
     parameters = assembly.parameters(model)
     files = sources(assembly)
     data = data_of(model, parameters, Split((), {}, {}, model.parameters, NO_TABLES), files, of_file=False)
@@ -38,10 +49,9 @@ def build_system(
     page = plain_page(model, parameters, Path(__file__).with_name("page.html")).encode()
     pages = {f"documentation/{path}": it for path, it in {"index.html": page, **licences()}.items()}
     written, found = [], None
-    for version in versions:
+    for version, target in zip(versions, files_out, strict=True):
         built = libraries(model.name, files, exported(sorted(files), version), platforms)
         members = core(model, parameters, version, files, data.token, built) | pages
-        target = out / f"fmi{version}" / f"{model.title}.fmu"
         with workshop(target) as work:
             if found is None:  # the first FMU computes what both carry
                 pack({path: it for path, it in members.items() if runs(path)}, work / target.name)

@@ -1,0 +1,171 @@
+"""Which files may be written: never a file of another kind, and no foreign file unless replacement is forced.
+
+A file is the program's own if its content says so: `MARK` in its head, or the mark that its `FileKind` names.
+"""
+
+import os
+import re
+import zipfile
+import zlib
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+from ..quantity.refusal import Refusal
+from .writing import check_place, is_stream, write_text
+
+MARK = "written by jointfmu"
+"""What text files have in their first lines, in a comment of their language."""
+_MARK = re.compile(rb'(written|generated) by jointfmu|(generationTool|content)="jointfmu', re.IGNORECASE)
+_HEAD = 65536
+"""Bytes of a file in which the mark is looked for."""
+_ARCHIVE = re.compile(r"modelDescription\.xml|SystemStructure\.ssd")
+_CHECKSUM = re.compile(rf"# {MARK}; checksum ([0-9a-f]{{8}})\n")
+OTHER_ENDINGS = frozenset(
+    [
+        ".7z",
+        ".bat",
+        ".c",
+        ".cpp",
+        ".dll",
+        ".docx",
+        ".dylib",
+        ".exe",
+        ".frd",
+        ".gz",
+        ".h",
+        ".ipynb",
+        ".jpg",
+        ".json",
+        ".jsonl",
+        ".m",
+        ".mat",
+        ".md",
+        ".npy",
+        ".npz",
+        ".odb",
+        ".pdf",
+        ".ps1",
+        ".py",
+        ".pyi",
+        ".rst",
+        ".sh",
+        ".so",
+        ".ssd",
+        ".ssv",
+        ".tar",
+        ".vtk",
+        ".xls",
+        ".xlsx",
+        ".yaml",
+        ".yml",
+        ".zip",
+    ]
+)
+"""Endings of files that are never written by name."""
+
+
+def _is_marked(path: Path) -> bool:
+    """Whether the head of a file has the mark, or the description in an FMU or an SSP archive."""
+    with path.open("rb") as file:
+        head = file.read(_HEAD)
+    if head.startswith(b"PK"):
+        try:
+            with zipfile.ZipFile(path) as archive:
+                member = next(filter(_ARCHIVE.fullmatch, archive.namelist()))
+                with archive.open(member) as text:
+                    head = text.read(_HEAD)
+        except (zipfile.BadZipFile, zlib.error, NotImplementedError, RuntimeError, StopIteration):
+            return False
+    return _MARK.search(head) is not None
+
+
+@dataclass(frozen=True, slots=True)
+class FileKind:
+    """One kind of output file.
+
+    noun    : its name in messages
+    endings : file name endings of this kind, lower case
+    is_own  : whether a file of this kind was written by the program
+    """
+
+    noun: str
+    endings: tuple[str, ...]
+    is_own: Callable[[Path], bool] = _is_marked
+
+
+def _is_unedited(path: Path) -> bool:
+    """Whether a parameter file is as it was written: one that a user edited is the user's."""
+    text = path.read_bytes().decode("utf-8", "replace").replace("\r\n", "\n")
+    stated = _CHECKSUM.match(text)
+    return stated is not None and stated[1] == _checksum(text[stated.end() :])
+
+
+def _checksum(text: str) -> str:
+    return f"{zlib.crc32(text.encode()):08x}"
+
+
+PARAMETERS = FileKind("parameter file", (".toml",), _is_unedited)
+PAGE = FileKind("page", (".html", ".htm"))
+PICTURE = FileKind("picture", (".png", ".svg"))
+ARCHIVE = FileKind("FMU or SSP archive", (".fmu", ".ssp"))
+TEXT = FileKind("text for another tool", (".cdb", ".csv", ".inp", ".mac", ".mo", ".mjcf", ".urdf", ".xml"))
+MESH = FileKind("mesh", (".vtu",))
+FOLDER = FileKind("folder", ())
+_ENDINGS = OTHER_ENDINGS.union(*(kind.endings for kind in (PARAMETERS, PAGE, PICTURE, ARCHIVE, TEXT, MESH)))
+
+
+def write_parameter_text(path: str | Path, text: str) -> None:
+    """Write the text of a parameter file below a line that tells an unedited file. Raises as `write_text`."""
+    write_text(path, f"# {MARK}; checksum {_checksum(text)}\n{text}")
+
+
+def check_output(path: str | Path, kind: FileKind, force: bool = False) -> None:
+    """Raise ValueError naming the path if a file of a kind may not or cannot be written there.
+
+    Refused are a folder, the ending of another kind of file, a file that is write-protected, a place that
+    cannot be written, and, without `force`, a file with content that the program did not write. A device or
+    pipe is only written to. Leaves nothing; to be called before the work.
+    """
+    path = Path(path)
+    if kind is FOLDER:
+        check_place(path, path)
+        return
+    if path.is_dir():
+        raise ValueError(f"{path}: is a folder; expected a file to write")
+    if is_stream(path):
+        if not os.access(path, os.W_OK):
+            raise ValueError(f"{path}: cannot be written (Permission denied); expected a writable place")
+        return
+    target = Path(os.path.realpath(path))
+    for ending in (path.suffix.lower(), target.suffix.lower()):
+        if ending in _ENDINGS and ending not in kind.endings:
+            allowed = " or ".join(kind.endings)
+            raise ValueError(f"{path}: {ending} is the ending of another kind of file; expected {allowed}")
+    try:
+        if target.exists():
+            if not os.access(target, os.W_OK):
+                raise ValueError(f"{path}: is write-protected; expected another file")
+            if not force and target.stat().st_size and not kind.is_own(target):
+                raise Refusal(
+                    f"{path}: exists, and jointfmu did not write it as this {kind.noun}; expected another "
+                    "file, or force to replace it",
+                    "force",
+                )
+    except OSError as error:
+        raise ValueError(f"{path}: cannot be read ({error.strerror}); expected another file") from None
+    check_place(path, target.parent)
+
+
+def check_outputs(paths: Iterable[Path], kind: FileKind, force: bool = False) -> None:
+    """Check several files of one kind, as `check_output` does."""
+    for path in paths:
+        check_output(path, kind, force)
+
+
+def is_same_file(one: Path, other: Path) -> bool:
+    """Whether two paths lead to one file, through links too; names in any case unless both exist."""
+    try:
+        return os.path.samefile(one, other)
+    except OSError:  # one of them does not exist yet
+        return os.path.realpath(one).casefold() == os.path.realpath(other).casefold()
