@@ -18,7 +18,7 @@ import fmpy
 import numpy as np
 import pytest
 import ziglang
-from clients import SYSROOT, needs, qemu, unusable
+from clients import SYSROOT, needs, prepare_wine, qemu, unusable
 from fmpy import read_model_description
 from jointfmu_fmu_src.native.compiled.compiler import TARGETS
 from natives import SAID
@@ -95,18 +95,10 @@ every_machine = pytest.mark.parametrize(
 )
 
 
-WINE = ("usr/lib*/wine", "usr/lib*/*/wine", "opt/wine*/lib*/wine")
-"""Where Wine may have its own libraries of Windows."""
-
-
 @pytest.fixture(scope="module")
 def wine(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, str]]:
-    """The environment of a Windows of its own, which runs until the end.
-
-    Hosts need its libraries alone; what Wine would install in a minute, from fonts to a browser, they do not.
-    """
-    folder = tmp_path_factory.mktemp("wine")
-    setting = {"WINEPREFIX": str(folder), "WINEDEBUG": "-all", "WINEDLLOVERRIDES": "mscoree,mshtml="}
+    """The environment of a Windows of its own, which runs until the end."""
+    setting = prepare_wine(tmp_path_factory.mktemp("wine"))
 
     def call(*command: str) -> None:
         subprocess.run(
@@ -114,13 +106,6 @@ def wine(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, str]]:
         )
 
     if not unusable("Wine"):
-        system = folder / "drive_c" / "windows" / "system32"
-        found = [own for place in WINE for own in Path("/").glob(f"{place}/x86_64-windows")]
-        for libraries in found[:1]:
-            (folder / ".update-timestamp").write_text("disable\n")
-            system.mkdir(parents=True)
-            for file in libraries.iterdir():
-                (system / file.name).symlink_to(file)
         call("wineserver", "-p")
         call("wine", "wineboot", "--init")
     yield setting
