@@ -7,6 +7,7 @@ Nothing else in the tests decides what a machine can do. The table in CONTRIBUTI
 """
 
 import json
+import os
 import platform
 import shutil
 import subprocess
@@ -69,7 +70,7 @@ ONE_ELEMENT = """*NODE
 class Client:
     """Something that only some machines have.
 
-    probe   : does the smallest task of the client; raises an exception if the client cannot be used
+    probe   : does the smallest task of the client; raises OSError, ImportError or SubprocessError if it cannot
     proves  : what the tests with the client prove
     install : what to do on a machine without the client
     """
@@ -360,7 +361,7 @@ def unusable(name: str) -> str:
 def _probe(name: str) -> str:
     try:
         CLIENTS[name].probe()
-    except Exception as error:  # whatever a client does wrong, it cannot be used
+    except (OSError, ImportError, subprocess.SubprocessError) as error:
         return f"{error}" or type(error).__name__
     return ""
 
