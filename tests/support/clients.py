@@ -70,7 +70,7 @@ ONE_ELEMENT = """*NODE
 class Client:
     """Something that only some machines have.
 
-    probe   : does the smallest task of the client; raises OSError, ImportError or SubprocessError if it cannot
+    probe   : does the smallest task of the client; raises OSError, ImportError or SubprocessError on failure
     proves  : what the tests with the client prove
     install : what to do on a machine without the client
     """
