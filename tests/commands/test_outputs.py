@@ -6,6 +6,7 @@ import threading
 from pathlib import Path
 
 import pytest
+from clients import needs
 from conftest import refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.parser import _all, parser
@@ -64,7 +65,9 @@ def test_every_path_is_declared_as_input_or_output(prog):
     assert paths - INPUTS == set(getattr(one, "outputs", {})) - INPUTS
 
 
-@pytest.mark.parametrize(("prog", "name", "kind"), FILES)
+@pytest.mark.parametrize(
+    ("prog", "name", "kind"), [one for one in FILES if "input.toml" in words(one[0], one[1], "output")]
+)
 def test_an_output_that_is_an_input_is_refused(tmp_path, monkeypatch, capsys, prog, name, kind):
     monkeypatch.chdir(tmp_path)
     source = Path("input.toml")
@@ -73,8 +76,6 @@ def test_an_output_that_is_an_input_is_refused(tmp_path, monkeypatch, capsys, pr
     os.symlink(source, "soft" + kind.endings[0])
     for path in ("input.toml", "hard" + kind.endings[0], "soft" + kind.endings[0]):
         line = words(prog, name, path)
-        if "input.toml" not in line[:-1]:
-            pytest.skip("reads no file")
         assert "is an input of this command too" in refused_line(capsys, *line, "--force")
     assert source.read_text() == "precious"
 
@@ -126,7 +127,7 @@ def test_links_pipes_and_devices_are_written_through(tmp_path):
     assert stat.S_ISFIFO(pipe.stat().st_mode)
 
 
-@pytest.mark.skipif(not Path("/dev/full").is_char_device(), reason="no full device")
+@needs("Linux")
 def test_a_full_device_is_refused_and_stays_a_device(tmp_path):
     link = tmp_path / "full"
     link.symlink_to("/dev/full")

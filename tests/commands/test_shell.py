@@ -105,7 +105,7 @@ def test_a_second_build_says_what_it_replaces(tmp_path: Path, capsys: pytest.Cap
     found = json.loads(build("--params", str(drive), "--json")[0])
     assert found["replaced"] == {str(path): {"K1": ["4800.0", "4700.0"]}}
     path.write_text("no FMU")
-    assert "replaced" not in build("--params", str(drive))[1]
+    assert "replaced" not in build("--params", str(drive), "--force")[1]
 
 
 @pytest.mark.parametrize("to", ["1e300", "-1e13"])

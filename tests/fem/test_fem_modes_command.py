@@ -73,7 +73,7 @@ def test_text(plates, capsys):
     [
         (["--count", "0"], "--count = 0 is outside [1, 40]"),
         (["--refinement", "9"], "--refinement = 9 is outside [0.1, 4]"),
-        (["--vtu", "shapes.png"], "suffix '.png' is no mesh, allowed is .vtu"),
+        (["--vtu", "shapes.png"], ".png is the ending of another kind of file; expected .vtu"),
         (["--preload", "-1"], "preload = -1 N is outside (0, inf)"),
         (["--moment", "1e6"], "a row of bolts would lose its force"),
         (["--preload", "nan"], "preload = nan N is outside (0, inf)"),

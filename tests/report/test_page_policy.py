@@ -7,7 +7,8 @@ from html import unescape
 from pathlib import Path
 
 import pytest
-from browser import PROGRAM, browser
+from browser import browser
+from clients import needs
 from jointfmu_fmu_src.native.page import documentation
 from jointfmu_fmu_src.partners import PARTNERS
 from jointfmu_fmu_src.partners.models import parameters
@@ -87,7 +88,7 @@ def test_the_laboratory_forbids_the_network(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(PROGRAM is None, reason="no Chromium is installed")
+@needs("Chromium")
 def test_pages_work_under_their_policy_and_send_nothing(tmp_path: Path) -> None:
     """Charts are drawn; a request, a script and a frame that are put into the page are stopped."""
     found = pages(tmp_path)

@@ -21,6 +21,7 @@ from jointfmu_tools.published import validation
 from jointfmu_tools.ramps.loops import Swing
 from jointfmu_tools.report import course
 
+from jointfmu.files.outputs import write_parameter_text
 from jointfmu.mechanics.footprint import bolts
 from jointfmu.parameters import default
 
@@ -85,7 +86,8 @@ def folder(tmp_path_factory, native):
     place = tmp_path_factory.mktemp("readme")
     shutil.copytree(native, place / "dist", ignore=shutil.ignore_patterns(".*"))
     native_build("RotationalInertia", partner_parameters("RotationalInertia"), place / "dist" / "fmi2", "2")
-    (place / "my_joint.toml").write_text((ROOT / "models/bolted_joint/box_specimen.toml").read_text())
+    specimen = (ROOT / "models/bolted_joint/box_specimen.toml").read_text()
+    write_parameter_text(place / "my_joint.toml", specimen)  # as a command that the page does not show
     (place / "models/assemblies").mkdir(parents=True)
     (place / ASSEMBLY).write_text((ROOT / ASSEMBLY).read_text())
     joint = default("bolted_joint").values

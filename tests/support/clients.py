@@ -302,6 +302,11 @@ CLIENTS = {
         "five more robots of others with elastic joints",
         "`pip install robosuite`",
     ),
+    "cyclonedx-bom": Client(
+        script("import cyclonedx_py"),
+        "the list of what a release is made of",
+        "the extra `release`",
+    ),
     "bash": Client(
         lambda: run(program("bash"), "-c", "true"),
         "completion of commands, options and choices in bash",

@@ -42,7 +42,7 @@ def matrix(rows: NDArray[np.float64]) -> str:
 def text(content: str) -> str:
     """The inside of a Modelica string; it ends with no backslash, which simple readers misread."""
     content += " " * content.endswith("\\")
-    return content.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n")
+    return content.replace("\\", "\\\\").replace('"', '\\"')
 
 
 def html(content: str) -> str:

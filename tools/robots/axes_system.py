@@ -78,4 +78,6 @@ def text(
 
 
 def _entry(name: str, value: float, unit: str, source: str) -> str:
-    return f'{name} = {{ value = {value!r}, unit = "{unit}", kind = "derived", source = {text} }}'
+    return (
+        f'{name} = {{ value = {value!r}, unit = "{unit}", kind = "derived", source = {toml_string(source)} }}'
+    )

@@ -200,7 +200,7 @@ def test_numbers_of_the_drawing_are_in_the_file(capsys, tmp_path):
     )
     assert joint.bolt_stiffness == facts["bolt_stiffness"]
     text = path.read_text()
-    assert text.startswith("# Computed beside the parameters")
+    assert text.splitlines()[1].startswith("# Computed beside the parameters")
     assert "# member_stiffness = " in text
 
 
