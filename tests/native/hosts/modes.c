@@ -47,7 +47,7 @@ static size_t size;
     X(EnterContinuousTimeMode, "e", "", (c))                                                                 \
     X(CompletedIntegratorStep, "t", "", (c, 1, &(fmi2Boolean){0}, &(fmi2Boolean){0}))                        \
     X(SetTime, "et", "", (c, 0.0))                                                                           \
-    X(SetContinuousStates, "t", "", (c, NULL, 0))                                                            \
+    X(SetContinuousStates, "et", "", (c, NULL, 0))                                                           \
     X(GetDerivatives, "ietx", "", (c, NULL, 0))                                                              \
     X(GetEventIndicators, "ietx", "", (c, NULL, 0))                                                          \
     X(GetContinuousStates, "ietx", "", (c, NULL, 0))                                                         \
@@ -118,7 +118,7 @@ static const Call calls2[] = {CALLS2(X){NULL, NULL, NULL, NULL}};
     X(EnterContinuousTimeMode, "e", "", (c))                                                                 \
     X(CompletedIntegratorStep, "t", "", (c, true, &(bool){0}, &(bool){0}))                                   \
     X(SetTime, "et", "", (c, 0.0))                                                                           \
-    X(SetContinuousStates, "t", "", (c, NULL, 0))                                                            \
+    X(SetContinuousStates, "et", "", (c, NULL, 0))                                                           \
     X(GetContinuousStateDerivatives, "ietx", "", (c, NULL, 0))                                               \
     X(GetEventIndicators, "ietx", "", (c, NULL, 0))                                                          \
     X(GetContinuousStates, "ietx", "", (c, NULL, 0))                                                         \

@@ -60,7 +60,8 @@ static bool fit(Instance *m, const char *function, unsigned where, const double 
 
 Status instance_set_states(Instance *m, const char *function, const double x[], size_t n)
 {
-    if (!fit(m, function, CONTINUOUS_TIME, x, n))
+    /* The standards' texts name continuous-time mode; importers set the states right after initialization too. */
+    if (!fit(m, function, EVENT | CONTINUOUS_TIME, x, n))
         return ERROR;
     if (n) {
         memcpy(m->now.values + FIRST_OUTPUT, x, n * sizeof *x);

@@ -54,8 +54,8 @@ static bool settable(const Instance *m, const char *function, uint32_t ref, bool
 {
     if (!known(m, function, ref) || !of_type(m, function, ref, boolean))
         return false;
-    const bool begins = m->now.mode & (INSTANTIATED | CONFIGURATION | INITIALIZATION);
-    if (among(ref, FIRST_INPUT, N_INPUTS) || (begins && among(ref, FIRST_OUTPUT, N_STATES)))
+    if (among(ref, FIRST_INPUT, N_INPUTS) ||
+        ((m->now.mode & STATES_SETTABLE) && among(ref, FIRST_OUTPUT, N_STATES)))
         return true;
     if (!among(ref, FIRST_PARAMETER, N_PARAMETERS))
         return refused(m, function, ref,

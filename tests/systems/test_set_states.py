@@ -1,0 +1,162 @@
+"""Continuous states that a host sets in model exchange: all at once, or by value reference."""
+
+import ctypes
+import json
+import math
+from collections.abc import Callable
+from pathlib import Path
+
+import fmpy
+import numpy as np
+import pytest
+from conftest import Fmu, here_alone, made_once, run_host, unpack
+from jointfmu_fmu_src.native.build import build
+from jointfmu_fmu_src.partners import parameters
+from jointfmu_fmu_src.partners.laws import GRAVITY
+from jointfmu_tools.systems.fmu.assembly import assembly
+from jointfmu_tools.systems.fmu.build import build_system
+from jointfmu_tools.systems.system import system
+from scipy.integrate import solve_ivp
+
+pytestmark = pytest.mark.slow  # builds FMUs
+
+STATES = {
+    "RotationalInertia": {"phi": 0.4, "w": -1.5},
+    "TranslationalMass": {"s": 2e-3, "v": 0.25},
+    "robot_joint": {"motor.phi": 0.1, "link.phi": 1e-3, "motor.w": 0.5, "link.w": -0.02},
+}
+"""{FMU: values of its continuous states that are not their start values}"""
+START = {"RotationalInertia": {"J": 0.5, "m": 2.0, "l": 0.1, "tau_a": 0.3}}
+
+SetStates = Callable[[Fmu, dict[str, float]], None]
+NAMES = pytest.mark.parametrize("name", list(STATES))
+VERSIONS = pytest.mark.parametrize("version", ["2", "3"])
+MODES = pytest.mark.parametrize("continuous", [False, True], ids=["event mode", "continuous-time mode"])
+
+
+@pytest.fixture(scope="session")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    def make(out: Path) -> None:
+        with here_alone():
+            for name in ("RotationalInertia", "TranslationalMass"):
+                for version in "23":
+                    build(name, parameters(name), out / f"fmi{version}", version)
+            build_system(assembly(system("robot_joint")), out, platforms=(fmpy.platform_tuple,))
+
+    return made_once(tmp_path_factory, "set_states", make)
+
+
+def file_of(folder: Path, name: str, version: str) -> Path:
+    return folder / f"fmi{version}" / f"{name}.fmu"
+
+
+def vector(fmu: Fmu, getter: str) -> list[float]:
+    """The continuous states, or their derivatives."""
+    n = fmu.description.numberOfContinuousStates
+    values = (ctypes.c_double * n)()
+    getattr(fmu.fmu, getter)(values, n)
+    return list(values)
+
+
+def rates(fmu: Fmu) -> list[float]:
+    """Derivatives of the continuous states."""
+    return vector(fmu, "getDerivatives" if fmu.version == 2 else "getContinuousStateDerivatives")
+
+
+def set_vector(fmu: Fmu, states: dict[str, float]) -> None:
+    """Set all continuous states at once."""
+    n = len(states)
+    fmu.fmu.setContinuousStates((ctypes.c_double * n)(*states.values()), n)
+
+
+@pytest.mark.parametrize(
+    ("set_states", "continuous"),
+    [
+        pytest.param(set_vector, False, id="vector, event mode"),
+        pytest.param(Fmu.set, False, id="reference, event mode"),
+        pytest.param(Fmu.set, True, id="reference, continuous-time mode"),
+    ],
+)
+@NAMES
+@VERSIONS
+def test_derivatives_and_outputs_follow_states_that_a_host_sets(
+    folder: Path, version: str, name: str, set_states: SetStates, continuous: bool
+) -> None:
+    """As after the vector of states in continuous-time mode."""
+    path, states, start = file_of(folder, name, version), STATES[name], START.get(name, {})
+    expected, fmu = (Fmu(path, exchange=True).start(start) for _ in range(2))
+    expected.fmu.enterContinuousTimeMode()
+    set_vector(expected, states)
+    if continuous:
+        fmu.fmu.enterContinuousTimeMode()
+    before = rates(fmu)
+    set_states(fmu, states)
+    assert rates(fmu) == rates(expected) != before
+    assert fmu.get() == expected.get()
+    assert vector(fmu, "getContinuousStates") == list(states.values())
+    for one in (expected, fmu):
+        one.free()
+
+
+@NAMES
+@VERSIONS
+def test_states_are_outputs_between_steps_of_co_simulation(folder: Path, version: str, name: str) -> None:
+    fmu = Fmu(file_of(folder, name, version)).start()
+    state = next(iter(STATES[name]))
+    assert f"{state} is an output" in fmu.refused(fmu.set, {state: 0.0})
+    fmu.free()
+
+
+@MODES
+@VERSIONS
+def test_accelerations_are_not_settable(folder: Path, version: str, continuous: bool) -> None:
+    fmu = Fmu(file_of(folder, "RotationalInertia", version), exchange=True).start()
+    if continuous:
+        fmu.fmu.enterContinuousTimeMode()
+    assert "a is an output" in fmu.refused(fmu.set, {"a": 0.0})
+    fmu.free()
+
+
+CASADI = """
+import json, sys
+import casadi as ca
+file, folder = sys.argv[1:]
+case = json.load(open(file))
+dae = ca.DaeBuilder("fmu", folder, {})
+for name, value in case["parameters"].items():
+    dae.set(name, value)
+f = dae.create("f", ["x", "u"], ["ode"])
+x, u = ca.MX.sym("x", dae.nx()), ca.MX.sym("u", dae.nu())
+problem = {"x": x, "u": u, "ode": f(x, u)}
+options = {"reltol": 1e-10, "abstol": 1e-12}
+motion = ca.integrator("motion", "cvodes", problem, 0.0, case["times"], options)
+found = motion(x0=[case["states"][n] for n in dae.x()], u=[case["inputs"].get(n, 0.0) for n in dae.u()])
+json.dump({"x": dae.x(), "motion": found["xf"].full().tolist()}, open(file, "w"))
+"""
+
+
+@VERSIONS
+def test_casadi_integrates_a_pendulum(folder: Path, tmp_path: Path, version: str) -> None:
+    """CasADi sets the states by value reference."""
+    J, m, length, torque = 0.5, 2.0, 0.1, 0.3
+    times = np.linspace(0.25, 2.0, 8)
+    path, file = file_of(folder, "RotationalInertia", version), tmp_path / "case.json"
+    case = {
+        "parameters": {"J": J, "m": m, "l": length},
+        "states": STATES["RotationalInertia"],
+        "inputs": {"tau_a": torque},
+        "times": times.tolist(),
+    }
+    file.write_text(json.dumps(case))
+    done = run_host(CASADI, file, unpack(path, path.stat().st_mtime_ns)[0])
+    assert done.returncode == 0, done.stdout + done.stderr
+    found = json.loads(file.read_text())
+
+    def derivative(_: float, x: np.ndarray) -> list[float]:
+        return [x[1], (torque - m * GRAVITY * length * math.sin(x[0])) / J]
+
+    expected = solve_ivp(
+        derivative, (0.0, 2.0), list(case["states"].values()), "DOP853", times, rtol=1e-12, atol=1e-13
+    ).y
+    assert found["x"] == ["phi", "w"]
+    np.testing.assert_allclose(found["motion"], expected, atol=1e-7)
