@@ -26,6 +26,9 @@ from jointfmu_fmu_src.native.code.generate import RUNTIME, runtime, sources, tok
 from jointfmu_fmu_src.native.compiled.compiler import TARGETS
 from jointfmu_fmu_src.partners import PARTNERS
 from jointfmu_fmu_src.partners import parameters as partner_parameters
+from jointfmu_tools.systems.fmu.assembly import assembly
+from jointfmu_tools.systems.fmu.build import all_sources
+from jointfmu_tools.systems.system import system
 from natives import SAID
 
 from jointfmu.joints import MODELS
@@ -38,7 +41,11 @@ FMI_HEADERS = Path(fmpy.__file__).parent / "c-code"
 STRICT = ("-std=c11", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-Wconversion")
 COMPILERS = {"gcc": ("gcc",), "clang": ("clang",), "zig": (sys.executable, "-m", "ziglang", "cc")}
 """{name: command}; the last comes with the package and builds the FMUs: it is clang, and warns as that."""
-SANITIZERS = {"clang": "address,undefined", "gcc": "address,undefined", "zig": "undefined"}
+SANITIZERS = {
+    "clang": "address,undefined,float-cast-overflow",
+    "gcc": "address,undefined,float-cast-overflow",
+    "zig": "undefined",
+}
 """The first that is installed is taken. Zig has no runtime of the address sanitizer."""
 PLAIN = {
     "gcc": ("-O2", "-fPIC"),  # which finds some faults only where it optimizes
@@ -51,6 +58,12 @@ OWN = {
 }
 """{version: folder and suffix of this machine's libraries}."""
 FUZZ_CALLS = 250_000 // (len(MODELS) * len(VERSIONS))
+
+SYSTEM = "robot_joint"
+MUTATIONS = dict.fromkeys([*MODELS, SYSTEM], 5_000) | {
+    name: 15_000 for name in MODELS if name.startswith("HarmonicDrive")
+}
+"""Of serialized states, in each version: 100 000 in all, more of what is fast."""
 
 FEW_PARTNERS = ("RotationalInertia", "TorqueProfile")
 """One with states and one that follows time: the others have the same C but for their equations."""
@@ -97,6 +110,10 @@ def c_of(name: str) -> Sources:
     if model := (MODELS | PARTNERS).get(name):
         files = sources(name, partner_parameters(name) if name in PARTNERS else default(model.joint))
         return Sources(files, len(model.inputs), len(model.outputs), len(model.parameter_fields()))
+    if name == SYSTEM:
+        parts = assembly(system(name))
+        counts = len(parts.inputs), len(parts.outputs), sum(len(p.exposed) for p in parts.components)
+        return Sources(all_sources(parts)[0], *counts)
     files = {p.name: p.read_text() for p in [*runtime(), *(HOSTS / name).iterdir()]}
     return Sources(files, *ALONE[name])
 
@@ -284,6 +301,20 @@ def test_fuzz(sanitizing: str, builder: Builder, name: str, version: str) -> Non
     counts = builder.call(builder.work, str(run), "", version, *c_of(name).arguments, "1", str(FUZZ_CALLS))
     ok, *_, errors = (int(word) for word in counts.replace(",", "").split() if word.isdigit())
     assert min(ok, errors) > FUZZ_CALLS / 4  # neither all refused nor nothing
+
+
+@every_version
+@pytest.mark.parametrize("name", MUTATIONS)
+def test_a_mutated_state_is_refused_or_used_without_harm(
+    sanitizing: str, builder: Builder, name: str, version: str
+) -> None:
+    """Its checksum is right: that protects against accidents alone."""
+    run = builder.program(sanitizing, "states", name)
+    count = MUTATIONS[name]
+    found = builder.call(builder.work, str(run), "", version, *c_of(name).arguments, "1", str(count))
+    mutations, refused = (int(word) for word in found.replace(",", "").split() if word.isdigit())
+    assert mutations == count
+    assert mutations / 4 < refused < mutations  # neither all refused nor nothing
 
 
 @every_joint

@@ -6,8 +6,9 @@ from pathlib import Path
 from threading import Barrier
 
 import pytest
-from conftest import run_host
+from conftest import here_alone, run_host
 from joint_cases import NAMES, STATE, TUNED, random_inputs
+from jointfmu_fmu_src.building import build
 from natives import VERSIONS, Host, close, numbers, package, settle, slope
 
 from jointfmu.joints import MODELS
@@ -97,6 +98,24 @@ def test_what_was_warned_of_belongs_to_the_state(host: Host, version: str) -> No
         instance.fmu.setFMUState(state)
         instance.at({"f": -7.0})
         assert len(instance.warnings) == count
+
+
+def test_a_state_of_a_joint_with_other_parameters_is_refused_by_name(
+    host: Host, tmp_path: Path, version: str
+) -> None:
+    """Both have the same size: only the instantiation token tells them apart."""
+    file = default(MODELS["BoltedJoint"].joint).with_values({"embedding": 800.0}, "user", "test")
+    with here_alone(version[-1]):
+        build(["BoltedJoint"], [version], file, tmp_path)
+    sender, receiver = host("BoltedJoint", version).start(), host("BoltedJoint", version, tmp_path).start()
+    data = sender.fmu.serializeFMUState(sender.fmu.getFMUState())
+    before = numbers(receiver)
+    assert len(data) == len(receiver.fmu.serializeFMUState(receiver.fmu.getFMUState()))
+    said = receiver.refused(receiver.fmu.deserializeFMUState, data)
+    sent, own = (fmu.description.guid for fmu in (sender, receiver))
+    assert f"a state of another FMU, with the token '{sent}'" in said
+    assert f"a state that BoltedJoint with the token {own} serialized" in said
+    assert numbers(receiver) == before
 
 
 RESTORE = """

@@ -438,7 +438,7 @@ static bool press_elastic(Joint *joint, const double *inputs, double *x, Text *w
 /* Heights of the patches for a way from the memory that begins at an approach. */
 static void lay_from(Kind *kind, int j, const double *memory, double start)
 {
-    const bool first = (int)memory[AT_STATE] < ALONG;
+    const bool first = memory[AT_STATE] < (double)ALONG;
     const double lowest = memory[AT_LOWEST + j];
     const bool opened = lowest < kind->foundation[j].curve->first.x;
     lay(kind, j, first ? start : memory[AT_REFERENCE + j], first || opened ? start : fmin(lowest, start));
@@ -449,7 +449,7 @@ static void lay_from(Kind *kind, int j, const double *memory, double start)
 static void find_points(Joint *joint, const double *inputs, const double *memory)
 {
     Kind *kind = &joint->kind;
-    const bool begun = (int)memory[AT_STATE] != UNKNOWN;
+    const bool begun = memory[AT_STATE] != (double)UNKNOWN;
     for (int j = 0; j < n_patches(); j++) {
         Point *from = &kind->from[j], *to = &kind->to[j];
         const double end = ELASTIC ? kind->patch_now[j] : kind->patch_start[j] - apart_at(data.patches[j], inputs);
@@ -466,7 +466,7 @@ static void find_points(Joint *joint, const double *inputs, const double *memory
 
 static inline PatchPath path_of(const Joint *joint, int j, const double *inputs, const double *memory)
 {
-    const bool spread = joint->kind.moved != RESTING && (int)memory[AT_STATE] < ALONG;
+    const bool spread = joint->kind.moved != RESTING && memory[AT_STATE] < (double)ALONG;
     const double *patch = data.patches[j];
     const double *force = spread ? joint->kind.spread[j][0] : memory + AT_FORCE + j * 2 * SLIDERS;
     const double turn = inputs[THETA + 2] - memory[AT_RIGID + 2];
@@ -597,7 +597,7 @@ static void add_loop_rate(const Joint *joint, int j, const double *inputs, const
 /* How it has moved after the way to inputs, where it is no longer at rest. */
 static int moved_on(const double *inputs, const double *memory)
 {
-    bool straight = !ELASTIC && (int)memory[AT_STATE] != FREE && inputs[S_REL + 1] == memory[AT_RIGID + 1] &&
+    bool straight = !ELASTIC && memory[AT_STATE] != (double)FREE && inputs[S_REL + 1] == memory[AT_RIGID + 1] &&
                     inputs[THETA + 2] == memory[AT_RIGID + 2];
     for (int j = 0; j < n_patches() && straight; j++)
         straight = memory[AT_FORCE + (2 * j + 1) * SLIDERS] == 0.0 && memory[AT_FORCE + (2 * j + 1) * SLIDERS + 1] == 0.0;
@@ -615,7 +615,7 @@ static inline void resting_traction(const double *memory, int j, double traction
 /* All patches after the way if they stay at rest; false: one moves more than hardly. */
 static bool rest_all(Joint *joint, const double *inputs, const double *memory, Shear *shears)
 {
-    bool rests = (int)memory[AT_STATE] < ALONG;
+    bool rests = memory[AT_STATE] < (double)ALONG;
     if (rests) {
         joint->kind.moved = RESTING;
         find_points(joint, inputs, memory);
@@ -637,7 +637,7 @@ static void move_all(Joint *joint, const double *inputs, const double *memory, S
         return;
     kind->moved = moved_on(inputs, memory);
     find_points(joint, inputs, memory);
-    for (int j = 0; j < n_patches() && (int)memory[AT_STATE] < ALONG; j++) {
+    for (int j = 0; j < n_patches() && memory[AT_STATE] < (double)ALONG; j++) {
         double *const spread[2] = {kind->spread[j][0], kind->spread[j][1]}, before[3];
         resting_traction(memory, j, before);
         foundation_spread(&kind->foundation[j], &kind->from[j], before, spread);
@@ -890,7 +890,7 @@ Shear patch_rate(const Joint *joint, int j, const double *inputs, const double *
 {
     const Kind *kind = &joint->kind;
     const Foundation *f = &kind->foundation[j];
-    const double ends[2] = {after || (int)memory[AT_STATE] != UNKNOWN ? 0.0 : rate, rate};
+    const double ends[2] = {after || memory[AT_STATE] != (double)UNKNOWN ? 0.0 : rate, rate};
     const PatchPath path = path_of(joint, j, inputs, memory);
     Shear shear;
     if (kind->moved == RESTING) {

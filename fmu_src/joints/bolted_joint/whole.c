@@ -306,7 +306,7 @@ static bool predict(Joint *joint, const double *inputs, const double *memory, do
         if (!joint_press(joint, first, why))
             return false;
         memcpy(tangent, memory + AT_TANGENT, sizeof tangent);
-        for (int j = 0; j < (int)data.n_patches && (int)memory[AT_STATE] == UNKNOWN; j++) {
+        for (int j = 0; j < (int)data.n_patches && memory[AT_STATE] == (double)UNKNOWN; j++) {
             const Point at = foundation_point(&kind->foundation[j], kind->patch_start[j], 0);
             const double stick = foundation_stick(&kind->foundation[j], &at);
             const double sticks[6] = {stick, 0.0, stick, 0.0, 0.0, stick};

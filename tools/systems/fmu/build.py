@@ -24,6 +24,15 @@ def targets(assembly: SystemModel, out: Path, versions: Sequence[str] = ("2", "3
     return [out / f"fmi{version}" / f"{assembly.model().title}.fmu" for version in versions]
 
 
+def all_sources(assembly: SystemModel) -> tuple[dict[str, str], str]:
+    """{file name: text} of all C of a system's FMU with its data, and its instantiation token."""
+    model, files = assembly.model(), sources(assembly)
+    parameters, given = assembly.parameters(model), Split((), {}, {}, model.parameters, NO_TABLES)
+    data = data_of(model, parameters, given, files, of_file=False)
+    files |= {"data.h": data.header(), "data.c": data.source(f" from the system {assembly.name!r}")}
+    return files, data.token
+
+
 def build_system(
     assembly: SystemModel,
     out: Path,
@@ -43,15 +52,13 @@ def build_system(
     files_out = targets(assembly, out, versions)
     check_outputs(files_out, ARCHIVE, force)
     parameters = assembly.parameters(model)
-    files = sources(assembly)
-    data = data_of(model, parameters, Split((), {}, {}, model.parameters, NO_TABLES), files, of_file=False)
-    files |= {"data.h": data.header(), "data.c": data.source(f" from the system {assembly.name!r}")}
+    files, token = all_sources(assembly)
     page = plain_page(model, parameters, Path(__file__).with_name("page.html")).encode()
     pages = {f"documentation/{path}": it for path, it in {"index.html": page, **licences()}.items()}
     written, found = [], None
     for version, target in zip(versions, files_out, strict=True):
         built = libraries(model.name, files, exported(sorted(files), version), platforms)
-        members = core(model, parameters, version, files, data.token, built) | pages
+        members = core(model, parameters, version, files, token, built) | pages
         with workshop(target) as work:
             if found is None:  # the first FMU computes what both carry
                 pack({path: it for path, it in members.items() if runs(path)}, work / target.name)

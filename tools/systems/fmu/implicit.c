@@ -35,7 +35,7 @@ typedef struct {
 } Step;
 
 /* Values at a stage for the present accelerations, without the outputs after them. */
-static void place(Instance *m, const Step *s, int stage)
+static void place(Instance *m, const Step *s, size_t stage)
 {
     Work *w = &m->joint->work;
     const double h = s->size, *p = PLACES[stage], *q = SPEEDS[stage], *k = w->accelerations;
@@ -50,7 +50,7 @@ static void place(Instance *m, const Step *s, int stage)
     }
 }
 
-static bool evaluate(Instance *m, const Step *s, int stage, double *after)
+static bool evaluate(Instance *m, const Step *s, size_t stage, double *after)
 {
     double *at = m->joint->work.at[stage];
     Work *w = &m->joint->work;
@@ -82,8 +82,8 @@ static void differentiate(Instance *m, const Step *s)
 /* Newton's matrix of a step of a size, with the same tangents at both stages. */
 static void assemble(Work *w, double h)
 {
-    for (int stage = MIDDLE; stage <= END; stage++)
-        for (int r = MIDDLE; r <= END; r++) {
+    for (size_t stage = MIDDLE; stage <= END; stage++)
+        for (size_t r = MIDDLE; r <= END; r++) {
             const double way = h * h * PLACES[stage][1 + r], speed = h * SPEEDS[stage][1 + r];
             for (size_t i = 0; i < N_BODIES; i++)
                 for (size_t j = 0; j < N_BODIES; j++)
@@ -143,7 +143,7 @@ static void solve(Work *w)
 static void guess(Work *w, const double *begin, const double *known, double middle, double end)
 {
     const double at[2] = {middle, end};
-    for (int stage = MIDDLE; stage <= END; stage++)
+    for (size_t stage = MIDDLE; stage <= END; stage++)
         for (size_t i = 0; i < N_BODIES; i++) {
             const double c = at[stage], a = begin[2 * N_BODIES + i];
             const double last = known[N_BODIES + i] - a, first = 4.0 * (known[i] - a) - last;
@@ -161,7 +161,7 @@ static bool step(Instance *m, const Step *s, double *to, double *after)
     double *k = w->accelerations, last = INFINITY;
     bool factorized = false;
     for (int n = 0; n < MOST_ITERATIONS; n++) {
-        for (int stage = MIDDLE; stage <= END; stage++) {
+        for (size_t stage = MIDDLE; stage <= END; stage++) {
             if (!evaluate(m, s, stage, after))
                 return false;
             for (size_t i = 0; i < N_BODIES; i++)

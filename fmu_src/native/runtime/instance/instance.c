@@ -21,6 +21,15 @@ enum { N_MODES = sizeof mode_names / sizeof *mode_names };
 static const unsigned modes_of_model_exchange = ANY_MODE & ~(unsigned)STEP;
 static const unsigned modes_of_co_simulation = ANY_MODE & ~(unsigned)(EVENT | CONTINUOUS_TIME);
 
+bool instance_can_be_in(unsigned kind, unsigned version, unsigned mode)
+{
+    unsigned modes = kind == MODEL_EXCHANGE ? modes_of_model_exchange : modes_of_co_simulation;
+    if (version == 2)
+        modes &= ~(unsigned)(CONFIGURATION | RECONFIGURATION);
+    const bool one = mode && (mode & (mode - 1u)) == 0;
+    return one && (mode & ~modes) == 0;
+}
+
 /* Messages */
 
 void instance_report(const Instance *m, Status status, unsigned category, const char *line)

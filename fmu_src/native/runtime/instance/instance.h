@@ -97,6 +97,8 @@ void instance_free(Instance *m);
 /* Back to the state after instantiation, where that is allowed and without asking. */
 Status instance_restart(Instance *m, const char *function);
 void instance_reset(Instance *m);
+/* Whether an instance of a kind and an FMI version can be in `mode`, which is exactly one. */
+bool instance_can_be_in(unsigned kind, unsigned version, unsigned mode);
 /* Change the mode. */
 void instance_enter(Instance *m, unsigned mode);
 /* The same for the functions that do no more, where they are allowed. */

@@ -1,3 +1,4 @@
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -11,7 +12,7 @@ COLD
  *   16  "jointfmu state 1"
  *    4  FMI version
  *    4  length of the token, then the token: states of another FMU or of other contents are refused
- *   ..  the members of State as `pass` lists them
+ *   ..  the members of State as `pass` lists them, each in the range that `is_possible` allows
  *    8  checksum (FNV-1a, 64 bits) of all before */
 
 static const char magic[16 + 1] = "jointfmu state 1";
@@ -75,20 +76,27 @@ static void pass_text(Cursor *c, char text[], size_t n)
     }
 }
 
-/* What stands before a state; false if it was read and is not ours. */
-static bool pass_head(Cursor *c, unsigned version)
+/* What stands before a state. */
+typedef struct {
+    char magic[sizeof magic], token[sizeof data.token];
+    unsigned version, length; /* of FMI; of the token */
+} Head;
+
+/* The token is passed in the length that this FMU's has. */
+static void pass_head(Cursor *c, Head *head)
 {
-    char first[sizeof magic] = {0}, owner[sizeof data.token] = {0};
-    const unsigned size = (unsigned)strlen(data.token);
-    unsigned stated = version, length = size;
-    memcpy(first, magic, sizeof magic);
-    memcpy(owner, data.token, sizeof data.token);
-    pass_text(c, first, sizeof magic - 1);
-    pass_word(c, &stated);
-    pass_word(c, &length);
-    pass_text(c, owner, size);
-    return strcmp(first, magic) == 0 && stated == version && length == size &&
-           strcmp(owner, data.token) == 0;
+    pass_text(c, head->magic, sizeof magic - 1);
+    pass_word(c, &head->version);
+    pass_word(c, &head->length);
+    pass_text(c, head->token, strlen(data.token));
+}
+
+static Head head_of(unsigned version)
+{
+    Head head = {.version = version, .length = (unsigned)strlen(data.token)};
+    memcpy(head.magic, magic, sizeof magic);
+    memcpy(head.token, data.token, sizeof data.token);
+    return head;
 }
 
 static void pass(Cursor *c, State *s)
@@ -124,7 +132,8 @@ static void pass(Cursor *c, State *s)
 static size_t full_size(const State *any)
 {
     Cursor count = {NULL, NULL, 0};
-    pass_head(&count, 0);
+    Head head = head_of(0);
+    pass_head(&count, &head);
     pass(&count, (State *)any); /* nothing is written when bytes are counted */
     return count.at + 8;
 }
@@ -152,6 +161,70 @@ static Status refuse_bytes(const Instance *m, const char *function, const char *
 {
     return instance_refuse(m, function, "the bytes are %s; expected a state that %s with the token %s serialized",
                            what, data.name, data.token);
+}
+
+/* Whether bytes begin as a state of this FMU does. */
+static bool is_own(const Instance *m, const char *function, const void *bytes, size_t size)
+{
+    const Head own = head_of(m->version);
+    Cursor count = {NULL, NULL, 0}, from = {NULL, bytes, 0};
+    Head head = {.version = 0};
+    pass_head(&count, &head);
+    if (size < count.at)
+        return instance_counts(m, function, "bytes", size, full_size(&m->now));
+    pass_head(&from, &head);
+    Text what = {0};
+    if (strcmp(head.magic, own.magic) != 0)
+        text_add(&what, "no state at all");
+    else if (head.version != own.version)
+        text_print(&what, "a state of FMI %zu, not %zu", (size_t)head.version, (size_t)own.version);
+    else if (head.length != own.length || strcmp(head.token, own.token) != 0)
+        text_print(&what, "a state of another FMU, with the token %q", head.token);
+    return what.length == 0 || refuse_bytes(m, function, what.line) == OK;
+}
+
+/* Whether all flags and numbers of a state that was read are such as an instance can have: whole numbers index
+ * arrays and select code, and a joint's history is not checked anywhere else. Inputs, continuous states and
+ * parameters may have any value, as hosts can set any; they are checked where they are evaluated. */
+static bool is_possible(const Instance *m, const char *function, const State *s)
+{
+    const struct {
+        const char *name;
+        size_t value;
+        bool right;
+        const char *allowed;
+    } words[] = {
+        {"kind", s->kind, s->kind == MODEL_EXCHANGE || s->kind == CO_SIMULATION, "256, 512"},
+        {"mode", s->mode, instance_can_be_in(s->kind, m->version, s->mode), "one mode of that kind of instance"},
+        {"logs", s->logs, s->logs <= (LOG_ERRORS | LOG_WARNINGS | LOG_EVENTS), "0 to 7"},
+        {"last_step", (size_t)s->last_step, s->last_step == OK || s->last_step == ERROR, "0, 3"},
+        {"path.last", s->path.last, s->path.last <= 1, "0, 1"},
+        {"path.accepted", s->path.accepted, s->path.accepted <= 1, "0, 1"},
+    };
+    const struct {
+        const char *name;
+        const double *values;
+        size_t count;
+    } numbers[] = {
+        {"time", s->values, 1},
+        {"start", &s->start, 1},
+        {"slopes", s->slopes, N_INPUTS},
+        {"last_size", &s->last_size, 1},
+        {"path.memory[0]", s->path.memory[0], N_MEMORY},
+        {"path.memory[1]", s->path.memory[1], N_MEMORY},
+    };
+    Text what = {0};
+    for (size_t i = 0; i < sizeof words / sizeof *words && !what.length; i++)
+        if (!words[i].right)
+            text_print(&what, "corrupt: %s is %zu, allowed: %s", words[i].name, words[i].value, words[i].allowed);
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers && !what.length; i++)
+        for (size_t k = 0; k < numbers[i].count && !what.length; k++)
+            if (!isfinite(numbers[i].values[k]))
+                text_print(&what, "corrupt: %s, number %zu, is %g, allowed: finite numbers", numbers[i].name, k,
+                           numbers[i].values[k]);
+    if (!what.length && !(s->stop >= s->start))
+        text_print(&what, "corrupt: stop is %g, allowed: from start = %g on", s->stop, s->start);
+    return what.length == 0 || refuse_bytes(m, function, what.line) == OK;
 }
 
 /* A state of the same kind of instance. */
@@ -230,7 +303,8 @@ Status state_write(const Instance *m, const char *function, const void *saved, v
         !instance_counts(m, function, "bytes of room", size, full_size(&m->now)))
         return ERROR;
     Cursor to = {bytes, NULL, 0};
-    pass_head(&to, m->version);
+    Head head = head_of(m->version);
+    pass_head(&to, &head);
     pass(&to, (State *)&((const SavedState *)saved)->state); /* only read when bytes are written */
     uint64_t sum = checksum(bytes, to.at);
     pass_bytes(&to, &sum, 8);
@@ -241,22 +315,22 @@ Status state_read(Instance *m, const char *function, const void *bytes, size_t s
 {
     if (!instance_allows(m, function, BOTH | ANY_MODE) ||
         !instance_has(m, function, "the array of bytes", bytes) ||
+        !instance_has(m, function, "the pointer to the FMU state", saved))
+        return ERROR;
+    if (!is_own(m, function, bytes, size) ||
         !instance_counts(m, function, "bytes", size, full_size(&m->now)))
         return ERROR;
-    if (!instance_has(m, function, "the pointer to the FMU state", saved))
-        return ERROR;
-    Cursor from = {NULL, bytes, 0};
-    if (!pass_head(&from, m->version))
-        return refuse_bytes(m, function, "of another FMU or FMI version, or no state at all");
-    Cursor end = {NULL, bytes, size - 8};
+    Cursor end = {NULL, bytes, size - 8}, from = {NULL, bytes, 0};
     uint64_t written = 0;
     pass_bytes(&end, &written, 8);
     if (written != checksum(bytes, size - 8))
         return refuse_bytes(m, function, "corrupt: their checksum is wrong");
-    State *read = &m->kept;
+    State *read = &m->kept; /* which is free between two calls */
+    Head head = {.version = 0};
     memset(read, 0, sizeof *read);
+    pass_head(&from, &head);
     pass(&from, read);
-    return fits(m, function, read) ? hand_over(m, function, read, saved) : ERROR;
+    return is_possible(m, function, read) && fits(m, function, read) ? hand_over(m, function, read, saved) : ERROR;
 }
 
 END_OF_COLD
