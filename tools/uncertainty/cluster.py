@@ -98,5 +98,3 @@ def _as_completed(
             continue
         for following in islice(waiting, 1):
             queue.add(submit(following))
-
-

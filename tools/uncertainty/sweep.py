@@ -28,6 +28,7 @@ from .propagate import QUANTILES
 from .study import samples_of, split, unit_design
 from .worker import KILLED, LoadRamp, local_run, slim
 
+
 @dataclass(frozen=True, slots=True)
 class Summary:
     """What a sweep did: runs in all, done by this call, failed in all, and the first failure."""

@@ -13,7 +13,6 @@ from jointfmu.files import archives
 from ..host import runs
 from ..ramps import ramp
 
-
 KILLED = "the process of the run died"
 """What the journal says of a run that ended its process."""
 

@@ -43,8 +43,8 @@ _BROKEN = (
 def opened(path: str | Path) -> Iterator[zipfile.ZipFile]:
     """An FMU as an archive that may be unpacked; `content` and `extract` do it.
 
-    Raises ValueError, one line: there is no such file, it is a pipe or device, no zip or a broken one, without
-    description, or `check` refuses it.
+    Raises ValueError, one line: there is no such file, it is a pipe or device, no zip or a broken one, it has
+    no description, or `check` refuses it.
     """
     expected = f"a zip with {DESCRIPTION}"
     if not os.path.exists(path):
@@ -122,7 +122,8 @@ class Members(Mapping[str, bytes]):
 def _check_text_size(path: str | Path, member: zipfile.ZipInfo) -> None:
     if member.file_size > MAX_TEXT_SIZE:
         raise ValueError(
-            f"{path}: {member.filename[:80]!r} has {member.file_size} bytes unpacked; allowed are {MAX_TEXT_SIZE}"
+            f"{path}: {member.filename[:80]!r} has {member.file_size} bytes unpacked; "
+            f"allowed are {MAX_TEXT_SIZE}"
         )
 
 
