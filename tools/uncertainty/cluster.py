@@ -57,7 +57,7 @@ def _client(scheduler: str) -> Iterator[Any]:
         ) from None
     try:
         client = Client(scheduler, timeout="10s")
-    except (OSError, ValueError, TypeError) as error:
+    except (OSError, RuntimeError, TypeError, ValueError) as error:
         reason = " ".join(str(error).split())[:200]
         raise ValueError(
             f"scheduler = {scheduler}: cannot be reached ({reason}); expected tls://HOST:PORT or tcp://HOST:PORT"

@@ -12,6 +12,7 @@ import numpy as np
 from jointfmu_fmu_src.proof.standard import FOLDER
 
 from jointfmu.files import archives
+from jointfmu.files.reading import read_bytes
 from jointfmu.files.writing import write_text
 from jointfmu.parameters import ParameterFile, load
 from jointfmu.progress import completed, track
@@ -73,7 +74,7 @@ def plan(
     runs = [plain | {name: float(column[i]) for name, column in drawn.items()} for i in range(count)]
     record = {
         "fmu": fmu.name,
-        "fmu_sha256": journal.digest(fmu.read_bytes()),
+        "fmu_sha256": journal.digest(read_bytes(fmu, "an FMU")),
         **asdict(drive),
         "samples": count,
         "seed": seed,
