@@ -25,7 +25,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     except (KeyboardInterrupt, ImportError) as error:
         if not _interrupted(error):
             raise
-        print(f"{name}: interrupted", file=sys.stderr)
+        hint = f"; {error}" if isinstance(error, KeyboardInterrupt) and error.args else ""
+        print(f"{name}: interrupted{hint}", file=sys.stderr)
         return 130
     except BrokenPipeError:
         # What is still buffered goes nowhere, else the interpreter reports it at its end.

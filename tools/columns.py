@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointfmu.files.outputs import MESH, FileKind
+from jointfmu.files.reading import read_bytes
 from jointfmu.quantity import Array
 from jointfmu.quantity.units import Sizes, measured
 
@@ -151,9 +152,7 @@ def content(path: Path, most: int | None = None) -> list[tuple[int, str]]:
 def text_lines(path: Path) -> list[str]:
     """All lines of a file. Raises ValueError, one line, if the file cannot be read or is no text."""
     try:
-        return decoded(path.read_bytes()).splitlines()
-    except OSError as error:
-        raise ValueError(f"{path}: cannot be read ({error.strerror}); expected a CSV file") from None
+        return decoded(read_bytes(path, "a CSV file")).splitlines()
     except UnicodeDecodeError:
         raise ValueError(f"{path}: is no text file; expected CSV (UTF-8)") from None
 

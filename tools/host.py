@@ -3,7 +3,7 @@
 import os
 import shutil
 import sys
-import zipfile
+import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import chdir, contextmanager
 from ctypes import c_double, c_uint
@@ -12,6 +12,8 @@ from pathlib import Path
 from threading import Lock
 from typing import TYPE_CHECKING, Any, NamedTuple
 from xml.etree import ElementTree
+
+from jointfmu.files import archives
 
 if TYPE_CHECKING:
     from fmpy.model_description import ModelDescription
@@ -177,8 +179,14 @@ def opened(
 
 
 def description(fmu: str | Path) -> "ModelDescription":
-    """fmpy's model description of an FMU, not validated; the last ones are kept while their files last."""
-    file = os.stat(fmu)
+    """fmpy's model description of an FMU, not validated; the last ones are kept while their files last.
+
+    Raises ValueError, one line, if it is no FMU of FMI 2.0 or 3.0, or `archives.opened` refuses it.
+    """
+    try:
+        file = os.stat(fmu)
+    except OSError:
+        raise ValueError(f"{fmu}: there is no such file; expected an FMU") from None
     return _description(str(fmu), (file.st_ino, file.st_size, file.st_mtime_ns))
 
 
@@ -186,7 +194,15 @@ def description(fmu: str | Path) -> "ModelDescription":
 def _description(fmu: str, file: tuple[int, ...]) -> "ModelDescription":
     from fmpy import read_model_description
 
-    return read_model_description(fmu, validate=False)
+    with archives.opened(fmu) as archive:
+        text = archives.content(archive, archives.DESCRIPTION)
+    try:  # fmpy stumbles over what FMI 1.0 leaves out
+        version = ElementTree.fromstring(text).get("fmiVersion", "none")
+        if version.startswith(("2.", "3.")):
+            return read_model_description(fmu, validate=False)
+    except Exception as error:  # fmpy raises bare Exception for a broken description
+        raise ValueError(f"{fmu}: is no FMU ({str(error).splitlines()[0]})") from None
+    raise ValueError(f"{fmu}: is an FMU of FMI {version}, allowed are 2.0 and 3.0")
 
 
 @contextmanager
@@ -198,29 +214,19 @@ def unpacked(fmu: str | Path, exchange: bool = False) -> "Iterator[tuple[str, Mo
     Raises ValueError if there is no such file, it is no FMU, or none that can be driven here: of another
     version of FMI, not for co-simulation, or for other platforms.
     """
-    from fmpy import extract
-
     path = Path(fmu)
-    if not path.is_file():
-        raise ValueError(f"{path}: there is no such file; expected an FMU")
+    described = description(path)
+    _check_interface(described, path, exchange)
+    folder = tempfile.mkdtemp()
+    resources = Path(folder) / "resources"
     try:
-        version = _fmi_version(path)
-        if known := version.startswith(("2.", "3.")):
-            described = description(path)
-            folder = extract(str(path), include=runs)
-    except (zipfile.BadZipFile, KeyError, OSError) as error:
-        raise ValueError(f"{path}: is no FMU ({error}); expected a zip with modelDescription.xml") from None
-    except Exception as error:  # fmpy raises bare Exception for a broken description
-        raise ValueError(f"{path}: is no FMU ({str(error).splitlines()[0]})") from None
-    if not known:
-        raise ValueError(f"{path}: is an FMU of FMI {version}, allowed are 2.0 and 3.0")
-    try:
-        _check_interface(described, path, exchange)
-        _check_python_flavour(Path(folder) / "resources", path)
+        with archives.opened(path) as archive:
+            archives.extract(archive, folder, runs)
+        _check_python_flavour(resources, path)
         yield folder, described
     finally:
-        while (resources := str(Path(folder) / "resources")) in sys.path:
-            sys.path.remove(resources)
+        while str(resources) in sys.path:
+            sys.path.remove(str(resources))
         shutil.rmtree(folder, ignore_errors=True)
 
 
@@ -230,13 +236,6 @@ def runs(member: str) -> bool:
 
     kept = ("modelDescription.xml", "resources/", f"binaries/{platform}/", f"binaries/{platform_tuple}/")
     return member.startswith(kept)
-
-
-def _fmi_version(path: Path) -> str:
-    """The version of FMI, before fmpy reads the rest: it stumbles over what FMI 1.0 leaves out."""
-    with zipfile.ZipFile(path) as archive:
-        root = ElementTree.fromstring(archive.read("modelDescription.xml"))
-    return root.get("fmiVersion", "none")
 
 
 def _check_interface(described: "ModelDescription", source: Path, exchange: bool) -> None:

@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from .contact import roughness
+from .files.reading import read_bytes
 from .files.text import MAX_NAME_LENGTH, check_document, check_text, toml_string
 from .joints import KINDS
 from .quantity import build, changed, flat_fields, flatten, problem, problems, quantity
@@ -211,9 +212,7 @@ def read_document(path: Path, expected: str) -> dict[str, Any]:
     or a text is too long or has control characters.
     """
     try:
-        document = tomllib.loads(path.read_text(encoding="utf-8-sig"))
-    except OSError as error:
-        raise ValueError(f"{path}: cannot be read ({error.strerror}); expected {expected}") from None
+        document = tomllib.loads(read_bytes(path, expected).decode("utf-8-sig"))
     except UnicodeDecodeError:
         raise ValueError(f"{path}: is no text file; expected {expected} (TOML, UTF-8)") from None
     except tomllib.TOMLDecodeError as error:

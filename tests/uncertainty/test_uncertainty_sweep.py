@@ -8,6 +8,7 @@ import subprocess
 import sys
 import time
 import zipfile
+from contextlib import suppress
 from dataclasses import replace
 from fnmatch import fnmatch
 from pathlib import Path
@@ -38,28 +39,71 @@ def fmu(native):
     return native / "fmi3" / "HarmonicDriveCompliance.fmu"
 
 
-@pytest.fixture(scope="module", autouse=True)
-def copied():
-    """Workers of this process are copies of one that has loaded what they need, which takes each a second.
-    Those of the commands that are killed start as they do for users."""
+@pytest.fixture(scope="module")
+def cluster():
+    """Address of a dask scheduler; its workers are copies of a process that has loaded what they need."""
     import dask
+    from distributed import LocalCluster
 
     multiprocessing.set_forkserver_preload(["distributed", "fmpy", "jointfmu_tools.uncertainty.worker"])
     how = "spawn" if sys.platform == "win32" else "forkserver"
-    with dask.config.set({"distributed.worker.multiprocessing-method": how}):
-        yield
-
-
-@pytest.fixture(scope="module")
-def cluster(copied):
-    from distributed import LocalCluster
-
-    with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as one:
+    with (
+        dask.config.set({"distributed.worker.multiprocessing-method": how}),
+        LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as one,
+    ):
         yield one.scheduler_address
 
 
 def indices(out):
     return [entry["run"] for entry in journal.entries(out)]
+
+
+def processes_of(group):
+    """{pid: fields of its status} of a process group, without those that are dead and not yet waited for."""
+    found = {}
+    for path in Path("/proc").glob("[0-9]*/stat"):
+        with suppress(OSError):
+            fields = path.read_text().rpartition(")")[2].split()
+            if int(fields[2]) == group and fields[0] != "Z":
+                found[int(path.parent.name)] = fields
+    return found
+
+
+def wait_for(condition, process=None):
+    deadline = time.monotonic() + 60.0
+    while not condition():
+        assert time.monotonic() < deadline
+        assert process is None or process.poll() is None
+        time.sleep(0.005)
+
+
+@needs("Linux")
+def test_a_local_sweep_opens_no_socket_and_ends_with_its_processes_when_killed(fmu, tmp_path):
+    out, own = tmp_path / "out", tmp_path / "own"
+    own.mkdir()
+    arguments = ["sweep", str(fmu), *SETTINGS, *RAMP, "--samples", "512", "--workers", "2", "--out", str(out)]
+    process = subprocess.Popen(
+        [sys.executable, "-m", "jointfmu", *arguments],
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        start_new_session=True,
+        env=os.environ | {"TMPDIR": str(own)},
+    )
+    runs = out / journal.RUNS
+    wait_for(lambda: runs.exists() and runs.read_bytes().count(b"\n") >= 5, process)
+    pids = processes_of(process.pid)
+    assert len(pids) >= 3
+    opened = []
+    for pid in pids:
+        for handle in Path(f"/proc/{pid}/fd").iterdir():
+            with suppress(OSError):  # closed by now
+                opened.append(os.readlink(handle))
+    assert len(opened) > 3 * len(pids)
+    assert [one for one in opened if one.startswith("socket:")] == []
+    os.kill(process.pid, signal.SIGKILL)
+    assert process.communicate(timeout=10.0) == (b"", b"")
+    wait_for(lambda: not processes_of(process.pid))
 
 
 def test_killed_and_resumed(fmu, tmp_path, capsys):
@@ -68,11 +112,7 @@ def test_killed_and_resumed(fmu, tmp_path, capsys):
     arguments = ["sweep", str(fmu), *SETTINGS, *RAMP, "--samples", "128", "--workers", "1", "--out", str(out)]
     process = subprocess.Popen([sys.executable, "-m", "jointfmu", *arguments], stderr=subprocess.DEVNULL)
     runs = out / journal.RUNS
-    deadline = time.monotonic() + 60.0
-    while not (runs.exists() and runs.read_bytes().count(b"\n") >= 10):
-        assert time.monotonic() < deadline
-        assert process.poll() is None
-        time.sleep(0.02)
+    wait_for(lambda: runs.exists() and runs.read_bytes().count(b"\n") >= 10, process)
     os.kill(process.pid, signal.SIGKILL)
     process.wait()
     before = indices(out)
@@ -98,19 +138,12 @@ def test_killed_and_resumed(fmu, tmp_path, capsys):
     )
 
 
-def state(pid):
-    """Whether a process runs, is gone, or is dead and not yet waited for."""
-    try:
-        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
-    except OSError:
-        return "gone"
-
-
 @needs("Linux")
 @pytest.mark.parametrize("moment", ["workers start", "runs"])
 def test_ctrl_c_ends_it_at_once_and_it_resumes(moment, fmu, tmp_path, capsys):
     """Sent to all processes, as a terminal does: 130, one line, no worker left."""
-    out = tmp_path / "out"
+    out, own = tmp_path / "out", tmp_path / "own"
+    own.mkdir()
     arguments = ["sweep", str(fmu), *SETTINGS, *RAMP, "--samples", "64", "--workers", "2", "--out", str(out)]
     process = subprocess.Popen(
         [sys.executable, "-m", "jointfmu", *arguments],
@@ -118,23 +151,16 @@ def test_ctrl_c_ends_it_at_once_and_it_resumes(moment, fmu, tmp_path, capsys):
         stderr=subprocess.PIPE,
         text=True,
         start_new_session=True,
+        env=os.environ | {"TMPDIR": str(own)},
     )
-    tasks, runs = Path(f"/proc/{process.pid}/task"), out / journal.RUNS
-
-    def children():
-        return [int(pid) for task in tasks.iterdir() for pid in (task / "children").read_text().split()]
+    runs = out / journal.RUNS
 
     def reached():
         if moment == "runs":
             return runs.exists() and runs.read_bytes().count(b"\n") >= 5
-        return len(children()) > 1  # beside multiprocessing's own helper
+        return len(processes_of(process.pid)) > 2  # beside this one and multiprocessing's own helper
 
-    deadline = time.monotonic() + 60.0
-    while not reached():
-        assert time.monotonic() < deadline
-        assert process.poll() is None
-        time.sleep(0.005)
-    workers = children()
+    wait_for(reached, process)
     os.killpg(process.pid, signal.SIGINT)
     printed = process.communicate(timeout=5.0)
     assert process.returncode == 130
@@ -142,9 +168,8 @@ def test_ctrl_c_ends_it_at_once_and_it_resumes(moment, fmu, tmp_path, capsys):
         "",
         f"jointfmu sweep: interrupted; finished runs are kept in {out}, the same command resumes\n",
     )
-    while any(state(pid) not in ("gone", "Z") for pid in workers):
-        assert time.monotonic() < deadline
-        time.sleep(0.005)
+    assert list(own.iterdir()) == []
+    wait_for(lambda: not processes_of(process.pid))
     before = indices(out)
     assert cli.main([*arguments, "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["now"] == 64 - len(before)
@@ -152,19 +177,18 @@ def test_ctrl_c_ends_it_at_once_and_it_resumes(moment, fmu, tmp_path, capsys):
 
 
 @needs("Linux or macOS")
-def test_a_worker_that_dies_as_it_starts_prints_nothing():
+def test_a_process_that_dies_as_it_starts_prints_nothing():
     code = (
         "import subprocess, sys\n"
-        "from jointfmu_tools.uncertainty.cluster import _mute\n"
+        "from jointfmu.progress import _quiet_start\n"
         "child = [sys.executable, '-c', '1/0']\n"
-        "with _mute():\n"
+        "with _quiet_start():\n"
         "    subprocess.run(child)\n"
-        "    print('own', file=sys.stderr)\n"
         "print('after', file=sys.stderr)\n"
         "subprocess.run([*child[:2], 'import sys; sys.stderr.write(str(1))'])\n"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stderr == "own\nafter\n1"
+    assert done.stderr == "after\n1"
 
 
 def test_runs_are_the_ramp_of_the_fmu(fmu, cluster, tmp_path):
@@ -222,18 +246,27 @@ def test_every_run_fails(fmu, cluster, tmp_path, capsys):
     assert not (tmp_path / "out" / journal.BANDS).exists()
 
 
-def dies_once_in_a_while(key, drive, index, settings):
+def dies_at_five(key, drive, index, settings):
     if index == 5:
         os._exit(11)
-    return {"run": index, "parameters": dict(settings), "columns": {"tau": [0.0], "K_WTS": [1.0]}}
+    columns = {"tau": [0.0, 1.0], "K_WTS": [1.0, 1.0]}
+    return {"run": index, "parameters": dict(settings), "columns": columns}
 
 
-def test_a_run_that_kills_its_process(fmu, cluster, tmp_path, monkeypatch):
+def local_dies_at_five(job):
+    return dies_at_five(*job)
+
+
+@pytest.mark.parametrize("where", ["local", "cluster"])
+def test_a_run_that_kills_its_process(where, fmu, request, tmp_path, monkeypatch):
     """It is recorded with its parameters; those whose results went down with it are done again."""
-    import jointfmu_tools.uncertainty.sweep as module
-
-    monkeypatch.setattr(module, "one_run", dies_once_in_a_while)
-    done = sweep(fmu, DRIVE, [{"surface.D": 2.5}] * 24, tmp_path, scheduler=cluster)
+    if where == "local":
+        monkeypatch.setattr("jointfmu_tools.uncertainty.sweep.local_run", local_dies_at_five)
+        place = {"workers": 2}
+    else:
+        monkeypatch.setattr("jointfmu_tools.uncertainty.plugin.distributed_run", dies_at_five)
+        place = {"scheduler": request.getfixturevalue("cluster")}
+    done = sweep(fmu, DRIVE, [{"surface.D": 2.5}] * 24, tmp_path, **place)
     assert (done.runs, done.now, done.failed) == (24, 24, 1)
     assert sorted(indices(tmp_path)) == list(range(24))
     assert done.first_failure == {

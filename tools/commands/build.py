@@ -1,11 +1,11 @@
 """`jointfmu build`: FMUs from parameters; `jointfmu cache`: where their compiled parts are kept."""
 
 import argparse
-import zipfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from xml.etree import ElementTree
 
+from jointfmu.files import archives
 from jointfmu.files.outputs import FOLDER
 from jointfmu.joints import MODELS
 from jointfmu.parameters import default, load
@@ -84,9 +84,9 @@ def _build(args: argparse.Namespace) -> Answer:
 def _starts(path: Path) -> dict[str, str]:
     """{parameter: start value as written} of an FMU; empty for a file that is none."""
     try:
-        with zipfile.ZipFile(path) as archive:
-            description = ElementTree.fromstring(archive.read("modelDescription.xml"))
-    except (OSError, KeyError, zipfile.BadZipFile, ElementTree.ParseError):
+        with archives.opened(path) as archive:
+            description = ElementTree.fromstring(archives.content(archive, archives.DESCRIPTION))
+    except (ValueError, ElementTree.ParseError):
         return {}
     found = {}
     for variable in description.iterfind("ModelVariables/*"):

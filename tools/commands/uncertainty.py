@@ -1,7 +1,6 @@
 """`jointfmu uncertainty`: bands from uncertain parameters; `jointfmu sweep`: a study of an FMU."""
 
 import argparse
-import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -89,13 +88,12 @@ def add_sweep(commands: Commands) -> None:
     argument(many, "--step", float, "step of the ramp (SI)", required=True)
     output(many, "--out", FOLDER, "folder of the results", forcible=False, required=True)
     where = many.add_mutually_exclusive_group()
-    argument(where, "--scheduler", str, "dask scheduler of a cluster, tcp://HOST:PORT", "ADDRESS")
+    argument(where, "--scheduler", str, "dask scheduler of a cluster, tls://HOST:PORT", "ADDRESS")
     argument(where, "--workers", int, "local processes (default: one per core)")
 
 
 def _sweep(args: argparse.Namespace) -> Answer:
     from ..uncertainty import journal, study
-    from ..uncertainty.cluster import leave
     from ..uncertainty.sweep import plan, sweep
     from ..uncertainty.worker import LoadRamp
 
@@ -110,11 +108,8 @@ def _sweep(args: argparse.Namespace) -> Answer:
         with journal.claimed(args.out, record):
             done = sweep(args.fmu, drive, runs, args.out, args.scheduler, args.workers)
     except KeyboardInterrupt:
-        print(
-            f"jointfmu sweep: interrupted; finished runs are kept in {args.out}, the same command resumes",
-            file=sys.stderr,
-        )
-        leave(130)
+        text = f"finished runs are kept in {args.out}, the same command resumes"
+        raise KeyboardInterrupt(text) from None
     failure = done.first_failure
     example = failure and {key: failure[key] for key in ("run", "parameters", "error")}
     counts = {"runs": done.runs, "now": done.now, "failed": done.failed}

@@ -43,12 +43,7 @@ def read(path: Path, length: float, pressure: float) -> NodalResult:
 
 
 def _text(path: Path) -> str:
-    try:
-        data = path.read_bytes()
-    except OSError as error:
-        raise ValueError(
-            f"{path}: cannot be read ({error.strerror}); expected a CalculiX .frd file"
-        ) from None
+    data = read_bytes(path, "a CalculiX .frd file")
     if not data.startswith(b"    1"):
         raise ValueError(
             f"{path}: is no CalculiX result; expected an ASCII .frd file, which begins with '    1C'"

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from jointfmu.files.reading import read_bytes
 from jointfmu.quantity import Array
 from jointfmu.quantity.units import Sizes, sizes
 
@@ -23,10 +24,7 @@ NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][-+]?\d+)?")
 
 def read_lines(path: Path, what: str) -> list[str]:
     """The lines of a listing; ValueError, one line, for what cannot be read."""
-    try:
-        return path.read_text(encoding="latin-1").splitlines()
-    except OSError as error:
-        raise ValueError(f"{path}: cannot be read ({error.strerror}); expected {what}") from None
+    return read_bytes(path, what).decode("latin-1").splitlines()
 
 
 @dataclass(frozen=True, slots=True)

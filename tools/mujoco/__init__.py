@@ -1,12 +1,15 @@
 """A joint between two flanges as MuJoCo's passive force: an FMU's own C sources, compiled to its plugin."""
 
-import zipfile
 from importlib.util import find_spec
 from pathlib import Path
 
 import fmpy
 from jointfmu_fmu_src.archive import workshop
 from jointfmu_fmu_src.native.compiled.compiler import file_name, libraries
+
+from jointfmu.files import archives
+
+from ..host import description
 
 INPUTS = ["phi1", "w1", "phi2", "w2"]
 TORQUES = ["tau1", "tau2"]
@@ -37,18 +40,15 @@ def plugin(fmu: str | Path, out: str | Path) -> Path:
 
 def _sources(fmu: Path) -> tuple[str, dict[str, str]]:
     """Name of an FMU and its C files."""
-    try:
-        description = fmpy.read_model_description(str(fmu))
-        with zipfile.ZipFile(fmu) as archive:
-            sources = {
-                member.removeprefix("sources/"): archive.read(member).decode()
-                for member in archive.namelist()
-                if member.startswith("sources/") and member.endswith((".c", ".h"))
-            }
-    except (OSError, zipfile.BadZipFile) as error:
-        raise ValueError(f"{fmu}: cannot be read as an FMU ({error})") from None
+    described = description(fmu)
+    with archives.opened(fmu) as archive:
+        sources = {
+            member.removeprefix("sources/"): archives.content(archive, member).decode()
+            for member in archive.namelist()
+            if member.startswith("sources/") and member.endswith((".c", ".h"))
+        }
     names = {
-        kind: [v.name for v in description.modelVariables if v.causality == kind]
+        kind: [v.name for v in described.modelVariables if v.causality == kind]
         for kind in ("input", "output")
     }
     if names["input"][: len(INPUTS)] != INPUTS or names["output"][:2] != TORQUES:
@@ -58,7 +58,7 @@ def _sources(fmu: Path) -> tuple[str, dict[str, str]]:
         )
     if "instance.h" not in sources:
         raise ValueError(f"{fmu}: has no C sources of jointfmu; expected an FMU of flavour fmi2 or fmi3")
-    return description.modelName, sources
+    return described.modelName, sources
 
 
 def _mujoco() -> tuple[Path, Path]:

@@ -5,13 +5,13 @@ and README.md, of one experiment: the first validation that needs no parameter s
 """
 
 import re
-import zipfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from jointfmu_fmu_src.proof.series import TimeSeries, text
 from jointfmu_fmu_src.proof.standard import CO_SIMULATION, FOLDER
 
+from jointfmu.files import archives
 from jointfmu.files.outputs import MARK, FileKind, check_outputs
 from jointfmu.files.writing import made_folder, write_bytes
 
@@ -117,7 +117,7 @@ times `{worst.output}` is furthest off, by {worst.error:.1e}; allowed is {worst.
 
 def _platforms(fmu: Path, version: str) -> list[str]:
     """Platforms for which an FMU has a binary; of FMI 2.0 those that the rules know."""
-    with zipfile.ZipFile(fmu) as archive:
+    with archives.opened(fmu) as archive:
         found = {match[1] for name in archive.namelist() if (match := re.match(r"binaries/([^/]+)/.", name))}
     return sorted(found & set(KNOWN) if version.startswith("2") else found)
 

@@ -4,7 +4,6 @@ Older drafts have the times of an experiment as attributes of `Experiment`; they
 """
 
 import posixpath
-import zipfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -26,6 +25,8 @@ from jointfmu_fmu_src.proof.standard import (
     SSV,
     TRANSIENT,
 )
+
+from jointfmu.files.archives import Members
 
 from . import checksum
 
@@ -81,21 +82,8 @@ class Related:
 
     def __init__(self, fmu: Path, members: Mapping[str, bytes] | None = None) -> None:
         self.fmu = fmu
-        self.members: Mapping[str, bytes] = {}
-        try:
-            with zipfile.ZipFile(fmu) as archive:
-                self.members = {
-                    name: archive.read(name)
-                    for name in archive.namelist()
-                    if name.startswith("extra/") and not name.endswith("/")
-                }
-        except OSError as error:
-            raise ValueError(f"{fmu}: cannot be read ({error.strerror}); expected an FMU") from None
-        except zipfile.BadZipFile as error:
-            raise ValueError(
-                f"{fmu}: is no FMU ({error}); expected a zip with modelDescription.xml"
-            ) from None
-        self.members = members or self.members
+        own = Members(fmu)
+        self.members: Mapping[str, bytes] = members or own
         if MANIFEST not in self.members:
             raise ValueError(f"{fmu}: has no {MANIFEST}; expected an FMU with experiments after FMI-LS-REF")
 

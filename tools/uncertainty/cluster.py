@@ -1,132 +1,100 @@
-"""Where a sweep runs: the workers of a dask scheduler, or processes of this machine."""
+"""A sweep on the workers of a dask cluster that the user names."""
 
-import logging
-import multiprocessing
-import os
-import signal
-import sys
-import threading
-from collections.abc import Callable, Iterator
-from concurrent.futures import Future
-from contextlib import contextmanager
-from typing import Any, NoReturn, TypeVar, cast
+from collections import Counter
+from collections.abc import Generator, Iterator, Mapping, Sequence
+from concurrent.futures import CancelledError
+from contextlib import contextmanager, suppress
+from itertools import islice
+from pathlib import Path
+from typing import Any
+from uuid import uuid4
 
-T = TypeVar("T")
+from .worker import KILLED, LoadRamp
 
-_NO_DASK = "the package {} is missing, needed for a sweep; install it with: pip install 'jointfmu[sweep]'"
+AHEAD = 4
+"""Runs that wait at each worker [1]: enough to keep it busy."""
+MOST_LOST = 3
+"""How often a run is started again [1] whose result was lost with its worker."""
+
+
+def cluster_runs(
+    scheduler: str,
+    fmu: Path,
+    drive: LoadRamp,
+    runs: Sequence[Mapping[str, Any]],
+    todo: Sequence[int],
+) -> Generator[dict[str, object]]:
+    """Entries of runs as they end; never more than AHEAD per worker are under way.
+
+    Raises ValueError if dask is missing or the scheduler does not answer, RuntimeError if it has no worker or
+    one cannot run at all.
+    """
+    with _client(scheduler) as client:
+        from .plugin import FmuDistribution
+
+        try:
+            client.wait_for_workers(1, timeout=60)
+        except TimeoutError:
+            raise RuntimeError(f"{scheduler}: has had no worker for 60 s") from None
+        key = f"jointfmu-{uuid4()}"
+        client.register_plugin(FmuDistribution(key, fmu.name, fmu.read_bytes()), name=key)
+        try:
+            yield from _as_completed(client, key, drive, runs, todo)
+        finally:
+            with suppress(Exception):  # the scheduler may be gone
+                client.unregister_worker_plugin(key)
 
 
 @contextmanager
-def client(scheduler: str | None, workers: int | None) -> Iterator[object]:
-    """A dask client: of a scheduler's address, or of local processes.
-
-    Raises ValueError if dask is missing or the scheduler does not answer.
-    """
+def _client(scheduler: str) -> Iterator[Any]:
+    """A dask client of a scheduler, with the TLS settings of dask's own configuration."""
     try:
-        from distributed import Client, LocalCluster
+        from distributed import Client
     except ImportError as error:
-        raise ValueError(_NO_DASK.format(error.name or "distributed")) from None
-    if scheduler is not None:
-        try:
-            dask_client = Client(scheduler, timeout="10s")
-        except (OSError, ValueError) as error:
-            reason = " ".join(str(error).split())[:200]
-            raise ValueError(
-                f"scheduler = {scheduler}: cannot be reached ({reason}); expected tcp://HOST:PORT"
-            ) from None
-        with dask_client:
-            yield dask_client
-        return
-
-    def local() -> tuple[Any, Any]:
-        cluster = LocalCluster(
-            n_workers=workers,
-            processes=True,
-            threads_per_worker=1,
-            dashboard_address=None,
-            silence_logs=logging.CRITICAL,
-        )
-        return cluster, Client(cluster)
-
-    with _mute():
-        started, dask_client = _without_interrupt(local)
-        with started, dask_client:
-            dask_client.run(_quiet)
-            yield dask_client
-
-
-@contextmanager
-def _mute() -> Iterator[None]:
-    """Processes that start here print no error; this one does.
-
-    A worker that starts while this process ends would print a traceback of its own. After Ctrl-C it stays so:
-    this process ends as well, see `leave`.
-    """
-    if sys.platform == "win32" or sys.stderr is not sys.__stderr__:  # somebody else has the stream
-        yield
-        return
-    before = cast(Any, sys.stderr)
-    before.flush()
-    kept, nowhere = os.dup(2), os.open(os.devnull, os.O_WRONLY)
-    sys.stderr = open(  # noqa: SIM115
-        kept, "w", buffering=1, encoding=before.encoding, errors="backslashreplace"
-    )
-    os.dup2(nowhere, 2)
-    os.close(nowhere)
+        raise ValueError(
+            f"the package {error.name or 'distributed'} is missing, needed for a sweep on a cluster; "
+            "install it with: pip install 'jointfmu[cluster]'"
+        ) from None
     try:
-        yield
-    except KeyboardInterrupt:
-        raise
-    except BaseException:
-        _unmute(before, kept)
-        raise
-    _unmute(before, kept)
+        client = Client(scheduler, timeout="10s")
+    except (OSError, RuntimeError, TypeError, ValueError) as error:
+        reason = " ".join(str(error).split())[:200]
+        raise ValueError(
+            f"scheduler = {scheduler}: cannot be reached ({reason}); expected tls://HOST:PORT or tcp://HOST:PORT"
+        ) from None
+    with client:
+        yield client
 
 
-def _unmute(before: object, kept: int) -> None:
-    os.dup2(kept, 2)
-    own: Any = sys.stderr
-    own.close()
-    sys.stderr = before
+def _as_completed(
+    client: Any, key: str, drive: LoadRamp, runs: Sequence[Mapping[str, Any]], todo: Sequence[int]
+) -> Iterator[dict[str, object]]:
+    from distributed import KilledWorker, as_completed
 
+    from .plugin import distributed_run
 
-def _without_interrupt(make: Callable[[], T]) -> T:
-    """What `make` returns. Processes that it starts do not hear Ctrl-C, which a terminal sends to all of its
-    processes; this one hears it all the time.
+    waiting, indices, lost = iter(todo), {}, Counter[int]()
 
-    A signal that is blocked stays so in threads and processes started from there (on Windows they hear it).
-    """
-    made = Future[T]()
+    def submit(index: int) -> object:
+        future = client.submit(distributed_run, key, drive, index, runs[index], pure=False)
+        indices[future.key] = index
+        return future
 
-    def work() -> None:
-        if sys.platform != "win32":
-            signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    ahead = AHEAD * max(sum(client.nthreads().values()), 1)
+    queue = as_completed([submit(i) for i in islice(waiting, ahead)])
+    for future in queue:
+        index = indices.pop(future.key)
         try:
-            made.set_result(make())
-        except BaseException as error:
-            made.set_exception(error)
-
-    if sys.platform != "win32":
-        from multiprocessing import resource_tracker
-
-        # Here, as it unblocks the signal where it starts; without its warning of what `leave` leaves.
-        sys.warnoptions.append("ignore:resource_tracker")
-        resource_tracker.ensure_running()
-        sys.warnoptions.remove("ignore:resource_tracker")
-    threading.Thread(target=work, daemon=True).start()
-    return made.result()
-
-
-def leave(status: int) -> NoReturn:
-    """End this process and its workers at once: dask's orderly end takes seconds, or hangs as it starts."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    for process in multiprocessing.active_children():
-        process.kill()
-    sys.stdout.flush()
-    sys.stderr.flush()
-    os._exit(status)
-
-
-def _quiet() -> None:
-    """A local worker shares the terminal: no progress bars of single runs there."""
-    sys.stderr = open(os.devnull, "w")  # noqa: SIM115
+            yield future.result()
+        except KilledWorker:
+            yield {"run": index, "parameters": dict(runs[index]), "error": KILLED}
+        except Exception as error:
+            lost[index] += 1
+            if not isinstance(error, CancelledError) or lost[index] > MOST_LOST:
+                text = " ".join(str(error).split())[:200]
+                error_name = type(error).__name__
+                raise RuntimeError(f"run {index}: the worker failed: {error_name}: {text}") from None
+            queue.add(submit(index))  # its result went down with another run's process
+            continue
+        for following in islice(waiting, 1):
+            queue.add(submit(following))

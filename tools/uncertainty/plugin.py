@@ -2,12 +2,23 @@
 
 import shutil
 import tempfile
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from distributed import WorkerPlugin
 
-from .worker import FILES, slim
+from .worker import LoadRamp, one_run, slim
+
+FILES: dict[str, Path] = {}
+"""{key: path} of the FMUs that this worker has."""
+
+
+def distributed_run(
+    key: str, drive: LoadRamp, index: int, settings: Mapping[str, object]
+) -> dict[str, object]:
+    """`one_run` on a worker that has the FMU."""
+    return one_run(FILES[key], drive, index, settings)
 
 
 class FmuDistribution(WorkerPlugin):  # type: ignore[misc]
@@ -21,7 +32,10 @@ class FmuDistribution(WorkerPlugin):  # type: ignore[misc]
 
     def setup(self, worker: Any) -> None:
         folder = Path(tempfile.mkdtemp(prefix="fmu-", dir=worker.local_directory))
-        (folder / self.file_name).write_bytes(slim(self.data))
+        full = folder / f"{self.file_name}.full"
+        full.write_bytes(self.data)
+        slim(full, folder / self.file_name)
+        full.unlink()
         FILES[self.key] = folder / self.file_name
 
     def teardown(self, worker: Any) -> None:

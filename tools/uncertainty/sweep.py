@@ -1,24 +1,21 @@
-"""A study over an FMU: one ramp per sample, many in parallel through dask.distributed."""
+"""A study over an FMU: one ramp per sample, many at a time in processes of this machine or of a cluster."""
 
-from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
-from concurrent.futures import CancelledError
-from contextlib import suppress
+from collections.abc import Generator, Mapping, Sequence
+from contextlib import closing
 from dataclasses import asdict, dataclass
 from fnmatch import fnmatch
-from itertools import islice
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
-from uuid import uuid4
-from zipfile import ZipFile
 
 import numpy as np
 from jointfmu_fmu_src.proof.standard import FOLDER
 
+from jointfmu.files import archives
+from jointfmu.files.reading import read_bytes
 from jointfmu.files.writing import write_text
 from jointfmu.parameters import ParameterFile, load
-from jointfmu.progress import track
+from jointfmu.progress import completed, track
 from jointfmu.quantity import Array
 from jointfmu.quantity.refusal import Refusal
 
@@ -26,17 +23,11 @@ from .. import columns
 from ..host import unpacked
 from ..ramps import ramp
 from . import journal
-from .cluster import client
 from .journal import Journal
 from .problem import INTERVAL, of_source
 from .propagate import QUANTILES
 from .study import samples_of, split, unit_design
-from .worker import LoadRamp, one_run
-
-AHEAD = 4
-"""Runs that wait at each worker [1]: enough to keep it busy."""
-MOST_LOST = 3
-"""How often a run is started again [1] whose result was lost with its worker."""
+from .worker import KILLED, LoadRamp, local_run, slim
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,7 +74,7 @@ def plan(
     runs = [plain | {name: float(column[i]) for name, column in drawn.items()} for i in range(count)]
     record = {
         "fmu": fmu.name,
-        "fmu_sha256": journal.digest(fmu.read_bytes()),
+        "fmu_sha256": journal.digest(read_bytes(fmu, "an FMU")),
         **asdict(drive),
         "samples": count,
         "seed": seed,
@@ -97,10 +88,12 @@ def _declared(fmu: Path) -> ParameterFile:
 
     Raises ValueError if it has none.
     """
-    with ZipFile(fmu) as archive, TemporaryDirectory() as folder:
+    with archives.opened(fmu) as archive, TemporaryDirectory() as folder:
         inside = [name for name in archive.namelist() if fnmatch(name, f"{FOLDER}/parameters/*.toml")]
         if own := [name for name in inside if Path(name).name != "study.toml"]:
-            return load(archive.extract(own[0], folder))
+            file = Path(folder, Path(own[0]).name)
+            file.write_bytes(archives.content(archive, own[0]))
+            return load(file)
     raise ValueError(f"{fmu}: carries no parameter file; expected LOW..HIGH in place of {INTERVAL}")
 
 
@@ -114,14 +107,23 @@ def sweep(
 ) -> Summary:
     """Do the runs that a claimed folder does not have yet, each written when it is finished.
 
-    Raises RuntimeError if the workers cannot run at all (the package missing there, none left).
+    scheduler : address of a dask scheduler, whose workers do the runs
+    workers   : processes of this machine, if there is no scheduler; None: one per core
+
+    Raises ValueError if dask is missing or the scheduler does not answer, RuntimeError if its workers cannot
+    run at all (the package missing there, none left).
     """
     with Journal(out) as held:
         before = len(held.finished)
         todo = [i for i in range(len(runs)) if i not in held.finished]
         if todo:
-            with client(scheduler, workers) as dask_client:
-                finished = _finished(dask_client, fmu, drive, runs, todo)
+            if scheduler is None:
+                entries = _local_runs(fmu, drive, runs, todo, workers)
+            else:
+                from .cluster import cluster_runs
+
+                entries = cluster_runs(scheduler, fmu, drive, runs, todo)
+            with closing(entries) as finished:
                 for entry in track(finished, "sweep", len(todo)):
                     held.add(entry)
         summary = Summary(len(runs), len(held.finished) - before, held.failed, held.first_failure)
@@ -130,56 +132,21 @@ def sweep(
     return summary
 
 
-def _finished(
-    dask_client: Any, fmu: Path, drive: LoadRamp, runs: Sequence[Mapping[str, Any]], todo: Sequence[int]
-) -> Iterator[dict[str, object]]:
-    """Finished runs as they come; never more than AHEAD per worker are under way."""
-    from .plugin import FmuDistribution
-
-    try:
-        dask_client.wait_for_workers(1, timeout=60)
-    except TimeoutError:
-        raise RuntimeError(f"{dask_client.scheduler.address}: has had no worker for 60 s") from None
-    key = f"jointfmu-{uuid4()}"
-    dask_client.register_plugin(FmuDistribution(key, fmu.name, fmu.read_bytes()), name=key)
-    try:
-        yield from _as_completed(dask_client, key, drive, runs, todo)
-    finally:
-        with suppress(Exception):  # the scheduler may be gone
-            dask_client.unregister_worker_plugin(key)
-
-
-def _as_completed(
-    dask_client: Any, key: str, drive: LoadRamp, runs: Sequence[Mapping[str, Any]], todo: Sequence[int]
-) -> Iterator[dict[str, object]]:
-    from distributed import KilledWorker, as_completed
-
-    waiting, indices, lost = iter(todo), {}, Counter[int]()
-
-    def submit(index: int) -> object:
-        future = dask_client.submit(one_run, key, drive, index, runs[index], pure=False)
-        indices[future.key] = index
-        return future
-
-    ahead = AHEAD * max(sum(dask_client.nthreads().values()), 1)
-    queue = as_completed([submit(i) for i in islice(waiting, ahead)])
-    for future in queue:
-        index = indices.pop(future.key)
-        try:
-            yield future.result()
-        except KilledWorker:
-            reason = "the process of the run died"
-            yield {"run": index, "parameters": dict(runs[index]), "error": reason}
-        except Exception as error:
-            lost[index] += 1
-            if not isinstance(error, CancelledError) or lost[index] > MOST_LOST:
-                text = " ".join(str(error).split())[:200]
-                error_name = type(error).__name__
-                raise RuntimeError(f"run {index}: the worker failed: {error_name}: {text}") from None
-            queue.add(submit(index))  # its result went down with another run's process
-            continue
-        for following in islice(waiting, 1):
-            queue.add(submit(following))
+def _local_runs(
+    fmu: Path,
+    drive: LoadRamp,
+    runs: Sequence[Mapping[str, object]],
+    todo: Sequence[int],
+    workers: int | None,
+) -> Generator[dict[str, object]]:
+    """Entries of runs as they end, in processes of this machine."""
+    with TemporaryDirectory(prefix="sweep-") as folder:
+        small = Path(folder, fmu.name)
+        slim(fmu, small)
+        jobs = [(small, drive, i, runs[i]) for i in todo]
+        with closing(completed(local_run, jobs, workers)) as finished:
+            for (_, _, i, settings), entry in finished:
+                yield entry or {"run": i, "parameters": dict(settings), "error": KILLED}
 
 
 def bands_csv(folder: Path, units: Mapping[str, str]) -> str:

@@ -1,6 +1,6 @@
-"""What a worker of a sweep does: one ramp of an FMU."""
+"""What a process of a sweep does: one load ramp of an FMU."""
 
-import io
+import tempfile
 import zipfile
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -8,8 +8,13 @@ from pathlib import Path
 
 import numpy as np
 
+from jointfmu.files import archives
+
 from ..host import runs
 from ..ramps import ramp
+
+KILLED = "the process of the run died"
+"""What the journal says of a run that ended its process."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,29 +26,28 @@ class LoadRamp:
     step: float
 
 
-def one_run(fmu: str, drive: LoadRamp, index: int, settings: Mapping[str, object]) -> dict[str, object]:
-    """One run, on a worker that has the FMU: its ramp. A refusal is a result, too."""
-    path = FILES[fmu]
+def one_run(fmu: Path, drive: LoadRamp, index: int, settings: Mapping[str, object]) -> dict[str, object]:
+    """The entry of a run in the journal: columns of its ramp, or the FMU's refusal."""
     entry = {"run": index, "parameters": dict(settings)}
     try:
-        done = ramp.run(path, drive.input, drive.to, drive.step, settings)
+        done = ramp.run(fmu, drive.input, drive.to, drive.step, settings)
     except (ValueError, RuntimeError) as error:
-        return {**entry, "error": str(error).replace(str(path), path.name)}
+        return {**entry, "error": str(error).replace(str(fmu), fmu.name)}
     columns = {key: column.tolist() for key, column in done.columns.items()}
     if bad := [key for key, column in done.columns.items() if not np.all(np.isfinite(column))]:
         return {**entry, "error": f"{bad[0]} is not finite"}
     return {**entry, "columns": columns}
 
 
-FILES: dict[str, Path] = {}
-"""{key: path} of the FMUs that this worker has."""
+def local_run(job: tuple[Path, LoadRamp, int, Mapping[str, object]]) -> dict[str, object]:
+    """`one_run` in a process of this machine; what it unpacks lies beside the FMU."""
+    tempfile.tempdir = str(job[0].parent)
+    return one_run(*job)
 
 
-def slim(data: bytes) -> bytes:
-    """The FMU without sources, documentation and other machines' binaries."""
-    small = io.BytesIO()
-    with zipfile.ZipFile(io.BytesIO(data)) as full, zipfile.ZipFile(small, "w") as less:
+def slim(fmu: Path, small: Path) -> None:
+    """Write an FMU without sources, documentation and other machines' binaries."""
+    with archives.opened(fmu) as full, zipfile.ZipFile(small, "w") as less:
         for item in full.infolist():
             if runs(item.filename) and not item.is_dir():
-                less.writestr(item, full.read(item))
-    return small.getvalue()
+                less.writestr(item, archives.content(full, item.filename))
