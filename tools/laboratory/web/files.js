@@ -23,30 +23,62 @@ function written(set, about, values) {
   return lines.join("\n") + "\n";
 }
 
-/** { joint, law, values } of a parameter file as the package writes it; an Error if it is none. */
+const FIELD = /\s*(\w+)\s*=\s*("(?:[^"\\]|\\.)*"|\[[^\]]*\]|[^,}\s"[\]]+)\s*(,\s*\}?|\})/y;
+
+/** A value of TOML: number, boolean, text without escapes, or a list of numbers. */
+function tomlValue(raw, name) {
+  if (raw === "true" || raw === "false") return raw === "true";
+  if (raw.startsWith('"')) return raw.slice(1, -1);
+  if (raw.startsWith("[")) return raw.slice(1, -1).split(",").map((x) => x.trim()).filter(Boolean).map((x) => tomlValue(x, name));
+  const number = Number(raw.replaceAll("_", ""));
+  if (!Number.isFinite(number)) throw new Error(`${name} = ${raw} is no number`);
+  return number;
+}
+
+/** { joint, law, name, values, units } of a parameter file as the package writes it; an Error at any other line. */
 function readToml(text) {
-  const found = { values: new Map() };
-  let section = "";
-  for (const line of text.split(/\r?\n/)) {
-    const head = line.match(/^\s*\[([\w.]+)\]\s*(#.*)?$/);
+  const found = { values: new Map(), units: new Map() };
+  let section = "", rest = text.replaceAll("\r\n", "\n");
+  while ((rest = rest.replace(/^(\s+|#[^\n]*)+/, ""))) {
+    const [line] = rest.match(/^[^\n]*/), head = line.match(/^\[([\w.]+)\]\s*(#.*)?$/);
+    const top = line.match(/^(schema|joint|law|name)\s*=\s*("[^"]*"|\d+)\s*(#.*)?$/), entry = rest.match(/^(\w+)\s*=\s*\{/);
     if (head) section = head[1];
-    const top = line.match(/^\s*(joint|law|name)\s*=\s*"([^"]*)"/);
-    if (top && !section) found[top[1]] = top[2];
-    const entry = line.trim().match(ENTRY);
-    if (!entry) continue;
-    const raw = entry[3].trim(), number = Number(raw.replaceAll("_", ""));
-    const value = raw === "true" ? true : raw === "false" ? false : raw.startsWith('"') ? raw.slice(1, -1) : number;
-    if (Number.isNaN(value)) throw new Error(`${entry[1]} = ${raw} is no number`);
-    found.values.set(section && section !== "inputs" ? `${section}.${entry[1]}` : entry[1], value);
+    else if (top && !section) found[top[1]] = tomlValue(top[2], top[1]);
+    else if (entry) {
+      const name = section && section !== "inputs" ? `${section}.${entry[1]}` : entry[1], fields = {};
+      FIELD.lastIndex = entry[0].length;
+      for (let closed = false; !closed; ) {
+        const field = FIELD.exec(rest);
+        if (!field) throw new Error(`the entry ${name} cannot be read; expected ${entry[1]} = { value = ..., unit = "..." }`);
+        fields[field[1]] = field[2];
+        closed = field[3].endsWith("}");
+        if (closed) rest = rest.slice(FIELD.lastIndex);
+      }
+      if (!("value" in fields) || found.values.has(name)) throw new Error(`${name} has ${"value" in fields ? "two entries" : "no value"}; expected one`);
+      found.values.set(name, tomlValue(fields.value, name));
+      if (fields.unit) found.units.set(name, tomlValue(fields.unit, name));
+      continue;
+    } else throw new Error(`the line ${line.slice(0, 60)} is not known here; expected a parameter file as jointfmu writes it`);
+    rest = rest.slice(line.length);
   }
   if (!found.joint) throw new Error('no line joint = "..."; expected a parameter file');
   return found;
 }
 
-/** What of a file the page cannot show: values that are baked into the module and are others there. */
-function bakedOtherwise(file, set) {
-  const own = readToml(set.toml).values;
-  return [...file.values].filter(([name, value]) => !(name in set.values) && !(name in set.inputs) && !name.startsWith("roughness.") && own.get(name) !== value).map(([name]) => name);
+/** Why the module `about` cannot compute the joint of a file, in one line; nothing if it can. */
+function findDifference(file, about) {
+  const set = about.sets[0], own = readToml(set.toml).values, variables = new Map(about.variables.map((v) => [v.name, v]));
+  const brief = (value) => (Array.isArray(value) ? `a list of ${value.length} numbers` : String(value).slice(0, 60));
+  for (const [name, value] of file.values) {
+    const v = variables.get(name), settable = name in set.values || name in set.inputs;
+    if (settable && typeof value !== (v.boolean ? "boolean" : "number")) return `${name} = ${brief(value)} is no ${v.boolean ? "true or false" : "number"}`;
+    if (settable && !v.boolean && file.units.get(name) !== v.unit) return `${name} has the unit ${file.units.get(name) ?? "none"}, expected ${v.unit}`;
+    if (settable && !v.bound) continue;
+    const here = settable ? set.values[name] : own.get(name);
+    if (JSON.stringify(here) !== JSON.stringify(value)) return `${name} = ${brief(value)} cannot be set in this page, which has ${here === undefined ? "none" : Array.isArray(here) ? "another list" : brief(here)}`;
+  }
+  const missing = [...own.keys()].find((name) => !(name in set.inputs) && !file.values.has(name));
+  return missing && `${missing} is missing, and the page does not know its default`;
 }
 
 /** { name, columns: [{ name, base, values }] } of a CSV file with a line of `name [unit]`; an Error if it is none. */

@@ -111,9 +111,9 @@ class Laboratory {
   }
 
   /** Values of a parameter set; a load that the path does not move begins at a third of its ramp. */
-  start(set) {
-    const { input, end } = this.about.ramp, values = new Map([...Object.entries(set.values), ...Object.entries(set.inputs)]);
-    if (!values.get(input) && !this.about.path.includes(input)) values.set(input, end / 3);
+  start(set, about = this.about) {
+    const { input, end } = about.ramp, values = new Map([...Object.entries(set.values), ...Object.entries(set.inputs)]);
+    if (!values.get(input) && !about.path.includes(input)) values.set(input, end / 3);
     return values;
   }
 
@@ -267,13 +267,21 @@ class Laboratory {
   async readParameters(text, name) {
     const found = readToml(text);
     const models = this.known.modules.filter((m) => m.joint === found.joint);
-    const fitting = models.filter((m) => !found.law || m.law === found.law);
-    if (!fitting.length) throw new Error(`joint = ${found.joint}, law = ${found.law ?? "the first"}; the page has none of that`);
-    const about = fitting.find((m) => m.name === this.about.name) || fitting[0];
-    const others = bakedOtherwise(found, about.sets[0]);
+    const law = found.law ?? models[0]?.law, here = (m) => m.name === this.about.name;
+    const fitting = models.filter((m) => m.law === law).sort((a, b) => here(b) - here(a));
+    if (!fitting.length) throw new Error(`joint = ${found.joint}, law = ${law ?? "none"}; the page has none of that`);
+    const refuse = (why) => { throw new Error(`not shown: ${why}; run jointfmu report ${name}`); };
+    const about = fitting.find((m) => !findDifference(found, m)) ?? refuse(findDifference(found, fitting[0]));
+    const values = this.start(about.sets[0], about);
+    for (const [key, value] of found.values) if (values.has(key)) values.set(key, value);
+    const joint = await (about.running ??= Joint.of(about));
+    joint.messages.clear();
+    const good = joint.begin(values), why = [...joint.messages][0];
+    if (joint === this.joint) joint.begin(this.values);
+    if (!good) refuse(why);
     await this.choose(about.name, this.sets(about.name).findIndex((s) => s.about === about));
-    for (const [key, value] of found.values) if (this.values.has(key)) this.values.set(key, value);
-    this.say(`${name}: ${found.name ?? "parameters"} shown.` + (others.length ? ` Baked into this page and other there: ${others.join(", ")}.` : ""));
+    this.values = values;
+    this.say(`${name}: ${found.name ?? "parameters"} shown.`);
     this.shown();
   }
 }
