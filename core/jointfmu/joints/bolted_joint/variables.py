@@ -138,7 +138,8 @@ MODELS = (
             Variable("slip", "1", "friction force used: shear force over mu times normal force"),
             Variable("E_loss", "J", "work turned into heat by friction since initialization", 1e-3),
             Variable("eta_loop", "1", "loss factor of the loop whose amplitude is the present shift"),
-            Variable("C_loop", "N.s/m", "its viscous equivalent, as C_xx is that of eta_t", 1e4),
+            # nominal as of eta_loop = 1, whose round-off it has: sqrt(mass K)
+            Variable("C_loop", "N.s/m", "its viscous equivalent, as C_xx is that of eta_t", 1e6),
             *(Variable(name, "s", f"{doc}: along x, y or z, with `mass` on it", 1e-4) for name, doc in STEPS),
         ),
         evaluate=lambda s, v: _evolve(s, v, s.at_rest())[0],
