@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from jointfmu.files.reading import read_bytes
 from jointfmu.quantity import Array
 
 from .mesh import NODES, FiniteElementMesh
