@@ -5,7 +5,7 @@ import os
 import signal
 import sys
 import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import ExitStack, contextmanager, suppress
@@ -136,7 +136,7 @@ def processes(count: int | None = None) -> Iterator[Executor]:
 
 def completed(
     work: Callable[[J], T], jobs: Iterable[J], count: int | None = None
-) -> Iterator[tuple[J, T | None]]:
+) -> Generator[tuple[J, T | None]]:
     """(job, result of the function) in the order in which jobs end, from `count` processes.
 
     A process does one job at a time, so that the job of a process that died is known: it is done again, and
