@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from jointfmu.files.reading import check_regular
 from jointfmu.quantity.refusal import Refusal
 
 from .mesh import FiniteElementMesh, no_reader
@@ -207,6 +208,7 @@ def _archive(path: Path) -> Any:
         import mapdl_archive
     except ImportError as error:
         raise no_reader(path, error) from None
+    check_regular(path, "an ANSYS archive (CDWRITE)")
     if not path.is_file():
         raise ValueError(f"{path}: cannot be read (no such file); expected an ANSYS archive (CDWRITE)")
     try:

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from jointfmu.files.reading import check_regular
 from jointfmu.quantity import Array
 from jointfmu.quantity.refusal import Refusal
 
@@ -58,6 +59,7 @@ def _read(path: Path) -> Any:
         import meshio
     except ImportError as error:
         raise no_reader(path, error) from None
+    check_regular(path, "a mesh with point data")
     if not path.is_file():
         raise ValueError(f"{path}: cannot be read (no such file); expected a mesh with point data")
     try:

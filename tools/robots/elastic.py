@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from jointfmu.files.reading import check_regular
 from jointfmu.quantity import Array
 
 from . import bristles
@@ -65,6 +66,7 @@ def read(path: str | Path) -> Any:
     import mujoco
 
     check_version()
+    check_regular(path, "a robot (MJCF or URDF)")
     try:
         spec = mujoco.MjSpec.from_file(str(path))
         spec.compiler.fusestatic = False  # of a URDF, whose tool frames are links that do not move

@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from jointfmu.files import archives
+from jointfmu.files.reading import check_regular
 from jointfmu.quantity.refusal import Refusal
 
 from ..columns import cells, number, separator
@@ -48,6 +50,7 @@ def read(
     constant, all missing; a length that hints at another unit.
     """
     path = Path(path)
+    check_regular(path, "height data")
     if not path.is_file():
         raise ValueError(f"{path}: is no file; expected height data")
     given = {"x": unit_x or unit, "z": unit_z or unit}
@@ -112,6 +115,7 @@ def _bare(path: Path) -> int:
 def _instrument(path: Path, unit: str | None) -> tuple[Heights, str]:
     """Any format of SurfaceTopography, the default channel, and its unit."""
     sift.check(path)
+    archives.check_if_zip(path)
     try:
         import SurfaceTopography
         import SurfaceTopography.Exceptions

@@ -8,7 +8,7 @@ import struct
 import zipfile
 import zlib
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from .reading import check_regular
@@ -90,6 +90,12 @@ def check(path: str | Path, archive: zipfile.ZipFile) -> None:
             f"{path}: has {size} bytes unpacked, {size / packed:.0f} times its own size; allowed are "
             f"{MAX_RATIO} times, or {SMALL_SIZE} bytes"
         )
+
+
+def check_if_zip(path: str | Path) -> None:
+    """`check` a file that may be an archive (X3P), which another package will unpack."""
+    with suppress(*_BROKEN), zipfile.ZipFile(path) as archive:
+        check(path, archive)
 
 
 def content(archive: zipfile.ZipFile, name: str) -> bytes:
