@@ -1,10 +1,21 @@
-"""`jointfmu cache`: what is kept, and that nothing else is removed."""
+"""`jointfmu cache`: what is kept, that nothing else is removed, and whose files are trusted."""
 
+import io
 import json
+import lzma
+import os
+import sys
+import tarfile
 from pathlib import Path
 
 import pytest
+from conftest import refused_line
+from jointfmu_fmu_src.native.compiled import cache, compiler, kept
+from jointfmu_fmu_src.native.data import split
 from jointfmu_tools.cli import main
+
+from jointfmu.joints import MODELS
+from jointfmu.parameters import default
 
 
 def test_only_what_is_kept_is_removed(
@@ -20,3 +31,104 @@ def test_only_what_is_kept_is_removed(
         assert main(["cache", "--clear"]) == 0
         assert capsys.readouterr().out.startswith(f"{tmp_path}: 0 files, 0.0 MB")
     assert [path.name for path in tmp_path.iterdir()] == ["mine.txt"]
+
+
+MODEL = MODELS["GearContact"]
+POSIX = pytest.mark.skipif(sys.platform == "win32", reason="modes and owners of POSIX")
+
+
+def part() -> kept.Part:
+    return kept.Part(
+        {"law.c": "int x;\n"}, {v: dict.fromkeys(compiler.TARGETS, b"library") for v in kept.VERSIONS}
+    )
+
+
+@pytest.fixture
+def cached(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The part of a joint in a cache; to compile it anew fails the test."""
+    file = default(MODEL.joint)
+    model = MODEL.of(file.joint, file.values)
+    monkeypatch.setenv(cache.CACHE, str(tmp_path / "cache"))
+    monkeypatch.setattr(kept, "SHIPPED", tmp_path / "none")
+    place = kept._places(kept.shipped_name(model, split(model, file)))[-1]
+    kept._keep(place, kept.written(part()))
+    monkeypatch.setattr(kept, "compiled", lambda *_: pytest.fail("is compiled"))
+    return place
+
+
+def found() -> kept.Part:
+    file = default(MODEL.joint)
+    model = MODEL.of(file.joint, file.values)
+    return kept.part_of(model, file, split(model, file))
+
+
+def levels(cached: Path) -> list[Path]:
+    """The part, and the folders up to that of the cache."""
+    return [cached, *cached.parents[: len(cached.relative_to(cache.cache_folder()).parts)]]
+
+
+@POSIX
+def test_a_new_cache_belongs_to_its_user_alone(cached: Path) -> None:
+    assert found() == part()
+    for place in levels(cached):
+        assert place.stat().st_mode & 0o077 == 0
+
+
+@POSIX
+@pytest.mark.parametrize("level", range(4))
+def test_a_cache_that_every_user_may_write_to_is_refused(
+    level: int, cached: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    place = levels(cached)[level]
+    place.chmod(place.stat().st_mode | 0o002)
+    with pytest.raises(ValueError, match=f"{place}: every user may write to it; expected .*JOINTFMU_CACHE"):
+        found()
+    out = str(cached.parents[4] / "out")
+    said = refused_line(capsys, "build", MODEL.name, "--flavour", "fmi3", "--out", out)
+    assert f"{place}: every user may write to it" in said
+
+
+@POSIX
+@pytest.mark.parametrize("level", range(4))
+def test_a_cache_of_another_user_is_refused(
+    level: int, cached: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    place = levels(cached)[level]
+    if os.geteuid() == 0:
+        os.chown(place, 12345, -1)
+    else:
+        place = levels(cached)[-1]
+        monkeypatch.setattr(os, "geteuid", lambda: 12345)
+    with pytest.raises(ValueError, match=f"{place}: belongs to another user; expected .*JOINTFMU_CACHE"):
+        found()
+
+
+@POSIX
+@pytest.mark.parametrize("variable", [cache.CACHE, cache.COMPILER])
+def test_what_the_compiler_keeps_is_checked_too(
+    variable: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delenv(cache.COMPILER, raising=False)
+    monkeypatch.setenv(variable, str(tmp_path))
+    tmp_path.chmod(0o777)
+    with pytest.raises(ValueError, match="every user may write to it"):
+        compiler.libraries("x", {"x.c": "int x;"}, ["x.c"], ["x86_64-linux"])
+
+
+def test_a_missing_cache_is_empty(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(cache.CACHE, str(tmp_path / "none"))
+    monkeypatch.setattr(kept, "SHIPPED", tmp_path / "none")
+    monkeypatch.setattr(kept, "compiled", lambda *_: part())
+    assert cache.content() == (0, 0)
+    assert found() == part()
+
+
+@pytest.mark.parametrize(
+    "name", ["sources/../../x.c", "sources/a/b.c", "sources//x", "2/../../x", "/x", "other/x"]
+)
+def test_a_member_that_leaves_the_fmu_is_refused(name: str) -> None:
+    buffer = io.BytesIO(lzma.decompress(kept.written(part())))
+    with tarfile.open(fileobj=buffer, mode="a") as archive:
+        archive.addfile(tarfile.TarInfo(name))
+    with pytest.raises(ValueError, match="no part"):
+        kept.read(lzma.compress(buffer.getvalue()))

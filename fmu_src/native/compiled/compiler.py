@@ -11,7 +11,7 @@ from importlib import import_module
 from os import cpu_count
 from pathlib import Path
 
-from .cache import COMPILER, compiler_cache
+from .cache import COMPILER, check_access, compiler_cache, make_folder
 
 TARGETS = {
     "x86_64-windows": "x86_64-windows-gnu",
@@ -52,8 +52,8 @@ def libraries(
     name, `linked` are options for another library that they use. What units of the same sources share is
     compiled once, in this and in later builds. Equal sources give equal bytes.
 
-    Raises ImportError if ziglang is missing, ValueError if its cache cannot be written, RuntimeError
-    with the compiler's first error.
+    Raises ImportError if ziglang is missing, ValueError if its cache cannot be written or others may write to
+    it, RuntimeError with the compiler's first error.
     """
     from concurrent.futures import ThreadPoolExecutor
 
@@ -142,7 +142,8 @@ def _folder(files: Mapping[str, str]) -> Path:
     digest = sha256("\0".join(f"{k}\0{v}" for k, v in sorted(files.items())).encode()).hexdigest()[:32]
     folder = compiler_cache() / "jointfmu" / digest
     try:
-        folder.mkdir(parents=True, exist_ok=True)
+        check_access(folder)
+        make_folder(folder)
         for name, text in files.items():
             if not (folder / name).exists():
                 with tempfile.NamedTemporaryFile("wb", dir=folder, delete=False) as file:

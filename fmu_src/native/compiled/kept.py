@@ -6,6 +6,7 @@ Wheels carry parts in `native/parts`; what is compiled here is kept in the user'
 
 import io
 import lzma
+import re
 import signal
 import tarfile
 import tempfile
@@ -27,7 +28,7 @@ from jointfmu.progress import step
 from ...folders import own_folder
 from ...joint_parts.data import Split
 from ..data import PLACEHOLDER, placeholder
-from .cache import parts
+from .cache import check_access, make_folder, parts
 from .compiler import exported, libraries
 
 SHIPPED = Path(__file__).parent.with_name("parts")
@@ -38,6 +39,8 @@ MOST_KEPT = 200
 _SUFFIX, _KEPT = ".tar.xz", ".kept.xz"
 _COMPILERS = ("casadi", "ziglang")
 _SOURCES = (".py", ".c", ".h")
+_MEMBER = re.compile(r"sources/\w[\w.-]*|\d/[\w-]+")
+"""Names of members of a part: C files, and libraries by version of FMI and platform."""
 
 
 class Part(NamedTuple):
@@ -54,13 +57,13 @@ class Part(NamedTuple):
 def part_of(model: Model, parameters: ParameterFile, given: Split) -> Part:
     """The part of an FMU.
 
-    Raises ImportError if it has to be compiled and a package is missing, ValueError and RuntimeError as
-    `compiler.libraries`.
+    Raises ImportError if it has to be compiled and a package is missing, ValueError if others may write to
+    the cache, ValueError and RuntimeError as `compiler.libraries`.
     """
     places = _places(shipped_name(model, given))
-    for file in places:
-        with suppress(OSError, lzma.LZMAError, tarfile.TarError, ValueError):
-            return read(file.read_bytes())
+    for content in filter(None, map(_content, places)):
+        with suppress(lzma.LZMAError, tarfile.TarError, ValueError, EOFError):
+            return read(content)
     made = compiled(model, parameters, given)
     with suppress(OSError):  # nothing is lost but time
         _keep(places[-1], written(made))
@@ -71,15 +74,26 @@ def keeping(what: str, model: Model, make: Callable[[], bytes]) -> bytes:
     """What is made of a model, from the cache if it was made before of equal sources.
 
     what : what else it depends on
+
+    Raises ValueError if others may write to the cache, and what `make` raises.
     """
     name = sha256(f"{what} {_sources_of(model)}".encode()).hexdigest()[:32]
     file = _places(f"{model.name}-{name}{_KEPT}")[-1]
-    with suppress(OSError, lzma.LZMAError):
-        return lzma.decompress(file.read_bytes())
+    if content := _content(file):
+        with suppress(lzma.LZMAError):
+            return lzma.decompress(content)
     made = make()
     with suppress(OSError):
         _keep(file, lzma.compress(made))
     return made
+
+
+def _content(file: Path) -> bytes:
+    """Content of a kept file; empty if there is none. Raises ValueError as `check_access`."""
+    with suppress(OSError):
+        check_access(file)
+        return file.read_bytes()
+    return b""
 
 
 @contextmanager
@@ -169,13 +183,15 @@ def written(made: Part) -> bytes:
 def read(content: bytes) -> Part:
     """A part of a file.
 
-    Raises ValueError, LZMAError or TarError if it is none.
+    Raises ValueError, LZMAError or TarError if it is none, or has a member that would leave the FMU.
     """
     sources: dict[str, str] = {}
     built: dict[str, dict[str, bytes]] = {}
     with tarfile.open(fileobj=io.BytesIO(lzma.decompress(content))) as archive:
         for info in archive:
             folder, _, name = info.name.partition("/")
+            if not _MEMBER.fullmatch(info.name):
+                raise ValueError(f"no part: it has a member {info.name!r}")
             stream = archive.extractfile(info)
             member = stream.read() if stream else b""
             if folder == "sources":
@@ -192,7 +208,7 @@ def _keep(file: Path, content: bytes) -> None:
 
     A folder that others write in may list a file more than once.
     """
-    file.parent.mkdir(parents=True, exist_ok=True)
+    make_folder(file.parent)
     with tempfile.NamedTemporaryFile("wb", dir=file.parent, delete=False) as new:
         new.write(content)
     Path(new.name).replace(file)
