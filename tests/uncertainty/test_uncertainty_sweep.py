@@ -289,17 +289,18 @@ def test_bands_of_the_runs(fmu, cluster, tmp_path):
 
 
 def test_one_sweep_per_folder(tmp_path):
-    with journal.Journal(tmp_path), pytest.raises(ValueError, match="another sweep is writing here"):
-        journal.Journal(tmp_path).__enter__()
+    with journal.Journal(tmp_path, 8), pytest.raises(ValueError, match="another sweep is writing here"):
+        journal.Journal(tmp_path, 8).__enter__()
 
 
 def test_a_run_is_written_once(tmp_path):
-    with journal.Journal(tmp_path) as held:
-        held.add({"run": 3, "error": "x"})
-        held.add({"run": 3, "error": "y"})
-    with journal.Journal(tmp_path) as held:
+    first, second = ({"run": 3, "parameters": {}, "error": text} for text in ("x", "y"))
+    with journal.Journal(tmp_path, 8) as held:
+        held.add(first)
+        held.add(second)
+    with journal.Journal(tmp_path, 8) as held:
         assert held.finished == {3}
-        assert held.first_failure == {"run": 3, "error": "x"}
+        assert held.first_failure == first
 
 
 def test_an_interval_is_that_of_the_file_that_the_fmu_carries(fmu, tmp_path):

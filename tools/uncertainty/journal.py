@@ -1,8 +1,9 @@
 """The folder of a sweep: `study.json` says what is swept, `runs.jsonl` has one line per finished run.
 
 Lines are only ever appended, each in one write and flushed to the disk, so a sweep may be killed at any
-time: at most an unfinished last line is lost, which the next sweep cuts off. Every line holds `run` (its
-index in the study), `parameters`, and either `columns` (the ramp) or `error` (the failure's message).
+time: at most an unfinished last line is lost, which the next sweep cuts off. Every line, a row, holds `run`
+(its index in the study), `parameters`, and either `columns` (the ramp) or `error` (the failure's message).
+Rows are checked when they are read: the folder may have been anybody's.
 """
 
 import hashlib
@@ -11,10 +12,13 @@ import os
 import sys
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from math import isfinite
 from pathlib import Path
 from types import TracebackType
 from typing import Any
 
+from jointfmu.files.reading import check_regular, read_bytes
+from jointfmu.files.text import check_text, printable
 from jointfmu.files.writing import made_folder, write_text
 
 STUDY, RUNS, BANDS = "study.json", "runs.jsonl", "bands.csv"
@@ -38,17 +42,19 @@ def claim(folder: Path, study: Mapping[str, object]) -> None:
             raise ValueError(f"{folder}: holds something else than a sweep; expected a new or empty folder")
         write_text(path, json.dumps(study, indent=1) + "\n")
         return
+    data = read_bytes(path, "a study of a sweep")
     try:
-        held = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
+        held = json.loads(data.decode())
+    except (ValueError, RecursionError) as error:
         raise ValueError(f"{path}: is no study of a sweep ({error}); expected another folder") from None
+    if not isinstance(held, dict):
+        raise ValueError(f"{path}: is no study of a sweep (no JSON object); expected another folder")
     if held == json.loads(json.dumps(study)):
         return
-    held = held if isinstance(held, dict) else {}
     changed = sorted(key for key in {*held, *study} if held.get(key) != study.get(key))
     before, now = (json.dumps(record.get(changed[0])) for record in (held, study))
     raise ValueError(
-        f"{folder}: holds another study ({changed[0]} = {before[:60]}, now {now[:60]}); "
+        f"{folder}: holds another study ({printable(changed[0])[:60]} = {before[:60]}, now {now[:60]}); "
         "expected the same study or another folder"
     )
 
@@ -70,15 +76,23 @@ def claimed(folder: Path, study: Mapping[str, object]) -> Iterator[None]:
 
 
 class Journal:
-    """The file of runs, open for appending; only one process may hold it."""
+    """The file of runs, open for appending; only one process may hold it.
 
-    def __init__(self, folder: Path) -> None:
+    count : runs of the study
+
+    To enter it raises ValueError, one line, if another process holds it, or for a row that is no run of the
+    study.
+    """
+
+    def __init__(self, folder: Path, count: int) -> None:
+        self.count = count
         self.path = folder / RUNS
         self.finished: set[int] = set()
         self.failed = 0
         self.first_failure: dict[str, object] | None = None
 
     def __enter__(self) -> "Journal":
+        check_regular(self.path, "the journal of a sweep")
         self.file = self.path.open("ab")
         try:
             _lock(self.file.fileno())
@@ -88,9 +102,15 @@ class Journal:
                 f"{self.path.parent}: another sweep is writing here; wait or choose another folder"
             ) from None
         end = 0
-        for entry, end in _lines(self.path):  # noqa: B007
-            self._note(entry)
-        self.file.truncate(end)
+        try:
+            for row, (entry, end) in enumerate(_lines(self.path), 1):  # noqa: B007
+                if entry["run"] >= self.count:
+                    raise _no_run(self.path, row, f"the study has {self.count} runs, no run {entry['run']}")
+                self._note(entry)
+            self.file.truncate(end)
+        except BaseException:
+            self.file.close()
+            raise
         return self
 
     def __exit__(
@@ -115,23 +135,84 @@ class Journal:
 
 
 def entries(folder: Path) -> Iterator[dict[str, Any]]:
-    """All finished runs of a folder."""
+    """All finished runs of a folder. Raises ValueError, one line, for a row that is no run."""
     return (entry for entry, _ in _lines(folder / RUNS))
 
 
 def _lines(path: Path) -> Iterator[tuple[dict[str, Any], int]]:
     """Complete lines and where each ends in the file; stops before an unfinished one."""
-    end = 0
+    end, rows, shape = 0, dict[int, int](), dict[str, int]()
+    check_regular(path, "the journal of a sweep")
     with path.open("rb") as file:
-        for line in file:
+        for row, line in enumerate(file, 1):
             if not line.endswith(b"\n"):
                 return
             try:
-                entry = json.loads(line)
-            except ValueError:
-                raise ValueError(f"{path}: byte {end} begins no run; the file was changed") from None
+                entry = json.loads(line.decode())
+                _check(entry)
+                if (before := rows.setdefault(entry["run"], row)) != row:
+                    raise ValueError(f"run {entry['run']} stands in row {before} already")
+                if found := {name: len(values) for name, values in entry.get("columns", {}).items()}:
+                    shape = shape or found
+                    if found != shape:
+                        raise ValueError("its columns are not those of the other runs")
+            except (ValueError, RecursionError) as error:
+                raise _no_run(path, row, str(error)) from None
             end += len(line)
             yield entry, end
+
+
+def _no_run(path: Path, row: int, reason: str) -> ValueError:
+    return ValueError(
+        f"{path}: row {row}: {printable(reason)[:200]}; expected a run as the sweep wrote it: delete "
+        "the row, and the same command repeats its run"
+    )
+
+
+def _check(entry: object) -> None:
+    """Raise ValueError if a value of JSON is no run."""
+    if not isinstance(entry, dict):
+        raise ValueError("is no JSON object")
+    run, parameters = entry.get("run"), entry.get("parameters")
+    if type(run) is not int or run < 0:
+        raise ValueError(f"run = {_shown(run)} is no index")
+    if not isinstance(parameters, dict):
+        raise ValueError(f"parameters = {_shown(parameters)} is no JSON object")
+    for name, value in parameters.items():
+        check_text("a name in parameters", name)
+        if isinstance(value, str):
+            check_text(f"parameter {name}", value)
+        elif type(value) is not bool and not _is_number(value):
+            raise ValueError(f"parameter {name} = {_shown(value)} is no finite number, word, true or false")
+    if ("columns" in entry) == ("error" in entry):
+        raise ValueError("has not one of columns and error")
+    if "error" in entry:
+        if not isinstance(entry["error"], str):
+            raise ValueError(f"error = {_shown(entry['error'])} is no text")
+        check_text("error", entry["error"])
+        return
+    columns = entry["columns"]
+    if not isinstance(columns, dict) or not columns:
+        raise ValueError(f"columns = {_shown(columns)} is no JSON object with lists of numbers")
+    lengths = set()
+    for name, values in columns.items():
+        check_text("a name in columns", name)
+        if not isinstance(values, list):
+            raise ValueError(f"column {name} = {_shown(values)} is no list")
+        if wrong := [value for value in values if not _is_number(value)]:
+            raise ValueError(f"column {name} has {_shown(wrong[0])}, which is no finite number")
+        lengths.add(len(values))
+    if len(lengths) > 1 or 0 in lengths:
+        raise ValueError(f"its columns have {' and '.join(map(str, sorted(lengths)))} values")
+
+
+def _is_number(value: object) -> bool:
+    return type(value) is int or (type(value) is float and isfinite(value))
+
+
+def _shown(value: object) -> str:
+    """A value of JSON in few characters."""
+    return json.dumps(value)[:60]
 
 
 def _lock(handle: int) -> None:

@@ -113,7 +113,7 @@ def sweep(
     Raises ValueError if dask is missing or the scheduler does not answer, RuntimeError if its workers cannot
     run at all (the package missing there, none left).
     """
-    with Journal(out) as held:
+    with Journal(out, len(runs)) as held:
         before = len(held.finished)
         todo = [i for i in range(len(runs)) if i not in held.finished]
         if todo:

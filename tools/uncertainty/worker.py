@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from jointfmu.files import archives
+from jointfmu.files.text import MAX_TEXT_LENGTH, printable
 
 from ..host import runs
 from ..ramps import ramp
@@ -32,7 +33,7 @@ def one_run(fmu: Path, drive: LoadRamp, index: int, settings: Mapping[str, objec
     try:
         done = ramp.run(fmu, drive.input, drive.to, drive.step, settings)
     except (ValueError, RuntimeError) as error:
-        return {**entry, "error": str(error).replace(str(fmu), fmu.name)}
+        return {**entry, "error": printable(str(error).replace(str(fmu), fmu.name))[:MAX_TEXT_LENGTH]}
     columns = {key: column.tolist() for key, column in done.columns.items()}
     if bad := [key for key, column in done.columns.items() if not np.all(np.isfinite(column))]:
         return {**entry, "error": f"{bad[0]} is not finite"}

@@ -26,6 +26,11 @@ def check_text(what: str, text: str, max_length: int = MAX_TEXT_LENGTH) -> None:
         )
 
 
+def printable(text: str) -> str:
+    """One line of a text of others: what `check_text` refuses is a question mark."""
+    return _FORBIDDEN.sub("?", text)
+
+
 def check_document(document: Mapping[str, object]) -> None:
     """Raise ValueError if a key or a text of a TOML document is none that `check_text` allows."""
     for name, key, value in _items(document, ""):
