@@ -258,7 +258,9 @@ def test_what_cannot_be_proved_is_refused_in_one_line(
 ) -> None:
     text = tmp_path / "text.fmu"
     text.write_text("no FMU")
-    assert "absent.fmu: cannot be read (No such" in refused_line(capsys, "prove", tmp_path / "absent.fmu")
+    assert "absent.fmu: there is no such file; expected an FMU" in refused_line(
+        capsys, "prove", tmp_path / "absent.fmu"
+    )
     assert "is no FMU" in refused_line(capsys, "prove", text)
     assert "invalid choice: 'simulink'" in refused_line(capsys, "prove", text, "--in", "simulink")
     monkeypatch.setattr("jointfmu_tools.proof.run.find_spec", lambda name: None)
