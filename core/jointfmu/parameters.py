@@ -91,7 +91,7 @@ class ParameterFile:
 
         A height of the law stands in place of the roughnesses that made it.
         """
-        gone = {*self.roughness} if any(map(_is_height, changes)) else set[str]()
+        gone = {*self.roughness} if any(map(is_height, changes)) else set[str]()
         texts = {self.surfaces + name for name in gone}
         return replace(
             self,
@@ -115,7 +115,7 @@ class ParameterFile:
         known = _without(gone, self.roughness) | heights
         origins = _without(texts, self.origins) | dict.fromkeys(names, origin)
         sources = _without(texts, self.sources) | dict.fromkeys(names, source)
-        of_law = {name: roughness.height(known) for name in self.flat if _is_height(name)}
+        of_law = {name: roughness.height(known) for name in self.flat if is_height(name)}
         return replace(
             self,
             values=changed(self.values, of_law),
@@ -153,7 +153,7 @@ def load(path: str | Path, joint: str | None = None) -> ParameterFile:
             f"{path}: [roughness] does not act on law = {law!r}; allowed are [roughness] beside a law with a "
             "height, and [comparison] for what the level is judged by"
         )
-    declared = dict(flat_fields(cls)) | _input_fields(stated) | _roughness_fields(prefix)
+    declared = declared_entries(stated, cls)
     keys = ("value", "unit", "kind", "source", "range")
     values, origins, sources = entries(path, declared, body, keys)
     given, surfaces = _section(values, _INPUTS), _section(values, prefix)
@@ -171,6 +171,11 @@ def load(path: str | Path, joint: str | None = None) -> ParameterFile:
     return ParameterFile(
         stated, name, parameters, origins, sources, inputs, heights, _ranges(path, declared, body)
     )
+
+
+def declared_entries(joint: str, cls: type) -> dict[str, Field[Any]]:
+    """{structured name: field} of every entry that a parameter file with the parameter set `cls` may have."""
+    return dict(flat_fields(cls)) | _input_fields(joint) | _roughness_fields(_prefix(cls))
 
 
 def _without(gone: Collection[str], named: Mapping[str, T]) -> dict[str, T]:
@@ -191,7 +196,7 @@ def _height_of_law(
     Raises ValueError if it states another h beside them.
     """
     stated = roughness.height(heights)
-    name = next((name for name in declared if _is_height(name)), None)
+    name = next((name for name in declared if is_height(name)), None)
     if stated is None or name is None:
         return {}
     if name not in values:
@@ -296,10 +301,10 @@ def _input_fields(joint: str) -> dict[str, Field[Any]]:
 
 def _prefix(cls: type) -> str:
     """Of the names of roughnesses beside a parameter set of a class."""
-    return _ACTS if any(_is_height(name) for name, _ in flat_fields(cls)) else _JUDGES
+    return _ACTS if any(is_height(name) for name, _ in flat_fields(cls)) else _JUDGES
 
 
-def _is_height(name: str) -> bool:
+def is_height(name: str) -> bool:
     """Whether a parameter is the rms height of both surfaces."""
     return name.split(".")[-1] == "h" and not name.startswith((_ACTS, _JUDGES))
 

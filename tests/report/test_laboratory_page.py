@@ -267,45 +267,6 @@ def test_a_parameter_file_is_shown(shown: Browser) -> None:
     assert "expected a parameter file" in drop(shown, "mine.toml", "x = 1")
 
 
-PLATE = "--plate 200x100 --bolts 4xM12 --at 160x60 --grip 40 --material steel --Ra 0.8"
-DRAWINGS = (
-    ("bolted-joint", PLATE, True),
-    ("bolted-joint", f"{PLATE} --sides rigid", True),
-    ("harmonic-drive", "--catalogue CSG-17-100", False),
-    ("gear-mesh", "--module 4 --teeth 29 45 --width 20 --torque 150 --material steel --Ra 0.4", False),
-)
-
-
-@needed
-def test_a_file_is_shown_with_its_own_numbers_or_refused(shown: Browser, tmp_path: Path) -> None:
-    models = next(iter(KINDS.values())).default_file().parent.parent
-    files = dict.fromkeys(sorted(models.glob("*/*.toml")), False)
-    for i, (joint, words, refused) in enumerate(DRAWINGS):
-        path = tmp_path / f"{i}.toml"
-        assert cli.main(["new", joint, *words.split(), "--out", str(path)]) == 0
-        files[path] = refused
-    state = """laboratory.then(async (lab) => {
-      await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
-      lab.draw();
-      return [lab.about.name, Object.fromEntries(lab.values), document.getElementById("curves").innerHTML,
-        document.getElementById("doc").textContent];
-    })"""
-    for path, refused in files.items():
-        choose(shown, next(iter(MODELS)))
-        before = shown.run(state)
-        said = drop(shown, path.name, path.read_text(encoding="utf-8"))
-        after = shown.run(state)
-        if not said.endswith(" shown."):
-            assert after == before, said
-            continue
-        assert not refused, said
-        file = load(path)
-        assert {key: value for key, value in file.flat.items() if key in after[1]}.items() <= after[1].items()
-        own = next(m for m in modules() if m.model.name == after[0] and m.files[0].law == file.law).files[0]
-        baked = {key: value for key, value in file.flat.items() if key not in after[1]}
-        assert baked == {key: value for key, value in own.flat.items() if key not in after[1]}
-
-
 @needed
 def test_a_measured_curve_stands_beside_the_curves_that_measure_the_same(shown: Browser) -> None:
     """Wherever motion and force of a joint are those of the file, in the file's units."""

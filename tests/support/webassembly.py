@@ -17,6 +17,7 @@ from jointfmu_fmu_src.native.data import data_of, placeholder, split
 from jointfmu_fmu_src.native.description import fmi3_xml
 from jointfmu_tools.laboratory.describe import Module
 
+from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import build as make
 from jointfmu.quantity import flatten
 
@@ -39,13 +40,16 @@ def native_fmu(module: Module, folder: Path) -> Path:
 class Instance:
     """An instance in wasmtime, with the methods of `conftest.Fmu`."""
 
-    def __init__(self, module: Module, binary: bytes) -> None:
+    def __init__(self, module: Module, binary: bytes, file: ParameterFile | None = None) -> None:
+        """file : whose numbers that no tool may set stand in the data, instead of the module's own"""
         import wasmtime
 
         self.store = wasmtime.Store()
         compiled = wasmtime.Module(self.store.engine, binary)
         self.exports = wasmtime.Instance(self.store, compiled, []).exports(self.store)
         self("_initialize")
+        fixed = np.array([*split(module.model, file or module.files[0]).fixed.values()])
+        self.exports["memory"].write(self.store, fixed.tobytes(), self("lab_fixed"))
         self.it = self("lab_new")
         model = module.model
         self.outputs = [v.name for v in model.outputs]

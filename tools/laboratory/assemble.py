@@ -13,7 +13,9 @@ from jointfmu_fmu_src.joint_parts import chart
 from jointfmu_fmu_src.templates import template
 
 from jointfmu import __version__
+from jointfmu.contact.roughness import FACTOR
 from jointfmu.files.writing import write_text
+from jointfmu.parameters import ORIGINS, SAME_HEIGHT
 from jointfmu.quantity import units
 
 from .describe import compiled, described, modules
@@ -46,6 +48,8 @@ def page() -> str:
     sizes = [len(binary) for binary in binaries]
     known = {
         "modules": [described(module) | {"size": n} for module, n in zip(every, sizes, strict=True)],
+        "origins": ORIGINS,
+        "roughness": {"factor": FACTOR, "close": SAME_HEIGHT},
         "units": {base: units.sizes(base, *others) for base, others in _FILE_UNITS.items()},
     }
     text = json.dumps(known, ensure_ascii=False, allow_nan=False, separators=(",", ":")).encode()

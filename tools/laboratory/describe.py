@@ -3,21 +3,23 @@
 import math
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import MISSING, dataclass
 from pathlib import Path
 from threading import Lock
 from typing import Any
 
 from jointfmu_fmu_src.native.compiled.compiler import webassembly
 from jointfmu_fmu_src.native.compiled.kept import keeping
+from jointfmu_fmu_src.native.data import split
 from jointfmu_fmu_src.native.page import panels
 from jointfmu_fmu_src.xml_parts import Listed, listed
 
 from jointfmu.joints import KINDS
 from jointfmu.joints.kind import Kind
 from jointfmu.joints.model import Model
-from jointfmu.parameters import ParameterFile, dump, load
+from jointfmu.parameters import ParameterFile, declared_entries, dump, is_height, load
 from jointfmu.quantity import units
+from jointfmu.quantity.interval import Interval
 
 from ..joint_parts import part
 from ..published.computed import published
@@ -119,6 +121,10 @@ def described(module: Module) -> dict[str, object]:
         "joint": kind.name,
         "title": kind.title,
         "law": first.law,
+        "default": first.law == next(iter(kind.laws)),
+        "entries": _entries(model, first),
+        "fixed": list(split(model, first).fixed),
+        "height": next(filter(is_height, first.flat), None),
         "doc": model.doc,
         "variables": rows,
         "surfaces": [surface.prefix for surface in kind.surfaces],
@@ -213,12 +219,44 @@ def _bound(file: ParameterFile) -> Iterator[str]:
                 yield name
 
 
+def _entries(model: Model, file: ParameterFile) -> dict[str, dict[str, object]]:
+    """{structured name: unit, value, default, interval} of the entries that a parameter file may have.
+
+    value    : that of the module's first file; roughnesses and start values of inputs have none
+    default  : where a file may lack the entry
+    interval : low and high end, and whether these are open, of numbers that the C does not check
+    """
+    exposed, flat, variables = model.parameter_fields(), file.flat, KINDS[model.joint].variables
+    rows: dict[str, dict[str, object]] = {}
+    for name, item in declared_entries(model.joint, type(file.values)).items():
+        section, _, leaf = name.partition(".")
+        if section not in ("inputs", "roughness", "comparison") and name not in flat:
+            continue  # of another alternative of a group
+        meta = item.metadata
+        rows[name] = row = {"unit": meta.get("unit")}
+        if name in flat:
+            row["value"] = flat[name]
+            if item.default is not MISSING:
+                row["default"] = item.default
+        elif section == "inputs":
+            row["default"] = variables[leaf].start
+        if "interval" in meta and name not in exposed and "series" not in meta:
+            row["interval"] = _ends(meta["interval"])
+    return rows
+
+
+def _ends(interval: Interval) -> list[float | bool | None]:
+    """Low and high end, None where infinite, and whether these are open."""
+    ends = [end if math.isfinite(end) else None for end in (interval.low, interval.high)]
+    return [*ends, interval.low_open, interval.high_open]
+
+
 def _set(file: ParameterFile, model: Model) -> dict[str, object]:
     """A parameter file: values of what can be set, and its text."""
     names = model.parameter_fields()
     values = {name: value for name, value in file.flat.items() if name in names}
     inputs = {v.name: file.start(v.name) for v in model.inputs}
-    return {"name": file.name, "values": values, "inputs": inputs, "toml": dump(file)}
+    return {"name": file.name, "values": values, "fixed": {}, "inputs": inputs, "toml": dump(file)}
 
 
 def _points(model: Model, bench: LaboratoryModel) -> Iterator[dict[str, object]]:

@@ -30,6 +30,12 @@ SHOWN Instance *lab_new(void)
     return instance_new("lab_new", 3, CO_SIMULATION, "laboratory", TOKEN, false, reporter);
 }
 
+/* Numbers of the data that are no variables; the page writes those of another file before `lab_new`. */
+SHOWN const double *lab_fixed(void)
+{
+    return data.fixed;
+}
+
 /* Back to the state after `lab_new`; tables stay as long as the parameters come back as they were. */
 SHOWN void lab_reset(Instance *m)
 {

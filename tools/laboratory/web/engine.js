@@ -16,8 +16,11 @@ async function unpacked(text) {
 }
 
 class Joint {
-  constructor(about, c) {
+  /** set: the parameter set whose numbers that no slider moves stand in the module's data. */
+  constructor(about, c, set) {
     c._initialize();
+    const fixed = new Float64Array(c.memory.buffer, c.lab_fixed(), about.fixed.length);
+    about.fixed.forEach((name, i) => (fixed[i] = set.fixed[name] ?? fixed[i]));
     this.about = about;
     this.c = c;
     this.instance = c.lab_new();
@@ -26,25 +29,26 @@ class Joint {
     this.starts = 0;
   }
 
-  static async of(about) {
-    const { instance } = await WebAssembly.instantiate(about.binary);
-    return new Joint(about, instance.exports);
+  static async of(about, set = about.sets[0]) {
+    about.compiled ??= WebAssembly.compile(about.binary);
+    return new Joint(about, (await WebAssembly.instantiate(await about.compiled)).exports, set);
   }
 
   get(name) {
     return this.c.lab_get(this.instance, this.variables.get(name).reference);
   }
 
+  /** Whether a value is taken; it is checked when the joint begins or goes on. */
   set(name, value) {
-    this.c.lab_set(this.instance, this.variables.get(name).reference, Number(value));
+    return this.c.lab_set(this.instance, this.variables.get(name).reference, Number(value)) === 0;
   }
 
   /** At rest with these values of parameters and inputs (a Map); false if they are refused. */
   begin(values) {
     this.starts++;
     this.c.lab_reset(this.instance);
-    for (const [name, value] of values) this.set(name, value);
-    return this.told(this.c.lab_begin(this.instance));
+    const taken = [...values].map(([name, value]) => this.set(name, value)).every(Boolean);
+    return this.told(this.c.lab_begin(this.instance)) && taken;
   }
 
   /** On to other inputs, { name: value }; false if they are refused. */

@@ -8,6 +8,7 @@ class Laboratory {
   constructor(known) {
     this.known = known;
     this.file = null;
+    this.opened = [];
     this.said = new Set();
     const models = [...new Set(known.modules.map((m) => m.name))];
     at("model").append(...models.map((name) => element("option", { value: name }, `${known.modules.find((m) => m.name === name).title}: ${name}`)));
@@ -17,7 +18,10 @@ class Laboratory {
     at("example").onclick = () => this.change(this.about.example.values, this.about.example.doc);
     at("copy").onclick = () => this.copy();
     at("save").onclick = () => this.save();
-    at("open").onchange = () => at("open").files[0] && this.read(at("open").files[0]);
+    at("open").onchange = async () => {
+      if (at("open").files[0]) await this.read(at("open").files[0]);
+      at("open").value = ""; // the same file may be opened again when it has changed
+    };
     at("forget").onclick = () => { this.file = null; at("forget").hidden = true; this.redraw(); };
     const wide = matchMedia("(min-width: 980px)"), beside = () => (at("sliders").open = wide.matches);
     wide.addEventListener("change", beside);
@@ -29,9 +33,10 @@ class Laboratory {
     addEventListener("pagehide", () => this.keep());
   }
 
-  /** All parameter sets of a model, with the module that runs them. */
+  /** All parameter sets of a model, with the module that runs them; those of opened files come last. */
   sets(model) {
-    return this.known.modules.filter((m) => m.name === model).flatMap((about) => about.sets.map((set) => ({ about, set })));
+    const shipped = this.known.modules.filter((m) => m.name === model).flatMap((about) => about.sets.map((set) => ({ about, set })));
+    return [...shipped, ...this.opened.filter(({ about }) => about.name === model)];
   }
 
   /** To another joint or set; the browser's way back leads here. */
@@ -45,20 +50,27 @@ class Laboratory {
   /** The address says what is set: the joint, and all that differs from the parameter set as it begins. */
   keep() {
     if (!this.path) return;
-    const said = new URLSearchParams({ joint: this.about.name, set: this.set.name }), first = this.start(this.set);
+    const base = this.set.base ?? this.set, said = new URLSearchParams({ joint: this.about.name, set: base.name }), first = this.start(base);
+    for (const name in this.set.fixed) if (this.set.fixed[name] !== this.about.entries[name].value) said.set(name, this.set.fixed[name]);
     for (const [name, value] of this.values) if (value !== first.get(name)) said.set(name, value);
     for (const { v, value, first } of this.others) if (value !== first) said.set(v.name, value);
     if (this.path.inputs.map((v) => v.name).join() !== this.about.path.join()) said.set("path", this.path.inputs.map((v) => v.name).join());
     if (`#${said}` !== location.hash) history.replaceState(null, "", `#${said}`);
   }
 
-  /** What the address says; the first joint if it says nothing. */
+  /** What the address says; the first joint if it says nothing. Numbers of a set that is not here belong to no joint, and are left out. */
   async restore() {
     const said = new URLSearchParams(location.hash.slice(1)), model = this.known.modules.find((m) => m.name === said.get("joint"))?.name ?? this.known.modules[0].name;
-    await this.choose(model, Math.max(0, this.sets(model).findIndex((s) => s.set.name === said.get("set"))));
+    const sets = this.sets(model), index = said.has("set") ? sets.findIndex((s) => !s.set.base && s.set.name === said.get("set")) : 0;
+    const { about, set } = sets[Math.max(index, 0)], numbers = [...said].filter(([name]) => !["joint", "set", "path"].includes(name));
+    const here = index >= 0 && (!said.has("joint") || model === said.get("joint"));
+    const fixed = Object.fromEntries(numbers.filter(([name]) => here && about.fixed.includes(name) && name in about.entries).map(([name, text]) => [name, Number(text)]));
+    const wrong = Object.entries(fixed).map(([name, value]) => outside(name, value, about.entries[name])).find(Boolean);
+    await (Object.keys(fixed).length && !wrong ? this.view({ about, set: { ...set, fixed, base: set } }) : this.choose(model, Math.max(index, 0)));
+    if (wrong || !here) return this.say(`The address is of another page: ${wrong || `${said.get("joint")}, ${said.get("set")} is not here`}. Shown is ${set.name}.`, true);
     const ways = said.get("path")?.split(",") ?? [];
     if (ways.length && ways.every((name) => name in this.about.pairs)) this.follow(ways);
-    for (const [name, text] of said) {
+    for (const [name, text] of numbers) {
       const number = Number(text), other = this.others.find((control) => control.v.name === name);
       if (this.controls[name]) this.values.set(name, text === "true" || (text !== "false" && number));
       else if (other && Number.isFinite(number)) other.moved(number);
@@ -78,14 +90,19 @@ class Laboratory {
     return this.others.at(-1);
   }
 
-  async choose(model, index) {
-    const sets = this.sets(model), { about, set } = sets[index];
-    at("model").value = model;
+  choose(model, index) {
+    return this.view(this.sets(model)[index]);
+  }
+
+  /** Another joint, { about, set }, in place of the one that was shown. */
+  async view({ about, set }) {
+    const joint = await (set.running ??= Joint.of(about, set)), sets = this.sets(about.name);
+    at("model").value = about.name;
     at("set").replaceChildren(...sets.map((s, i) => element("option", { value: i }, s.set.name)));
-    at("set").value = index;
+    at("set").value = sets.findIndex((s) => s.set === (this.opened.some((o) => o.set === set) ? set : set.base ?? set));
     this.about = about;
     this.set = set;
-    this.joint = await (about.running ??= Joint.of(about));
+    this.joint = joint;
     at("doc").textContent = `${set.name}. ${about.doc}. Interface law ${about.law}.`;
     this.said = new Set();
     this.path = null;
@@ -111,9 +128,9 @@ class Laboratory {
   }
 
   /** Values of a parameter set; a load that the path does not move begins at a third of its ramp. */
-  start(set, about = this.about) {
-    const { input, end } = about.ramp, values = new Map([...Object.entries(set.values), ...Object.entries(set.inputs)]);
-    if (!values.get(input) && !about.path.includes(input)) values.set(input, end / 3);
+  start(set) {
+    const { input, end } = this.about.ramp, values = new Map([...Object.entries(set.values), ...Object.entries(set.inputs)]);
+    if (!values.get(input) && !this.about.path.includes(input)) values.set(input, end / 3);
     return values;
   }
 
@@ -227,8 +244,9 @@ class Laboratory {
     at("said").classList.toggle("error", !this.good);
   }
 
-  say(text) {
+  say(text, refused = false) {
     at("done").textContent = text;
+    at("done").classList.toggle("error", refused);
   }
 
   toml() {
@@ -260,29 +278,18 @@ class Laboratory {
         this.redraw();
       }
     } catch (error) {
-      this.say(`${file.name}: ${error.message}`);
+      this.say(`${file.name}: ${error.message}`, true);
     }
   }
 
+  /** Show the joint of a parameter file; an Error, and nothing changes, if the page does not have it. */
   async readParameters(text, name) {
-    const found = readToml(text);
-    const models = this.known.modules.filter((m) => m.joint === found.joint);
-    const law = found.law ?? models[0]?.law, here = (m) => m.name === this.about.name;
-    const fitting = models.filter((m) => m.law === law).sort((a, b) => here(b) - here(a));
-    if (!fitting.length) throw new Error(`joint = ${found.joint}, law = ${law ?? "none"}; the page has none of that`);
-    const refuse = (why) => { throw new Error(`not shown: ${why}; run jointfmu report ${name}`); };
-    const about = fitting.find((m) => !findDifference(found, m)) ?? refuse(findDifference(found, fitting[0]));
-    const values = this.start(about.sets[0], about);
-    for (const [key, value] of found.values) if (values.has(key)) values.set(key, value);
-    const joint = await (about.running ??= Joint.of(about));
-    joint.messages.clear();
-    const good = joint.begin(values), why = [...joint.messages][0];
-    if (joint === this.joint) joint.begin(this.values);
-    if (!good) refuse(why);
-    await this.choose(about.name, this.sets(about.name).findIndex((s) => s.about === about));
-    this.values = values;
-    this.say(`${name}: ${found.name ?? "parameters"} shown.`);
-    this.shown();
+    const found = placed(text, name, this.known, this.about.name), { about, set } = found, trial = await Joint.of(about, set);
+    if (!trial.begin(new Map(Object.entries({ ...set.values, ...set.inputs })))) throw new Error([...trial.messages].join("; "));
+    set.running = Joint.of(about, set);
+    this.opened = [...this.opened.filter((o) => o.set.name !== set.name || o.about !== about), found];
+    await this.leave(about.name, this.sets(about.name).indexOf(found));
+    this.say(`${name}: ${set.name} shown.`);
   }
 }
 
