@@ -4,11 +4,11 @@ import io
 import json
 import lzma
 import os
-import sys
 import tarfile
 from pathlib import Path
 
 import pytest
+from clients import needs
 from conftest import refused_line
 from jointfmu_fmu_src.native.compiled import cache, compiler, kept
 from jointfmu_fmu_src.native.data import split
@@ -34,7 +34,7 @@ def test_only_what_is_kept_is_removed(
 
 
 MODEL = MODELS["GearContact"]
-POSIX = pytest.mark.skipif(sys.platform == "win32", reason="modes and owners of POSIX")
+POSIX = needs("Linux or macOS")
 
 
 def part() -> kept.Part:

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from clients import needs
 from conftest import refused_line
 from jointfmu_tools import host
 from jointfmu_tools.parser import _all, parser
@@ -139,7 +140,7 @@ def test_a_usual_fmu_is_read(tmp_path: Path) -> None:
 # Pipes and devices
 
 
-@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no named pipes")
+@needs("Linux or macOS")
 def test_a_pipe_and_a_device_are_refused(tmp_path: Path) -> None:
     pipe = tmp_path / "pipe.toml"
     os.mkfifo(pipe)
@@ -210,7 +211,7 @@ def test_every_file_that_is_read_is_tried() -> None:
     assert LINES.keys() == INPUTS
 
 
-@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no named pipes")
+@needs("Linux or macOS")
 @pytest.mark.parametrize(("command", "name"), LINES)
 def test_a_command_refuses_a_pipe_at_once(
     command: str,
@@ -219,8 +220,6 @@ def test_a_command_refuses_a_pipe_at_once(
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    if command == "robot":
-        pytest.importorskip("mujoco")
     monkeypatch.chdir(tmp_path)
     for path, text in FILES.items():
         Path(path).write_text(text)

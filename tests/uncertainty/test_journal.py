@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from clients import needs
 from jointfmu_tools.uncertainty import journal
 from jointfmu_tools.uncertainty.sweep import bands_csv
 
@@ -102,7 +103,7 @@ def test_rows_of_a_sweep_are_read(tmp_path: Path) -> None:
     assert bands_csv(path.parent, units).splitlines()[1].startswith("0.0,1.0,")
 
 
-@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no named pipes")
+@needs("Linux or macOS")
 def test_a_pipe_in_its_place_is_refused(tmp_path: Path) -> None:
     for name in (journal.RUNS, journal.STUDY):
         os.mkfifo(tmp_path / name)
