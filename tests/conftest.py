@@ -1,6 +1,7 @@
 """Random cases are the same in every run, so a failure can be replayed. FMUs are built once."""
 
 import gc
+import json
 import os
 import pickle
 import shutil
@@ -186,6 +187,18 @@ def run_host(script: str, *arguments: object) -> subprocess.CompletedProcess[str
         text=True,
         timeout=100,
     )
+
+
+def run_client(script: str, tmp_path: Path, path: Path | str, **case: Any) -> Any:
+    """Run a client's script in a process of its own. It reads a case from a file and writes its result there.
+
+    Standard output carries no result, because some clients print to it.
+    """
+    file = tmp_path / "case.json"
+    file.write_text(json.dumps(case))
+    done = run_host(script, file, path)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return json.loads(file.read_text())
 
 
 def made_once(factory: pytest.TempPathFactory, name: str, make: Callable[[Path], object]) -> Path:

@@ -194,8 +194,8 @@ def description(fmu: str | Path) -> "ModelDescription":
 def _description(fmu: str, file: tuple[int, ...]) -> "ModelDescription":
     from fmpy import read_model_description
 
-    with archives.opened(fmu) as archive:
-        text = archives.content(archive, archives.DESCRIPTION)
+    with archives.open_archive(fmu) as archive:
+        text = archives.read_member(archive, archives.DESCRIPTION)
     try:  # fmpy stumbles over what FMI 1.0 leaves out
         version = ElementTree.fromstring(text).get("fmiVersion", "none")
         if version.startswith(("2.", "3.")):
@@ -220,7 +220,7 @@ def unpacked(fmu: str | Path, exchange: bool = False) -> "Iterator[tuple[str, Mo
     folder = tempfile.mkdtemp()
     resources = Path(folder) / "resources"
     try:
-        with archives.opened(path) as archive:
+        with archives.open_archive(path) as archive:
             archives.extract(archive, folder, runs)
         _check_python_flavour(resources, path)
         yield folder, described

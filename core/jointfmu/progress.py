@@ -134,7 +134,7 @@ def processes(count: int | None = None) -> Iterator[Executor]:
     pool.shutdown()
 
 
-def completed(
+def run_jobs(
     work: Callable[[J], T], jobs: Iterable[J], count: int | None = None
 ) -> Generator[tuple[J, T | None]]:
     """(job, result of the function) in the order in which jobs end, from `count` processes.

@@ -97,7 +97,7 @@ def test_a_member_is_unpacked_to_its_declared_size_at_most(tmp_path: Path) -> No
         archives.Members(path)["resources/x"]
     with (
         pytest.raises(ValueError, match=r"lies.fmu: is no FMU \(Bad CRC-32"),
-        archives.opened(path) as opened,
+        archives.open_archive(path) as opened,
     ):
         archives.extract(opened, tmp_path / "out", lambda name: True)
     assert sum(file.stat().st_size for file in tmp_path.glob("out/resources/*")) <= 10

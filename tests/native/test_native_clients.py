@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from clients import needs
-from conftest import Fmu, run_host, unpack
+from conftest import Fmu, run_client, run_host, unpack
 from joint_cases import CASES, NAMES, STATE, TUNED, law, parameters, random_inputs
 from natives import VERSIONS, check_slopes, close, jacobian
 
@@ -16,15 +16,6 @@ from jointfmu.joints import MODELS
 
 ROUND_OFF = 1e-12
 """What a client may add [1]: CasADi scales by nominal values."""
-
-
-def run(script: str, tmp_path: Path, path: Path | str, **case: Any) -> Any:
-    """What a client's script makes of a case: it reads and writes a file, as some clients print."""
-    file = tmp_path / "case.json"
-    file.write_text(json.dumps(case))
-    done = run_host(script, file, path)
-    assert done.returncode == 0, done.stdout + done.stderr
-    return json.loads(file.read_text())
 
 
 def check(
@@ -81,7 +72,7 @@ def test_casadi_evaluates_and_differentiates_it(
     seed = list(np.random.default_rng(41).normal(size=len(outputs)))
     changes = {k: v for k, v in TUNED[name].items() if not isinstance(v, bool)}  # CasADi sets no Booleans
     given = [[s[i] for i in inputs] for s in states]
-    found = run(CASADI, tmp_path, folder, parameters=changes, seed=seed, states=given)
+    found = run_client(CASADI, tmp_path, folder, parameters=changes, seed=seed, states=given)
     assert (found["x"], found["u"], found["y"]) == ([], inputs, outputs)
     assert found["structure"] == [[float(i in model.depends(o)) for i in inputs] for o in outputs]
     check(name, [row["y"] for row in found["rows"]], states, changes, steps=False)
@@ -122,7 +113,7 @@ def test_casadi_solves_with_it(native: Path, tmp_path: Path, version: str) -> No
     path, torques = native / version / "HarmonicDriveSpring.fmu", [0.01, 1.0, -4.0, 25.0]
     folder, _ = unpack(path, path.stat().st_mtime_ns)
     expected = law("HarmonicDriveCompliance", parameters("HarmonicDriveCompliance"))
-    found = run(SOLVE, tmp_path, folder, torques=torques)
+    found = run_client(SOLVE, tmp_path, folder, torques=torques)
     assert found == close([expected({"tau": tau})["phi_rel"] for tau in torques])
 
 
@@ -161,7 +152,7 @@ json.dump(rows, open(file, "w"))
 def test_ecos_runs_it(native: Path, tmp_path: Path, name: str, version: str) -> None:
     states, outputs = random_inputs(name, 8, seed=42), [v.name for v in MODELS[name].outputs]
     path = native / version / f"{name}.fmu"
-    rows = run(ECOS, tmp_path, path, parameters=TUNED[name], states=states, outputs=outputs)
+    rows = run_client(ECOS, tmp_path, path, parameters=TUNED[name], states=states, outputs=outputs)
     check(name, rows, states, TUNED[name])
 
 
@@ -186,7 +177,7 @@ json.dump(found, open(file, "w"))
 
 @needs("ecos")
 def test_ecos_connects_two_versions_of_the_standard(native: Path, tmp_path: Path) -> None:
-    found = run(COUPLED, tmp_path, native)
+    found = run_client(COUPLED, tmp_path, native)
     assert found["drive::phi_rel"] == found["load::phi_rel"] > 0.0
     assert found["drive::tau"] == close(4.0)
 
@@ -227,7 +218,7 @@ json.dump(rows, open(file, "w"))
 def test_libcosim_runs_it(native: Path, tmp_path: Path, name: str) -> None:
     states, outputs = random_inputs(name, 8, seed=43), [v.name for v in MODELS[name].outputs]
     path = native / "fmi2" / f"{name}.fmu"
-    rows = run(COSIM, tmp_path, path, parameters=TUNED[name], states=states, outputs=outputs)
+    rows = run_client(COSIM, tmp_path, path, parameters=TUNED[name], states=states, outputs=outputs)
     check(name, rows, states, TUNED[name])
 
 

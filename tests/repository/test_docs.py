@@ -111,7 +111,8 @@ def test_pictures_are_small_and_used() -> None:
         assert any(link.endswith(f"images/{picture.name}") for link in used), picture.name
         assert picture.stat().st_size < 200_000, picture.name
         if picture.suffix == ".png":
-            assert Image.open(picture).width <= 1600
+            with Image.open(picture) as image:
+                assert image.width <= 1600
 
 
 def test_the_house_is_drawn_as_it_is_built() -> None:
@@ -397,7 +398,8 @@ def test_the_tutorial_ends_in_a_resonance_plot(tutorial: Tutorial) -> None:
     frequencies = [float(row.split(",")[1]) for row in rows]
     assert len(frequencies) == 6
     assert frequencies == sorted(frequencies)
-    assert Image.open(folder / "ring.png").width > 1000
+    with Image.open(folder / "ring.png") as image:
+        assert image.width > 1000
     found = re.search(r"link at (-?\d+\.\d) deg, largest wind-up (\S+) rad", said["python simulate.py"])
     assert found is not None
     assert 1e-4 < float(found[2]) < 2e-3  # the pulse of 3 N m is seen, rated torque is not passed

@@ -1,7 +1,6 @@
 """Continuous states that a host sets in model exchange: all at once, or by value reference."""
 
 import ctypes
-import json
 import math
 from collections.abc import Callable
 from pathlib import Path
@@ -9,7 +8,7 @@ from pathlib import Path
 import fmpy
 import numpy as np
 import pytest
-from conftest import Fmu, here_alone, made_once, run_host, unpack
+from conftest import Fmu, here_alone, made_once, run_client, unpack
 from jointfmu_fmu_src.native.build import build
 from jointfmu_fmu_src.partners import parameters
 from jointfmu_fmu_src.partners.laws import GRAVITY
@@ -135,28 +134,55 @@ json.dump({"x": dae.x(), "motion": found["xf"].full().tolist()}, open(file, "w")
 """
 
 
+def integrate(
+    path: Path,
+    tmp_path: Path,
+    parameters: dict[str, float],
+    states: dict[str, float],
+    inputs: dict[str, float],
+    times: np.ndarray,
+) -> np.ndarray:
+    """Continuous states at times, by CasADi: it sets the states by value reference."""
+    case = {"parameters": parameters, "states": states, "inputs": inputs, "times": times.tolist()}
+    found = run_client(CASADI, tmp_path, unpack(path, path.stat().st_mtime_ns)[0], **case)
+    assert found["x"] == list(states)
+    return np.array(found["motion"])
+
+
 @VERSIONS
 def test_casadi_integrates_a_pendulum(folder: Path, tmp_path: Path, version: str) -> None:
-    """CasADi sets the states by value reference."""
     J, m, length, torque = 0.5, 2.0, 0.1, 0.3
-    times = np.linspace(0.25, 2.0, 8)
-    path, file = file_of(folder, "RotationalInertia", version), tmp_path / "case.json"
-    case = {
-        "parameters": {"J": J, "m": m, "l": length},
-        "states": STATES["RotationalInertia"],
-        "inputs": {"tau_a": torque},
-        "times": times.tolist(),
-    }
-    file.write_text(json.dumps(case))
-    done = run_host(CASADI, file, unpack(path, path.stat().st_mtime_ns)[0])
-    assert done.returncode == 0, done.stdout + done.stderr
-    found = json.loads(file.read_text())
+    times, states = np.linspace(0.25, 2.0, 8), STATES["RotationalInertia"]
+    path = file_of(folder, "RotationalInertia", version)
+    found = integrate(path, tmp_path, {"J": J, "m": m, "l": length}, states, {"tau_a": torque}, times)
 
     def derivative(_: float, x: np.ndarray) -> list[float]:
         return [x[1], (torque - m * GRAVITY * length * math.sin(x[0])) / J]
 
     expected = solve_ivp(
-        derivative, (0.0, 2.0), list(case["states"].values()), "DOP853", times, rtol=1e-12, atol=1e-13
+        derivative, (0.0, 2.0), list(states.values()), "DOP853", times, rtol=1e-12, atol=1e-13
     ).y
-    assert found["x"] == ["phi", "w"]
-    np.testing.assert_allclose(found["motion"], expected, atol=1e-7)
+    np.testing.assert_allclose(found, expected, atol=1e-7)
+
+
+@VERSIONS
+def test_casadi_integrates_a_system_without_accepting_steps(
+    folder: Path, tmp_path: Path, version: str
+) -> None:
+    """CasADi never completes an integrator step: joints start from the history after initialization."""
+    times, states = np.array([0.01, 0.02]), STATES["robot_joint"]
+    path = file_of(folder, "robot_joint", version)
+    found = integrate(path, tmp_path, {}, states, {"drive.temperature": 293.15}, times)
+    fmu = Fmu(path, exchange=True).start({"drive.temperature": 293.15})
+    fmu.fmu.enterContinuousTimeMode()
+
+    def derivative(time: float, x: np.ndarray) -> list[float]:
+        fmu.fmu.setTime(time)
+        set_vector(fmu, dict(zip(states, x, strict=True)))
+        return rates(fmu)
+
+    expected = solve_ivp(
+        derivative, (0.0, times[-1]), list(states.values()), "DOP853", times, rtol=1e-10, atol=1e-12
+    ).y
+    np.testing.assert_allclose(found, expected, atol=1e-5 * np.abs(expected).max())
+    fmu.free()

@@ -77,19 +77,25 @@ def wait_for(condition, process=None):
         time.sleep(0.005)
 
 
+def start_sweep(arguments, own):
+    """Start the command in a session of its own, with its temporary files in a folder."""
+    return subprocess.Popen(
+        [sys.executable, "-m", "jointfmu", *arguments],
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+        env=os.environ | {"TMPDIR": str(own)},
+    )
+
+
 @needs("Linux")
 def test_a_local_sweep_opens_no_socket_and_ends_with_its_processes_when_killed(fmu, tmp_path):
     out, own = tmp_path / "out", tmp_path / "own"
     own.mkdir()
     arguments = ["sweep", str(fmu), *SETTINGS, *RAMP, "--samples", "512", "--workers", "2", "--out", str(out)]
-    process = subprocess.Popen(
-        [sys.executable, "-m", "jointfmu", *arguments],
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        start_new_session=True,
-        env=os.environ | {"TMPDIR": str(own)},
-    )
+    process = start_sweep(arguments, own)
     runs = out / journal.RUNS
     wait_for(lambda: runs.exists() and runs.read_bytes().count(b"\n") >= 5, process)
     pids = processes_of(process.pid)
@@ -102,7 +108,7 @@ def test_a_local_sweep_opens_no_socket_and_ends_with_its_processes_when_killed(f
     assert len(opened) > 3 * len(pids)
     assert [one for one in opened if one.startswith("socket:")] == []
     os.kill(process.pid, signal.SIGKILL)
-    assert process.communicate(timeout=10.0) == (b"", b"")
+    assert process.communicate(timeout=10.0) == ("", "")
     wait_for(lambda: not processes_of(process.pid))
 
 
@@ -145,14 +151,7 @@ def test_ctrl_c_ends_it_at_once_and_it_resumes(moment, fmu, tmp_path, capsys):
     out, own = tmp_path / "out", tmp_path / "own"
     own.mkdir()
     arguments = ["sweep", str(fmu), *SETTINGS, *RAMP, "--samples", "64", "--workers", "2", "--out", str(out)]
-    process = subprocess.Popen(
-        [sys.executable, "-m", "jointfmu", *arguments],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        start_new_session=True,
-        env=os.environ | {"TMPDIR": str(own)},
-    )
+    process = start_sweep(arguments, own)
     runs = out / journal.RUNS
 
     def reached():

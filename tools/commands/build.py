@@ -84,8 +84,8 @@ def _build(args: argparse.Namespace) -> Answer:
 def _starts(path: Path) -> dict[str, str]:
     """{parameter: start value as written} of an FMU; empty for a file that is none."""
     try:
-        with archives.opened(path) as archive:
-            description = ElementTree.fromstring(archives.content(archive, archives.DESCRIPTION))
+        with archives.open_archive(path) as archive:
+            description = ElementTree.fromstring(archives.read_member(archive, archives.DESCRIPTION))
     except (ValueError, ElementTree.ParseError):
         return {}
     found = {}

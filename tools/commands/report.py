@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from jointfmu.files.outputs import PAGE, check_output
+from jointfmu.files.outputs import PAGE
 
 from ..command_line.common import Answer, Commands, argument, command
 from ..command_line.outputs import output
@@ -26,6 +26,5 @@ def _report(args: argparse.Namespace) -> Answer:
     out: Path = args.out or Path(f"{args.file.stem}.html")
     if out.suffix != ".html":
         raise ValueError(f"--out {out} has the ending {out.suffix!r}, allowed is .html")
-    check_output(out, PAGE, args.force)
     joint.report(out, args.fmu, force=args.force)
     return Answer(document={"report": str(out)}, written=[out])

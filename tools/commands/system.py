@@ -43,9 +43,9 @@ def _system(args: argparse.Namespace) -> Answer:
         written = args.out / "modelica" / f"{model_name(found)}.mo"
         check_output(written, TEXT, args.force)
         if whole:
-            from ..systems.fmu.build import build_system, targets
+            from ..systems.fmu.build import build_system, fmu_paths
 
-            check_outputs(targets(whole, args.out), ARCHIVE, args.force)
+            check_outputs(fmu_paths(whole.model().title, args.out), ARCHIVE, args.force)
         made = ssp.build_systems(args.out, [found], force=args.force)
         if whole:
             made += build_system(whole, args.out, force=args.force)

@@ -41,9 +41,9 @@ def plugin(fmu: str | Path, out: str | Path) -> Path:
 def _sources(fmu: Path) -> tuple[str, dict[str, str]]:
     """Name of an FMU and its C files."""
     described = description(fmu)
-    with archives.opened(fmu) as archive:
+    with archives.open_archive(fmu) as archive:
         sources = {
-            member.removeprefix("sources/"): archives.content(archive, member).decode()
+            member.removeprefix("sources/"): archives.read_member(archive, member).decode()
             for member in archive.namelist()
             if member.startswith("sources/") and member.endswith((".c", ".h"))
         }

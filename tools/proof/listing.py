@@ -117,7 +117,7 @@ times `{worst.output}` is furthest off, by {worst.error:.1e}; allowed is {worst.
 
 def _platforms(fmu: Path, version: str) -> list[str]:
     """Platforms for which an FMU has a binary; of FMI 2.0 those that the rules know."""
-    with archives.opened(fmu) as archive:
+    with archives.open_archive(fmu) as archive:
         found = {match[1] for name in archive.namelist() if (match := re.match(r"binaries/([^/]+)/.", name))}
     return sorted(found & set(KNOWN) if version.startswith("2") else found)
 

@@ -115,7 +115,7 @@ def _bare(path: Path) -> int:
 def _instrument(path: Path, unit: str | None) -> tuple[Heights, str]:
     """Any format of SurfaceTopography, the default channel, and its unit."""
     sift.check(path)
-    archives.check_if_zip(path)
+    archives.check_zip(path)
     try:
         import SurfaceTopography
         import SurfaceTopography.Exceptions

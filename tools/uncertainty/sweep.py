@@ -15,7 +15,7 @@ from jointfmu.files import archives
 from jointfmu.files.reading import read_bytes
 from jointfmu.files.writing import write_text
 from jointfmu.parameters import ParameterFile, load
-from jointfmu.progress import completed, track
+from jointfmu.progress import run_jobs, track
 from jointfmu.quantity import Array
 from jointfmu.quantity.refusal import Refusal
 
@@ -88,11 +88,11 @@ def _declared(fmu: Path) -> ParameterFile:
 
     Raises ValueError if it has none.
     """
-    with archives.opened(fmu) as archive, TemporaryDirectory() as folder:
+    with archives.open_archive(fmu) as archive, TemporaryDirectory() as folder:
         inside = [name for name in archive.namelist() if fnmatch(name, f"{FOLDER}/parameters/*.toml")]
         if own := [name for name in inside if Path(name).name != "study.toml"]:
             file = Path(folder, Path(own[0]).name)
-            file.write_bytes(archives.content(archive, own[0]))
+            file.write_bytes(archives.read_member(archive, own[0]))
             return load(file)
     raise ValueError(f"{fmu}: carries no parameter file; expected LOW..HIGH in place of {INTERVAL}")
 
@@ -144,7 +144,7 @@ def _local_runs(
         small = Path(folder, fmu.name)
         slim(fmu, small)
         jobs = [(small, drive, i, runs[i]) for i in todo]
-        with closing(completed(local_run, jobs, workers)) as finished:
+        with closing(run_jobs(local_run, jobs, workers)) as finished:
             for (_, _, i, settings), entry in finished:
                 yield entry or {"run": i, "parameters": dict(settings), "error": KILLED}
 

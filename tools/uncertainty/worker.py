@@ -48,7 +48,7 @@ def local_run(job: tuple[Path, LoadRamp, int, Mapping[str, object]]) -> dict[str
 
 def slim(fmu: Path, small: Path) -> None:
     """Write an FMU without sources, documentation and other machines' binaries."""
-    with archives.opened(fmu) as full, zipfile.ZipFile(small, "w") as less:
+    with archives.open_archive(fmu) as full, zipfile.ZipFile(small, "w") as less:
         for item in full.infolist():
             if runs(item.filename) and not item.is_dir():
-                less.writestr(item, archives.content(full, item.filename))
+                less.writestr(item, archives.read_member(full, item.filename))

@@ -40,11 +40,11 @@ _BROKEN = (
 
 
 @contextmanager
-def opened(path: str | Path) -> Iterator[zipfile.ZipFile]:
-    """An FMU as an archive that may be unpacked; `content` and `extract` do it.
+def open_archive(path: str | Path) -> Iterator[zipfile.ZipFile]:
+    """An FMU as an archive that may be unpacked; `read_member` and `extract` do it.
 
     Raises ValueError, one line: there is no such file, it is a pipe or device, no zip or a broken one, it has
-    no description, or `check` refuses it.
+    no description, or `check_members` refuses it.
     """
     expected = f"a zip with {DESCRIPTION}"
     if not os.path.exists(path):
@@ -54,7 +54,7 @@ def opened(path: str | Path) -> Iterator[zipfile.ZipFile]:
         with zipfile.ZipFile(path) as archive:
             if DESCRIPTION not in archive.namelist():
                 raise ValueError(f"{path}: is no FMU (it has no {DESCRIPTION}); expected {expected}")
-            check(path, archive)
+            check_members(path, archive)
             yield archive
     except OSError as error:
         raise ValueError(f"{path}: cannot be read ({error.strerror or error}); expected an FMU") from None
@@ -63,7 +63,7 @@ def opened(path: str | Path) -> Iterator[zipfile.ZipFile]:
         raise ValueError(f"{path}: is no FMU ({reason}); expected {expected}") from None
 
 
-def check(path: str | Path, archive: zipfile.ZipFile) -> None:
+def check_members(path: str | Path, archive: zipfile.ZipFile) -> None:
     """Raise ValueError, one line, for an archive that is not to be unpacked.
 
     Refused are too many members, too large ones, too high a ratio (a zip bomb), encryption, compression
@@ -92,13 +92,13 @@ def check(path: str | Path, archive: zipfile.ZipFile) -> None:
         )
 
 
-def check_if_zip(path: str | Path) -> None:
-    """`check` a file that may be an archive (X3P), which another package will unpack."""
+def check_zip(path: str | Path) -> None:
+    """Check the members of a file that may be an archive (X3P), which another package will unpack."""
     with suppress(*_BROKEN), zipfile.ZipFile(path) as archive:
-        check(path, archive)
+        check_members(path, archive)
 
 
-def content(archive: zipfile.ZipFile, name: str) -> bytes:
+def read_member(archive: zipfile.ZipFile, name: str) -> bytes:
     """A member of an archive. Raises KeyError if there is none, ValueError if it is too large."""
     member = archive.getinfo(name)
     _check_text_size(str(archive.filename), member)
@@ -107,16 +107,16 @@ def content(archive: zipfile.ZipFile, name: str) -> bytes:
 
 
 class Members(Mapping[str, bytes]):
-    """{name: content} of an FMU's members, each read when it is asked for. Raises ValueError as `opened`."""
+    """{name: content} of an FMU's members, read on access. Raises ValueError as `open_archive` does."""
 
     def __init__(self, path: str | Path) -> None:
         self._path = path
-        with opened(path) as archive:
+        with open_archive(path) as archive:
             self._names = dict.fromkeys(archive.namelist())
 
     def __getitem__(self, name: str) -> bytes:
-        with opened(self._path) as archive:
-            return content(archive, name)
+        with open_archive(self._path) as archive:
+            return read_member(archive, name)
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._names)

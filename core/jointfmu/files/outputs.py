@@ -21,46 +21,9 @@ _HEAD = 65536
 """Bytes of a file in which the mark is looked for."""
 _ARCHIVE = re.compile(r"modelDescription\.xml|SystemStructure\.ssd")
 _CHECKSUM = re.compile(rf"# {MARK}; checksum ([0-9a-f]{{8}})\n")
-OTHER_ENDINGS = frozenset(
-    [
-        ".7z",
-        ".bat",
-        ".c",
-        ".cpp",
-        ".dll",
-        ".docx",
-        ".dylib",
-        ".exe",
-        ".frd",
-        ".gz",
-        ".h",
-        ".ipynb",
-        ".jpg",
-        ".json",
-        ".jsonl",
-        ".m",
-        ".mat",
-        ".md",
-        ".npy",
-        ".npz",
-        ".odb",
-        ".pdf",
-        ".ps1",
-        ".py",
-        ".pyi",
-        ".rst",
-        ".sh",
-        ".so",
-        ".ssd",
-        ".ssv",
-        ".tar",
-        ".vtk",
-        ".xls",
-        ".xlsx",
-        ".yaml",
-        ".yml",
-        ".zip",
-    ]
+_OTHER_ENDING = re.compile(
+    r"\.(7z|bat|c|cpp|dll|docx|dylib|exe|frd|gz|h|ipynb|jpg|json|jsonl|m|mat|md|npy|npz|odb|pdf"
+    r"|ps1|py|pyi|rst|sh|so|ssd|ssv|tar|vtk|xls|xlsx|yaml|yml|zip)"
 )
 """Endings of files that are never written by name."""
 
@@ -112,7 +75,7 @@ ARCHIVE = FileKind("FMU or SSP archive", (".fmu", ".ssp"))
 TEXT = FileKind("text for another tool", (".cdb", ".csv", ".inp", ".mac", ".mo", ".mjcf", ".urdf", ".xml"))
 MESH = FileKind("mesh", (".vtu",))
 FOLDER = FileKind("folder", ())
-_ENDINGS = OTHER_ENDINGS.union(*(kind.endings for kind in (PARAMETERS, PAGE, PICTURE, ARCHIVE, TEXT, MESH)))
+_ENDINGS = {end for kind in (PARAMETERS, PAGE, PICTURE, ARCHIVE, TEXT, MESH) for end in kind.endings}
 
 
 def write_parameter_text(path: str | Path, text: str) -> None:
@@ -139,7 +102,8 @@ def check_output(path: str | Path, kind: FileKind, force: bool = False) -> None:
         return
     target = Path(os.path.realpath(path))
     for ending in (path.suffix.lower(), target.suffix.lower()):
-        if ending in _ENDINGS and ending not in kind.endings:
+        known = ending in _ENDINGS or _OTHER_ENDING.fullmatch(ending)
+        if known and ending not in kind.endings:
             allowed = " or ".join(kind.endings)
             raise ValueError(f"{path}: {ending} is the ending of another kind of file; expected {allowed}")
     try:

@@ -19,9 +19,9 @@ from .model import SystemModel
 from .proof import proof
 
 
-def targets(assembly: SystemModel, out: Path, versions: Sequence[str] = ("2", "3")) -> list[Path]:
+def fmu_paths(title: str, out: Path, versions: Sequence[str] = ("2", "3")) -> list[Path]:
     """Paths of the FMUs of a system below a folder."""
-    return [out / f"fmi{version}" / f"{assembly.model().title}.fmu" for version in versions]
+    return [out / f"fmi{version}" / f"{title}.fmu" for version in versions]
 
 
 def all_sources(assembly: SystemModel) -> tuple[dict[str, str], str]:
@@ -49,7 +49,7 @@ def build_system(
     cannot be written or the system is too large.
     """
     model = assembly.model()
-    files_out = targets(assembly, out, versions)
+    files_out = fmu_paths(model.title, out, versions)
     check_outputs(files_out, ARCHIVE, force)
     parameters = assembly.parameters(model)
     files, token = all_sources(assembly)

@@ -60,7 +60,7 @@ static bool fit(Instance *m, const char *function, unsigned where, const double 
 
 Status instance_set_states(Instance *m, const char *function, const double x[], size_t n)
 {
-    /* The standards' texts name continuous-time mode; importers set the states right after initialization too. */
+    /* FMI 2.0 allows event mode in 3.1, not in 3.2.3; importers set the states right after initialization. */
     if (!fit(m, function, EVENT | CONTINUOUS_TIME, x, n))
         return ERROR;
     if (n) {
