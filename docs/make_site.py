@@ -22,6 +22,21 @@ REFERENCE = "reference.md"
 """Place of the reference of Python in the site."""
 SITE = "site"
 """Where mkdocs.yml puts the site."""
+POLICY = "; ".join(
+    [
+        "default-src 'none'",
+        "script-src 'self' file: blob: 'unsafe-inline'",
+        "style-src 'self' file: 'unsafe-inline'",
+        "img-src 'self' file: data:",
+        "font-src 'self' file:",
+        "connect-src 'self' file:",
+        "worker-src 'self' file: blob:",
+        "frame-src 'self' file:",
+        "base-uri 'none'",
+        "form-action 'self'",
+    ]
+)
+"""Content-Security-Policy of a page: no host but the site's own. `file:` is for a site opened from a disk."""
 _LINK = re.compile(r"(?<!!)\[([^\]]*)\]\(((?:\.\./)+[^)\s#]+)(#[^)\s]*)?\)")
 
 
@@ -99,6 +114,17 @@ def lay_out(docs: Path) -> None:
             shutil.copyfile(ROOT / path, copy)
 
 
+def add_policy(site: Path) -> None:
+    """Add the Content-Security-Policy to all pages that have none."""
+    tag = f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">'
+    for page in site.rglob("*.html"):
+        text = page.read_text(encoding="utf-8")
+        if "Content-Security-Policy" not in text:
+            page.write_text(
+                re.sub(r"<head[^>]*>", lambda head: head[0] + tag, text, count=1), encoding="utf-8"
+            )
+
+
 def build(out: Path) -> int:
     """The site in the folder `out`; the status of the generator, which stops at links that lead nowhere."""
     with TemporaryDirectory() as name:
@@ -107,6 +133,7 @@ def build(out: Path) -> int:
         shutil.copy(ROOT / "mkdocs.yml", work)
         done = subprocess.run([sys.executable, "-m", "zensical", "build", "--strict"], cwd=work)
         if done.returncode == 0:
+            add_policy(work / SITE)
             shutil.copytree(work / SITE, out, dirs_exist_ok=True)
         return done.returncode
 

@@ -6,6 +6,7 @@ of FMI and of mingw-w64 declare.
 """
 
 from collections.abc import Iterator
+from importlib import import_module
 from importlib.metadata import PackageNotFoundError, files
 from pathlib import Path
 
@@ -28,6 +29,20 @@ def licence() -> str:
 def licences() -> dict[str, bytes]:
     """{path in the folder documentation of an FMU: content} of all licence texts. ValueError as `licence`."""
     return {"licenses/license.txt": licence().encode()} | dict(_others())
+
+
+_WASI = ("LICENSE", "LICENSE-MIT", "libc-top-half/musl/COPYRIGHT", "libc-bottom-half/cloudlibc/LICENSE")
+"""Licence files of the C library that the compiler links into WebAssembly modules."""
+
+
+def webassembly_licences() -> str:
+    """Licence texts of a WebAssembly module: the package's, and those of the C library linked in.
+
+    Raises ImportError if ziglang is missing, ValueError as `licence`.
+    """
+    folder = Path(str(import_module("ziglang").__file__)).parent / "lib" / "libc" / "wasi"
+    texts = (f"wasi-libc, {name}\n\n{(folder / name).read_text(encoding='utf-8')}" for name in _WASI)
+    return "\n\n".join([f"jointfmu\n\n{licence()}", *texts])
 
 
 def _others() -> Iterator[tuple[str, bytes]]:

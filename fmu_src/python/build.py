@@ -11,6 +11,7 @@ from pathlib import Path
 from types import ModuleType
 
 from jointfmu_fmu_src.archive import pack, workshop
+from jointfmu_fmu_src.native.licence import licence
 from jointfmu_fmu_src.proof.members import proof
 from jointfmu_fmu_src.python.imports import imported
 from jointfmu_fmu_src.xml_parts import VARIABILITIES
@@ -92,6 +93,8 @@ def build(
                 f"{title}: pythonfmu in {_installed()} has no libraries for an FMU; expected them below "
                 "pythonfmu/resources/binaries: install it again"
             )
+        licences = {"license.txt": licence().encode(), "pythonfmu.txt": _pythonfmu_licence()}
+        members |= {f"documentation/licenses/{file}": text for file, text in licences.items()}
         pack(members | proof(model, parameters, native=False), work / target.name)
     return target
 
@@ -124,6 +127,14 @@ def _pythonfmu(script: Path, package: str, out: Path) -> Path:
         _taken_out(names)
         sys.modules.update(before)
     return built
+
+
+def _pythonfmu_licence() -> bytes:
+    """Licence text of pythonfmu, whose code the FMU carries. Raises RuntimeError if it is missing."""
+    files = [file for file in distribution("pythonfmu").files or () if file.name == "LICENSE"]
+    if not files:
+        raise RuntimeError(f"pythonfmu in {_installed()} has no file LICENSE; install it again")
+    return Path(str(files[0].locate())).read_bytes()
 
 
 def _installed() -> str:

@@ -146,6 +146,9 @@ def test_an_fmu_starts_with_the_inputs_of_its_parameter_file(tmp_path: Path) -> 
         for settings, expected in (({}, float(loaded["K_zz"])), ({"preload": 0.0}, 0.0)):
             found = ramp.run(path, "s_rel_z", 1e-9, 1e-9, settings).columns["K_zz"][0]
             assert found == pytest.approx(expected, rel=1e-10)  # as C and Python agree elsewhere
+    with zipfile.ZipFile(tmp_path / "python" / f"{model.name}.fmu") as archive:
+        for owner, file in (("jointfmu", "license"), ("NTNU", "pythonfmu")):
+            assert owner in archive.read(f"documentation/licenses/{file}.txt").decode()
     with zipfile.ZipFile(tmp_path / "fmi3" / f"{model.name}.fmu") as archive:
         page = archive.read("documentation/index.html").decode()
     assert "pre-tightening force of each bolt; at least 0; starts at 9000<" in page

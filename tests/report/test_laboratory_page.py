@@ -59,8 +59,15 @@ def test_the_page_is_alone_and_small(page: Path) -> None:
     text = page.read_text(encoding="utf-8")
     assert page.stat().st_size <= LARGEST
     without = re.sub(r'(<script type="text/plain" id="content">).*?(</script>)', r"\1\2", text)
+    without = re.sub(r"<summary>Licences</summary>\n<pre>.*?</pre>", "", without, flags=re.DOTALL)
     for word in ("http:", "https:", "fetch(", "XMLHttpRequest", "import(", "<link", " src="):
         assert word not in without.replace("http://www.w3.org/2000/svg", ""), word
+
+
+def test_the_page_carries_the_licences_of_what_is_linked_into_its_modules(page: Path) -> None:
+    text = page.read_text(encoding="utf-8")
+    for owner in ("the jointfmu authors", "wasi-libc as a whole", "Rich Felker", "Nuxi"):
+        assert owner in text, owner
 
 
 def test_all_models_and_parameter_files_are_there() -> None:

@@ -285,6 +285,11 @@ def test_the_reference_has_every_public_name(site: Path) -> None:
 
 def test_the_site_needs_no_network(site: Path) -> None:
     for page in site.rglob("*.html"):
+        (policy,) = re.findall(
+            r'<meta http-equiv="Content-Security-Policy" content="([^"]*)">', page.read_text(encoding="utf-8")
+        )
+        assert policy.startswith("default-src 'none'; "), page.name
+        assert "http" not in policy, page.name
         for source in Links(page).loaded:
             assert not urlsplit(source).scheme, (page.name, source)
             assert not source.startswith("//"), (page.name, source)

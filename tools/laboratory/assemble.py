@@ -10,6 +10,7 @@ from base64 import b64encode
 from pathlib import Path
 
 from jointfmu_fmu_src.joint_parts import chart
+from jointfmu_fmu_src.native.licence import webassembly_licences
 from jointfmu_fmu_src.templates import template
 
 from jointfmu import __version__
@@ -59,6 +60,7 @@ def page() -> str:
         style=chart.style() + web_file("style.css"),
         script=chart.script() + "\n".join(web_file(f"{name}.js") for name in _SCRIPTS),
         content=b64encode(content).decode(),
+        licences=webassembly_licences(),
     )
 
 
