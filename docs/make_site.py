@@ -18,8 +18,8 @@ CARRIED = {"README.md": "readme.md", "CONTRIBUTING.md": "contributing.md"}
 """{text of the repository: page of the site that shows it}."""
 LABORATORY = "laboratory/page.html"
 """Place of the laboratory in the site."""
-REFERENCE = "reference.md"
-"""Place of the reference of Python in the site."""
+SCRIPTS = {"reference.md": "reference.py", "variables.md": "variables.py"}
+"""{page of the site: script in this folder whose function `page` writes it}."""
 SITE = "site"
 """Where mkdocs.yml puts the site."""
 POLICY = "; ".join(
@@ -74,9 +74,9 @@ def laboratory() -> str:
     return page()
 
 
-def reference() -> str:
-    """What `docs/reference.py` writes; the folder of the pages is no package."""
-    return str(run_path(str(Path(__file__).with_name("reference.py")))["page"]())
+def page_of(script: str) -> str:
+    """A page as the script of this folder writes it; the folder is no package."""
+    return str(run_path(str(Path(__file__).with_name(script)))["page"]())
 
 
 def led(markdown: str, source: str) -> tuple[str, set[str]]:
@@ -101,7 +101,7 @@ def led(markdown: str, source: str) -> tuple[str, set[str]]:
 def lay_out(docs: Path) -> None:
     """All that the generator reads, in the folder `docs`."""
     shutil.copytree(ROOT / "docs", docs, ignore=shutil.ignore_patterns("*.py", "__pycache__"))
-    made = {LABORATORY: laboratory(), REFERENCE: reference()}
+    made = {LABORATORY: laboratory()} | {page: page_of(script) for page, script in SCRIPTS.items()}
     for place, text in (made | {page: carried(name) for name, page in CARRIED.items()}).items():
         (docs / place).parent.mkdir(exist_ok=True)
         (docs / place).write_text(text, encoding="utf-8")

@@ -28,6 +28,7 @@ from jointfmu_tools.parser import parser
 from PIL import Image
 
 import jointfmu
+from jointfmu.joints import MODELS
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
@@ -260,8 +261,8 @@ class Links(HTMLParser):
 def test_every_link_of_the_site_leads_somewhere(site: Path) -> None:
     pages = {page.resolve(): Links(page) for page in site.rglob("*.html") if page.name != "404.html"}
     assert (
-        len(pages) == len(PAGES) + 4
-    )  # README, CONTRIBUTING, the laboratory and the reference are pages too
+        len(pages) == len(PAGES) + 5
+    )  # README, CONTRIBUTING, the laboratory, the reference and the variables are pages too
     for page, content in pages.items():
         for link in content.links:
             parts = urlsplit(link)
@@ -281,6 +282,14 @@ def test_the_reference_has_every_public_name(site: Path) -> None:
         assert name.lower() in ids, name
     assert re.search(r"<li><code>efficiency</code>: at rated torque and 2000 rev/min \[1\]</li>", text)
     assert '"reference.html#drivejointwind_up"' in (site / "search.json").read_text("utf-8")
+
+
+def test_every_variable_of_every_fmu_is_listed(site: Path) -> None:
+    text = (site / "variables.html").read_text(encoding="utf-8")
+    for model in MODELS.values():
+        section = text.partition(f'<h2 id="{model.name.lower()}">')[2].partition("<h2")[0]
+        for name in [*(v.name for v in (*model.inputs, *model.outputs)), *model.parameter_fields()]:
+            assert f"<td><code>{name}</code></td>" in section, name
 
 
 def test_the_site_needs_no_network(site: Path) -> None:
