@@ -61,7 +61,7 @@ class Columns:
         return self.columns[name]
 
     def positive(self, names: Iterable[str], spec: Mapping[str, Sizes]) -> "Columns":
-        """Return self if all numbers of the named columns are positive, else raise ValueError with the line."""
+        """Return self; raise ValueError with the line if a number of the named columns is not positive."""
         for name in names:
             if np.any(wrong := self.columns[name] <= 0.0):
                 first = int(np.argmax(wrong))

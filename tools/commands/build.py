@@ -1,4 +1,4 @@
-"""`jointfmu build`: build FMUs from parameters; `jointfmu cache`: show or clear the cache of compiled code."""
+"""`jointfmu build`: build FMUs from parameters; `jointfmu cache`: show or clear their compiled code."""
 
 import argparse
 from collections.abc import Mapping, Sequence
