@@ -36,7 +36,7 @@ class CommandLine(Parser):
     """Top-level parser. It accepts a command without its sub-command if a default sub-command exists."""
 
     def parse_args(self, args: Any = None, namespace: Any = None) -> Any:
-        """Parse arguments, insert the default sub-command, and suggest an option similar to an unknown one."""
+        """Parse arguments. Insert the default sub-command, suggest an option similar to an unknown one."""
         words = _explicit(list(sys.argv[1:] if args is None else args))
         parsed, unknown = super().parse_known_args(words, namespace)
         if unknown:

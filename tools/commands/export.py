@@ -124,7 +124,7 @@ def _robots(args: argparse.Namespace) -> Answer:
 
 
 def _judged(args: argparse.Namespace, file: ParameterFile) -> Judgement:
-    """Judge the stiffness at the working point, else at the pressures of `--nodes`, else at a default load."""
+    """Judge the stiffness at the working point, at the pressures of `--nodes`, or else at a default load."""
     nominal = nominal_pressure(KINDS[file.joint])
     load = getattr(args, nominal.load, None) if nominal else None
     if load is None and args.nodes:

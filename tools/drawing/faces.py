@@ -273,7 +273,7 @@ class Patch(NamedTuple):
 
 
 def patch(load: Number, width: Number, curvature: Number, modulus: Number) -> Patch:
-    """Line contact of two cylinders under a load [N] (Hertz 1881; Johnson, Contact Mechanics, Eqs. 4.43-4.45).
+    """Hertzian line contact of two cylinders under a load [N] (Johnson, Contact Mechanics, Eqs. 4.43-4.45).
 
     width     : length of the contact line [m]
     curvature : relative curvature 1/R_1 + 1/R_2 [1/m], above 0

@@ -76,7 +76,7 @@ class Thread:
     d               : nominal diameter
     pitch           : pitch of the thread
     hole            : diameter of the clearance hole
-    hexagon, socket : outer diameter of the bearing face of a hexagon head and of a socket head
+    hexagon, socket : least outer diameter d_w of the bearing face of a hexagon head and of a socket head
     """
 
     name: str

@@ -1,6 +1,7 @@
 """Compliance of bolt and clamped parts, deformation cone, assembly preload, embedding: VDI 2230, part 1.
 
-Valid for concentrically clamped joints with one bolt. Lengths [m], moduli and stresses [Pa], compliances [m/N].
+Valid for concentrically clamped joints with one bolt. Lengths in m, moduli and stresses in Pa, compliances
+in m/N.
 """
 
 from collections.abc import Sequence
@@ -81,7 +82,7 @@ class ClampedPart:
 def members_compliance(
     layers: Sequence[ClampedPart], bearing: float, hole: float, outer: float, slope: float, tapped: bool
 ) -> float:
-    """Compliance delta_P [m/N] of the clamped parts: deformation cones, and a sleeve where a cone reaches D_A.
+    """Compliance delta_P [m/N] of the clamped parts: deformation cones, and a sleeve beyond diameter D_A.
 
     layers : clamped parts, starting at the head; of a tapped joint up to the thread
 
@@ -111,7 +112,10 @@ def members_compliance(
 
 
 def assembly_preload(thread: Thread, yield_strength: float) -> float:
-    """Assembly preload F_M [N] of a shank bolt: tension and torsion use 0.9 of the yield strength (Table A1)."""
+    """Assembly preload F_M [N] of a shank bolt (Table A1).
+
+    Tension and torsion together use the share YIELD_UTILISATION of the yield strength.
+    """
     d_2, d_0 = pitch_diameter(thread), 0.5 * (pitch_diameter(thread) + minor_diameter(thread))
     twist = 1.5 * d_2 / d_0 * (thread.pitch / (np.pi * d_2) + 1.155 * FRICTION)
     return float(stress_area(thread) * USE * yield_strength / np.sqrt(1.0 + 3.0 * twist**2))
