@@ -21,7 +21,7 @@ _DENSE = 64
 _LEAST = 10_000
 """Smallest number of sample points of a whole curve, for curves with few segments."""
 _FINE = 4 * _LEAST
-"""Smallest number of sample points if the stiffness error is limited too: corners of drive curves are short."""
+"""Smallest number of sample points if the stiffness error is limited too: some curves have short corners."""
 _FEWEST = 12
 """Smallest number of sample points on a line: the peak of a parabolic error is then found within 1 %."""
 

@@ -27,7 +27,7 @@ class Law(Tabled):
     """An interface law: load, stiffness, real area and dissipation of two rough surfaces in contact.
 
     parameters : parameter set of the law, see `values`; numbers or arrays (n)
-    h          : rms height of both surfaces together [m], to judge the level of the stiffness; None: not known
+    h          : rms height of both surfaces together [m], to judge the stiffness; None: not known
 
     >>> import jointfmu
     >>> law = jointfmu.law("roughness", Ra1=0.8e-6, Ra2=0.8e-6)
@@ -76,7 +76,7 @@ class Law(Tabled):
         return {name: value for name, value in self.values.items() if isinstance(value, np.ndarray)}
 
     def _column(self, name: str, values: ArrayLike) -> Array:
-        """Convert values to an array (n) or (1). Raises ValueError if it does not fit arrays of parameters."""
+        """Convert values to an array (n) or (1). Raises ValueError if parameters have another length."""
         column = np.ravel(np.asarray(values, dtype=np.float64))
         broadcast({name: column, **self._arrays}, f"law {self.name}")
         return column

@@ -29,8 +29,8 @@ if TYPE_CHECKING:
 
 _HELP = """Make {}.
 
-    Numbers have the unit stated below; a text may have its own unit: '0.8 um'. Write a size as (200, 100), and
-    different values for each side or bolt as [0.8, 1.6]. Lists, tuples and arrays are equivalent.
+    Numbers have the unit stated below; a text may have its own unit: '0.8 um'. Write a size as (200, 100),
+    and different values for each side or bolt as [0.8, 1.6]. Lists, tuples and arrays are equivalent.
 
 {}
 
