@@ -172,7 +172,7 @@ def needing(purpose: str, extra: str = "build") -> Iterator[None]:
 
 
 def settings(sub: argparse.ArgumentParser) -> None:
-    """Declare `--set NAME=VALUE ...`."""
+    """Declare the option `--set NAME=VALUE ...`, which sets parameters."""
     sub.add_argument(
         "--set",
         dest="settings",

@@ -33,7 +33,7 @@ _SI = {"K_": "N/m", "C_": "N.s/m"}
 
 
 def add(commands: Commands) -> None:
-    """Declare the command."""
+    """Declare `jointfmu export`."""
     export = command(commands, "export", _export, "write a joint for another solver")
     with_springs = exports.able("springs")
     forms = [*FORMS, *ROBOTS]

@@ -23,7 +23,7 @@ from . import declare
 
 
 def add(commands: Commands) -> None:
-    """Declare the command and its procedures."""
+    """Declare `jointfmu fit` and its procedures."""
     text = "fit a joint's parameters to a measured curve or to catalogue values"
     top = commands.add_parser("fit", help=text, description=sentence(text))
     ways = top.add_subparsers(dest="procedure", required=True, metavar="PROCEDURE", parser_class=Parser)

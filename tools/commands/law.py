@@ -18,7 +18,7 @@ from ..shown import aligned
 
 
 def add(commands: Commands) -> None:
-    """Declare the command."""
+    """Declare `jointfmu law`."""
     text = "evaluate one interface law at pressures or at areas of the largest contact spot"
     law = command(commands, "law", _law, text)
     laws = [name for name in LAWS if joints_of(name)]

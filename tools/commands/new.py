@@ -27,7 +27,7 @@ from . import declare
 
 
 def add(commands: Commands) -> None:
-    """Declare the command, with a sub-command for each joint and for each table."""
+    """Declare `jointfmu new`, with a sub-command for each joint and for each table."""
     text = "make the parameter file of a joint from the data on its drawing"
     top = commands.add_parser("new", help=text, description=sentence(text))
     things = top.add_subparsers(dest="thing", required=True, metavar="JOINT", parser_class=Parser)
@@ -93,7 +93,7 @@ _MATERIAL = {
     "H [MPa]": ("H", 1e-6),
 }
 _FINISH = {"Ra [um]": ("Ra", 1e6), "from": ("Ra_low", 1e6), "to": ("Ra_high", 1e6), "slope": ("slope", 1.0)}
-"""{heading: (column of the table, factor from SI to the unit of the heading)}; also _MATERIAL_COLUMNS."""
+"""Columns of the printed tables: {heading: (column of the table, factor from SI to the printed unit)}."""
 
 
 def _rows(name: str, heads: Mapping[str, tuple[str, float]], source: str) -> Iterator[dict[str, object]]:
@@ -140,7 +140,7 @@ TABLES: dict[str, Callable[[], Iterator[dict[str, Any]]]] = {
 
 
 def add_catalogue(commands: Commands) -> None:
-    """Declare the command."""
+    """Declare `jointfmu catalogue`."""
     sub = command(commands, "catalogue", _catalogue, "list the bought joints that jointfmu new knows")
     text = "part of the name, for example CSG-17, csg25-100 or csg 25 100"
     argument(sub, "words", str, text, "WORD", nargs="*")

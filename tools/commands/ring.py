@@ -20,7 +20,7 @@ from . import draw
 
 
 def add(commands: Commands) -> None:
-    """Declare the command."""
+    """Declare `jointfmu ring`."""
     text = "simulate a joint with a body on it and find resonance and damping over load or amplitude"
     ring = command(commands, "ring", _ring, text)
     argument(ring, "system", str, f"{', '.join(names())}, or a system's file (TOML)", "SYSTEM")

@@ -14,7 +14,7 @@ from . import draw
 
 
 def add(commands: Commands) -> None:
-    """Declare the command."""
+    """Declare `jointfmu system`."""
     text = "build a system of joints and bodies: FMUs, SSP archives and a Modelica model"
     make = command(commands, "system", _system, text)
     argument(make, "file", str, f"system file (TOML), or {', '.join(names())}", "FILE")

@@ -153,7 +153,7 @@ def _dense(curve: Curve, least: int = _LEAST) -> tuple[Array, Array, Array]:
 
 
 Heads = Sequence[tuple[str, str]]
-"""(name, SI unit) of every column."""
+"""Headings of columns: (name, SI unit) of each."""
 
 DIGITS = 12
 """Significant digits of numbers in tables."""

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Facts = Mapping[str, tuple[float, str, str]]
-"""{name: (value [SI], unit, meaning)}."""
+"""Additional results of a joint: {name: (value [SI], unit, meaning)}."""
 
 
 @dataclass(frozen=True, repr=False)

@@ -207,7 +207,7 @@ class Fit(Tabled):
 
     @plots.style()
     def plot(self) -> "Figure":
-        """Draw data, fitted law and residuals: a matplotlib figure."""
+        """Draw data, fitted law and residuals; returns a matplotlib figure."""
         figure = plots.figure(size(self.outcome))
         draw(figure, self.outcome)
         return figure

@@ -72,7 +72,7 @@ def environment(*folders: Path) -> Environment:
 
 
 TOLERANCE = 1e-7
-"""Largest relative error of load and stiffness [1] against the package's curve."""
+"""Largest relative error [1] of load and stiffness of a table, against the original curve."""
 _INNER = np.linspace(0.0, 1.0, 9)[1:-1]
 
 

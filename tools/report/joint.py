@@ -76,7 +76,7 @@ def _stiff(course: Course) -> str:
         return f"The stiffness {name} is {_told(last, units[name])}, nearly constant up to {end}."
     start = _told(first, units[name]) if first > 0.0 else "zero"
     verb = "rises" if last > first else "falls"
-    times = f", by a factor of {max(first, last) / min(first, last):.2g}" if min(first, last) > 0.0 else ""
+    times = f", by a factor of {max(first, last) / min(first, last):.3g}" if min(first, last) > 0.0 else ""
     begin = f"{over} = {_told(float(columns[over][0]), units[over])}"
     return (
         f"The stiffness {name} {verb} from {start} at {begin} to {_told(last, units[name])} at {end}{times}. "
@@ -88,10 +88,10 @@ def _lost(loops: HysteresisLoops) -> str:
     """Describe the energy loss of the largest loop in a sentence."""
     row = max(loops.rows(), key=lambda row: row["motion"])
     if not row["loss"]:
-        return "It has no hysteresis: loading and unloading follow the same curve."
+        return "The joint has no hysteresis: loading and unloading follow the same curve."
     amplitude = f"{loops.motion} = {_told(row['motion'], loops.units[0])}"
     return (
-        f"In a cycle between plus and minus {amplitude} it dissipates {_told(row['loss'], 'J')}, "
+        f"In a cycle between plus and minus {amplitude} the joint dissipates {_told(row['loss'], 'J')}, "
         f"a loss factor of {row['loss_factor']:.2g}."
     )
 

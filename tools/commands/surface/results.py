@@ -112,7 +112,7 @@ def _interval(estimate: Estimate) -> dict[str, float | None]:
 
 
 def _number(value: Number) -> float | None:
-    """Convert a number for JSON; None if it is not finite, that is not determined."""
+    """Convert a number for JSON; None if it is not finite, which means not determined."""
     return float(value) if math.isfinite(float(value)) else None
 
 
