@@ -19,7 +19,7 @@ def output(sub: Parser, name: str, kind: FileKind, text: str, *, forcible: bool 
     """Declare an option that names a file or folder to write, and the option `--force`.
 
     allow_force : whether to declare `--force`; False: a foreign file is never replaced
-    more        : keyword arguments of `declare_argument`
+    options     : keyword arguments of `declare_argument`
     """
     metavar = "DIR" if kind is FOLDER else "FILE"
     argument(sub, name, Path, text, metavar, **more)

@@ -20,7 +20,7 @@ SHOWN = 3
 
 
 def add(commands: Commands) -> None:
-    """Declare `jointfmu build`."""
+    """Declare the command `jointfmu build` with its options."""
     make = command(commands, "build", _build, "build FMUs from default or user parameters")
     argument(make, "names", str, f"FMUs to build: {', '.join(MODELS)} (default: all)", nargs="*")
     make.add_argument(
@@ -123,7 +123,7 @@ def _replaced(
 
 
 def add_cache(commands: Commands) -> None:
-    """Declare `jointfmu cache`."""
+    """Declare the command `jointfmu cache` with its options."""
     cache = command(commands, "cache", _cache, "show or clear the cache of compiled FMU code")
     cache.add_argument("--clear", action="store_true", help="clear the cache; the next build compiles again")
 

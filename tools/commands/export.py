@@ -27,13 +27,13 @@ _ABOVE = {
     "first": "a number above all elements of your model",
     "first_set": "a number above all element types and sets of real constants of your model",
 }
-"""{argument: meaning of this first number}."""
+"""Meanings for error messages: {argument for a first free number: meaning}."""
 _SI = {"K_": "N/m", "C_": "N.s/m"}
 """{first letters of a printed quantity: its SI unit}."""
 
 
 def add(commands: Commands) -> None:
-    """Declare `jointfmu export`."""
+    """Declare the command `jointfmu export` with its options."""
     export = command(commands, "export", _export, "write a joint for another solver")
     with_springs = exports.able("springs")
     forms = [*FORMS, *ROBOTS]

@@ -18,7 +18,7 @@ from ..shown import aligned
 
 
 def add(commands: Commands) -> None:
-    """Declare `jointfmu law`."""
+    """Declare the command `jointfmu law` with its options."""
     text = "evaluate one interface law at pressures or at areas of the largest contact spot"
     law = command(commands, "law", _law, text)
     laws = [name for name in LAWS if joints_of(name)]

@@ -15,7 +15,7 @@ from ..pressure import judge_file, without_members
 
 
 def add(commands: Commands) -> None:
-    """Declare `jointfmu modelica`."""
+    """Declare the command `jointfmu modelica` with its options."""
     make = command(commands, "modelica", _modelica, "write the Modelica library JointStiffness")
     argument(make, "--params", Path, "parameter file of one joint, in place of its default (TOML)")
     for name, kinds in _inputs().items():

@@ -99,8 +99,8 @@ _FINISH = {"Ra [um]": ("Ra", 1e6), "from": ("Ra_low", 1e6), "to": ("Ra_high", 1e
 def _rows(name: str, heads: Mapping[str, tuple[str, float]], source: str) -> Iterator[dict[str, object]]:
     """Yield the rows of `materials` or `finishes`.
 
-    heads  : {heading: (column of the table, factor from SI)}
-    source : format string for the column `source`, filled with the numbers of the row
+    column_scales : {heading: (column of the table, factor from SI to the printed unit)}
+    source        : format string for the column `source`, filled with the numbers of the row
     """
     from ..drawing.tables import table
 
@@ -140,7 +140,7 @@ TABLES: dict[str, Callable[[], Iterator[dict[str, Any]]]] = {
 
 
 def add_catalogue(commands: Commands) -> None:
-    """Declare `jointfmu catalogue`."""
+    """Declare the command `jointfmu catalogue` with its options."""
     sub = command(commands, "catalogue", _catalogue, "list the bought joints that jointfmu new knows")
     text = "part of the name, for example CSG-17, csg25-100 or csg 25 100"
     argument(sub, "words", str, text, "WORD", nargs="*")

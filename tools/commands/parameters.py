@@ -20,7 +20,7 @@ _HEAD = ("name", "default", "unit", "allowed", "meaning")
 
 
 def add(commands: Commands) -> None:
-    """Declare `jointfmu parameters`."""
+    """Declare the command `jointfmu parameters` with its options."""
     text = "list the parameters of an FMU, a joint or an interface law"
     sub = command(commands, "parameters", _parameters, text)
     text = f"an FMU ({', '.join(MODELS)}), a joint ({', '.join(KINDS)}) or a law ({', '.join(LAWS)})"

@@ -22,7 +22,7 @@ from ..published import validation
 
 
 def add(commands: Commands) -> None:
-    """Declare `jointfmu prove`."""
+    """Declare the command `jointfmu prove` with its options."""
     text = "run the experiments stored in an FMU (FMI-LS-REF) and compare with its reference results"
     sub = command(commands, "prove", _prove, text)
     argument(sub, "fmu", Path, "path of the FMU", "FMU")
@@ -73,7 +73,7 @@ def _expected(fmu: Path, path: Path) -> Expected:
 
 
 def add_validate(commands: Commands) -> None:
-    """Declare `jointfmu validate`."""
+    """Declare the command `jointfmu validate` with its options."""
     sub = command(commands, "validate", _validate, "compare computed results with all published numbers")
     text = "also compare the measured natural frequencies, by finite elements (half a minute)"
     sub.add_argument("--frequencies", action="store_true", help=text)

@@ -28,7 +28,7 @@ ROWS = 24
 
 
 def add(commands: Commands) -> None:
-    """Declare `jointfmu ramp`."""
+    """Declare the command `jointfmu ramp` with its options."""
     text = "run an FMU along a load ramp and print its outputs, or in load cycles and print the energy loss"
     drive = command(commands, "ramp", _run, text)
     argument(drive, "fmu", Path, "path of the FMU", "FMU")

@@ -11,7 +11,7 @@ from ..interface.make import load
 
 
 def add(commands: Commands) -> None:
-    """Declare `jointfmu report`."""
+    """Declare the command `jointfmu report` with its options."""
     text = "write a page about one joint: curves, loops, friction, sources of the numbers, validity"
     make = command(commands, "report", _report, text)
     argument(make, "file", Path, "parameter file (TOML), or name of an FMU, a joint or a catalogue entry")

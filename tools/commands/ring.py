@@ -20,7 +20,7 @@ from . import draw
 
 
 def add(commands: Commands) -> None:
-    """Declare `jointfmu ring`."""
+    """Declare the command `jointfmu ring` with its options."""
     text = "simulate a joint with a body on it and find resonance and damping over load or amplitude"
     ring = command(commands, "ring", _ring, text)
     argument(ring, "system", str, f"{', '.join(names())}, or a system's file (TOML)", "SYSTEM")
@@ -123,7 +123,7 @@ def _falling(point: Any) -> tuple[np.ndarray[Any, Any], ...]:
 def _check(args: argparse.Namespace, unit: str) -> None:
     """Raise ValueError before the work starts if load, inertia or amplitude is out of range.
 
-    unit : unit of the inertia
+    inertia_unit : unit of the inertia in the message
     """
     for value in args.load or ():
         if not math.isfinite(value):
@@ -153,7 +153,7 @@ def _row(point: Any) -> dict[str, float]:
 
 
 def _table(rows: list[dict[str, float]], load: str) -> str:
-    """Format the rows as CSV text with six digits. `load` is the unit of the load."""
+    """Format the rows as CSV text with six digits; headings with units."""
     units = (load, "Hz", "Hz", "1", "1", "s", "s")
     values = [np.array([row[name] for row in rows]) for name in rows[0]]
     return columns.text(list(zip(rows[0], units, strict=True)), values, digits=6)

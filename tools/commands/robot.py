@@ -27,7 +27,7 @@ MOST = 1e4
 
 
 def add(commands: Commands) -> None:
-    """Declare `jointfmu robot`."""
+    """Declare the command `jointfmu robot` with its options."""
     text = "add elastic drives to joints of a robot (MJCF, URDF)"
     sub = command(commands, "robot", run, text)
     several: dict[str, Any] = {"nargs": "+", "action": "extend"}
@@ -53,7 +53,7 @@ def add(commands: Commands) -> None:
 
 
 def run(args: argparse.Namespace) -> Answer:
-    """Run `jointfmu robot`."""
+    """Run the command `jointfmu robot`."""
     names, angles = _pairs(args.drive, "--drive", "NAME"), _pairs(args.pose, "--pose", "ANGLE")
     if not 0.0 <= args.payload <= MOST:
         raise ValueError(f"--payload = {args.payload:g} kg is outside [0, {MOST:g}] kg")

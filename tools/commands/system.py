@@ -14,7 +14,7 @@ from . import draw
 
 
 def add(commands: Commands) -> None:
-    """Declare `jointfmu system`."""
+    """Declare the command `jointfmu system` with its options."""
     text = "build a system of joints and bodies: FMUs, SSP archives and a Modelica model"
     make = command(commands, "system", _system, text)
     argument(make, "file", str, f"system file (TOML), or {', '.join(names())}", "FILE")
@@ -77,7 +77,8 @@ def _system(args: argparse.Namespace) -> Answer:
 def _beyond(system: System, longest: float, joint: str) -> str:
     """Format a warning if the system's interval is longer than the largest stable step; else empty.
 
-    longest : largest stable step [s], that of the named joint
+    largest_step : largest stable step [s] of a co-simulation
+    joint        : joint that limits the step
     """
     if system.interval <= longest:
         return ""

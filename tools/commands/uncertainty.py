@@ -25,7 +25,7 @@ SYNTAX = (
 
 
 def add(commands: Commands) -> None:
-    """Declare `jointfmu uncertainty`."""
+    """Declare the command `jointfmu uncertainty` with its options."""
     text = "compute uncertainty bands of a joint's curves from uncertain parameters"
     study = command(commands, "uncertainty", _uncertainty, text)
     study.epilog = SYNTAX
@@ -76,7 +76,7 @@ def _uncertainty(args: argparse.Namespace) -> Answer:
 
 
 def add_sweep(commands: Commands) -> None:
-    """Declare `jointfmu sweep`."""
+    """Declare the command `jointfmu sweep` with its options."""
     many = command(
         commands, "sweep", _sweep, "run an FMU along a load ramp for many samples of its parameters"
     )

@@ -132,7 +132,7 @@ def classes() -> dict[str, dict[str, tuple[float, float]]]:
 
 
 LARGE = 16e-3
-"""Diameter [m] above which the second stress of a property class holds."""
+"""Thread diameter [m] above which the second strength of a property class in the table holds."""
 
 
 def strength(name: str, key: str, thread: Thread) -> float:

@@ -79,7 +79,7 @@ def load(source: str | Path) -> Joint:
 def made(drawing: Drawing, stated: Mapping[str, object]) -> Joint:
     """Make the joint of a drawing.
 
-    options : {option: value}, see `_to_command_line_value`
+    option_values : {option: value}, in the forms that `_to_command_line_value` accepts
 
     Raises ValueError for an unknown or missing option, or an impossible value. The message names options as
     on the command line.

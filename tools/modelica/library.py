@@ -129,7 +129,7 @@ def _joint(
 
 
 def _start(file: ParameterFile) -> list[WorkingPoint]:
-    """Working point from the start values of the inputs in the file; empty if the file states none."""
+    """Working point given by the start values of the inputs in a parameter file, as a list of one or none."""
     point = tuple(file.start(name) for name in KINDS[file.joint].working_point)
     return [point] if point and point[0] > 0.0 else []
 

@@ -127,7 +127,7 @@ def thinned(
 def _segment_error(curve: Curve, i: int, j: int, floor: tuple[float, float]) -> float:
     """Largest relative error of load and stiffness if one quintic leads from node i to node j.
 
-    floor : load and stiffness to which the errors are relative at least
+    min_reference : smallest load and stiffness to which the errors are relative
     """
     ends = [i, j]
     quintic = Curve(

@@ -14,7 +14,7 @@ from ..ramps.loops import HysteresisLoops, Swing, conjugate, of
 from ..ramps.ramp import RampResult
 
 _POINTS = 101
-"""Points of the load ramp."""
+"""Number of points of the load ramp."""
 _SWING = Swing(points=80)
 """Load cycle: points per cycle, shape, number of cycles."""
 PARTS = (0.25, 0.5, 1.0)

@@ -54,8 +54,9 @@ def judge_assembly(
 ) -> Judgement:
     """Judge the stiffness of an assembly's contact, and the preload against the proof load of the bolts.
 
-    preload    : of each bolt [N]
-    mean, peak : mean and greatest contact pressure [Pa]
+    preload       : preload of each bolt [N]
+    mean_pressure : mean contact pressure [Pa]
+    peak_pressure : greatest contact pressure [Pa]
     """
     judgement = judge(KINDS[file.joint].law_of(file.values), [mean], known_height(file), peak)
     return judgement.with_warnings(overload("preload", preload, proof_load(assembly.bolts.hole_diameter)))

@@ -28,7 +28,7 @@ COARSEST = 0.3
 
 
 def add(commands: Commands) -> None:
-    """Declare `jointfmu footprint compute`."""
+    """Declare the command `jointfmu footprint compute` with its options."""
     text = "compute the contact pressure of a bolted joint by finite elements"
     sub = command(commands, "compute", run, text)
     assembly_arguments(sub)
@@ -47,7 +47,7 @@ def add(commands: Commands) -> None:
 
 
 def run(args: argparse.Namespace) -> Answer:
-    """Run `jointfmu footprint compute`."""
+    """Run the command `jointfmu footprint compute`."""
     with installed("the finite-element analysis"):
         from ...fem import convergence, results
         from ...fem.assembly import load as read

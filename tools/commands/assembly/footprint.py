@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 def add_footprint(commands: Commands) -> None:
-    """Declare `jointfmu footprint` and its sub-commands."""
+    """Declare the command `jointfmu footprint` with its sub-commands."""
     text = "import or compute the contact pressure of a bolted joint"
     top = commands.add_parser("footprint", help=text, description=sentence(text))
     steps = top.add_subparsers(dest="step", required=True, metavar="STEP", parser_class=Parser)

@@ -22,7 +22,7 @@ MOST = 40
 
 
 def add_modes(commands: Commands) -> None:
-    """Declare `jointfmu modes`."""
+    """Declare the command `jointfmu modes` with its options."""
     text = "compute natural frequencies of a free bolted assembly with contact stiffness"
     sub = command(commands, "modes", run, text)
     assembly_arguments(sub)
@@ -33,7 +33,7 @@ def add_modes(commands: Commands) -> None:
 
 
 def run(args: argparse.Namespace) -> Answer:
-    """Run `jointfmu modes`."""
+    """Run the command `jointfmu modes`."""
     with installed("the finite-element analysis"):
         from ...fem import modes as assembly_modes
         from ...fem import results

@@ -27,7 +27,7 @@ SUBCOMMANDS = IMPLIED["surface"]
 
 
 def add(commands: Commands) -> None:
-    """Declare `jointfmu surface` and its sub-commands."""
+    """Declare the command `jointfmu surface` with its sub-commands."""
     text = "identify fractal dimension D and roughness G of a measured surface or of a pair"
     top = commands.add_parser("surface", help=text, description=f"{sentence(text)} Synthesize a surface.")
     steps = top.add_subparsers(dest="step", metavar="STEP", parser_class=Parser)

@@ -19,7 +19,7 @@ SHAPES = ("isotropic", "textured", "profile")
 
 
 def add(steps: Commands, name: str) -> None:
-    """Declare `jointfmu surface synthesize`."""
+    """Declare the command `jointfmu surface synthesize` with its options."""
     make = command(steps, name, _synthesize, "make a random Weierstrass-Mandelbrot surface")
     text = "kind of surface (default: isotropic, Hu 2023, Eq. 1)"
     make.add_argument("--shape", choices=SHAPES, default=SHAPES[0], help=text)
