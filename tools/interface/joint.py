@@ -60,7 +60,7 @@ class Joint(Tabled):
 
     @property
     def fmus(self) -> dict[str, Model]:
-        """FMUs that can be built of the joint: {name: model}. The first one is the default of all methods."""
+        """FMUs that can be built of the joint: {name: model}. Methods evaluate the first one by default."""
         return {model.name: model for model in KINDS[self.file.joint].models}
 
     @property
