@@ -1,4 +1,4 @@
-"""What a joint's file `catalogue.py` gives: bought joints whose published numbers ship with the package."""
+"""Catalogue of bought joints: published numbers of makers, defined by a joint's module `catalogue.py`."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -6,10 +6,13 @@ from typing import NamedTuple
 
 
 class Printed(NamedTuple):
-    """A number [SI], where it comes from (one of parameters.ORIGINS), and the source.
+    """A number with its source.
 
-    bound    : it is printed as an upper limit, not as a value
-    interval : of an estimate [SI], where it is known
+    value    : [SI]
+    kind     : origin, one of parameters.ORIGINS
+    source   : document, table or estimate that the number is taken from
+    bound    : whether the number is printed as an upper limit, not as a value
+    interval : lower and upper end of an estimate [SI]; None if unknown
     """
 
     value: float
@@ -21,7 +24,7 @@ class Printed(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """A number of the joints of a catalogue: name, SI unit, meaning, and the unit that it is shown in."""
+    """A column of a catalogue: name, SI unit, meaning, and display unit."""
 
     name: str
     unit: str
@@ -31,7 +34,7 @@ class Column:
 
 @dataclass(frozen=True, slots=True)
 class Item:
-    """A joint of a catalogue: its name, and its numbers by column, where they are known."""
+    """An entry of a catalogue: name of the joint, and {column: number} of the known numbers."""
 
     name: str
     numbers: dict[str, Printed]
@@ -39,10 +42,10 @@ class Item:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Catalogue:
-    """CATALOGUE of the file catalogue.py in a joint's folder.
+    """Catalogue of one kind of joint: the constant CATALOGUE in `catalogue.py` of the joint's folder.
 
-    columns : of every joint, in the order in which they are shown
-    items   : the joints, in the order of the catalogue
+    columns : columns in display order
+    entries : function that returns the joints in the order of the printed catalogue
     """
 
     columns: Sequence[Column]

@@ -1,6 +1,6 @@
 """The command line `jointfmu COMMAND`.
 
-Exit status 0: done; 1: the work failed its check; 2: bad input, one line on standard error.
+Exit status 0: success; 1: a check failed; 2: bad input, with one line on standard error; 130: interrupted.
 """
 
 import os
@@ -12,7 +12,7 @@ from typing import Any
 def main(argv: Sequence[str] | None = None) -> int:
     """Run one command; returns the exit status.
 
-    All imports but the interpreter's own are in here: they take a second, in which Ctrl-C may come.
+    All imports of the package are inside this function. They take a second, and Ctrl-C must work meanwhile.
     """
     name = "jointfmu"
     try:
@@ -29,20 +29,20 @@ def main(argv: Sequence[str] | None = None) -> int:
         print(f"{name}: interrupted{hint}", file=sys.stderr)
         return 130
     except BrokenPipeError:
-        # What is still buffered goes nowhere, else the interpreter reports it at its end.
+        # Discard buffered output: otherwise the interpreter reports the broken pipe when it exits.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
 
 
 def _interrupted(error: BaseException | None) -> bool:
-    """Whether Ctrl-C is behind an error: some packages' imports then raise ImportError from it."""
+    """Return whether Ctrl-C caused an error. Some packages turn KeyboardInterrupt into ImportError."""
     while error is not None and not isinstance(error, KeyboardInterrupt):
         error = error.__cause__ or error.__context__
     return error is not None
 
 
 def _run(args: Any, name: str) -> int:
-    """Run the command; what it refuses is one line."""
+    """Run a parsed command; returns the exit status. Errors of the command are printed on one line."""
     from jointfmu.progress import told
     from jointfmu.quantity.refusal import Refusal
 

@@ -1,9 +1,9 @@
-"""Columns of numbers in CSV: every column states its unit, nothing is guessed.
+"""Tables of numbers in CSV files. Every column must state its unit.
 
-The first line that is no comment (#) names the columns, `torque [N.m], angle [arcmin]`. Columns are
-separated by semicolon, tab or comma; numbers have a decimal point or, where the comma divides no
-columns, a comma. A unit may also be written `Angle (deg)`, `F / N` or `speed_rad_per_s`. Columns that are
-not asked for are passed over. What is written has commas and points.
+The heading is the first line that is no comment (#): `torque [N.m], angle [arcmin]`. Semicolons, tabs or
+commas separate the columns. Numbers have a decimal point; they may have a decimal comma if commas do not
+separate the columns. A unit may also be written `Angle (deg)`, `F / N` or `speed_rad_per_s`. Columns that
+the caller does not ask for are ignored. Written files have commas as separators and decimal points.
 """
 
 import csv
@@ -25,26 +25,28 @@ from jointfmu.quantity import Array
 from jointfmu.quantity.units import Sizes, measured
 
 Column: TypeAlias = NDArray[Any]
-"""Real or whole numbers."""
+"""Array of real or whole numbers."""
 Head: TypeAlias = tuple[str, str | None]
-"""Name and unit of a column; None: it states none."""
+"""Name and unit of a column; None if the column states no unit."""
 
 CONTROL = re.compile(rb"[\x00-\x08\x0e-\x1f]")
-"""What no text has."""
+"""Control characters: a file that has them is no text."""
 _HEADING = re.compile(r"\s*(?P<name>[^\[\]]*?)\s*(?:\[\s*(?P<unit>[^\[\]]*?)\s*\])?\s*$")
 _WRITTEN = re.compile(r"\S.* \[[^\[\]]+\]")
-"""The heading of a column as `text` writes it."""
+"""Heading of one column as `format_table` writes it: `name [unit]`."""
 HEAD = 65536
-"""Bytes of a file in which its heading is looked for."""
+"""Bytes at the start of a file that are searched for its heading."""
 _OTHERWISE = re.compile(r"\s*(?P<name>[^()/]*?)\s*(?:\(\s*(?P<one>[^()]+?)\s*\)|/\s*(?P<two>\S+))\s*$")
-"""`name (unit)` and `name / unit`."""
+"""Alternative headings of a column: `name (unit)` and `name / unit`."""
 
 
 @dataclass(frozen=True, slots=True)
 class Columns:
-    """Columns of a file in SI units, in the order of its rows, which are on the named lines.
+    """Columns (n) of a file, in SI units.
 
-    units : {name: unit in the heading}
+    columns : {name: values (n)}
+    lines   : line number of each row in the file
+    units   : {name: unit in the heading of the file}
     """
 
     path: Path
@@ -53,13 +55,13 @@ class Columns:
     units: Mapping[str, str] = field(default_factory=dict)
 
     def require(self, name: str, spec: Mapping[str, Sizes]) -> Array:
-        """A column; ValueError if the file has none."""
+        """Return a column. Raises ValueError if the file does not have the column."""
         if name not in self.columns:
             raise ValueError(f"{self.path}: has no column {name!r}; expected {heading({name: spec[name]})}")
         return self.columns[name]
 
     def positive(self, names: Iterable[str], spec: Mapping[str, Sizes]) -> "Columns":
-        """The same; ValueError, naming the line, if one of these columns has a number that is not above 0."""
+        """Return self; raise ValueError with the line if a number of the named columns is not positive."""
         for name in names:
             if np.any(wrong := self.columns[name] <= 0.0):
                 first = int(np.argmax(wrong))
@@ -69,7 +71,7 @@ class Columns:
 
 
 def is_table(path: Path) -> bool:
-    """Whether a file has the heading of a table that `text` writes: every column as `name [unit]`."""
+    """Return whether a file has a heading as `format_table` writes it: every column as `name [unit]`."""
     with path.open("rb") as file:
         lines = file.read(HEAD).decode("utf-8", "replace").splitlines()
     head = next((line for line in lines if not line.startswith("#")), "")
@@ -81,7 +83,7 @@ FIELD = FileKind("field", (".csv", ".vtu"), lambda path: is_table(path) or MESH.
 
 
 def heading(spec: Mapping[str, Sizes]) -> str:
-    """The columns with their units as text."""
+    """Format the expected columns with their allowed units, for error messages."""
     return ", ".join(f"{name} [{' | '.join(units)}]" for name, units in spec.items())
 
 
@@ -92,14 +94,16 @@ def read(
     others: Mapping[str, Sequence[str]] | None = None,
     stated: Mapping[str, Head] | None = None,
 ) -> Columns:
-    """Read the columns named in `spec` that a file has.
+    """Read from a file those columns of `spec` that the file has.
 
-    others : {name in `spec`: other names in lower case}; the unit tells which of several is meant
-    stated : {name in `spec`: the heading that it has in this file, and its unit, or None for the heading's}
+    spec            : {name: {allowed unit: its size in SI}}
+    min_rows        : rows that the file must have at least
+    aliases         : {name in `spec`: other names in lower case}; the unit decides between several names
+    stated_headings : {name in `spec`: (heading in this file, unit)}; unit None: the unit of the heading
 
-    Raises ValueError, one line with file, line and column: no file, no text, no heading, a column
-    without or with a foreign unit or given twice, a row of another length, a value that is no finite
-    number, fewer than `least` rows.
+    Raises ValueError, one line with file, line and column: no file, no text, no heading, a column that has
+    no unit or a wrong unit or stands twice, a row of another length, a value that is no finite number, or
+    fewer than `min_rows` rows.
     """
     path = Path(path)
     lines = content(path)
@@ -123,7 +127,10 @@ def read(
 
 
 def names(path: str | Path) -> list[str]:
-    """Names of a file's columns, in lower case; none if it is empty. Raises ValueError as `read`."""
+    """Read the names of a file's columns in lower case; an empty list if the file is empty.
+
+    Raises ValueError if the file cannot be read or is no text.
+    """
     lines = content(Path(path), 1)
     if not lines:
         return []
@@ -131,7 +138,7 @@ def names(path: str | Path) -> list[str]:
 
 
 def head(cell: str) -> Head:
-    """Name and unit of a heading: `angle [deg]`, `Angle (deg)` or `angle / deg`."""
+    """Parse the heading of one column into name and unit: `angle [deg]`, `Angle (deg)` or `angle / deg`."""
     if match := _HEADING.match(cell):
         if match["unit"] is None and (other := _OTHERWISE.match(cell)):
             return other["name"], other["one"] or other["two"]
@@ -140,17 +147,19 @@ def head(cell: str) -> Head:
 
 
 def content(path: Path, most: int | None = None) -> list[tuple[int, str]]:
-    """Numbers and texts of a file's lines (the first `most`), without comments and empty ones.
+    """Read (line number, text) of a file's lines, without comments and empty lines.
 
-    Raises ValueError as `text_lines`.
+    max_lines : number of lines to return; None: all
+
+    Raises ValueError if the file cannot be read or is no text.
     """
     lines = enumerate(text_lines(path), 1)
-    told = ((i, line) for i, line in lines if line.strip() and not line.lstrip().startswith("#"))
-    return list(islice(told, most))
+    rows = ((i, line) for i, line in lines if line.strip() and not line.lstrip().startswith("#"))
+    return list(islice(rows, most))
 
 
 def text_lines(path: Path) -> list[str]:
-    """All lines of a file. Raises ValueError, one line, if the file cannot be read or is no text."""
+    """Read all lines of a file. Raises ValueError, one line, if the file cannot be read or is no text."""
     try:
         return decoded(read_bytes(path, "a CSV file")).splitlines()
     except UnicodeDecodeError:
@@ -158,7 +167,7 @@ def text_lines(path: Path) -> list[str]:
 
 
 def decoded(raw: bytes) -> str:
-    """Text in UTF-8, or else in Latin-1. Raises UnicodeDecodeError if that has control characters."""
+    """Decode UTF-8, else Latin-1. Raises UnicodeDecodeError if Latin-1 text has control characters."""
     try:
         return raw.decode("utf-8-sig")
     except UnicodeDecodeError:
@@ -168,23 +177,23 @@ def decoded(raw: bytes) -> str:
 
 
 def separator(line: str) -> str | None:
-    """What separates the columns of a line: semicolon or tab if it has any, else comma; None: nothing."""
+    """Find the separator of a line: semicolon, else tab, else comma; None if the line has none of them."""
     return next((mark for mark in ";\t," if mark in line), None)
 
 
 def cells(line: str, mark: str | None) -> list[str]:
-    """The cells of a line; without a separator blanks divide nothing."""
+    """Split a line into cells. Without a separator the line is one cell: blanks do not separate."""
     return next(csv.reader([line], delimiter=mark or ","))
 
 
 def check_length(path: Path, line: int, row: Sequence[str], count: int) -> None:
-    """Raise ValueError naming the line if it has not as many columns as it should."""
+    """Raise ValueError with the line number if a row does not have `count` cells."""
     if len(row) != count:
         raise ValueError(f"{path}: line {line} has {len(row)} columns, expected {count}")
 
 
 def number(cell: str) -> float | None:
-    """A cell as a number with a decimal point or comma; None if it is none."""
+    """Parse a cell as a number with decimal point or comma; None if the cell is no number."""
     try:
         return float(cell if "." in cell else cell.replace(",", ".", 1))
     except ValueError:
@@ -192,22 +201,30 @@ def number(cell: str) -> float | None:
 
 
 def _renamed(path: Path, cells: Sequence[str], stated: Mapping[str, Head]) -> list[str]:
-    """The cells of a heading with the names and units that are stated of them."""
-    known = {head(cell)[0].lower(): place for place, cell in enumerate(cells)}
-    found = list(cells)
-    for name, (wanted, unit) in stated.items():
-        if wanted.lower() not in known:
-            raise ValueError(f"{path}: has no column {wanted!r} for {name}; it has {', '.join(known)}")
-        place = known[wanted.lower()]
-        unit = unit or head(cells[place])[1]
-        found[place] = name if unit is None else f"{name} [{unit}]"
-    return found
+    """Replace headings by the names and units that the caller states for them.
+
+    Raises ValueError if the file does not have a stated heading.
+    """
+    indices = {head(cell)[0].lower(): index for index, cell in enumerate(cells)}
+    headings = list(cells)
+    for name, (heading_in_file, unit) in stated.items():
+        if heading_in_file.lower() not in indices:
+            raise ValueError(
+                f"{path}: has no column {heading_in_file!r} for {name}; it has {', '.join(indices)}"
+            )
+        index = indices[heading_in_file.lower()]
+        unit = unit or head(cells[index])[1]
+        headings[index] = name if unit is None else f"{name} [{unit}]"
+    return headings
 
 
 def _places(
     path: Path, cells: Sequence[str], spec: Mapping[str, Sizes], others: Mapping[str, Sequence[str]]
 ) -> dict[str, tuple[int, float, str]]:
-    """{name: (place, size of its unit, the unit)} of the columns asked for."""
+    """Find the columns of `spec` in a heading: {name: (index, size of its unit in SI, unit)}.
+
+    Raises ValueError for a column that stands twice, has no unit or a wrong unit, or if there is no column.
+    """
     places: dict[str, tuple[int, float, str]] = {}
     named = {head(cell)[0].lower() for cell in cells}
     others = {name: words for name, words in others.items() if name not in named}
@@ -236,7 +253,10 @@ def _places(
 
 
 def _called(cell: str, spec: Mapping[str, Sizes], others: Mapping[str, Sequence[str]]) -> Head:
-    """Column and unit that a heading means; the unit may be the end of its name, `joint_speed_rad_per_s`."""
+    """Identify the column of `spec` and the unit that a heading means.
+
+    The unit may be the end of the name: `joint_speed_rad_per_s`.
+    """
     name, unit = head(cell)
     found = name.lower() if name.lower() in spec else _meant(name.lower(), unit, spec, others)
     if found in spec or unit is not None:
@@ -253,7 +273,7 @@ def _called(cell: str, spec: Mapping[str, Sizes], others: Mapping[str, Sequence[
 def _meant(
     word: str, unit: str | None, spec: Mapping[str, Sizes], others: Mapping[str, Sequence[str]]
 ) -> str:
-    """The column that has another name, by its unit; else the name itself."""
+    """Return the column of `spec` that has `word` as an alias and allows the unit; else `word` itself."""
     for name, words in others.items():
         if word in words and name in spec and unit is not None:
             with suppress(ValueError):
@@ -276,10 +296,10 @@ def _column(path: Path, name: str, numbers: Sequence[int], column: Sequence[str]
 def text(
     heads: Sequence[Head], columns: Sequence[Column], digits: int | None = None, above: Sequence[str] = ()
 ) -> str:
-    """Columns (n) as the text of a file: heading `name [unit]`, one line per row.
+    """Format columns (n) as CSV text: heading `name [unit]`, one line per row.
 
-    digits : of real numbers; None: as many as give the number back to the last bit
-    above  : lines before the heading
+    digits       : significant digits of real numbers; None: as many as restore the number exactly
+    header_lines : lines before the heading
     """
     first = io.StringIO()
     names = [name if unit is None else f"{name} [{unit}]" for name, unit in heads]
@@ -288,7 +308,7 @@ def text(
 
 
 def rows(columns: Iterable[Column], digits: Sequence[int | None], between: str = ",") -> list[str]:
-    """The lines of `text`, each column with its own digits; rounded numbers have no negative zero."""
+    """Format columns (n) as lines, each column with its own digits. Rounded numbers have no negative zero."""
     formats, values = [], []
     for column, count in zip(columns, digits, strict=True):
         exact = count is None or column.dtype.kind != "f"

@@ -1,5 +1,4 @@
-"""What the Weierstrass-Mandelbrot functions of this package have in common, and their constants; height of a
-surface of D and G.
+"""Formulas of Weierstrass-Mandelbrot surfaces: spectrum, structure function, rms height from D and G.
 
 All lengths are SI. H is the Hurst exponent: H = 2 - D of a profile, H = 3 - D of a surface.
 The derivations are in docs/surfaces.md.
@@ -11,7 +10,7 @@ from jointfmu.quantity import Number
 
 
 def wave_power(frequency: Number, H: Number, G: Number) -> Number:
-    """Phi [m2], variance of height per unit of ln(frequency) [1/m]: G^(2(1-H)) frequency^(-2H)/2.
+    """Phi [m2], height variance per unit of ln(frequency): G^(2(1-H)) frequency^(-2H)/2, frequency [1/m].
 
     A wave of length l has the amplitude G^(1-H) sqrt(ln gamma) l^H (Hu 2023, Eqs. 1-3; Zhao 2018,
     Eq. 5; Yu 2022, Eq. 4) and there is one in every ln(gamma). Phi/frequency is the one-sided power
@@ -32,15 +31,18 @@ def structure_constant(H: Number) -> Number:
 
 
 def second_difference(H: Number) -> Number:
-    """V(tau)/S(tau) = 4 - 4^H [1] of a power law, V(tau) = 4 S(tau) - S(2 tau)."""
+    """V(tau)/S(tau) = 4 - 4^H [1] for a power-law structure function S, with V(tau) = 4 S(tau) - S(2 tau).
+
+    V is the mean square of the second difference of heights at the lag tau.
+    """
     return 4.0 - 4.0**H
 
 
 def profile_share(H: Number) -> Number:
-    """kappa [1], power of a line cut out of an isotropic surface over that of the surface itself.
+    """kappa [1], ratio of the power Phi of a profile of an isotropic surface to that of the surface.
 
-    kappa = mean of |cos a|^(2H) over all directions a = Gamma(H + 1/2)/(sqrt(pi) Gamma(H + 1)), since
-    waves that meet the line at an angle are stretched along it.
+    kappa = mean of |cos a|^(2H) over all directions a = Gamma(H + 1/2)/(sqrt(pi) Gamma(H + 1)). A wave that
+    crosses the profile at an angle appears longer in the profile.
     """
     from scipy.special import gammaln  # slow to import, and every command imports this module
 
@@ -48,30 +50,31 @@ def profile_share(H: Number) -> Number:
 
 
 def areal_roughness(G: Number, H: Number) -> Number:
-    """G [m] of the isotropic surface (Hu 2023, Eq. 1) whose lines have the profile's G [m]."""
+    """G [m] of the isotropic surface (Hu 2023, Eq. 1) whose profiles have the given G [m]."""
     return G * profile_share(H) ** (-0.5 / (1.0 - H))
 
 
 def zhao_roughness(G: Number, H: Number, gamma: Number) -> Number:
-    """G [m] in the sense of Zhao 2018, Eqs. 1 and 30, whose waves lack the factor sqrt(ln gamma)."""
+    """G [m] as defined in Zhao 2018, Eqs. 1 and 30, where the waves do not have the factor sqrt(ln gamma)."""
     return G * np.log(gamma) ** (0.5 / (1.0 - H))
 
 
 def hurst(D: Number, areal: bool = False) -> Number:
-    """Hurst exponent H [1] of a profile's dimension D, 2 - D, or of a surface's, 3 - D."""
+    """Hurst exponent H [1] from the fractal dimension D: 2 - D of a profile, 3 - D of a surface."""
     return (3.0 if areal else 2.0) - D
 
 
 def height(D: Number, G: Number, longest: Number, areal: bool = False, gamma: Number | None = None) -> Number:
-    """Rms height h [m] of the isotropic surface of D [1] and G [m], of all waves up to the longest [m].
+    """Rms height h [m] of an isotropic surface with D [1] and G [m], for all waves up to the longest one.
 
-    areal : whether D and G are those of the surface (Hu 2023, Eq. 1) or of its profiles (Zhao 2018, Eq. 5;
-            Yu 2022, Eq. 4)
-    gamma : frequency ratio of a Weierstrass-Mandelbrot function that has a wave of just the longest length,
-            h^2 = Phi ln(gamma)/(1 - gamma^(-2H)); without it, the mean over where its waves lie, which is
-            the spectrum's, h^2 = Phi/(2H)
+    longest_wave : longest wavelength L [m]
+    is_areal     : whether D and G are those of the surface (Hu 2023, Eq. 1) or of its profiles (Zhao 2018,
+                   Eq. 5; Yu 2022, Eq. 4)
+    gamma        : frequency ratio of a Weierstrass-Mandelbrot function with a wave of exactly the length L:
+                   h^2 = Phi ln(gamma)/(1 - gamma^(-2H)). None: the continuous spectrum, h^2 = Phi/(2H), which
+                   is the mean over all positions of the waves
 
-    Phi = G_s^(2(1-H)) longest^(2H)/2, `wave_power`. Every line of the surface has this height, if
+    Phi = G_s^(2(1-H)) L^(2H)/2 is `wave_power` at 1/L. Every profile of the surface has the same height if
     the surface has no longer waves.
     """
     H = hurst(D, areal)
@@ -81,5 +84,5 @@ def height(D: Number, G: Number, longest: Number, areal: bool = False, gamma: Nu
 
 
 def _surface(G: Number, H: Number, areal: bool) -> Number:
-    """G [m] of the isotropic surface."""
+    """G [m] of the isotropic surface, from the G [m] of the surface or of its profiles."""
     return G if areal else areal_roughness(G, H)

@@ -1,4 +1,4 @@
-"""The one host of FMUs, on fmpy: FMI 2.0 and 3.0, co-simulation and model exchange, variables by name."""
+"""Importer of FMUs, based on fmpy: FMI 2.0 and 3.0, co-simulation and model exchange, variables by name."""
 
 import os
 import shutil
@@ -19,11 +19,11 @@ if TYPE_CHECKING:
     from fmpy.model_description import ModelDescription
 
 _LOADS = Lock()
-"""Held while a library is loaded, as the working folder belongs to all threads."""
+"""Lock while a library is loaded: loading changes the working folder, which all threads share."""
 
 
 class Message(NamedTuple):
-    """What an FMU logs; status 0 is an event, 1 a warning, 3 an error."""
+    """Log message of an FMU; status 0 is an event, 1 a warning, 3 an error."""
 
     status: int
     text: str
@@ -31,12 +31,15 @@ class Message(NamedTuple):
 
 
 class Instance:
-    """An instance of an FMU that is unpacked in a folder; `description` is fmpy's.
+    """An instance of an FMU that is unpacked in a folder.
 
-    fmu   : fmpy's own object, for what has no name here
-    lines : warnings and errors are appended here as they come, one line each; `messages` has everything
+    description : model description of fmpy
+    variables   : {name: variable of the model description}
+    fmu         : instance of fmpy, for calls that this class does not wrap
+    messages    : all log messages
+    lines       : list to which warnings and errors are appended as they come, one line each
 
-    Raises what fmpy and ctypes raise: if the library cannot be loaded, and in every call that fails.
+    Raises the exceptions of fmpy and ctypes if the library cannot be loaded, and if a call fails.
     """
 
     def __init__(
@@ -57,7 +60,7 @@ class Instance:
         self._lines = [] if lines is None else lines
         kinds = {2: (fmi2.FMU2Slave, fmi2.FMU2Model), 3: (fmi3.FMU3Slave, fmi3.FMU3Model)}
         interface = description.modelExchange if exchange else description.coSimulation
-        with _LOADS, chdir("."):  # fmpy loads from the library's folder, and stays there if it fails
+        with _LOADS, chdir("."):  # fmpy changes to the library's folder, and stays there after a failure
             self.fmu: Any = kinds[self.version][exchange](
                 guid=description.guid,
                 unzipDirectory=folder,
@@ -66,7 +69,7 @@ class Instance:
             )
 
     def instantiate(self, logging: bool = True) -> None:
-        """Instantiate; errors and warnings are logged even if logging is off."""
+        """Instantiate the FMU. Errors and warnings are logged even if logging is off."""
         from fmpy import calloc, fmi2, free
 
         if self.version == 3:
@@ -90,7 +93,7 @@ class Instance:
             self._lines.append(" ".join(shown.split()))
 
     def begin(self, start: float = 0.0, stop: float | None = None) -> None:
-        """Enter initialization at a time [s]."""
+        """Enter initialization mode at a start time [s]."""
         if self.version == 2:
             self.fmu.setupExperiment(startTime=start, stopTime=stop)
             self.fmu.enterInitializationMode()
@@ -103,24 +106,28 @@ class Instance:
             getattr(self.fmu, f"set{self._type(name)}")([self.variables[name].valueReference], [value])
 
     def value(self, name: str) -> Any:
-        """Value of a variable of any type."""
+        """Read the value of a variable of any type."""
         return getattr(self.fmu, f"get{self._type(name)}")([self.variables[name].valueReference])[0]
 
     def _type(self, name: str) -> str:
-        """The type by which a variable is set; values of an enumeration are whole numbers."""
-        own = str(self.variables[name].type)
-        return own if own != "Enumeration" else "Integer" if self.version == 2 else "Int64"
+        """FMI type by which a variable is set and read. Values of an enumeration are whole numbers."""
+        declared = str(self.variables[name].type)
+        return declared if declared != "Enumeration" else "Integer" if self.version == 2 else "Int64"
 
     def reals(self, names: Sequence[str]) -> "Reals":
-        """Some real variables, to be set or read in one call."""
+        """Group real variables, so that one call sets or reads all of them."""
         return Reals(self, names)
 
     def advance(self, time: float, size: float) -> None:
-        """One step [s] of co-simulation."""
+        """Do one co-simulation step: from `time` [s], with step size `size` [s]."""
         self.fmu.doStep(currentCommunicationPoint=time, communicationStepSize=size)
 
     def update(self) -> tuple[Any, ...]:
-        """One event iteration: whether another is needed, whether to end, ... the next event's time."""
+        """Do one event iteration.
+
+        Returns the results of FMI: whether another iteration is needed, whether to terminate, ..., the time
+        of the next event [s].
+        """
         return tuple(self.fmu.newDiscreteStates() if self.version == 2 else self.fmu.updateDiscreteStates())
 
     def free(self) -> None:
@@ -129,7 +136,7 @@ class Instance:
 
 
 class Reals:
-    """Real variables of an instance, in arrays that stay from call to call."""
+    """Real variables of an instance that are set or read in one call. The arrays are reused."""
 
     def __init__(self, instance: Instance, names: Sequence[str]) -> None:
         n = len(names)
@@ -144,12 +151,12 @@ class Reals:
         )
 
     def set(self, *values: float) -> None:
-        """Give them these values."""
+        """Set all variables."""
         self._values[:] = list(values)
         self._set(*self._arguments)
 
     def get(self) -> list[float]:
-        """Their values."""
+        """Read all variables."""
         self._get(*self._arguments)
         return list(self._values)
 
@@ -158,10 +165,14 @@ class Reals:
 def opened(
     folder: str, described: "ModelDescription", source: str, lines: list[str], exchange: bool = False
 ) -> Iterator[Instance]:
-    """An instance of an unpacked FMU, freed afterwards; its warnings and errors are appended to `lines`.
+    """Context with an instance of an unpacked FMU, which is freed at the end.
 
-    Both errors are one line that begins with `source`: ValueError if the library cannot be loaded,
-    RuntimeError if it does not instantiate.
+    source         : name of the FMU in error messages
+    lines          : list to which warnings and errors of the FMU are appended
+    model_exchange : whether to use model exchange; default co-simulation
+
+    Raises ValueError if the library cannot be loaded, RuntimeError if it does not instantiate, both with one
+    line.
     """
     try:
         instance = Instance(folder, described, "host", exchange, lines)
@@ -179,9 +190,10 @@ def opened(
 
 
 def description(fmu: str | Path) -> "ModelDescription":
-    """fmpy's model description of an FMU, not validated; the last ones are kept while their files last.
+    """Read the model description of an FMU with fmpy, without validation. Results are cached per file.
 
-    Raises ValueError, one line, if it is no FMU of FMI 2.0 or 3.0, or `archives.opened` refuses it.
+    Raises ValueError, one line, if the file does not exist, cannot be opened safely, or is no FMU of FMI 2.0
+    or 3.0.
     """
     try:
         file = os.stat(fmu)
@@ -196,7 +208,7 @@ def _description(fmu: str, file: tuple[int, ...]) -> "ModelDescription":
 
     with archives.open_archive(fmu) as archive:
         text = archives.read_member(archive, archives.DESCRIPTION)
-    try:  # fmpy stumbles over what FMI 1.0 leaves out
+    try:  # fmpy fails on descriptions of FMI 1.0, which lack some attributes
         version = ElementTree.fromstring(text).get("fmiVersion", "none")
         if version.startswith(("2.", "3.")):
             return read_model_description(fmu, validate=False)
@@ -207,12 +219,12 @@ def _description(fmu: str, file: tuple[int, ...]) -> "ModelDescription":
 
 @contextmanager
 def unpacked(fmu: str | Path, exchange: bool = False) -> "Iterator[tuple[str, ModelDescription]]":
-    """Folder with what runs of an FMU, and fmpy's model description, removed afterwards.
+    """Context with the folder of an unpacked FMU and its model description; the folder is removed at the end.
 
-    exchange : whether it may be for model exchange only
+    model_exchange : whether an FMU for model exchange only is accepted
 
-    Raises ValueError if there is no such file, it is no FMU, or none that can be driven here: of another
-    version of FMI, not for co-simulation, or for other platforms.
+    Raises ValueError if the file does not exist or is no FMU, or if the FMU cannot run here: another version
+    of FMI, no co-simulation, or binaries for other platforms only.
     """
     path = Path(fmu)
     described = description(path)
@@ -231,15 +243,15 @@ def unpacked(fmu: str | Path, exchange: bool = False) -> "Iterator[tuple[str, Mo
 
 
 def runs(member: str) -> bool:
-    """Whether a member of an FMU is used where it runs: its description, resources and own binaries."""
+    """Return whether a file inside an FMU is needed to run it here: description, resources, binaries."""
     from fmpy import platform, platform_tuple
 
-    kept = ("modelDescription.xml", "resources/", f"binaries/{platform}/", f"binaries/{platform_tuple}/")
-    return member.startswith(kept)
+    needed = ("modelDescription.xml", "resources/", f"binaries/{platform}/", f"binaries/{platform_tuple}/")
+    return member.startswith(needed)
 
 
 def _check_interface(described: "ModelDescription", source: Path, exchange: bool) -> None:
-    """Refuse what cannot be driven: no such interface, no binary for this platform."""
+    """Raise ValueError if the FMU has no co-simulation, or no binary for this platform."""
     from fmpy import platform, supported_platforms
 
     if described.coSimulation is None and not (exchange and described.modelExchange):
@@ -249,7 +261,7 @@ def _check_interface(described: "ModelDescription", source: Path, exchange: bool
 
 
 def _check_python_flavour(resources: Path, source: Path) -> None:
-    """Refuse a pythonfmu FMU without the files whose absence its library answers with a crash."""
+    """Raise ValueError if files of a pythonfmu FMU are missing; its library would crash without them."""
     if not (resources / "pythonfmu").is_dir():
         return
     entry = resources / "slavemodule.txt"

@@ -1,4 +1,4 @@
-"""Interface laws on their own: the parameter set of one, out of a joint's parameter file and settings."""
+"""Interface laws without a joint: the parameter set of a law, from a joint's parameter file and settings."""
 
 from collections.abc import Iterable
 from pathlib import Path
@@ -16,9 +16,9 @@ from . import fractal
 from .judgement import known_height, law_height
 
 ROW = ("largest_spot", "pressure", "F", "K_N", "K_T", "A_r", "eta_n", "eta_t")
-"""Columns of every law; a law that does not define one gives null."""
+"""Columns of the output of every law; a column that a law does not define is null."""
 PROFILE = ("surface.D", "surface.G")
-"""Parameters of a profile that belong together."""
+"""Fractal parameters of a profile, which must be set together."""
 UNITS = {
     **dict.fromkeys(("largest_spot", "A_r"), "m2"),
     "pressure": "Pa",
@@ -29,21 +29,25 @@ UNITS = {
     **dict.fromkeys(("approach", "slip_length"), "m"),
     **dict.fromkeys(("eta_n", "eta_t", "elastic_fraction"), "1"),
 }
-"""{what a law gives: unit}."""
+"""{output of a law: SI unit}."""
 
 
 def law_parameters(law: str, file: ParameterFile | None, settings: dict[str, Any]) -> Any:
-    """The law's parameter set from a joint's parameter file (default: `first_joint`)
-    and settings."""
+    """Build the parameter set of a law from a joint's parameter file and settings.
+
+    file : parameter file of any joint that has the law; None: the default file of `default_joint(law)`
+
+    If the file has another law, its values are used as far as the law has them, else default values.
+    """
     file = file or default(first_joint(law), law)
     names = {name for name, _ in flat_fields(LAWS[law])}
     law_of = KINDS[file.joint].law_of
-    own, other = law_of(file.values), file.law != law
-    known = flatten(own)
-    if other:
-        known = flatten(law_of(default(file.joint, law).values)) | known | {"H": float(own.hardness)}
+    file_law, differs = law_of(file.values), file.law != law
+    known = flatten(file_law)
+    if differs:
+        known = flatten(law_of(default(file.joint, law).values)) | known | {"H": float(file_law.hardness)}
     if law == ROUGHNESS_LAW:
-        fractal, stated = (flatten(own), known_height(file)) if other else ({}, None)
+        fractal, stated = (flatten(file_law), known_height(file)) if differs else ({}, None)
         settings = roughness_settings(fractal, stated, known["longest_wave"], settings)
     return build(LAWS[law], {k: v for k, v in known.items() if k in names} | settings)
 
@@ -51,70 +55,81 @@ def law_parameters(law: str, file: ParameterFile | None, settings: dict[str, Any
 def roughness_settings(
     known: dict[str, object], stated: float | None, longest: float, settings: dict[str, object]
 ) -> dict[str, object]:
-    """Settings of the law `roughness` with its h, and hurst, out of what else tells them.
+    """Settings of the law `roughness` with rms height h and Hurst exponent, computed from other parameters.
 
-    known    : parameters of another law by structured name; D and G of a surface count
-    stated   : h [m] that its file states; goes before D and G
-    longest  : wave [m] up to which D and G count, unless the settings have longest_wave
-    settings : may have Ra1, Ra2, Rq1, Rq2 [m], or surface.D and surface.G of a profile, in place of h
+    law_values    : {structured name: value} of another law; its surface.D and surface.G are used
+    stated_height : h [m] of the parameter file; it takes precedence over D and G
+    longest_wave  : longest wave [m] that counts for the height, unless the settings have longest_wave
+    settings      : may have Ra1, Ra2, Rq1, Rq2 [m], or surface.D and surface.G of a profile, instead of h
 
-    Raises ValueError for one of D and G whose other is not known, for both beside a height, and as
-    `roughness.check`.
+    Raises ValueError if one of D and G is missing, if D or G is set together with a height, and for wrong
+    heights as `roughness.check` does.
     """
     heights = {name: settings[name] for name in DECLARED if name in settings}
-    own = {name: settings[name] for name in PROFILE if name in settings}
-    rest = {name: value for name, value in settings.items() if name not in {*heights, *own}}
-    if heights and own:
-        raise ValueError(f"{', '.join(own)} beside {', '.join(heights)}: expected D and G, or heights")
+    fractals = {name: settings[name] for name in PROFILE if name in settings}
+    others = {name: value for name, value in settings.items() if name not in {*heights, *fractals}}
+    if heights and fractals:
+        raise ValueError(f"{', '.join(fractals)} beside {', '.join(heights)}: expected D and G, or heights")
     if heights:
-        return rest | (heights if [*heights] == ["h"] else {"h": height(check(heights))})
-    if own:
-        known = {name: value for name, value in (known | own).items() if name in PROFILE}
+        return others | (heights if [*heights] == ["h"] else {"h": height(check(heights))})
+    if fractals:
+        known = {name: value for name, value in (known | fractals).items() if name in PROFILE}
         if missing := [name for name in PROFILE if name not in known]:
-            raise ValueError(f"{', '.join(own)} without {missing[0]}: expected both, or heights")
+            raise ValueError(f"{', '.join(fractals)} without {missing[0]}: expected both, or heights")
     elif stated is not None:
-        return {"h": stated} | rest
+        return {"h": stated} | others
     pairs = fractal_surfaces(known)
     if not pairs:
-        return rest
-    wave = rest.get("longest_wave", longest)
+        return others
+    wave = others.get("longest_wave", longest)
     h = np.sqrt(sum(fractal.height(D, G, wave, areal) ** 2 for D, G, areal in pairs) / len(pairs))
     exponent = sum(fractal.hurst(D, areal) for D, G, areal in pairs) / len(pairs)
-    return {"h": h, "hurst": exponent} | rest
+    return {"h": h, "hurst": exponent} | others
 
 
 def surfaces_height(
     law: str, parameters: Any, file: ParameterFile | None, settings: Iterable[str]
 ) -> Number | None:
-    """Rms height h [m] that is known of the surfaces, for what `law_parameters` gives of the same; what the
-    default file states is that of its own surfaces."""
-    own = law_height(parameters)
-    if own is None and (file or not any(name.startswith("surface") for name in settings)):
+    """Rms height h [m] of both surfaces together, for the parameter set of a law; None if it is not known.
+
+    parameters : result of `build_law_parameters` for the same law, file and settings
+
+    If the parameters have no height, it is that of the file. The height of the default file is not used if
+    the settings change the surfaces.
+    """
+    h = law_height(parameters)
+    if h is None and (file or not any(name.startswith("surface") for name in settings)):
         return known_height(file or default(first_joint(law), law))
-    return own
+    return h
 
 
 def fractal_surfaces(known: dict[str, Any]) -> list[tuple[Number, Number, bool]]:
-    """(D, G, whether of the area) of every direction in which a law's surface is stated."""
+    """Fractal parameters of a law's surface in each stated direction: (D [1], G [m], is areal)."""
     prefixes = [name[:-2] for name in known if name.endswith(".D")]
     pairs = [(known[f"{p}.D"], known[f"{p}.G"]) for p in prefixes if f"{p}.G" in known]
     return [(D, G, bool(np.all(D > 2.0))) for D, G in pairs]
 
 
 def joints_of(law: str) -> list[str]:
-    """The joints that have a law."""
+    """Names of the joints that have a law."""
     return [name for name, kind in KINDS.items() if law in kind.laws]
 
 
 def first_joint(law: str) -> str:
-    """The joint of whose default file a law is taken: one whose parameter set is the law's, if any."""
+    """Joint whose default file gives default values for a law.
+
+    A joint whose parameter set is a subclass of the law's parameter set is preferred.
+    """
     joints = joints_of(law)
-    own = [name for name in joints if issubclass(KINDS[name].laws[law], LAWS[law])]
-    return (own or joints)[0]
+    preferred = [name for name in joints if issubclass(KINDS[name].laws[law], LAWS[law])]
+    return (preferred or joints)[0]
 
 
 def law_file(path: Path, law: str) -> ParameterFile:
-    """A parameter file of a joint that has the law."""
+    """Load a parameter file of a joint that has the law.
+
+    Raises ValueError for a file of another joint, or if its own law is of no interface.
+    """
     file = load(path)
     if law not in KINDS[file.joint].laws:
         expected = " or ".join(repr(name) for name in joints_of(law))

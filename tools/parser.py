@@ -1,4 +1,4 @@
-"""The parser of the commands."""
+"""Argument parser of the command line: all commands, grouped by task."""
 
 import argparse
 import sys
@@ -18,7 +18,7 @@ GROUPS = {
     "check": ("prove", "validate"),
     "study": ("uncertainty", "sweep"),
 }
-"""{heading: commands}; each is declared by `add` of the module of its name, which `commands` has."""
+"""{heading: commands}. The function `add` of the module `commands.COMMAND` declares each command."""
 COMMANDS = tuple(name for names in GROUPS.values() for name in names)
 SHELLS = ("bash", "zsh")
 BESIDE = {
@@ -29,30 +29,30 @@ BESIDE = {
     "sweep": "uncertainty",
     "validate": "prove",
 }
-"""{command: the module that declares it, by `add_COMMAND`} where that is not of its name."""
+"""{command: module whose function `add_COMMAND` declares it}, if no module has the command's name."""
 
 
 class CommandLine(Parser):
-    """The parser of commands; a sub-command may be left out."""
+    """Top-level parser. It accepts a command without its sub-command if a default sub-command exists."""
 
     def parse_args(self, args: Any = None, namespace: Any = None) -> Any:
-        """As argparse does, with the sub-command that the words imply, and the nearest of its options."""
+        """Parse arguments. Insert the default sub-command, suggest an option similar to an unknown one."""
         words = _explicit(list(sys.argv[1:] if args is None else args))
-        found, rest = super().parse_known_args(words, namespace)
-        if rest:
-            hint = nearest(rest[0].partition("=")[0], _options(self, words))
-            self.error(f"unrecognized arguments: {' '.join(rest)}{hint}")
-        return found
+        parsed, unknown = super().parse_known_args(words, namespace)
+        if unknown:
+            hint = nearest(unknown[0].partition("=")[0], _options(self, words))
+            self.error(f"unrecognized arguments: {' '.join(unknown)}{hint}")
+        return parsed
 
     def format_help(self) -> str:
-        """As argparse does, with the commands under their headings."""
+        """Format the help with the commands under their headings."""
         formatter = self._get_formatter()
         formatter.add_usage(self.usage, self._actions, self._mutually_exclusive_groups)
         formatter.add_text(self.description)
-        listed = {action.dest: action for sub in _subs(self) for action in sub._choices_actions}
+        actions = {action.dest: action for sub in _subs(self) for action in sub._choices_actions}
         for title, names in GROUPS.items():
             formatter.start_section(title)
-            formatter.add_arguments([listed[name] for name in names if name in listed])
+            formatter.add_arguments([actions[name] for name in names if name in actions])
             formatter.end_section()
         formatter.start_section("options")
         formatter.add_arguments([a for a in self._actions if a.option_strings])
@@ -62,10 +62,10 @@ class CommandLine(Parser):
 
 
 class Completion(argparse.Action):
-    """Print what completes words in a shell, and leave."""
+    """Print a script for command completion in a shell, and exit."""
 
     def __call__(self, parser: argparse.ArgumentParser, _: Any, shell: Any, option: Any = None) -> None:
-        """Refused in one line without the package that writes the script."""
+        """Print the script, or an error on one line if the package shtab is missing."""
         try:
             import shtab
         except ImportError:
@@ -79,20 +79,20 @@ class Completion(argparse.Action):
 
 
 def _subs(parser: argparse.ArgumentParser) -> "list[argparse._SubParsersAction[Any]]":
-    """Where a command has its sub-commands."""
+    """Actions of argparse that hold the sub-commands of a parser."""
     return [a for a in parser._actions if isinstance(a, argparse._SubParsersAction)]
 
 
 def _all(parser: argparse.ArgumentParser) -> Iterator[argparse.ArgumentParser]:
-    """A parser and those of all of its commands."""
+    """Yield a parser and, recursively, the parsers of all its sub-commands."""
     yield parser
-    for sub in _subs(parser):
-        for one in sub.choices.values():
-            yield from _all(one)
+    for action in _subs(parser):
+        for sub in action.choices.values():
+            yield from _all(sub)
 
 
 def _options(parser: argparse.ArgumentParser, words: Sequence[str]) -> list[str]:
-    """Long options of the command that words begin with."""
+    """Long options of the command that the words name."""
     for word in words:
         subs = [sub for sub in _subs(parser) if word in sub.choices]
         if not subs:
@@ -102,7 +102,7 @@ def _options(parser: argparse.ArgumentParser, words: Sequence[str]) -> list[str]
 
 
 def _explicit(words: list[str]) -> list[str]:
-    """The words with the sub-command that they imply."""
+    """Insert the default sub-command into the words if they name none."""
     names = IMPLIED.get(words[0]) if words else None
     if names is None or (words[1:2] and words[1] in (*names, "-h", "--help")):
         return words
@@ -110,10 +110,13 @@ def _explicit(words: list[str]) -> list[str]:
 
 
 def parser(words: Sequence[str] = ()) -> CommandLine:
-    """The parser of the command that words begin with; without one of all commands, which takes longer."""
+    """Build the parser of the command that the words begin with.
+
+    If the words name no command, the parser has all commands; building it takes longer.
+    """
     top = CommandLine(prog="jointfmu", description="Joint stiffness from fractal surface roughness.")
     top.add_argument("--version", action="version", version=f"jointfmu {__version__}")
-    text = f"print the script that completes words in a shell: {', '.join(SHELLS)}"
+    text = f"print a script for command completion in a shell: {', '.join(SHELLS)}"
     top.add_argument("--completion", action=Completion, choices=SHELLS, metavar="SHELL", help=text)
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND", parser_class=Parser)
     for name in words[:1] if {*words[:1]} & {*COMMANDS} else COMMANDS:

@@ -1,4 +1,4 @@
-"""Pictures for the command line: one style, one way to save (matplotlib, loaded only when drawing)."""
+"""Figures for the command line: common style and saving (matplotlib, loaded only when drawing)."""
 
 import io
 from collections.abc import Callable, Iterator
@@ -35,9 +35,9 @@ RESOLUTION = 150
 
 
 def check(path: str | Path) -> None:
-    """Raise ValueError if a picture could not be saved under this name, or matplotlib is missing.
+    """Raise ValueError if the file name has no picture format, or if matplotlib is missing.
 
-    To be called before long work.
+    Call it before long work.
     """
     if Path(path).suffix.lower() not in FORMATS:
         raise ValueError(f"{path}: suffix {Path(path).suffix!r} is no picture, allowed are .png, .svg")
@@ -45,14 +45,14 @@ def check(path: str | Path) -> None:
 
 
 def shown(unit: str, values: NDArray[np.float64]) -> tuple[str, float]:
-    """The display unit in which values read best, and the factor to it."""
+    """Choose a display unit by the largest of the values; returns the unit and the factor to it."""
     name = display_unit(unit, float(np.max(np.abs(values))))
     return name, UNITS[unit].display[name]
 
 
 @contextmanager
 def drawing(path: str | Path, size: tuple[float, float] = (7.2, 4.2)) -> Iterator["Figure"]:
-    """A figure of a size [inch] in the common style, saved at the end of the `with` block.
+    """Create a figure of a size [inch] in the common style; it is saved at the end of the `with` block.
 
     with plots.drawing("ramp.png") as figure:
         axes = figure.subplots()
@@ -68,7 +68,7 @@ def drawing(path: str | Path, size: tuple[float, float] = (7.2, 4.2)) -> Iterato
 
 @contextmanager
 def style() -> Iterator[None]:
-    """The common style, also as a decorator of what draws: `@plots.style()`.
+    """Apply the common style in a `with` block, or as a decorator of a function that draws.
 
     Raises ValueError if matplotlib is missing.
     """
@@ -87,17 +87,17 @@ def _rc_context() -> Callable[..., AbstractContextManager[None, bool | None]]:
 
 
 def figure(size: tuple[float, float]) -> "Figure":
-    """An empty figure of a size [inch] for a user: matplotlib's own `show` and a notebook know it."""
+    """Create an empty figure of a size [inch] that `pyplot.show` and notebooks display."""
     from matplotlib import get_backend, pyplot
 
-    made = pyplot.figure(figsize=size, layout="constrained")
+    canvas = pyplot.figure(figsize=size, layout="constrained")
     if "inline" in get_backend():
-        pyplot.close(made)  # a notebook shows what a cell returns, and once more what is open
-    return made
+        pyplot.close(canvas)  # a notebook would show the figure twice: as result of the cell and as open
+    return canvas
 
 
 def save(figure: "Figure", path: str | Path) -> None:
-    """Save a figure as .png or .svg; a failure leaves nothing behind."""
+    """Save a figure as .png or .svg. A failure leaves no file."""
     check(path)
     suffix = Path(path).suffix.lower()
     data = io.BytesIO()

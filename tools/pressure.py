@@ -1,4 +1,7 @@
-"""What a joint's part `pressure` gives: how its load presses on its interface; its judgement at a load."""
+"""Nominal contact pressure of a joint under load, and the judgement of its stiffness at a load.
+
+The module `pressure` in a joint's folder defines the pressure by its constant PRESSURE.
+"""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -14,14 +17,16 @@ from .judgement import Judgement, judge, known_height
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NominalPressure:
-    """PRESSURE of a joint's folder.
+    """Nominal contact pressure of a joint as a function of its load.
 
-    load  : the input or output of the joint whose value a working point is
-    usual : parameter set -> load where none is asked for
-    mean  : (parameter set, load) -> nominal pressure [Pa] at which the interface's stiffness is judged
-    peak  : (parameter set, load) -> greatest nominal pressure [Pa]
-    scale : (parameter set, load) -> the joint's stiffness over that of its interface law at the mean [1]
-    borne : parameter set -> (most that what carries the load bears, what that is), or None if not known
+    load_variable   : name of the input or output that is the load
+    default_load    : parameter set -> load [SI] that is used if the user states none
+    mean_pressure   : (parameter set, load) -> nominal pressure [Pa] at which the stiffness is judged
+    peak_pressure   : (parameter set, load) -> greatest nominal pressure [Pa]
+    stiffness_ratio : (parameter set, load) -> joint stiffness over stiffness of the interface law at the mean
+                      pressure [1]
+    load_capacity   : parameter set -> (largest load [SI] of the loaded parts, name of this limit), or None if
+                      not known
     """
 
     load: str
@@ -33,61 +38,65 @@ class NominalPressure:
 
 
 def over_area(parameters: Any, load: float) -> float:
-    """Pressure [Pa] of a load [N] that is spread evenly over the nominal area."""
+    """Pressure [Pa] of a load [N] distributed uniformly over the nominal area."""
     return float(load / parameters.A_0)
 
 
 FLANKS = NominalPressure(
     load="f", usual=lambda joint: min(3e3, 0.1 * joint.hardness * joint.A_0), mean=over_area, peak=over_area
 )
-"""Of flanks under a normal force f."""
+"""Nominal pressure of gear flanks under a normal force f [N]."""
 
 
 def nominal_pressure(kind: Kind) -> NominalPressure | None:
-    """What the joint's folder says; None if it says nothing."""
-    found = part(kind, "pressure")
-    return found.PRESSURE if found else None
+    """Nominal pressure that the joint's folder defines; None if it defines none."""
+    module = part(kind, "pressure")
+    return module.PRESSURE if module else None
 
 
 def judge_file(file: ParameterFile, loads: Sequence[float] | None = None) -> Judgement:
-    """The judgement of a joint under loads (`Pressing.load`, SI).
+    """Judge the stiffness of a joint under loads.
 
-    loads : without them the start value of the file; if that is zero the usual load, at which the level alone
-            is judged
+    loads : values of `NominalPressure.load_variable` [SI]; None: the start value in the file, or, if it is
+            zero, the default load. At the default load only the level of the stiffness is judged
     """
     kind = KINDS[file.joint]
-    how = nominal_pressure(kind)
-    if how is None or kind.law_of(file.values) is None:
+    nominal = nominal_pressure(kind)
+    if nominal is None or kind.law_of(file.values) is None:
         return Judgement(None, ())
-    if loads is None and file.start(how.load) > 0.0:
-        loads = [file.start(how.load)]
+    if loads is None and file.start(nominal.load) > 0.0:
+        loads = [file.start(nominal.load)]
     law, h, limits = kind.law_of(file.values), known_height(file), loads is not None
     if loads is None:
-        loads = [how.usual(file.values)]
+        loads = [nominal.usual(file.values)]
     loads = [load for load in loads if load > 0.0]
-    found = judge(
+    judgement = judge(
         law,
-        [how.mean(file.values, load) for load in loads],
+        [nominal.mean(file.values, load) for load in loads],
         h,
-        max((how.peak(file.values, load) for load in loads), default=0.0),
-        [how.scale(file.values, load) for load in loads],
+        max((nominal.peak(file.values, load) for load in loads), default=0.0),
+        [nominal.scale(file.values, load) for load in loads],
         limits,
     )
-    return found.with_warnings(overload(how.load, max(loads, default=0.0), how.borne(file.values)))
+    capacity = nominal.borne(file.values)
+    return judgement.with_warnings(overload(nominal.load, max(loads, default=0.0), capacity))
 
 
 def without_members(file: ParameterFile) -> list[str]:
-    """The warning where what is made of a whole joint is its interface alone."""
+    """Warning that the written file has only the interface of a joint with elastic members; else empty."""
     if not getattr(file.values, "elastic", False):
         return []
     return [
-        f"{file.name!r} is a whole joint (sides = elastic), this its interface alone: between rigid bodies "
-        "far too stiff without the members, which the FMU has"
+        f"{file.name!r} is a whole joint (sides = elastic), but this file has its interface alone: between "
+        "rigid bodies it is far too stiff, because the members are missing; the FMU has them"
     ]
 
 
 def overload(name: str, load: float, borne: tuple[float, str] | None) -> list[str]:
-    """The warning if a load [N] is more than what carries it bears: (most [N], what that is)."""
+    """Warning if a load [N] is above the load capacity; else empty.
+
+    capacity : (largest load [N], name of this limit), or None if not known
+    """
     if borne is None or load <= borne[0]:
         return []
     return [f"{name} = {load:g} N is above {borne[0]:.4g} N, {borne[1]}"]

@@ -1,4 +1,4 @@
-"""Numbers as people read them: one unit for all stiffnesses, units spelled out, a file's with sources."""
+"""Display of numbers: display units, aligned tables, the entries of a parameter file with their sources."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -13,21 +13,21 @@ from jointfmu.quantity import flat_fields, span
 from jointfmu.quantity.units import display_unit, factor
 
 STIFFNESSES = {"N.m/rad": "N.m/rad", "N/m": "N/um"}
-"""{SI unit: the one in which every page shows it}; others have that in which they read best."""
+"""{SI unit: display unit on all pages} of stiffnesses. Other display units depend on the value."""
 
 
 def shown_unit(unit: str, typical: float) -> str:
-    """The display unit of a variable of a typical size."""
+    """Choose the display unit of a variable by its typical value."""
     return STIFFNESSES.get(unit) or display_unit(unit, typical)
 
 
 def spelled(unit: str) -> str:
-    """A unit as it is read: N m, µm; nothing for 1."""
+    """Format a unit for display: N m, µm; empty for 1."""
     return "" if unit == "1" else re.sub(r"\bu(?=[mNsJr])", "µ", unit.replace(".", " "))
 
 
 def quantity(value: Any, unit: str | None, digits: int = 6) -> tuple[str, str]:
-    """A value as text in the unit in which it reads best, and that unit."""
+    """Format a value in a display unit; returns the text and the unit."""
     if isinstance(value, bool | str):
         return str(value).lower(), ""
     if np.ndim(value):
@@ -39,9 +39,10 @@ def quantity(value: Any, unit: str | None, digits: int = 6) -> tuple[str, str]:
 
 
 def aligned(rows: Sequence[Sequence[str]], words: int | None = None) -> list[str]:
-    """Rows of cells as lines, columns as wide as their widest cell.
+    """Format rows of cells as lines, columns as wide as their widest cell.
 
-    words : so many columns are words, to the left, the others numbers, to the right; None: all are words
+    word_columns : number of columns of words at the left, aligned left; the others are aligned right; None:
+                   all columns are words
     """
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     signs = ["<" if words is None or i < words else ">" for i in range(len(widths))]
@@ -50,7 +51,7 @@ def aligned(rows: Sequence[Sequence[str]], words: int | None = None) -> list[str
 
 
 def fact_lines(facts: Mapping[str, tuple[float, str, str]]) -> list[str]:
-    """{name: (value, unit, meaning)} as lines."""
+    """Format {name: (value, unit, meaning)} as lines."""
     return [
         f"{name:18} {value:.4g}{'' if unit == '1' else f' {unit}'}  {text}"
         for name, (value, unit, text) in facts.items()
@@ -58,12 +59,16 @@ def fact_lines(facts: Mapping[str, tuple[float, str, str]]) -> list[str]:
 
 
 def fact_document(facts: Mapping[str, tuple[float, str, str]]) -> dict[str, object]:
-    """The same for --json."""
+    """JSON object of {name: (value, unit, meaning)}."""
     return {name: {"value": v, "unit": u, "text": t} for name, (v, u, t) in facts.items()}
 
 
 class Stated(NamedTuple):
-    """A number or choice of a parameter file, in SI; `unit` is None of what has none."""
+    """Entry of a parameter file: a number in SI units or a choice, with meaning, origin and source.
+
+    unit : SI unit; None for a choice
+    kind : origin, one of parameters.ORIGINS
+    """
 
     name: str
     value: Any
@@ -74,14 +79,14 @@ class Stated(NamedTuple):
 
 
 def _source(file: ParameterFile, name: str) -> str:
-    """Where a number comes from, with the range that the file states for it."""
+    """Format the source of a number, with the range that the file states for it."""
     text = file.sources.get(name, "default choice")
     low, high = file.ranges.get(name, (0.0, 0.0))
     return f"{low:g} to {high:g}; {text}" if high > low else text
 
 
 def stated(file: ParameterFile) -> list[Stated]:
-    """Every number of a file: parameters, start values of inputs, roughnesses."""
+    """List all entries of a parameter file: parameters, start values of inputs, roughnesses."""
     fields: dict[str, Mapping[str, Any]] = {
         name: item.metadata for name, item in flat_fields(type(file.values))
     }

@@ -1,4 +1,4 @@
-"""Which nodes of a fine table a coarser one keeps."""
+"""Decimation of a fine table: selection of the nodes that a coarser table keeps."""
 
 from collections.abc import Callable, Collection
 
@@ -7,12 +7,13 @@ from numpy.typing import NDArray
 
 
 def kept(stops: Collection[int], fits: Callable[[int, int], bool]) -> NDArray[np.intp]:
-    """Places of the nodes kept, from 0 to the last of `stops`: each as far from the one before as it fits.
+    """Select nodes of a table, from 0 to the last fixed node, with segments as long as allowed.
 
-    stops : places that stay
-    fits  : whether one segment may lead from a node to another, further than the next; neighbours always join
+    fixed_nodes  : indices of nodes that must be kept
+    segment_fits : (i, j) -> whether one segment may replace the table from node i to node j > i + 1
 
-    A segment is doubled while it fits, then halved to the last that does.
+    Returns the indices of the selected nodes. The length of a segment is doubled while the segment fits, then
+    refined by halving the increment. Neighbouring nodes are always a valid segment.
     """
     ends = sorted(stops)
     nodes = [0]
@@ -21,9 +22,9 @@ def kept(stops: Collection[int], fits: Callable[[int, int], bool]) -> NDArray[np
         stop = next(s for s in ends if s > i)
         j, step = i + 1, 1
         while step:
-            further = min(j + step, stop)
-            if further > j and fits(i, further):
-                j, step = further, 2 * step
+            end = min(j + step, stop)
+            if end > j and fits(i, end):
+                j, step = end, 2 * step
             else:
                 step //= 2
         nodes.append(j)

@@ -496,8 +496,8 @@ def test_a_fit_that_says_nothing_is_not_written(tmp_path, capsys, monkeypatch):
     words = ["fit", "loop", "bar.csv", "--preload", "9e3", "--out", "bar.toml"]
     assert cli.main(words) == 1
     said = capsys.readouterr().err
-    assert "the fit says nothing of the joint: the area of the widest loop is " in said
-    assert said.endswith("allowed is a factor of 2; bar.toml is not written, --force does it\n")
+    assert "the fit does not determine the joint: the area of the widest loop is " in said
+    assert said.endswith("allowed is a factor of 2; bar.toml is not written, --force writes it\n")
     assert not (tmp_path / "bar.toml").exists()
     assert cli.main([*words, "--json"]) == 1
     assert json.loads(capsys.readouterr().out)["doubt"].startswith("the area of the widest loop")

@@ -589,7 +589,7 @@ def test_sides_are_written_where_they_belong(folder, capsys):
     file = load("t.toml")
     assert file.roughness["Rq2"] == h
     assert set(file.roughness) == {"Rq1", "Rq2"}
-    assert "surface.D, surface.G are those of side 1 alone" in said.err
+    assert "surface.D, surface.G are values of side 1 alone" in said.err
     together = float(np.hypot(file.roughness["Rq1"], h))
     assert f"(h = {1e6 * together:.4g} um of both sides)" in said.out
     run(capsys, "surface", "line.csv", "line.csv", "--params", "s.toml", "--out", "p.toml")
@@ -624,7 +624,7 @@ def test_the_other_side_of_a_drawing_stays(folder, capsys):
     file = load("s.toml")
     assert set(file.roughness) == {"Rq1", "Ra2"}
     assert file.values.h == pytest.approx(np.hypot(file.roughness["Rq1"], FACTOR * 4e-7), rel=1e-12)
-    assert "slope, hurst are those of side 1 alone" in said.err
+    assert "slope, hurst are values of side 1 alone" in said.err
     assert f"(h = {1e6 * file.values.h:.4g} um of both sides)" in said.out
     run(capsys, "surface", "line.csv", "--side", "2", "--params", "s.toml", "--out", "t.toml")
     assert load("t.toml").values.h == pytest.approx(np.sqrt(2.0) * file.roughness["Rq1"], rel=1e-12)

@@ -1,1 +1,1 @@
-"""What the commands of `jointfmu` share: parser, options, examples."""
+"""Command-line tools shared by all commands of `jointfmu`: parser, options, outputs, examples."""

@@ -1,4 +1,4 @@
-"""What commands share: the parser, `--json`, `--set`, numbers as JSON."""
+"""Shared parts of all commands: argument parser, result of a command, the options `--json` and `--set`."""
 
 import argparse
 import json
@@ -19,14 +19,14 @@ from .examples import BEFORE, EXAMPLES
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Answer:
-    """What a command found.
+    """Result of a command, to be printed.
 
-    document  : for `--json`
-    lines     : for people
-    notes     : for people, on standard error
-    judgement : told after both, and part of the document
-    written   : files, told last; None is none
-    status    : of the process
+    document      : JSON object for `--json`
+    lines         : text for people, on standard output
+    notes         : text for people, on standard error
+    judgement     : validity of the stiffness; its lines and warnings are printed too, and join the document
+    written_files : paths of the files that the command wrote, printed last; None entries are ignored
+    exit_status   : exit status of the process
     """
 
     document: Any
@@ -37,15 +37,15 @@ class Answer:
     status: int = 0
 
     def tell(self, as_json: bool) -> int:
-        """Print it, as one JSON object and nothing else or for people; the status."""
+        """Print the result, as one JSON object or as text; returns the exit status."""
         if as_json:
-            own = {} if self.judgement is None else self.judgement.document()
-            print(json.dumps({**self.document, **own} if own else self.document))
+            validity = {} if self.judgement is None else self.judgement.document()
+            print(json.dumps({**self.document, **validity} if validity else self.document))
             return self.status
-        found = self.judgement or Judgement(None, ())
-        for line in (*self.lines, *found.lines()):
+        judgement = self.judgement or Judgement(None, ())
+        for line in (*self.lines, *judgement.lines()):
             print(line)
-        for note in (*self.notes, *(f"warning: {text}" for text in found.warnings)):
+        for note in (*self.notes, *(f"warning: {text}" for text in judgement.warnings)):
             print(note, file=sys.stderr)
         for path in filter(None, self.written):
             print(f"wrote {path}")
@@ -54,26 +54,26 @@ class Answer:
 
 Run = Callable[[argparse.Namespace], Answer]
 Commands: TypeAlias = "argparse._SubParsersAction[Parser]"
-"""Where commands are declared."""
+"""Group of sub-parsers to which commands are added."""
 IMPLIED = {"surface": ("identify", "synthesize")}
-"""{command: its sub-commands}, of which the first runs where none is named."""
+"""{command: its sub-commands}. If the user names no sub-command, the first one runs."""
 
 
 _CHOICE = re.compile(r"invalid choice: '?([^' ]*)'? \(choose from (.*)\)")
-"""What argparse says of a wrong choice."""
+"""Error message of argparse for an invalid choice."""
 
 
 def nearest(word: str, known: Iterable[str]) -> str:
-    """What to add to a refusal: the known word that is most like it, if any is."""
-    found = get_close_matches(word, [*known], 1)
-    return f"; did you mean {found[0]}?" if found else ""
+    """Format a suggestion for an error message: the known word most similar to `word`; empty if none is."""
+    matches = get_close_matches(word, [*known], 1)
+    return f"; did you mean {matches[0]}?" if matches else ""
 
 
 class Parser(argparse.ArgumentParser):
-    """argparse with one line for an error, negative numbers in any notation, and an example in the help.
+    """Argument parser with one-line errors, negative numbers in any notation, and an example in the help.
 
-    example : words after `jointfmu`; None: that of `EXAMPLES`
-    outputs : {argument: kind of the file} of what the command writes
+    example : words after `jointfmu`; None: the entry of `EXAMPLES`
+    outputs : {argument: kind of file} of the files that the command writes
     """
 
     example: str | None = None
@@ -85,7 +85,7 @@ class Parser(argparse.ArgumentParser):
         self._negative_number_matcher = re.compile(r"^-(\d|\.\d|inf|nan)", re.IGNORECASE)
 
     def format_help(self) -> str:
-        """As argparse does, and an example in one line, to be copied."""
+        """Format the help of argparse, followed by a one-line example to copy."""
         name = self.prog.partition(" ")[2]
         example = self.example or EXAMPLES.get(name)
         if example is None:
@@ -94,7 +94,7 @@ class Parser(argparse.ArgumentParser):
         return f"{super().format_help()}\nexample{before}:\n  jointfmu {example}\n"
 
     def error(self, message: str) -> NoReturn:
-        """Print one line, with the nearest of the choices where one is wrong, and exit with 2."""
+        """Print the error on one line, with a suggestion for an invalid choice, and exit with status 2."""
         if match := _CHOICE.search(message):
             message += nearest(match[1], re.findall(r"[\w.-]+", match[2]))
         print(f"{self.prog}: {message}", file=sys.stderr)
@@ -113,7 +113,10 @@ def argument(
     second: str | None = None,
     **more: Any,
 ) -> None:
-    """Declare what takes values of a type; a default that is stated is told. `second`: another name."""
+    """Declare an argument that takes values of a type. The help text names its default.
+
+    alias : second name of the option
+    """
     if "default" in more:
         default = more["default"]
         text += f" (default: {f'{default:g}' if kind is float else default})"
@@ -122,31 +125,43 @@ def argument(
 
 
 def command(commands: Commands, name: str, run: Run, text: str) -> Parser:
-    """Declare a command with `--json`."""
-    sub: Parser = commands.add_parser(name, help=text, description=text)
+    """Declare a command that has the option `--json`."""
+    sub: Parser = commands.add_parser(name, help=text, description=sentence(text))
     sub.set_defaults(run=run, outputs=sub.outputs)
     sub.add_argument("--json", action="store_true", help="print one JSON object and nothing else")
     return sub
 
 
+def sentence(text: str) -> str:
+    """Format a help text as a sentence: first letter capital, full stop at the end."""
+    return f"{text[0].upper()}{text[1:]}{'' if text.endswith('.') else '.'}"
+
+
 def flag(name: str) -> str:
-    """The option that sets an argument: `--rated-torque` of `rated_torque`."""
+    """Return the option that sets an argument: `--rated-torque` for `rated_torque`."""
     return "--" + name.replace("_", "-")
 
 
 def option(args: argparse.Namespace, setting: str) -> str:
-    """The option for what a refusal calls `setting`: of that name, or as the command states in `options`."""
+    """Return the command-line option of a setting that an error names.
+
+    The command lists in `options` the settings whose option has another name.
+    """
     return flag(getattr(args, "options", {}).get(setting, setting))
 
 
 def joint_name(text: str) -> str:
-    """A joint as `new` and as a parameter file name it."""
+    """Parse the name of a joint: `bolted-joint` as `jointfmu new` has it, or `bolted_joint`."""
     return text.replace("-", "_")
 
 
 @contextmanager
 def needing(purpose: str, extra: str = "build") -> Iterator[None]:
-    """ValueError, one line, where a package is missing inside, with the extra that brings it."""
+    """Context that turns a missing package into a one-line ValueError with the install command.
+
+    purpose : what the package is needed for, a verb
+    extra   : extra of jointfmu that installs the package
+    """
     try:
         yield
     except ImportError as error:
@@ -157,7 +172,7 @@ def needing(purpose: str, extra: str = "build") -> Iterator[None]:
 
 
 def settings(sub: argparse.ArgumentParser) -> None:
-    """Declare `--set NAME=VALUE ...`."""
+    """Declare the option `--set NAME=VALUE ...`, which sets parameters."""
     sub.add_argument(
         "--set",
         dest="settings",
@@ -172,7 +187,7 @@ def settings(sub: argparse.ArgumentParser) -> None:
 
 
 def parse_setting(text: str) -> tuple[str, Any]:
-    """`NAME=VALUE` of the command line: a number, true, false or a word.
+    """Parse `NAME=VALUE` of the command line; the value is a number, true, false or a word.
 
     Raises ValueError if there is no `=` or no name.
     """

@@ -1,4 +1,4 @@
-"""One example for the help of each command; tests run them."""
+"""Examples for the help texts, one for each command. The tests run them."""
 
 EXAMPLES = {
     "new": "new bolted-joint --plate 200x100 --bolts 4xM12 --at 160x60 --grip 40 "
@@ -37,7 +37,7 @@ EXAMPLES = {
     "--samples 8 --out sweep",
     "validate": "validate",
 }
-"""{command: its example}, both without the word `jointfmu`."""
+"""{command: example}, both without the word `jointfmu`."""
 
 BEFORE = {
     "ramp": "after jointfmu build GearContact",
@@ -45,4 +45,4 @@ BEFORE = {
     "sweep": "after jointfmu build GearContact",
     "ring": "after jointfmu build --systems",
 }
-"""{command: what its example needs}."""
+"""{command: command that must run before its example}."""

@@ -1,4 +1,4 @@
-"""The commands of the command line, most of them modules of their names; what they share."""
+"""Commands of the command line, most of them in a module of the same name. Functions that they share."""
 
 import argparse
 from collections.abc import Sequence
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def declare(sub: argparse.ArgumentParser, option: Option) -> None:
-    """Declare an option of a joint's part."""
+    """Declare on the command line an option that a joint defines."""
     if option.flag:
         sub.add_argument(flag(option.name), action="store_true", help=option.text)
         return
@@ -31,7 +31,10 @@ def declare(sub: argparse.ArgumentParser, option: Option) -> None:
 
 
 def draw(path: Path, panels: "Sequence[Panel]", size: tuple[float, float]) -> None:
-    """Save panels side by side as a picture of a size [inch]."""
+    """Draw panels side by side and save them as a picture.
+
+    size : width and height [inch]
+    """
     from ..report.figure import drawn
 
     with plots.drawing(path, size) as figure:

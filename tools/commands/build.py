@@ -1,4 +1,4 @@
-"""`jointfmu build`: FMUs from parameters; `jointfmu cache`: where their compiled parts are kept."""
+"""`jointfmu build`: build FMUs from parameters; `jointfmu cache`: show or clear their compiled code."""
 
 import argparse
 from collections.abc import Mapping, Sequence
@@ -16,12 +16,12 @@ from ..command_line.outputs import output
 from ..pressure import judge_file
 
 SHOWN = 3
-"""Values of a replaced FMU that are printed; `--json` has all."""
+"""Largest number of changed start values that are printed of a replaced FMU; `--json` has all."""
 
 
 def add(commands: Commands) -> None:
-    """Declare the command."""
-    make = command(commands, "build", _build, "build FMUs")
+    """Declare the command `jointfmu build` with its options."""
+    make = command(commands, "build", _build, "build FMUs from default or user parameters")
     argument(make, "names", str, f"FMUs to build: {', '.join(MODELS)} (default: all)", nargs="*")
     make.add_argument(
         "--flavour",
@@ -30,9 +30,9 @@ def add(commands: Commands) -> None:
         metavar="FLAVOUR",
         help="flavours to build: fmi2, fmi3 (default: both), python",
     )
-    text = "model name, identifier and file name of one FMU, for example ShoulderDrive; builds with other "
-    argument(make, "--name", str, text + "names stand side by side in one model")
-    argument(make, "--params", Path, "parameter file with other defaults (TOML)")
+    text = "model name, identifier and file name of one FMU, for example ShoulderDrive; FMUs with different "
+    argument(make, "--name", str, text + "names can be used in one model")
+    argument(make, "--params", Path, "parameter file that replaces the default parameters (TOML)")
     make.add_argument(
         "--parameters",
         choices=("tunable", "fixed"),
@@ -43,7 +43,7 @@ def add(commands: Commands) -> None:
     make.add_argument(
         "--systems", action="store_true", help="build the example systems (SSP) with the FMUs that they need"
     )
-    output(make, "--out", FOLDER, "folder", default=Path("dist"))
+    output(make, "--out", FOLDER, "folder to write", default=Path("dist"))
 
 
 def _build(args: argparse.Namespace) -> Answer:
@@ -66,41 +66,49 @@ def _build(args: argparse.Namespace) -> Answer:
                 built += ssp.build_systems(args.out, None, file, True, args.parameters, pool, args.force)
     changed = _replaced(built, before)
     joints = dict.fromkeys(MODELS[name].joint for name in args.names or MODELS)
-    found = {f.joint: judge_file(f) for f in ([file] if file else map(default, joints))}
-    judged = {joint: judgement.document() for joint, judgement in found.items()}
+    judgements = {f.joint: judge_file(f) for f in ([file] if file else map(default, joints))}
+    judged = {joint: judgement.document() for joint, judgement in judgements.items()}
     notes = []
     for path, values in changed.items():
-        said = [f"{name} was {old or 'not there'}, is {new or 'gone'}" for name, (old, new) in values.items()]
-        more = f" and {len(said) - SHOWN} more" if len(said) > SHOWN else ""
-        notes.append(f"replaced {path}: {', '.join(said[:SHOWN])}{more}")
-    levels = [f"{joint}: {line}" for joint, one in found.items() for line in one.lines()]
+        texts = [
+            f"{name} was {old or 'not there'}, is {new or 'gone'}" for name, (old, new) in values.items()
+        ]
+        more = f" and {len(texts) - SHOWN} more" if len(texts) > SHOWN else ""
+        notes.append(f"replaced {path}: {', '.join(texts[:SHOWN])}{more}")
+    levels = [f"{joint}: {line}" for joint, judgement in judgements.items() for line in judgement.lines()]
+    notes += [
+        f"warning: {joint}: {text}" for joint, judgement in judgements.items() for text in judgement.warnings
+    ]
     return Answer(
         document={"built": [str(path) for path in built], "replaced": changed, "joints": judged},
         lines=[*(f"built {path}" for path in built), *levels],
-        notes=[*notes, *(f"warning: {joint}: {x}" for joint, one in found.items() for x in one.warnings)],
+        notes=notes,
     )
 
 
 def _starts(path: Path) -> dict[str, str]:
-    """{parameter: start value as written} of an FMU; empty for a file that is none."""
+    """Read {parameter: start value as text} of an FMU; empty if the file is no FMU."""
     try:
         with archives.open_archive(path) as archive:
             description = ElementTree.fromstring(archives.read_member(archive, archives.DESCRIPTION))
     except (ValueError, ElementTree.ParseError):
         return {}
-    found = {}
+    starts = {}
     for variable in description.iterfind("ModelVariables/*"):
         values = {**variable.attrib, **{k: v for child in variable for k, v in child.attrib.items()}}
         if variable.get("causality") == "parameter" and "start" in values:
-            found[variable.attrib["name"]] = values["start"]
-    return found
+            starts[variable.attrib["name"]] = values["start"]
+    return starts
 
 
 def _replaced(
     built: Sequence[Path], before: Mapping[Path, Mapping[str, str]]
 ) -> dict[str, dict[str, list[str | None]]]:
-    """{file: {parameter: [value before, now]}} of FMUs that were there with others; None: without."""
-    found = {}
+    """Find the start values that differ from those of replaced FMUs: {file: {parameter: [old, new]}}.
+
+    None stands for a parameter that the FMU does not have.
+    """
+    changed = {}
     for path in built:
         if old := before.get(path):
             new = _starts(path)
@@ -110,14 +118,14 @@ def _replaced(
                 if old.get(name) != new.get(name)
             }
             if values:
-                found[str(path)] = values
-    return found
+                changed[str(path)] = values
+    return changed
 
 
 def add_cache(commands: Commands) -> None:
-    """Declare the command."""
-    cache = command(commands, "cache", _cache, "say where compiled parts of FMUs are kept, or remove them")
-    cache.add_argument("--clear", action="store_true", help="remove them; the next build compiles again")
+    """Declare the command `jointfmu cache` with its options."""
+    cache = command(commands, "cache", _cache, "show or clear the cache of compiled FMU code")
+    cache.add_argument("--clear", action="store_true", help="clear the cache; the next build compiles again")
 
 
 def _cache(args: argparse.Namespace) -> Answer:

@@ -1,4 +1,4 @@
-"""`jointfmu export`: the joint for finite elements, Modelica tables and CSV."""
+"""`jointfmu export`: write a joint for finite-element solvers, robot simulators, Modelica tables or CSV."""
 
 import argparse
 from collections.abc import Mapping
@@ -22,16 +22,19 @@ if TYPE_CHECKING:
     from ..export.writing import Written
 
 _NUMBERED = {"first": ("ansys", "calculix", "abaqus"), "first_set": ("ansys",)}
+"""{argument: formats that need this first number together with --nodes}."""
 _ABOVE = {
     "first": "a number above all elements of your model",
     "first_set": "a number above all element types and sets of real constants of your model",
 }
+"""Meanings for error messages: {argument for a first free number: meaning}."""
 _SI = {"K_": "N/m", "C_": "N.s/m"}
+"""{first letters of a printed quantity: its SI unit}."""
 
 
 def add(commands: Commands) -> None:
-    """Declare the command."""
-    export = command(commands, "export", _export, "write the joint for another solver")
+    """Declare the command `jointfmu export` with its options."""
+    export = command(commands, "export", _export, "write a joint for another solver")
     with_springs = exports.able("springs")
     forms = [*FORMS, *ROBOTS]
     export.add_argument("form", choices=forms, metavar="FORMAT", help=f"one of {', '.join(forms)}")
@@ -41,7 +44,7 @@ def add(commands: Commands) -> None:
         help="springs: springs and dashpots between node pairs "
         f"({', '.join(KINDS[joint].title for joint in with_springs)}); contact: pressure over overclosure; "
         "curve: load over displacement of the whole joint; "
-        f"{', '.join(ROBOTS)}: a drive's parameter file or its name in the catalogue",
+        f"for {', '.join(ROBOTS)}: parameter file of a drive or its name in the catalogue",
     )
     joint = export.add_mutually_exclusive_group()
     argument(joint, "--params", Path, "parameter file of the joint (TOML)")
@@ -50,31 +53,32 @@ def add(commands: Commands) -> None:
         type=joint_name,
         choices=list(KINDS),
         default=with_springs[0],
-        help=f"a default joint ({with_springs[0]})",
+        help=f"joint with its default parameters (default: {with_springs[0]})",
     )
     for name, texts in _working_points().items():
         argument(export, flag(name), float, "; ".join(texts))
-    text = "springs: your node pairs: node_1 [1], node_2 [1], x [mm], y [mm], area [mm2], and with "
-    argument(export, "--nodes", Path, text + "pressure [MPa] instead of a working point", "CSV")
-    argument(export, "--first", int, "springs: first number free for elements and nodes (1)")
-    text = "ansys: first number free for element types and sets of real constants (1)"
+    text = "springs: your node pairs, columns node_1 [1], node_2 [1], x [mm], y [mm], area [mm2]; a column "
+    argument(export, "--nodes", Path, text + "pressure [MPa] replaces the working point", "CSV")
+    argument(export, "--first", int, "springs: first free number for elements and nodes (default: 1)")
+    text = "ansys: first free number for element types and sets of real constants (default: 1)"
     argument(export, "--first-set", int, text)
-    export.add_argument("--normal", choices=list(AXES), help="springs: axis along the joint's normal (z)")
-    export.add_argument(
-        "--units", choices=list(UNITS), default=SI.name, help=f"units of the file ({SI.name})"
-    )
-    argument(export, "--error", float, f"tables: largest error by straight lines ({ERROR:g})", "E")
-    text = f"{', '.join(ROBOTS)}: largest torque of the fit [N.m] (rated torque)"
+    text = "springs: axis of your model along the joint's normal (default: z)"
+    export.add_argument("--normal", choices=list(AXES), help=text)
+    text = f"units of the file (default: {SI.name})"
+    export.add_argument("--units", choices=list(UNITS), default=SI.name, help=text)
+    text = f"tables: largest relative error of linear interpolation (default: {ERROR:g})"
+    argument(export, "--error", float, text, "E")
+    text = f"{', '.join(ROBOTS)}: largest torque of the fit [N.m] (default: rated torque)"
     argument(export, "--torque", float, text, "T")
     output(export, "--out", TEXT, "file to write", required=True)
 
 
 def _working_points() -> dict[str, list[str]]:
-    """{name: what it is for each joint} of all that working points are made of."""
+    """Meanings of all working-point quantities: {name: [meaning for each joint that has the quantity]}."""
     texts: dict[str, list[str]] = {}
     for joint, kind in KINDS.items():
         for i, (name, text) in enumerate(exports.of(joint).working_point.items()):
-            texts.setdefault(name, []).append(f"{kind.title}: {text}{' (0)' if i else ''}")
+            texts.setdefault(name, []).append(f"{kind.title}: {text}{' (default: 0)' if i else ''}")
     return texts
 
 
@@ -98,12 +102,12 @@ def _export(args: argparse.Namespace) -> Answer:
     for name, value in written.facts.items():
         number = f"{value:.6g}" if isinstance(value, float) else value
         lines.append(f"  {name:<24}  {number} {_SI.get(name[:2], '')}".rstrip())
-    found = _judged(args, file).with_warnings([*written.warnings, *without_members(file)])
-    return Answer(document={**facts, **written.facts}, lines=lines, judgement=found)
+    judgement = _judged(args, file).with_warnings([*written.warnings, *without_members(file)])
+    return Answer(document={**facts, **written.facts}, lines=lines, judgement=judgement)
 
 
 def _robots(args: argparse.Namespace) -> Answer:
-    """Write a drive for a robot's simulator, and say what it misses."""
+    """Write a drive for a robot simulator; the output lists effects that the format cannot represent."""
     idle = ("params", "nodes", "first", "first_set", "normal", "error", *_working_points())
     _refuse(args, dict.fromkeys(idle, args.form))
     if args.units != SI.name:
@@ -120,9 +124,9 @@ def _robots(args: argparse.Namespace) -> Answer:
 
 
 def _judged(args: argparse.Namespace, file: ParameterFile) -> Judgement:
-    """The judgement at the working point, at the pressures of the user's nodes, or at the usual load."""
-    how = nominal_pressure(KINDS[file.joint])
-    load = getattr(args, how.load, None) if how else None
+    """Judge the stiffness at the working point, at the pressures of `--nodes`, or else at a default load."""
+    nominal = nominal_pressure(KINDS[file.joint])
+    load = getattr(args, nominal.load, None) if nominal else None
     if load is None and args.nodes:
         from ..export.mesh import read_pairs
 
@@ -159,27 +163,30 @@ def _written(args: argparse.Namespace, file: ParameterFile) -> "Written":
 
 
 def _state(args: argparse.Namespace, joint: str) -> Any:
-    """The joint's working point, None where none is stated."""
-    offered = exports.of(joint)
-    values = {name: getattr(args, name) for name in offered.working_point}
-    if offered.state is None or all(value is None for value in values.values()):
+    """Working point of the joint from the options; None if no option states one."""
+    available = exports.of(joint)
+    values = {name: getattr(args, name) for name in available.working_point}
+    if available.state is None or all(value is None for value in values.values()):
         return None
-    return offered.state(**{name: value or 0.0 for name, value in values.items()})
+    return available.state(**{name: value or 0.0 for name, value in values.items()})
 
 
 def _refuse(args: argparse.Namespace, idle: Mapping[str, str]) -> None:
-    """Refuse what is stated of these: {name: for what it has no meaning}."""
+    """Raise ValueError if the user sets an option that has no effect.
+
+    unused_options : {option: format or content for which it has no meaning}
+    """
     for name, what in idle.items():
         if getattr(args, name) is not None:
             raise ValueError(f"{flag(name)} has no meaning for {what}")
 
 
 def _refuse_working_point(args: argparse.Namespace, joint: str) -> None:
-    """Refuse a working point that would do nothing, or is missing."""
-    wanted = {} if args.what == "contact" else exports.of(joint).working_point
-    _refuse(args, {name: f"the {args.what} of a {joint}" for name in _working_points() if name not in wanted})
-    stated = [name for name in wanted if getattr(args, name) is not None]
-    first, text = next(iter(wanted.items()), ("", ""))
+    """Raise ValueError if a working point is set but not used, or if a required one is missing."""
+    used = {} if args.what == "contact" else exports.of(joint).working_point
+    _refuse(args, {name: f"the {args.what} of a {joint}" for name in _working_points() if name not in used})
+    stated = [name for name in used if getattr(args, name) is not None]
+    first, text = next(iter(used.items()), ("", ""))
     if stated and first not in stated:
         raise ValueError(f"{flag(stated[0])} needs {flag(first)}, {text}")
     if args.what == "curve" and first and not stated:
@@ -187,7 +194,7 @@ def _refuse_working_point(args: argparse.Namespace, joint: str) -> None:
 
 
 def _refuse_idle(args: argparse.Namespace, file: ParameterFile) -> None:
-    """Refuse options that would do nothing, or are missing."""
+    """Check the options. Raises ValueError if one has no effect, is missing or is out of range."""
     exports.required(file.joint, args.what)
     _refuse_working_point(args, file.joint)
     if args.what == "springs":

@@ -1,4 +1,4 @@
-"""`jointfmu modelica`: the Modelica library, from parameters."""
+"""`jointfmu modelica`: write the Modelica library from parameters."""
 
 import argparse
 from pathlib import Path
@@ -15,15 +15,15 @@ from ..pressure import judge_file, without_members
 
 
 def add(commands: Commands) -> None:
-    """Declare the command."""
+    """Declare the command `jointfmu modelica` with its options."""
     make = command(commands, "modelica", _modelica, "write the Modelica library JointStiffness")
-    argument(make, "--params", Path, "parameter file of one joint (TOML)")
+    argument(make, "--params", Path, "parameter file of one joint, in place of its default (TOML)")
     for name, kinds in _inputs().items():
         first = any(name == kind.working_point[0] for kind in kinds)
         text = "; ".join(f"{kind.title}: {_meaning(kind, name)}" for kind in kinds)
         text += "" if first else " (default: 0)"
         argument(make, flag(name), float, text, nargs="+" if first else None)
-    output(make, "--out", FOLDER, "folder", default=Path("dist"))
+    output(make, "--out", FOLDER, "folder to write", default=Path("dist"))
 
 
 def _modelica(args: argparse.Namespace) -> Answer:
@@ -41,13 +41,13 @@ def _modelica(args: argparse.Namespace) -> Answer:
 
 
 def _judged(file: ParameterFile, points: dict[str, list[tuple[float, ...]]]) -> Judgement:
-    """The judgement of the user's joint at its working points."""
-    found = judge_file(file, [point[0] for point in points.get(file.joint, [])] or None)
-    return found.with_warnings(without_members(file))
+    """Judge the stiffness of the user's joint at its working points."""
+    judgement = judge_file(file, [point[0] for point in points.get(file.joint, [])] or None)
+    return judgement.with_warnings(without_members(file))
 
 
 def _inputs() -> dict[str, list[Kind]]:
-    """{input that working points give: joints that have it}."""
+    """Inputs that define working points: {input: joints that have it}."""
     names = dict.fromkeys(name for kind in KINDS.values() for name in kind.working_point)
     return {name: [kind for kind in KINDS.values() if name in kind.working_point] for name in names}
 
@@ -58,11 +58,15 @@ def _meaning(kind: Kind, name: str) -> str:
 
 
 def _points(kind: Kind, args: argparse.Namespace) -> list[tuple[float, ...]]:
-    """The working points asked for: values of the first input, each with those of the others, else zero."""
-    first, *rest = kind.working_point
-    given = {name: getattr(args, name) for name in rest if getattr(args, name) is not None}
+    """Read the working points of a joint: one for each value of its first input.
+
+    Each point has the same values of the other inputs; an input that is not set is zero. Raises ValueError
+    if another input is set but not the first.
+    """
+    first, *others = kind.working_point
+    stated = {name: getattr(args, name) for name in others if getattr(args, name) is not None}
     values: list[float] = getattr(args, first) or []
-    if given and not values:
+    if stated and not values:
         needed = f"{flag(first)}, the {_meaning(kind, first)}"
-        raise ValueError(f"{flag(next(iter(given)))} needs {needed}")
-    return [(value, *(given.get(name, 0.0) for name in rest)) for value in values]
+        raise ValueError(f"{flag(next(iter(stated)))} needs {needed}")
+    return [(value, *(stated.get(name, 0.0) for name in others)) for value in values]

@@ -1,4 +1,7 @@
-"""`jointfmu new`: a joint from its drawing; the shipped tables; `jointfmu catalogue`: the bought joints."""
+"""`jointfmu new`: make a joint from its drawing, or print a shipped table.
+
+`jointfmu catalogue`: list the bought joints.
+"""
 
 import argparse
 import re
@@ -12,7 +15,7 @@ from jointfmu.joints import KINDS
 from jointfmu.quantity.units import factor
 
 from ..catalogue import Column, Item
-from ..command_line.common import Answer, Commands, Parser, argument, command
+from ..command_line.common import Answer, Commands, Parser, argument, command, sentence
 from ..command_line.outputs import output
 from ..drawing.part import Drawing
 from ..interface.joint import Joint
@@ -24,40 +27,40 @@ from . import declare
 
 
 def add(commands: Commands) -> None:
-    """Declare the command, the joints that it makes, and the tables."""
-    text = "make a joint's parameter file from what stands on its drawing"
-    top = commands.add_parser("new", help=text, description=text)
+    """Declare `jointfmu new`, with a sub-command for each joint and for each table."""
+    text = "make the parameter file of a joint from the data on its drawing"
+    top = commands.add_parser("new", help=text, description=sentence(text))
     things = top.add_subparsers(dest="thing", required=True, metavar="JOINT", parser_class=Parser)
     for kind in KINDS.values():
-        if found := part(kind, "new"):
-            _declare(things, kind.name.replace("_", "-"), found.NEW)
+        if module := part(kind, "new"):
+            _declare(things, kind.name.replace("_", "-"), module.NEW)
     for name, rows in TABLES.items():
-        command(things, name, partial(_table, rows), f"print the {name} that drawings may name")
+        command(things, name, partial(_table, rows), f"print the table of known {name}")
 
 
 def _declare(things: Commands, name: str, drawing: Drawing) -> None:
-    """Declare one joint."""
+    """Declare the sub-command of one joint."""
     sub = command(things, name, partial(_make, drawing), f"make {drawing.text}")
     sub.example = f"new {name} {drawing.example} --out my.toml"
     for option in drawing.options:
         declare(sub, option)
-    argument(sub, "--name", str, "of the parameter set (default: by its sizes)")
+    argument(sub, "--name", str, "name of the parameter set (default: made of its sizes)")
     output(sub, "--out", PARAMETERS, "write the parameter file (TOML)")
 
 
 def _make(drawing: Drawing, args: argparse.Namespace) -> Answer:
-    """Make the joint."""
+    """Make a joint from the options of its drawing."""
     joint = made(drawing, {option.name: getattr(args, option.name) for option in drawing.options})
     if args.name:
         joint = replace(joint, file=replace(joint.file, name=args.name))
     if args.out:
         joint.save(args.out, force=args.force)
-    found = judge_file(joint.file).with_warnings(joint.notes)
+    judgement = judge_file(joint.file).with_warnings(joint.notes)
     end = f"wrote {args.out}" if args.out else "nothing is written: state --out FILE"
     return Answer(
-        document=_document(joint) | found.document() | {"written": [str(args.out)] if args.out else []},
-        lines=[*fact_lines(joint.facts), *found.lines(), end],
-        notes=[f"warning: {text}" for text in found.warnings],
+        document=_document(joint) | judgement.document() | {"written": [str(args.out)] if args.out else []},
+        lines=[*fact_lines(joint.facts), *judgement.lines(), end],
+        notes=[f"warning: {text}" for text in judgement.warnings],
     )
 
 
@@ -73,7 +76,7 @@ def _document(joint: Joint) -> dict[str, object]:
 
 
 def _table(rows: Callable[[], Iterator[dict[str, Any]]], args: argparse.Namespace) -> Answer:
-    """A table."""
+    """Print a table: bolts, materials or finishes."""
     content = list(rows())
     cells = [[*content[0]], *([_shown(cell) for cell in row.values()] for row in content)]
     return Answer(document=content, lines=aligned(cells))
@@ -90,16 +93,20 @@ _MATERIAL = {
     "H [MPa]": ("H", 1e-6),
 }
 _FINISH = {"Ra [um]": ("Ra", 1e6), "from": ("Ra_low", 1e6), "to": ("Ra_high", 1e6), "slope": ("slope", 1.0)}
-"""{head: column, its number over that in SI}."""
+"""Columns of the printed tables: {heading: (column of the table, factor from SI to the printed unit)}."""
 
 
 def _rows(name: str, heads: Mapping[str, tuple[str, float]], source: str) -> Iterator[dict[str, object]]:
-    """The rows of `materials` or `finishes`; `source` is made of those of their numbers."""
+    """Yield the rows of `materials` or `finishes`.
+
+    column_scales : {heading: (column of the table, factor from SI to the printed unit)}
+    source        : format string for the column `source`, filled with the numbers of the row
+    """
     from ..drawing.tables import table
 
     for row in table(name).values():
         numbers = {
-            head: round(row.numbers[column].value * times, 9) for head, (column, times) in heads.items()
+            head: round(row.numbers[column].value * scale, 9) for head, (column, scale) in heads.items()
         }
         also = {"also": ", ".join(row.also), "source": source.format(**row.numbers)}
         yield {"name": row.name, **numbers, **also}
@@ -129,42 +136,43 @@ TABLES: dict[str, Callable[[], Iterator[dict[str, Any]]]] = {
     "finishes": partial(_rows, "finishes", _FINISH, "{Ra_low.source}"),
     "bolts": _bolts,
 }
-"""{name: its rows}."""
+"""{name of a table: function that yields its rows}."""
 
 
 def add_catalogue(commands: Commands) -> None:
-    """Declare the command."""
+    """Declare the command `jointfmu catalogue` with its options."""
     sub = command(commands, "catalogue", _catalogue, "list the bought joints that jointfmu new knows")
-    argument(sub, "words", str, "parts of a name, as CSG-17, csg25-100 or csg 25 100", "WORD", nargs="*")
+    text = "part of the name, for example CSG-17, csg25-100 or csg 25 100"
+    argument(sub, "words", str, text, "WORD", nargs="*")
 
 
 def _catalogue(args: argparse.Namespace) -> Answer:
-    """The joints whose names have the word in them."""
-    found = [
-        (kind.name, own.CATALOGUE.columns, item)
+    """List the bought joints whose names contain the words. Raises ValueError if there is none."""
+    rows = [
+        (kind.name, module.CATALOGUE.columns, item)
         for kind in KINDS.values()
-        if (own := part(kind, "catalogue"))
-        for item in own.CATALOGUE.items()
+        if (module := part(kind, "catalogue"))
+        for item in module.CATALOGUE.items()
         if _in(args.words, item.name)
     ]
-    if not found:
+    if not rows:
         word = " ".join(args.words)
         raise ValueError(f"no joint of the catalogues has {word!r} in its name (jointfmu catalogue)")
-    lines, shown = [], None
-    for joint, columns, item in found:
-        if joint != shown:
+    lines, last_joint = [], None
+    for joint, columns, item in rows:
+        if joint != last_joint:
             lines.append(f"{joint.replace('_', '-'):13}  {'  '.join(map(_head, columns))}")
-            shown = joint
+            last_joint = joint
         lines.append(f"{item.name:13}  {'  '.join(_cell(item, column) for column in columns)}".rstrip())
-    if any(number.kind == "estimate" for _, _, item in found for number in item.numbers.values()):
-        lines.append("~ is an estimate, < an upper limit; --json tells where each number comes from")
-    return Answer(document=[_item_document(*row) for row in found], lines=lines)
+    if any(number.kind == "estimate" for _, _, item in rows for number in item.numbers.values()):
+        lines.append("~ is an estimate, < an upper limit; --json has the source of each number")
+    return Answer(document=[_item_document(*row) for row in rows], lines=lines)
 
 
 def _in(words: Sequence[str], name: str) -> bool:
-    """Whether the words are in a name one after the other, whatever their case, signs and spaces."""
-    wanted, own = (re.sub(r"[^a-z0-9]", "", text.lower()) for text in ("".join(words), name))
-    return wanted in own
+    """Return whether a name contains the joined words. Case, signs and spaces are ignored."""
+    searched, plain_name = (re.sub(r"[^a-z0-9]", "", text.lower()) for text in ("".join(words), name))
+    return searched in plain_name
 
 
 def _head(column: Column) -> str:
@@ -172,7 +180,7 @@ def _head(column: Column) -> str:
 
 
 def _cell(item: Item, column: Column) -> str:
-    """As wide as the column's head."""
+    """Format one number of a catalogue entry, at least as wide as the heading of its column."""
     width = len(_head(column))
     if (number := item.numbers.get(column.name)) is None:
         return f"{'-':{width}}"
@@ -181,7 +189,7 @@ def _cell(item: Item, column: Column) -> str:
 
 
 def _item_document(joint: str, columns: Any, item: Item) -> dict[str, Any]:
-    """A joint with the origin of each number, SI units."""
+    """JSON object of a catalogue entry: numbers in SI units, with origin and source."""
     units = {column.name: column.unit for column in columns}
     numbers = {name: number._asdict() | {"unit": units[name]} for name, number in item.numbers.items()}
     return {"joint": joint, "name": item.name, "numbers": numbers}

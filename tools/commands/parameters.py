@@ -1,4 +1,4 @@
-"""`jointfmu parameters`: what can be set of an FMU, a joint or an interface law."""
+"""`jointfmu parameters`: list the parameters of an FMU, a joint or an interface law."""
 
 import argparse
 import math
@@ -20,15 +20,15 @@ _HEAD = ("name", "default", "unit", "allowed", "meaning")
 
 
 def add(commands: Commands) -> None:
-    """Declare the command."""
-    text = "list what can be set of an FMU, a joint or an interface law"
+    """Declare the command `jointfmu parameters` with its options."""
+    text = "list the parameters of an FMU, a joint or an interface law"
     sub = command(commands, "parameters", _parameters, text)
     text = f"an FMU ({', '.join(MODELS)}), a joint ({', '.join(KINDS)}) or a law ({', '.join(LAWS)})"
     argument(sub, "name", str, text, choices=[*MODELS, *KINDS, *LAWS])
-    own = sub.add_mutually_exclusive_group()
+    source = sub.add_mutually_exclusive_group()
     laws = sorted({law for kind in KINDS.values() for law in kind.laws})
-    argument(own, "--law", str, f"law of the FMU or joint ({', '.join(laws)})", "LAW", choices=laws)
-    argument(own, "--params", Path, "parameter file with other values (TOML)")
+    argument(source, "--law", str, f"law of the FMU or joint ({', '.join(laws)})", "LAW", choices=laws)
+    argument(source, "--params", Path, "parameter file, in place of the default values (TOML)")
 
 
 def _parameters(args: argparse.Namespace) -> Answer:
@@ -55,7 +55,7 @@ def _parameters(args: argparse.Namespace) -> Answer:
 
 
 def _joint_file(name: str, args: argparse.Namespace) -> ParameterFile:
-    """The values that an FMU or joint starts from."""
+    """Load the parameter file of an FMU or joint: that of `--params`, or the default with `--law`."""
     joint = MODELS[name].joint if name in MODELS else name
     if args.params:
         return load(args.params, joint)
@@ -67,7 +67,7 @@ def _joint_file(name: str, args: argparse.Namespace) -> ParameterFile:
 
 
 def _row(name: str, field: Field[Any], value: Any) -> dict[str, Any]:
-    """One parameter: name, unit, least and largest value, meaning, default; of a choice what is allowed."""
+    """JSON object of one parameter: name, meaning, default, unit, lower and upper limit, allowed values."""
     meta = field.metadata
     row = {"name": name, "meaning": meta["doc"], "default": value}
     if "allowed" in meta:

@@ -1,4 +1,7 @@
-"""`jointfmu prove`: the experiments that an FMU carries; `jointfmu validate`: the published numbers."""
+"""`jointfmu prove`: run the experiments stored in an FMU.
+
+`jointfmu validate`: compare with published numbers.
+"""
 
 import argparse
 from dataclasses import asdict
@@ -19,22 +22,22 @@ from ..published import validation
 
 
 def add(commands: Commands) -> None:
-    """Declare the command."""
-    text = "run the experiments that an FMU carries (FMI-LS-REF) and compare with its reference results"
+    """Declare the command `jointfmu prove` with its options."""
+    text = "run the experiments stored in an FMU (FMI-LS-REF) and compare with its reference results"
     sub = command(commands, "prove", _prove, text)
     argument(sub, "fmu", Path, "path of the FMU", "FMU")
-    text = f"what runs the FMU: {', '.join(IMPORTERS)}"
+    text = f"simulator that runs the FMU: {', '.join(IMPORTERS)}"
     choices = list(IMPORTERS)
     argument(sub, "--in", str, text, "IMPORTER", dest="importer", choices=choices, default="fmpy")
-    text = "if all passes, write the files of the FMI cross-check for lists of exporting tools"
+    text = "folder for the files of the FMI cross-check, written if all experiments pass"
     output(sub, "--listing", FOLDER, text)
-    text = "parameter file: this package computes start values and references from it, those that the FMU "
-    argument(sub, "--against", Path, text + "carries are not read")
+    text = "parameter file from which start values and reference results are computed, in place of those in "
+    argument(sub, "--against", Path, text + "the FMU")
 
 
 def _prove(args: argparse.Namespace) -> Answer:
     if args.listing and args.against:
-        raise ValueError("--listing is of the references that the FMU carries; expected it without --against")
+        raise ValueError("--listing needs the reference results stored in the FMU; expected no --against")
     proof = prove(args.fmu, args.importer, _expected(args.fmu, args.against) if args.against else None)
     folders = listing.write(proof, args.listing, args.force) if args.listing and proof.passed else []
     listed = {"listing": [str(folder) for folder in folders]} if args.listing else {}
@@ -48,9 +51,9 @@ def _prove(args: argparse.Namespace) -> Answer:
 
 
 def _expected(fmu: Path, path: Path) -> Expected:
-    """What the package says of the FMU of a parameter file, without building it.
+    """Compute start values and reference results from a parameter file, without building its FMU.
 
-    Raises ValueError if the FMU has not the inputs and outputs of one of the file's joint.
+    Raises ValueError if the FMU does not have the inputs and outputs of an FMU of the file's joint.
     """
     from jointfmu_fmu_src.proof.members import proof
 
@@ -61,22 +64,19 @@ def _expected(fmu: Path, path: Path) -> Expected:
         names = {v.name for v in description.modelVariables}
     for model in KINDS[file.joint].models:
         if {v.name for v in (*model.inputs, *model.outputs)} <= names:
-            own = model.of(file.joint, file.values)
-            starts = {name: file.flat[name] for name in own.parameter_fields()}
-            starts |= {v.name: file.start(v.name) for v in own.inputs}
-            return Expected(str(path), starts, proof(own, file))
-    known = ", ".join(model.name for model in KINDS[file.joint].models)
-    raise ValueError(f"{fmu}: has not the variables of {known}, for which {path} is")
+            described = model.of(file.joint, file.values)
+            starts = {name: file.flat[name] for name in described.parameter_fields()}
+            starts |= {v.name: file.start(v.name) for v in described.inputs}
+            return Expected(str(path), starts, proof(described, file))
+    models = ", ".join(model.name for model in KINDS[file.joint].models)
+    raise ValueError(f"{fmu}: does not have the variables of {models}, the FMUs of {path}")
 
 
 def add_validate(commands: Commands) -> None:
-    """Declare the command."""
-    sub = command(commands, "validate", _validate, "compare every published number with the computed one")
-    sub.add_argument(
-        "--frequencies",
-        action="store_true",
-        help="add the measured natural frequencies, by finite elements (half a minute)",
-    )
+    """Declare the command `jointfmu validate` with its options."""
+    sub = command(commands, "validate", _validate, "compare computed results with all published numbers")
+    text = "also compare the measured natural frequencies, by finite elements (half a minute)"
+    sub.add_argument("--frequencies", action="store_true", help=text)
 
 
 def _validate(args: argparse.Namespace) -> Answer:

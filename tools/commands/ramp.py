@@ -1,4 +1,4 @@
-"""`jointfmu ramp`: an FMU along a load ramp, or to and fro."""
+"""`jointfmu ramp`: run an FMU along a load ramp or in load cycles."""
 
 import argparse
 import math
@@ -22,44 +22,46 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 RAMP, LOOP = ("to", "step"), ("about", "shape", "points", "cycles", "output")
-"""Options of a ramp, and of loops beside --loop."""
+"""Options of a ramp, and options of load cycles in addition to --loop."""
 ROWS = 24
-"""Points of a ramp that are printed on a terminal, the first and the last among them."""
+"""Largest number of points of a ramp that are printed on a terminal."""
 
 
 def add(commands: Commands) -> None:
-    """Declare the command."""
-    text = "run an FMU along a load ramp from zero, or to and fro, and print every output or the loops' loss"
+    """Declare the command `jointfmu ramp` with its options."""
+    text = "run an FMU along a load ramp and print its outputs, or in load cycles and print the energy loss"
     drive = command(commands, "ramp", _run, text)
     argument(drive, "fmu", Path, "path of the FMU", "FMU")
-    argument(drive, "--input", str, "input to drive", required=True)
-    argument(drive, "--to", float, "end of the ramp (SI)")
-    argument(drive, "--step", float, "step of the ramp (SI)")
-    argument(drive, "--loop", float, "amplitudes of loops, each from rest (SI)", nargs="+")
-    argument(drive, "--about", float, "middle of the loops (default: 0)")
+    argument(drive, "--input", str, "input to vary", required=True)
+    argument(drive, "--to", float, "ramp: last value of the input (SI); the first is zero")
+    argument(drive, "--step", float, "ramp: step of the input (SI)")
+    argument(drive, "--loop", float, "amplitudes of load cycles, each started from rest (SI)", nargs="+")
+    argument(drive, "--about", float, "cycles: mean value of the input (default: 0)")
     drive.add_argument(
-        "--shape", choices=loops.SHAPES, help=f"of a loop over time (default: {loops.SHAPES[0]})"
+        "--shape", choices=loops.SHAPES, help=f"cycles: shape over time (default: {loops.SHAPES[0]})"
     )
-    argument(drive, "--points", int, f"of a cycle (default: {loops.POINTS})")
-    argument(drive, "--cycles", int, f"of a loop (default: {loops.CYCLES})")
-    argument(drive, "--output", str, "force or motion conjugate to the input of loops")
-    argument(drive, "--columns", str, "outputs of a ramp (default: all)", nargs="+")
+    argument(drive, "--points", int, f"cycles: points per cycle (default: {loops.POINTS})")
+    argument(drive, "--cycles", int, f"cycles: number per amplitude (default: {loops.CYCLES})")
+    argument(drive, "--output", str, "cycles: force or motion conjugate to the input")
+    argument(drive, "--columns", str, "ramp: outputs to print (default: all)", nargs="+")
     settings(drive)
     output(drive, "--csv", columns.TABLE, "write every point to a file")
     output(drive, "--plot", PICTURE, "draw the outputs of a ramp, or loops, loss and stiffness (.png, .svg)")
 
 
 def _run(args: argparse.Namespace) -> Answer:
-    """A ramp or loops, as the options say; ValueError if they say both or neither."""
-    ramped, looped = ([name for name in names if getattr(args, name) is not None] for names in (RAMP, LOOP))
-    if args.loop and ramped:
+    """Run a ramp or load cycles. Raises ValueError if the options describe both or neither."""
+    ramp_options, loop_options = (
+        [name for name in names if getattr(args, name) is not None] for names in (RAMP, LOOP)
+    )
+    if args.loop and ramp_options:
         raise ValueError(
-            f"--loop and {flag(ramped[0])} are both given; allowed is --loop, or --to with --step"
+            f"--loop and {flag(ramp_options[0])} are both given; allowed is --loop, or --to with --step"
         )
-    if not args.loop and looped:
-        raise ValueError(f"{flag(looped[0])} is given without --loop; allowed is with --loop only")
-    if not args.loop and len(ramped) < len(RAMP):
-        raise ValueError("the drive is not stated; expected --to with --step, or --loop")
+    if not args.loop and loop_options:
+        raise ValueError(f"{flag(loop_options[0])} is given without --loop; allowed is with --loop only")
+    if not args.loop and len(ramp_options) < len(RAMP):
+        raise ValueError("the load is not stated; expected --to with --step, or --loop")
     if args.loop and args.columns:
         raise ValueError("--columns is given with --loop; allowed is with a ramp only")
     return _loops(args) if args.loop else _ramp(args)
@@ -84,51 +86,51 @@ def _ramp(args: argparse.Namespace) -> Answer:
 
 
 def _chosen(result: ramp.RampResult, driven: str, names: list[str] | None) -> ramp.RampResult:
-    """The driven input and the outputs asked for; ValueError for one that is not there."""
+    """Select the varied input and the requested outputs. Raises ValueError for an unknown output."""
     if unknown := [name for name in names or () if name not in result.columns]:
         raise ValueError(f"--columns {unknown[0]}: unknown output, allowed are {', '.join(result.columns)}")
-    kept = list(dict.fromkeys([driven, *(names or result.columns)]))
+    selected = list(dict.fromkeys([driven, *(names or result.columns)]))
     return replace(
         result,
-        columns={name: result.columns[name] for name in kept},
-        units={name: result.units[name] for name in kept},
+        columns={name: result.columns[name] for name in selected},
+        units={name: result.units[name] for name in selected},
     )
 
 
 def _table(result: ramp.RampResult) -> list[str]:
-    """Some of the points for people, in the units in which they read best."""
-    every = next(iter(result.columns.values())).size
-    shown = np.unique(np.linspace(0, every - 1, min(every, ROWS)).round().astype(int))
+    """Format up to MAX_PRINTED_ROWS points of a ramp, first and last included, in display units."""
+    count = next(iter(result.columns.values())).size
+    indices = np.unique(np.linspace(0, count - 1, min(count, ROWS)).round().astype(int))
     columns = []
     for name, values in result.columns.items():
         unit, size = plots.shown(result.units[name], values)
         columns.append(
             [
                 f"{name}{'' if unit == '1' else f' [{unit}]'}",
-                *(f"{size * values[i] + 0.0:.5g}" for i in shown),
+                *(f"{size * values[i] + 0.0:.5g}" for i in indices),
             ]
         )
-    more = [f"{len(shown)} of {every} points; --csv writes all"] if len(shown) < every else []
+    more = [f"{len(indices)} of {count} points; --csv writes all"] if len(indices) < count else []
     return [*aligned([*zip(*columns, strict=True)], 0), *more]
 
 
 def _draw_ramp(figure: "Figure", result: ramp.RampResult) -> None:
-    """Every output over the driven input."""
+    """Draw every output over the varied input."""
     (driven, x), *outputs = result.columns.items()
-    x_unit, by = plots.shown(result.units[driven], x)
+    x_unit, x_size = plots.shown(result.units[driven], x)
     axes = figure.subplots(math.ceil(len(outputs) / 3), min(len(outputs), 3), squeeze=False).ravel()
-    for one, (name, y) in zip(axes, outputs, strict=False):
+    for panel, (name, y) in zip(axes, outputs, strict=False):
         unit, size = plots.shown(result.units[name], y)
-        one.plot(by * x, size * y, color=plots.BLUE)
-        one.set_ylabel(f"{name} [{unit}]")
-        one.set_xlabel(f"{driven} [{x_unit}]")
-    for one in axes[len(outputs) :]:
-        one.set_visible(False)
+        panel.plot(x_size * x, size * y, color=plots.BLUE)
+        panel.set_ylabel(f"{name} [{unit}]")
+        panel.set_xlabel(f"{driven} [{x_unit}]")
+    for panel in axes[len(outputs) :]:
+        panel.set_visible(False)
 
 
 def _loops(args: argparse.Namespace) -> Answer:
-    given = {name: getattr(args, name) for name in LOOP[:4] if getattr(args, name) is not None}
-    swing = loops.Swing(**given)
+    stated = {name: getattr(args, name) for name in LOOP[:4] if getattr(args, name) is not None}
+    swing = loops.Swing(**stated)
     found = loops.run(args.fmu, args.input, args.loop, swing, args.output, dict(args.settings))
     for message in found.messages:
         print(message, file=sys.stderr)
@@ -142,7 +144,7 @@ def _loops(args: argparse.Namespace) -> Answer:
 
 
 def _document(fmu: Path, found: loops.HysteresisLoops) -> dict[str, object]:
-    """What was found as one JSON object; forces act on the joint, positive with the motion."""
+    """JSON object of load cycles. Forces act on the joint and are positive in the direction of motion."""
     rows = found.rows()
     for row, loop in zip(rows, found.loops, strict=True):
         row |= {"motions": loop.motion.tolist(), "forces": loop.force.tolist(), "closed": loop.closed}
@@ -156,34 +158,33 @@ def _document(fmu: Path, found: loops.HysteresisLoops) -> dict[str, object]:
 
 
 def _draw(figure: "Figure", found: loops.HysteresisLoops, swing: loops.Swing) -> None:
-    """Loops with first loading and ends; loss, and stiffness, over the amplitude."""
+    """Draw hysteresis loops with first loading and end points; energy loss and stiffness over amplitude."""
     left, middle, right = figure.subplots(1, 3, width_ratios=(1.3, 1.0, 1.0))
-    every = sorted(found.loops, key=lambda loop: loop.amplitudes[0])
-    (motion, by), (force, times) = (
-        plots.shown(unit, np.concatenate([getattr(loop, name) for loop in every]))
+    cycles = sorted(found.loops, key=lambda loop: loop.amplitudes[0])
+    (motion, x_size), (force, y_size) = (
+        plots.shown(unit, np.concatenate([getattr(loop, name) for loop in cycles]))
         for unit, name in zip(found.units, ("motion", "force"), strict=True)
     )
-    for loop in every:
-        left.plot(
-            by * loop.motion[loop.closed :], times * loop.force[loop.closed :], color=plots.BLUE, lw=1.2
-        )
+    for loop in cycles:
+        x, y = x_size * loop.motion[loop.closed :], y_size * loop.force[loop.closed :]
+        left.plot(x, y, color=plots.BLUE, lw=1.2)
     first = slice(None, swing.points // 4 + 1)
-    left.plot(by * every[-1].motion[first], times * every[-1].force[first], "--", color=plots.RED)
-    ends = np.array([(by * loop.motion[-1], times * loop.force[-1]) for loop in every])
+    left.plot(x_size * cycles[-1].motion[first], y_size * cycles[-1].force[first], "--", color=plots.RED)
+    ends = np.array([(x_size * loop.motion[-1], y_size * loop.force[-1]) for loop in cycles])
     left.plot(*ends.T, "o", color=plots.RED, ms=4, label="first loading, ends of the loops")
     left.set_xlabel(f"{found.motion} [{motion}]")
     left.set_ylabel(f"{'-' if found.sign < 0.0 else ''}{found.force} [{force}]")
     left.legend(loc="lower right")
-    rows = [loop.row() for loop in every]
+    rows = [loop.row() for loop in cycles]
     amplitude, stiffness, loss = (
         np.array([row[name] for row in rows]) for name in ("motion", "secant_stiffness", "loss")
     )
     unit, size = plots.shown(found.row_units["secant_stiffness"], stiffness)
     for axes, y, label in (
-        (middle, loss, "loss of a cycle [J]"),
+        (middle, loss, "energy loss per cycle [J]"),
         (right, size * stiffness, f"secant stiffness [{unit}]"),
     ):
-        axes.plot(by * amplitude, y, "o-", color=plots.BLUE, ms=4)
+        axes.plot(x_size * amplitude, y, "o-", color=plots.BLUE, ms=4)
         axes.set_xlabel(f"amplitude [{motion}]")
         axes.set_ylabel(label)
     right.set_xlim(left=0.0)

@@ -1,4 +1,4 @@
-"""`jointfmu report`: the page of one joint, from its parameter file or by its name."""
+"""`jointfmu report`: write the page of one joint, from its parameter file or its name."""
 
 import argparse
 from pathlib import Path
@@ -11,13 +11,11 @@ from ..interface.make import load
 
 
 def add(commands: Commands) -> None:
-    """Declare the command."""
-    text = (
-        "write a page about one joint: curves, loops, friction, sources of its numbers, how far to trust it"
-    )
+    """Declare the command `jointfmu report` with its options."""
+    text = "write a page about one joint: curves, loops, friction, sources of the numbers, validity"
     make = command(commands, "report", _report, text)
-    argument(make, "file", Path, "parameter file (TOML), or a name")
-    argument(make, "--fmu", str, "which of the joint's FMUs (default: its first)")
+    argument(make, "file", Path, "parameter file (TOML), or name of an FMU, a joint or a catalogue entry")
+    argument(make, "--fmu", str, "FMU of the joint that the page describes (default: the first)")
     output(make, "--out", PAGE, "page to write (.html; default: FILE.html in this folder)")
 
 

@@ -1,4 +1,4 @@
-"""`jointfmu ring`: resonance of a joint in its system over the load or the amplitude, by running FMUs."""
+"""`jointfmu ring`: resonance frequency and damping of a joint in its system, by simulation with FMUs."""
 
 import argparse
 import math
@@ -20,18 +20,19 @@ from . import draw
 
 
 def add(commands: Commands) -> None:
-    """Declare the command."""
-    text = "run a joint's FMU with a body on it and find resonance and damping over load or amplitude"
+    """Declare the command `jointfmu ring` with its options."""
+    text = "simulate a joint with a body on it and find resonance and damping over load or amplitude"
     ring = command(commands, "ring", _ring, text)
     argument(ring, "system", str, f"{', '.join(names())}, or a system's file (TOML)", "SYSTEM")
-    argument(ring, "--joint", str, "the joint, where the system has several")
+    argument(ring, "--joint", str, "joint to examine, if the system has several")
     text = "folder with the FMUs of `jointfmu system` or `build --systems`"
     argument(ring, "--fmus", Path, text, "DIR", default=Path("dist/fmi2"))
-    text = "what loads the joint, SI: preload of a bolt [N], torque at the output [N.m] (default: several "
-    argument(ring, "--load", float, text + "that show the joint)", nargs="+")
-    argument(ring, "--inertia", float, "of the body [kg or kg.m2] (default: of the system)")
-    text = "let the body go from this deflection [m or rad]: frequency and damping over the amplitude, in "
-    text += "the motion in which the joint slips (default load: the largest of the several)"
+    text = "load of the joint: preload of a bolt [N], torque at the output [N.m] (default: a series of loads)"
+    argument(ring, "--load", float, text, nargs="+")
+    text = "mass or moment of inertia of the body [kg or kg.m2] (default: of the system)"
+    argument(ring, "--inertia", float, text)
+    text = "simulate a free decay from this deflection [m or rad] in the direction in which the joint slips, "
+    text += "and print frequency and damping over the amplitude (default load: the largest of the series)"
     argument(ring, "--amplitude", float, text)
     settings(ring)
     output(ring, "--csv", columns.TABLE, "write the table to a file")
@@ -75,7 +76,7 @@ def _ring(args: argparse.Namespace) -> Answer:
 
 
 def _decays(args: argparse.Namespace, example: Any) -> Answer:
-    """Frequency and damping over the amplitude."""
+    """Simulate free decays: frequency and damping over the amplitude."""
     from ..systems import decays
 
     points = decays.decays(example, args.fmus, args.amplitude, args.load, args.inertia, dict(args.settings))
@@ -104,7 +105,10 @@ def _decays(args: argparse.Namespace, example: Any) -> Answer:
 
 
 def _falling(point: Any) -> tuple[np.ndarray[Any, Any], ...]:
-    """Columns of a decay: load, amplitude, frequency [Hz] of decay and loop, damping ratio of both."""
+    """Columns of a free decay: load, amplitude, frequency [Hz] and damping ratio [1], each of decay and loop.
+
+    The loop is the joint's hysteresis loop of the same amplitude.
+    """
     hertz = 1.0 / math.tau
     return (
         np.full(point.amplitude.size, point.load),
@@ -117,7 +121,10 @@ def _falling(point: Any) -> tuple[np.ndarray[Any, Any], ...]:
 
 
 def _check(args: argparse.Namespace, unit: str) -> None:
-    """Refuse what no FMU would, before the work; `unit` is the inertia's."""
+    """Raise ValueError before the work starts if load, inertia or amplitude is out of range.
+
+    inertia_unit : unit of the inertia in the message
+    """
     for value in args.load or ():
         if not math.isfinite(value):
             raise ValueError(f"load = {value:g} is outside (-inf, inf): must be finite")
@@ -128,8 +135,11 @@ def _check(args: argparse.Namespace, unit: str) -> None:
 
 
 def _row(point: Any) -> dict[str, float]:
-    """One working point: load, frequencies [Hz], damping ratios [1], and the largest stable steps [s] of a
-    co-simulation whose master passes the force on at once, or one step late."""
+    """Results at one load: frequencies [Hz], damping ratios [1], and the largest stable time steps [s].
+
+    `largest_step` holds if the co-simulation master passes the force on at once, `largest_step_late` if it
+    passes the force on one step late.
+    """
     at_once, late = stable_steps(point.expected**2, 2.0 * point.stated * point.expected, 1.0)
     return {
         "load": point.load,
@@ -143,7 +153,7 @@ def _row(point: Any) -> dict[str, float]:
 
 
 def _table(rows: list[dict[str, float]], load: str) -> str:
-    """The rows as CSV text, header `name [unit]`, six digits."""
+    """Format the rows as CSV text with six digits; headings with units."""
     units = (load, "Hz", "Hz", "1", "1", "s", "s")
     values = [np.array([row[name] for row in rows]) for name in rows[0]]
     return columns.text(list(zip(rows[0], units, strict=True)), values, digits=6)

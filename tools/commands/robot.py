@@ -1,4 +1,4 @@
-"""`jointfmu robot`: a robot of others, MJCF or URDF, with elastic axes."""
+"""`jointfmu robot`: add elastic drives to the joints of a robot file (MJCF or URDF)."""
 
 import argparse
 from collections.abc import Sequence
@@ -23,37 +23,37 @@ from ..command_line.common import Answer, Commands, argument, command, needing
 from ..command_line.outputs import check_inputs, output
 
 MOST = 1e4
-"""Largest payload [kg] that is taken."""
+"""Largest allowed payload [kg]."""
 
 
 def add(commands: Commands) -> None:
-    """Declare the command."""
-    text = "make named joints of a robot (MJCF, URDF) elastic with their drives"
+    """Declare the command `jointfmu robot` with its options."""
+    text = "add elastic drives to joints of a robot (MJCF, URDF)"
     sub = command(commands, "robot", run, text)
     several: dict[str, Any] = {"nargs": "+", "action": "extend"}
-    argument(sub, "robot", Path, "the robot's file, MJCF or URDF", "ROBOT")
-    text = "joints and their drives: a name of the catalogue or a parameter file"
+    argument(sub, "robot", Path, "robot file, MJCF or URDF", "ROBOT")
+    text = "joint and its drive: a name of the catalogue or a parameter file"
     argument(sub, "--drive", str, text, "JOINT=NAME", required=True, **several)
     argument(sub, "--payload", float, "mass at the tip [kg]", "M", default=1.0)
-    argument(sub, "--tip", str, "body whose origin is the tip (the last body)", "BODY")
+    argument(sub, "--tip", str, "body whose origin is the tip (default: the last body)", "BODY")
     sub.add_argument(
         "--pose",
         nargs="+",
         action="extend",
         default=[],
         metavar="JOINT=ANGLE",
-        help="angles [rad] of the pose, of joints at zero or as in the first keyframe (for the payload: the "
-        "pose of the grid at which the tip sinks most)",
+        help="joint angles [rad] of the pose; other joints are at zero or as in the first keyframe (default "
+        "for the payload: the pose of a grid with the largest deflection of the tip)",
     )
-    text = "the robot with MuJoCo's plugins of the drives too, compiled here"
+    text = "also write the robot with MuJoCo plugins of the drives, compiled on this machine"
     sub.add_argument("--plugin", action="store_true", help=text)
-    text = "one FMU of the axes at the pose too, and the system's file of it"
+    text = "also write one FMU of all axes at the pose, and its system file"
     sub.add_argument("--fmu", action="store_true", help=text)
     output(sub, "--out", FOLDER, "folder to write", required=True)
 
 
 def run(args: argparse.Namespace) -> Answer:
-    """Run the command."""
+    """Run the command `jointfmu robot`."""
     names, angles = _pairs(args.drive, "--drive", "NAME"), _pairs(args.pose, "--pose", "ANGLE")
     if not 0.0 <= args.payload <= MOST:
         raise ValueError(f"--payload = {args.payload:g} kg is outside [0, {MOST:g}] kg")
@@ -117,7 +117,8 @@ def run(args: argparse.Namespace) -> Answer:
     notes += dict.fromkeys(lacking)
     if model.opt.timestep > longest:
         notes.append(
-            f"its timestep, {model.opt.timestep:g} s, is beyond {longest:.3g} s, which the drives bear"
+            f"the robot's timestep, {model.opt.timestep:g} s, is too long for the drives; use at most "
+            f"{longest:.3g} s"
         )
     facts = {
         "written": [str(path) for path in (written, *pictures, *more)],
@@ -144,7 +145,7 @@ def run(args: argparse.Namespace) -> Answer:
 
 
 def _plugged(args: argparse.Namespace, spec: Any, axes: Any, files: Any) -> list[Path]:
-    """The robot with plugins, and these."""
+    """Write the robot with MuJoCo plugins, and compile the plugins; returns the paths."""
     from ..robots import elastic, plugged
 
     elastic.keep_folders(spec, args.robot)
@@ -154,7 +155,10 @@ def _plugged(args: argparse.Namespace, spec: Any, axes: Any, files: Any) -> list
 
 
 def _system(args: argparse.Namespace, model: Any, axes: Any, files: Any, pose: Any, tip: int) -> list[Path]:
-    """The axes' file, those of its drives, and its FMUs."""
+    """Write the system file of the axes, the parameter files of their drives, and the FMUs.
+
+    Returns the paths of the system file and the FMUs.
+    """
     from ..robots import axes_system
     from ..robots.names import identifier
     from ..systems.fmu.assembly import assembly
@@ -162,8 +166,8 @@ def _system(args: argparse.Namespace, model: Any, axes: Any, files: Any, pose: A
     from ..systems.system import read
 
     written = args.out / f"{identifier(args.robot.stem)}_axes.toml"
-    given = {identifier(file.name): dump(file) for file in files.values()}
-    for name, text in given.items():
+    drives = {identifier(file.name): dump(file) for file in files.values()}
+    for name, text in drives.items():
         write_parameter_text(args.out / f"{name}.toml", text)
     write_parameter_text(
         written, axes_system.text(args.robot.stem, model, axes, files, pose, args.payload, tip)
@@ -193,13 +197,13 @@ def _lines(facts: dict[str, Any], model: Any) -> Sequence[str]:
 
 
 def _pairs(words: Sequence[str], option: str, value: str) -> dict[str, str]:
-    """{joint: what is stated of it}."""
-    found: dict[str, str] = {}
+    """Parse JOINT=VALUE words into {joint: text}. Raises ValueError for a wrong word or a repeated joint."""
+    pairs: dict[str, str] = {}
     for word in words:
-        joint, sign, stated = word.partition("=")
-        if not (joint and sign and stated):
+        joint, sign, text = word.partition("=")
+        if not (joint and sign and text):
             raise ValueError(f"{option} {word!r}: expected JOINT={value}")
-        if joint in found:
+        if joint in pairs:
             raise ValueError(f"{option}: {joint} is stated twice")
-        found[joint] = stated
-    return found
+        pairs[joint] = text
+    return pairs

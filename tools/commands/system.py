@@ -1,4 +1,4 @@
-"""`jointfmu system`: a file of joints, bodies and loads as FMUs, SSP archives, a Modelica model, one FMU."""
+"""`jointfmu system`: build FMUs, SSP archives and a Modelica model of joints, bodies and loads."""
 
 import argparse
 from pathlib import Path
@@ -14,20 +14,20 @@ from . import draw
 
 
 def add(commands: Commands) -> None:
-    """Declare the command."""
-    text = "build a system of named joints: its FMUs, SSP archives and a Modelica model"
+    """Declare the command `jointfmu system` with its options."""
+    text = "build a system of joints and bodies: FMUs, SSP archives and a Modelica model"
     make = command(commands, "system", _system, text)
-    argument(make, "file", str, f"a system's file (TOML), or {', '.join(names())}", "FILE")
-    output(make, "--out", FOLDER, "folder", default=Path("dist"))
-    text = "one FMU of the whole system too: NAME.fmu, FMI 2.0 and 3.0"
+    argument(make, "file", str, f"system file (TOML), or {', '.join(names())}", "FILE")
+    output(make, "--out", FOLDER, "folder to write", default=Path("dist"))
+    text = "also build one FMU of the whole system: NAME.fmu, FMI 2.0 and 3.0"
     make.add_argument("--fmu", action="store_true", help=text)
-    output(make, "--csv", columns.TABLE, "run it and write all connected outputs")
-    text = "run it and draw the joints' loads; of an arm wind-up and the tip's error (.png, .svg)"
+    output(make, "--csv", columns.TABLE, "simulate the system and write all connected outputs")
+    text = "simulate the system and draw the joint loads; for an arm also wind-up and tip error (.png, .svg)"
     output(make, "--plot", PICTURE, text)
 
 
 def _system(args: argparse.Namespace) -> Answer:
-    found = system(args.file)
+    described = system(args.file)
     with needing("build a system"):
         from ..modelica import library
         from ..modelica.systems import model_name
@@ -35,47 +35,52 @@ def _system(args: argparse.Namespace) -> Answer:
         from ..systems.fmu.assembly import assembly
         from ..systems.steps import longest_step
 
-        whole = assembly(found) if args.fmu else None
-        model = library.system_text(found)
-        step = longest_step(found)
-        if (args.csv or args.plot) and (beyond := _beyond(found, *step)):
-            raise ValueError(f"{args.file}: {beyond}; allowed is a shorter one, or neither --csv nor --plot")
-        written = args.out / "modelica" / f"{model_name(found)}.mo"
+        whole = assembly(described) if args.fmu else None
+        model = library.system_text(described)
+        step = longest_step(described)
+        if (args.csv or args.plot) and (warning := _beyond(described, *step)):
+            raise ValueError(f"{args.file}: {warning}; allowed is a shorter one, or neither --csv nor --plot")
+        written = args.out / "modelica" / f"{model_name(described)}.mo"
         check_output(written, TEXT, args.force)
         if whole:
             from ..systems.fmu.build import build_system, fmu_paths
 
             check_outputs(fmu_paths(whole.model().title, args.out), ARCHIVE, args.force)
-        made = ssp.build_systems(args.out, [found], force=args.force)
+        built = ssp.build_systems(args.out, [described], force=args.force)
         if whole:
-            made += build_system(whole, args.out, force=args.force)
+            built += build_system(whole, args.out, force=args.force)
     write_text(written, model)
-    paths = [*made, written]
+    paths = [*built, written]
     if args.csv or args.plot:
         from ..report import systems
         from ..systems import cosimulation
 
         try:
-            run = cosimulation.simulate(found, args.out / "fmi2")
+            run = cosimulation.simulate(described, args.out / "fmi2")
         except ValueError as error:
-            raise ValueError(f"{error}; experiment.interval = {found.interval:g} s may be too long") from None
-        step = min(step, longest_step(found, run))
+            text = f"experiment.interval = {described.interval:g} s may be too long"
+            raise ValueError(f"{error}; {text}") from None
+        step = min(step, longest_step(described, run))
         if args.csv:
-            units = systems.units(found)
+            units = systems.units(described)
             heads = [(name, units[name]) for name in run]
             write_text(args.csv, columns.text(heads, list(run.values()), digits=12))
         if args.plot:
-            draw(args.plot, systems.panels(found, run), systems.MOTION_SIZE)
+            draw(args.plot, systems.panels(described, run), systems.MOTION_SIZE)
         paths += [path for path in (args.csv, args.plot) if path]
-    notes = [f"warning: {text}" for text in (_beyond(found, *step),) if text]
-    built = [str(path) for path in paths]
-    document = {"system": found.name, "built": built, "longest_step": step[0], "notes": notes}
-    return Answer(document=document, lines=[f"built {path}" for path in built], notes=notes)
+    notes = [f"warning: {text}" for text in (_beyond(described, *step),) if text]
+    texts = [str(path) for path in paths]
+    document = {"system": described.name, "built": texts, "longest_step": step[0], "notes": notes}
+    return Answer(document=document, lines=[f"built {path}" for path in texts], notes=notes)
 
 
 def _beyond(system: System, longest: float, joint: str) -> str:
-    """What is said of an interval [s] that is longer than the largest stable step of a joint."""
+    """Format a warning if the system's interval is longer than the largest stable step; else empty.
+
+    largest_step : largest stable step [s] of a co-simulation
+    joint        : joint that limits the step
+    """
     if system.interval <= longest:
         return ""
     stated = f"experiment.interval = {system.interval:g} s is longer than {longest:.3g} s"
-    return f"{stated}, the largest stable step of {joint} where all step side by side"
+    return f"{stated}, the largest stable step of {joint} for a parallel (Jacobi) master"

@@ -1,4 +1,4 @@
-"""`jointfmu uncertainty`: bands from uncertain parameters; `jointfmu sweep`: a study of an FMU."""
+"""`jointfmu uncertainty`: uncertainty bands of a joint; `jointfmu sweep`: FMU runs for sampled parameters."""
 
 import argparse
 from dataclasses import replace
@@ -16,30 +16,30 @@ from ..command_line.outputs import output
 from ..pressure import judge_file
 
 SYNTAX = (
-    "distributions: LOW..HIGH (any value alike), VALUE+-PERCENT%, loguniform(LOW, HIGH), "
+    "distributions: LOW..HIGH (uniform), VALUE+-PERCENT%, loguniform(LOW, HIGH), "
     "normal(MEAN, SD), lognormal(MEDIAN, FACTOR), triangular(LOW, MODE, HIGH); SD and FACTOR also in %; "
-    "+-5%, normal(2%), lognormal(20%) lie about the value in the file; interval: between the ends that its "
-    "source states; quote the parentheses"
+    "+-5%, normal(2%), lognormal(20%) are relative to the value in the file; interval: uniform over the "
+    "range that the source states; quote the parentheses for your shell"
 )
+"""Help text on the distributions of `--set`."""
 
 
 def add(commands: Commands) -> None:
-    """Declare the command."""
-    study = command(
-        commands, "uncertainty", _uncertainty, "bands of a joint's curves from uncertain parameters"
-    )
+    """Declare the command `jointfmu uncertainty` with its options."""
+    text = "compute uncertainty bands of a joint's curves from uncertain parameters"
+    study = command(commands, "uncertainty", _uncertainty, text)
     study.epilog = SYNTAX
     argument(study, "joint", str, f"one of {', '.join(KINDS)}", "JOINT", nargs="?", choices=list(KINDS))
     argument(study, "--params", Path, "parameter file of the joint (TOML)")
-    _drawn(study, "samples", 16384)
-    argument(study, "--to", float, "end of the load ramp (SI)")
-    argument(study, "--points", int, "points of the ramp", default=201)
+    _drawn(study, "number of samples", 16384)
+    argument(study, "--to", float, "last value of the load ramp (SI)")
+    argument(study, "--points", int, "number of points of the ramp", default=201)
     output(study, "--csv", columns.TABLE, "write the bands to a file")
-    output(study, "--plot", PICTURE, "draw bands and indices, .png or .svg")
+    output(study, "--plot", PICTURE, "draw bands and sensitivity indices (.png, .svg)")
 
 
 def _drawn(sub: Parser, what: str, samples: int) -> None:
-    """Declare what is uncertain, and how many samples are drawn."""
+    """Declare the options for distributions, number of samples and seed."""
     argument(sub, "--study", Path, "study file with the distributions (TOML)")
     settings(sub)
     argument(sub, "--samples", int, f"{what}, rounded up to a power of two", default=samples)
@@ -47,7 +47,7 @@ def _drawn(sub: Parser, what: str, samples: int) -> None:
 
 
 def chosen(joint: str | None, params: Path | None) -> ParameterFile:
-    """The parameter file of JOINT or --params, either of which must be given."""
+    """Load the parameter file of `--params`, or the default of JOINT; ValueError if both are missing."""
     if params is None and joint is None:
         raise ValueError(f"JOINT or --params FILE is missing; JOINT is one of {', '.join(KINDS)}")
     return load(params, joint) if params else default(str(joint))
@@ -60,8 +60,8 @@ def _uncertainty(args: argparse.Namespace) -> Answer:
     file = chosen(args.joint, args.params)
     count = study.power_of_two(args.samples)
     study.check_seed(args.seed)
-    given = study.settings(args.study, args.settings)
-    task = problem.pose(file, given, args.to, args.points)
+    distributions = study.settings(args.study, args.settings)
+    task = problem.pose(file, distributions, args.to, args.points)
     A, B = propagate.design(task, count, args.seed)
     bands = propagate.bands(task, A)
     rows = min(count, max(1024, count // 32))
@@ -70,26 +70,26 @@ def _uncertainty(args: argparse.Namespace) -> Answer:
         write_text(args.csv, report.bands_csv(task, bands))
     if args.plot:
         report.draw(args.plot, bands, indices, f"{task.reduced.load.name} [{task.reduced.load.unit}]")
-    found = judge_file(replace(file, values=build(task.parameters, task.values)), report.loads(task))
+    judgement = judge_file(replace(file, values=build(task.parameters, task.values)), report.loads(task))
     lines = [report.table(task, bands, indices)]
-    return Answer(document=report.as_json(task, bands, indices), lines=lines, judgement=found)
+    return Answer(document=report.as_json(task, bands, indices), lines=lines, judgement=judgement)
 
 
 def add_sweep(commands: Commands) -> None:
-    """Declare the command."""
+    """Declare the command `jointfmu sweep` with its options."""
     many = command(
         commands, "sweep", _sweep, "run an FMU along a load ramp for many samples of its parameters"
     )
     many.epilog = SYNTAX
     argument(many, "fmu", Path, "path of the FMU", "FMU")
-    _drawn(many, "runs", 256)
-    argument(many, "--input", str, "input to drive", required=True)
-    argument(many, "--to", float, "end of the ramp (SI)", required=True)
+    _drawn(many, "number of runs", 256)
+    argument(many, "--input", str, "input to vary", required=True)
+    argument(many, "--to", float, "last value of the ramp (SI)", required=True)
     argument(many, "--step", float, "step of the ramp (SI)", required=True)
-    output(many, "--out", FOLDER, "folder of the results", forcible=False, required=True)
-    where = many.add_mutually_exclusive_group()
-    argument(where, "--scheduler", str, "dask scheduler of a cluster, tls://HOST:PORT", "ADDRESS")
-    argument(where, "--workers", int, "local processes (default: one per core)")
+    output(many, "--out", FOLDER, "folder for the results", forcible=False, required=True)
+    workers = many.add_mutually_exclusive_group()
+    argument(workers, "--scheduler", str, "dask scheduler of a cluster, tls://HOST:PORT", "ADDRESS")
+    argument(workers, "--workers", int, "number of local processes (default: one per core)")
 
 
 def _sweep(args: argparse.Namespace) -> Answer:
@@ -102,8 +102,8 @@ def _sweep(args: argparse.Namespace) -> Answer:
     count = study.power_of_two(args.samples)
     study.check_seed(args.seed)
     drive = LoadRamp(args.input, args.to, args.step)
-    given = study.settings(args.study, args.settings)
-    record, runs = plan(args.fmu, drive, given, count, args.seed)
+    distributions = study.settings(args.study, args.settings)
+    record, runs = plan(args.fmu, drive, distributions, count, args.seed)
     try:
         with journal.claimed(args.out, record):
             done = sweep(args.fmu, drive, runs, args.out, args.scheduler, args.workers)

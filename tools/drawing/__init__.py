@@ -1,1 +1,1 @@
-"""New joints from what stands on a drawing: sizes, bolts, materials and finishes."""
+"""New joints from the data of a drawing: sizes, bolts, materials and finishes."""

@@ -1,5 +1,6 @@
-"""The two faces of a contact on a drawing: material and finish, Ra, Rq or a scan of each. The patch of a
-line contact of curved ones.
+"""The two faces of a contact on a drawing: material, and roughness from finish, Ra, Rq or a scan.
+
+Also the Hertzian line contact of curved faces.
 """
 
 from pathlib import Path
@@ -21,44 +22,54 @@ from .tables import TableRow, row
 
 OPTIONS = (
     Option(
-        "material", "of both sides, or of each (jointfmu new materials)", "NAME", many=True, required=True
+        "material",
+        "material of both sides, or of each side (jointfmu new materials)",
+        "NAME",
+        many=True,
+        required=True,
     ),
     Option(
         "finish",
-        "of both sides, or of each (jointfmu new finishes); beside --Ra or --Rq its slope alone",
+        "finish of both sides, or of each side (jointfmu new finishes); with --Ra or --Rq it gives the slope "
+        "only",
         "NAME",
         many=True,
     ),
-    Option("Ra", "Ra of both sides, or of each [um]", "RA", many=True),
-    Option("Rq", "Rq or Sq of both sides, or of each [um]", "RQ", many=True),
-    Option("surface", "a scan of both sides, or of each", "SCAN", many=True),
+    Option("Ra", "Ra of both sides, or of each side [um]", "RA", many=True),
+    Option("Rq", "Rq or Sq of both sides, or of each side [um]", "RQ", many=True),
+    Option("surface", "scan of both sides, or of each side", "SCAN", many=True),
     Option("unit", "length unit of scans that state none: m, mm, um, nm", "UNIT"),
-    Option("longest_wave", "longest wave of the roughness [mm] (default: the cut-off of its Ra)"),
+    Option("longest_wave", "longest wavelength of the roughness [mm] (default: the cut-off of its Ra)"),
     Option("hardness", "hardness of the softer side [MPa] (default: of the material)"),
     Option("mu", "coefficient of friction [1] (default: 0.15)"),
 )
-"""What every joint with rough faces takes."""
+"""Options of every joint with rough faces."""
 MU, MU_RANGE = 0.15, (0.1, 0.3)
-"""Coefficient of friction of faces of which nothing is said, and its range [1]."""
+"""Coefficient of friction if the drawing states none, and its range [1]."""
 MU_MOST = 2.0
-"""Greatest coefficient of friction that is taken [1]: clean like metals in air have 0.8 to 1.5."""
+"""Largest allowed coefficient of friction [1]: clean pairs of the same metal in air have 0.8 to 1.5."""
 MU_SOURCE = "dry machined metal: a table of usual values, no measurement; VDI 2230, Table A6 has 0.1 to 0.3"
 SLOPE = 0.1
-"""Rms slope [1] of a surface of which only a height is known."""
+"""Rms slope [1] of a surface if only its height is known."""
 HURST = 0.8
-"""Hurst exponent [1] of a surface of which only a height is known."""
+"""Hurst exponent [1] of a surface if only its height is known."""
 GAMMA_WM = 1.5
 """Frequency ratio of the Weierstrass-Mandelbrot function [1]."""
 RZ = 6.3
-"""Rz over Ra of usual machined faces [1], 4 to 10: Rz 10 um beside Ra 1.6 um, 40 beside 6.3."""
+"""Ratio Rz/Ra of typical machined faces [1], 4 to 10: Rz 10 um for Ra 1.6 um, Rz 40 um for Ra 6.3 um."""
 CUT_OFFS = ((0.02e-6, 0.08e-3), (0.1e-6, 0.25e-3), (2e-6, 0.8e-3), (10e-6, 2.5e-3), (np.inf, 8e-3))
-"""Up to this Ra [m] this cut-off [m] (ISO 4288, Table 1; ISO 21920-3)."""
+"""(largest Ra [m], cut-off wavelength [m]) (ISO 4288, Table 1; ISO 21920-3)."""
 
 
 class Face(NamedTuple):
-    """One side: rms height [m], its least and greatest value, slope [1], Hurst exponent, longest wave [m].
+    """Roughness of one face.
 
-    text : where the height comes from; stated: {name of the section [roughness] without the side: height}
+    Rq             : rms height [m]
+    Rq_min, Rq_max : lower and upper limit of the rms height [m]
+    slope, hurst   : rms slope [1], Hurst exponent [1]
+    longest_wave   : longest wavelength [m] that the height includes
+    text           : source of the height
+    stated_heights : {key of the section [roughness] without the number of the side: height [m]}
     """
 
     Rq: float
@@ -72,16 +83,17 @@ class Face(NamedTuple):
 
 
 def materials(given: Given) -> tuple[TableRow, TableRow]:
-    """The two materials. Raises ValueError for one that the table lacks."""
+    """Read the materials of the two sides. Raises ValueError for a name that the table does not have."""
     names = both("material", given["material"])
-    assert names is not None  # it is required
+    assert names is not None  # the option is required
     return row("materials", names[0]), row("materials", names[1])
 
 
 class Heights(NamedTuple):
-    """What is known of h [m] of both faces: its range.
+    """Range of the rms height h of both faces together, and Rz of the rougher face.
 
-    Rz : of the rougher face [m], RZ times its Ra
+    h_min, h_max : lower and upper limit [m]
+    Rz           : maximum height [m], estimated as RZ_OVER_RA times Ra
     """
 
     low: float
@@ -90,9 +102,9 @@ class Heights(NamedTuple):
 
 
 def put(sheet: Sheet, given: Given) -> Heights:
-    """Put materials and roughness of the two faces on a sheet.
+    """Add the parameters of materials, friction and roughness of the two faces to a parameter sheet.
 
-    Raises ValueError, one line: unknown names, no or two statements of the roughness, a bad number or scan.
+    Raises ValueError, one line: unknown names, roughness not stated or stated twice, a bad number or scan.
     """
     pair = materials(given)
     for prefix, material in zip(("side1", "side2"), pair, strict=True):
@@ -118,7 +130,7 @@ def put(sheet: Sheet, given: Given) -> Heights:
 
 
 def _heights(sheet: Sheet, pair: tuple[Face, Face], wave: str | None) -> Heights:
-    """Put the height of both faces together, and what belongs to it."""
+    """Add the roughness of both faces together: height, slope, Hurst exponent, longest wave."""
     h, low, high = (
         float(roughness.together(*(getattr(face, name) for face in pair))) for name in ("Rq", "low", "high")
     )
@@ -148,7 +160,7 @@ def _heights(sheet: Sheet, pair: tuple[Face, Face], wave: str | None) -> Heights
 
 
 def _fractal(sheet: Sheet) -> None:
-    """D and G of profiles of an isotropic surface with the height, for laws that need them."""
+    """Add D and G of profiles of an isotropic surface with the same rms height, for laws that need them."""
     h, wave, hurst = (sheet.value(name) for name in ("h", "longest_wave", "hurst"))
     D, text = 2.0 - hurst, f"rms height {h:.3g} m of all waves up to {wave:g} m"
     sheet.put("surface.D", D, "estimate", f"2 - H with the Hurst exponent {hurst:g}")
@@ -157,7 +169,10 @@ def _fractal(sheet: Sheet) -> None:
 
 
 def roughness_length(D: float, h: float, longest: float) -> float:
-    """G [m] of profiles of dimension D whose surface has the rms height h [m] up to a longest wave [m]."""
+    """Fractal roughness G [m] of profiles with dimension D [1], from the rms height of the surface.
+
+    h            : rms height [m] of all waves up to `longest_wave` [m]
+    """
 
     def height(G: Number) -> Number:
         return fractal.height(D, G, longest)
@@ -167,9 +182,9 @@ def roughness_length(D: float, h: float, longest: float) -> float:
 
 
 def faces(given: Given) -> tuple[Face, Face]:
-    """The two faces.
+    """Read the roughness of the two faces.
 
-    Raises ValueError if the roughness is not stated or twice, or for a bad number or scan.
+    Raises ValueError if the roughness is not stated or is stated twice, or for a bad number or scan.
     """
     heights = [name for name in ("Ra", "Rq", "surface") if given[name]]
     finishes = both("finish", given["finish"])
@@ -183,7 +198,7 @@ def faces(given: Given) -> tuple[Face, Face]:
         return _of_finish(finishes[0]), _of_finish(finishes[1])
     name = heights[0]
     texts = both(name, given[name])
-    assert texts is not None  # one of `heights`
+    assert texts is not None  # `heights` has set options only
     if name == "surface":
         first = _of_scan(texts[0], given["unit"])
         return first, first if texts[1] == texts[0] else _of_scan(texts[1], given["unit"])
@@ -204,16 +219,16 @@ def _of_finish(name: str) -> Face:
         f"{known.title}, Ra {low * 1e6:.3g} to {high * 1e6:.3g} um, taken as {Ra * 1e6:.3g} um "
         f"({known.numbers['Ra_low'].source})"
     )
-    Rq, least, most = (float(roughness.rms_of_mean(value)) for value in (Ra, low, high))
+    Rq, Rq_low, Rq_high = (float(roughness.rms_of_mean(value)) for value in (Ra, low, high))
     slope, hurst = known.numbers["slope"], known.numbers["hurst"]
-    return Face(Rq, least, most, slope, hurst, _cut_off(Ra), text, {"Ra": Ra})
+    return Face(Rq, Rq_low, Rq_high, slope, hurst, _cut_off(Ra), text, {"Ra": Ra})
 
 
 def _of_number(name: str, text: str, finish: TableRow | None) -> Face:
     value = number(name, text, "um", "m")
     if value > roughness.ROUGHEST:
-        most = roughness.ROUGHEST * 1e6
-        raise ValueError(f"--{name} = {text!r} is outside (0, {most:g}] um: no roughness is as high")
+        limit = roughness.ROUGHEST * 1e6
+        raise ValueError(f"--{name} = {text!r} is outside (0, {limit:g}] um: no roughness is as high")
     Rq = value if name == "Rq" else float(roughness.rms_of_mean(value))
     slope = Printed(SLOPE, "estimate", "usual of machined surfaces")
     hurst = Printed(HURST, "estimate", "usual of machined surfaces, 0.7 to 0.9")
@@ -226,22 +241,22 @@ def _of_number(name: str, text: str, finish: TableRow | None) -> Face:
 def _of_scan(path: str, unit: str | None) -> Face:
     prepared = form.prepare(reading.read(Path(path), unit))
     longest = form.default_wave(prepared.whole)
-    found = form.of_scan(prepared.gappy, prepared.whole, longest)
+    scan = form.of_scan(prepared.gappy, prepared.whole, longest)
     source = f"scan {Path(path).name}"
     return Face(
-        found.h,
-        found.h,
-        found.h,
-        Printed(found.slope, "user", f"{source}, waves down to {found.shortest_wave:.3g} m"),
+        scan.h,
+        scan.h,
+        scan.h,
+        Printed(scan.slope, "user", f"{source}, waves down to {scan.shortest_wave:.3g} m"),
         Printed(HURST, "estimate", "usual of machined surfaces, 0.7 to 0.9"),
         Printed(longest, "user", f"length of the {source}"),
         f"{source}, waves up to {longest:.3g} m",
-        {"Rq": found.h},
+        {"Rq": scan.h},
     )
 
 
 def beyond(peak: float, hardness: float) -> list[str]:
-    """The warning if the greatest pressure [Pa] is above the hardness [Pa], where the law ends."""
+    """Warning if the greatest pressure [Pa] is above the hardness [Pa], the limit of the law; else empty."""
     if peak <= hardness:
         return []
     return [
@@ -250,7 +265,7 @@ def beyond(peak: float, hardness: float) -> list[str]:
 
 
 class Patch(NamedTuple):
-    """Half width [m], area [m2] and greatest pressure [Pa] of a line contact."""
+    """Hertzian line contact: half width [m], area [m2] and greatest pressure [Pa]."""
 
     half_width: Number
     area: Number
@@ -258,11 +273,11 @@ class Patch(NamedTuple):
 
 
 def patch(load: Number, width: Number, curvature: Number, modulus: Number) -> Patch:
-    """Of cylinders under a load [N] (Hertz 1881; Johnson, Contact Mechanics, Eqs. 4.43 to 4.45).
+    """Hertzian line contact of two cylinders under a load [N] (Johnson, Contact Mechanics, Eqs. 4.43-4.45).
 
-    width     : [m] of the flanks along the line
-    curvature : [1/m] of both flanks together, 1/R_1 + 1/R_2, above 0
-    modulus   : [Pa] E*
+    width     : length of the contact line [m]
+    curvature : relative curvature 1/R_1 + 1/R_2 [1/m], above 0
+    modulus   : contact modulus E* [Pa]
     """
     half = np.sqrt(4.0 * load / (np.pi * width * modulus * curvature))
     return Patch(half, 2.0 * half * width, 2.0 * load / (np.pi * half * width))

@@ -1,5 +1,6 @@
-"""What a joint's part `new` says: NEW, the options of a drawing, the joint that they make, and its
-parameters as they are collected, each with where it comes from.
+"""Joints from drawings: options of a drawing, collection of parameters with their sources, the new joint.
+
+The module `new` in a joint's folder defines its options and the function that makes it by its constant NEW.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -14,15 +15,16 @@ from ..catalogue import Printed
 from ..joint_parts import Option
 
 Given = Mapping[str, Any]
-"""{name of an option: its text, a list of texts, or whether a flag is there; None where it is left out}."""
+"""{option: its text, a list of texts, or a bool for a flag; None if the user does not set the option}."""
 
 
 @dataclass(frozen=True, slots=True)
 class NewJoint:
-    """A joint that a drawing makes.
+    """A joint made from a drawing.
 
-    facts    : {name: (value, unit, meaning)} of what was computed beside its parameters
-    warnings : a line each
+    file     : parameter file
+    facts    : {name: (value, unit, meaning)} of additional results, which are no parameters
+    warnings : one line each
     """
 
     file: "ParameterFile"
@@ -32,12 +34,12 @@ class NewJoint:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Drawing:
-    """A way to a new joint.
+    """How `jointfmu new` makes a joint from a drawing: its options and its function.
 
-    text    : what it makes, in words
-    example : options that make one
-    options : what it takes
-    run     : a module of the joint's is loaded only then. ValueError: bad input
+    description : the joint in words
+    example     : options of an example, as text
+    options     : options of the command
+    make_joint  : options -> new joint; loads the modules of the joint. Raises ValueError for bad input
     """
 
     text: str
@@ -48,8 +50,12 @@ class Drawing:
 
 @dataclass(slots=True)
 class Sheet:
-    """{structured name: (value, kind, source)} of a joint, start values of its inputs, ranges of some, and
-    {name: (height [m], kind, source)} of its surfaces, as in `ParameterFile.roughness`.
+    """Parameters of a new joint while they are collected, each with its origin and source.
+
+    entries   : {structured name: (value, kind, source)}
+    inputs    : {input: start value}
+    ranges    : {structured name: (lower, upper limit)}, for some of the parameters
+    roughness : {name: (height [m], kind, source)} of the surfaces, as in `ParameterFile.roughness`
     """
 
     joint: str
@@ -60,42 +66,44 @@ class Sheet:
     roughness: dict[str, tuple[float, str, str]] = field(default_factory=dict)
 
     def put(self, name: str, value: Any, kind: str, source: str) -> None:
-        """A parameter, or with the prefix `inputs.` a start value."""
+        """Add a parameter; with the prefix `inputs.`, the start value of an input."""
         if name.startswith("inputs."):
             self.inputs[name.removeprefix("inputs.")] = value
         self.known[name] = (value, kind, source)
 
     def between(self, name: str, low: float, high: float) -> None:
-        """Least and greatest value that a parameter may have, by the source of its value."""
+        """Set the lower and upper limit that the source of a parameter states."""
         self.ranges[name] = (low, high)
 
     def stated(self, name: str, value: object) -> None:
+        """Add a parameter that the user states on the drawing."""
         self.put(name, value, "user", "stated on the drawing")
 
     def take(self, name: str, known: Printed) -> None:
+        """Add a parameter with the value and source of a tabulated number."""
         self.put(name, known.value, known.kind, known.source)
 
     def value(self, name: str) -> Any:
         return self.known[name][0]
 
     def file(self, name: str) -> ParameterFile:
-        """The parameter file of that name, with those of the values that the joint's law has.
+        """Build the parameter file of that name. Parameters that the joint's law does not have are left out.
 
-        Raises ValueError as `quantity.build`.
+        Raises ValueError for a value outside its interval or a missing one, as `quantity.build`.
         """
         cls = KINDS[self.joint].laws[self.law]
         declared = {key for key, _ in flat_fields(cls)}
-        own = {key: known for key, known in self.known.items() if key in declared}
-        starts = {key: known for key, known in self.known.items() if key.startswith("inputs.")}
-        kept = own | starts
+        parameters = {key: entry for key, entry in self.known.items() if key in declared}
+        starts = {key: entry for key, entry in self.known.items() if key.startswith("inputs.")}
+        entries = parameters | starts
         file = ParameterFile(
             self.joint,
             name,
-            build(cls, {key: value for key, (value, _, _) in own.items()}),
-            {key: kind for key, (_, kind, _) in kept.items()},
-            {key: source for key, (_, _, source) in kept.items()},
+            build(cls, {key: value for key, (value, _, _) in parameters.items()}),
+            {key: kind for key, (_, kind, _) in entries.items()},
+            {key: source for key, (_, _, source) in entries.items()},
             self.inputs,
-            ranges={name: ends for name, ends in self.ranges.items() if name in own},
+            ranges={name: ends for name, ends in self.ranges.items() if name in parameters},
         )
         rough = file
         for height, (value, kind, source) in self.roughness.items():

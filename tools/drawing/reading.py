@@ -1,4 +1,4 @@
-"""Numbers as they stand on drawings: in a unit of their own or in that of the drawing, 200x100, 4xM12."""
+"""Parsing of numbers on drawings: with a unit or in the default unit of the option, sizes such as 200x100."""
 
 import math
 import re
@@ -13,12 +13,19 @@ _NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?)\s*(.*)", re.IGNO
 
 
 def number(name: str, text: str, unit: str, to: str, least: float | None = 0.0) -> float:
-    """A number of the option `name` in the unit `to`; without a unit of its own it has `unit`.
+    """Parse the number of an option.
 
-    Raises ValueError if it is none, of another unit, infinite, or not above `least` (None: any).
+    option      : name of the option, for the error
+    unit        : unit of a number that is stated without one
+    target_unit : unit of the result
+    lower_bound : the number must be above it [target_unit]; None: no bound
+
+    Raises ValueError for text that is no number, a wrong unit, an infinite number, or one out of range.
     """
     match = _NUMBER.fullmatch(text.strip())
     example = f"expected a number in {unit}, or with its unit as in 1{unit}"
+    if unit == "1":
+        example = "expected a number without a unit"
     if not match:
         raise ValueError(f"{flag(name)} = {text!r} is no number; {example}")
     try:
@@ -32,9 +39,9 @@ def number(name: str, text: str, unit: str, to: str, least: float | None = 0.0) 
 
 
 def temperature(name: str, text: str) -> float:
-    """A temperature [K] of the option `name`, stated in degC, or with K behind it.
+    """Parse the temperature [K] of an option, stated in degC or with the unit K.
 
-    Raises ValueError if it is none, or outside LUBRICANTS.
+    Raises ValueError for text that is no temperature, or outside the range LUBRICANTS of lubricants.
     """
     match = _TEMPERATURE.fullmatch(text.strip())
     if not match:
@@ -52,18 +59,24 @@ def temperature(name: str, text: str) -> float:
 def numbers(
     name: str, text: str, unit: str, to: str, *, by: str, count: int, least: float | None = 0.0
 ) -> list[float]:
-    """So many numbers with a sign between them: 200x100. Raises ValueError as `number`."""
-    parts = text.split(by)
-    if len(parts) != count:
+    """Parse `count` numbers with a separator between them: 200x100.
+
+    Raises ValueError for another count, and as `parse_number`.
+    """
+    words = text.split(by)
+    if len(words) != count:
         example = by.join(["200", "100"][:count])
         raise ValueError(
-            f"{flag(name)} = {text!r} has {len(parts)} numbers, expected {count}, as in {example}"
+            f"{flag(name)} = {text!r} has {len(words)} numbers, expected {count}, as in {example}"
         )
-    return [number(name, part, unit, to, least) for part in parts]
+    return [number(name, word, unit, to, least) for word in words]
 
 
 def both(name: str, texts: Sequence[str] | None) -> tuple[str, str] | None:
-    """What is stated of the two sides: once for both, or of each. Raises ValueError if there are more."""
+    """Expand one or two texts to a text for each side; None if there is none.
+
+    Raises ValueError for more than two texts.
+    """
     if not texts:
         return None
     if len(texts) > 2:

@@ -1,4 +1,4 @@
-"""The shipped tables of materials, finishes and bolts: models/tables/*.toml."""
+"""Shipped tables of materials, finishes and bolts: models/tables/*.toml."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -30,7 +30,7 @@ FINISH = {
 
 @dataclass(frozen=True, slots=True)
 class TableRow:
-    """A row of a table: its name, other names, a title, and numbers by column."""
+    """A row of a table: name, other names, title, and {column: number}."""
 
     name: str
     also: tuple[str, ...]
@@ -40,7 +40,7 @@ class TableRow:
 
 @cache
 def table(name: str) -> dict[str, TableRow]:
-    """`materials` or `finishes`: {name: row}."""
+    """Read a table, `materials` or `finishes`: {name: row}."""
     path, document = _document(name)
     columns = {"materials": MATERIAL, "finishes": FINISH}[name]
     rows = {}
@@ -53,13 +53,16 @@ def table(name: str) -> dict[str, TableRow]:
 
 
 def row(name: str, wanted: str) -> TableRow:
-    """The row of a table by one of its names, whatever its case and hyphens; ValueError if there is none."""
+    """Find a row of a table by one of its names; case and hyphens are ignored.
+
+    Raises ValueError if no row has the name.
+    """
     rows = table(name)
-    for found in rows.values():
-        if _key(wanted) in map(_key, (found.name, *found.also)):
-            return found
-    one = {"materials": "material", "finishes": "finish"}[name]
-    raise ValueError(f"{one} {wanted!r} is unknown, allowed are {', '.join(rows)} (jointfmu new {name})")
+    for candidate in rows.values():
+        if _key(wanted) in map(_key, (candidate.name, *candidate.also)):
+            return candidate
+    noun = {"materials": "material", "finishes": "finish"}[name]
+    raise ValueError(f"{noun} {wanted!r} is unknown, allowed are {', '.join(rows)} (jointfmu new {name})")
 
 
 def _key(text: str) -> str:
@@ -68,7 +71,13 @@ def _key(text: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Thread:
-    """A metric bolt; lengths [m]."""
+    """Sizes of a metric bolt with coarse thread, lengths [m].
+
+    d               : nominal diameter
+    pitch           : pitch of the thread
+    hole            : diameter of the clearance hole
+    hexagon, socket : least outer diameter d_w of the bearing face of a hexagon head and of a socket head
+    """
 
     name: str
     d: float
@@ -80,7 +89,7 @@ class Thread:
 
 @cache
 def threads() -> dict[str, Thread]:
-    """{name: bolt} of coarse pitch."""
+    """Read the bolts with coarse pitch: {name: bolt}."""
     _, document = _document("bolts")
     columns = [factor(column["unit"], "m") for column in document["columns"].values()]
     names = list(document["columns"])
@@ -94,13 +103,16 @@ def threads() -> dict[str, Thread]:
 
 
 def thread_source(column: str) -> str:
-    """Where a column of the bolts comes from."""
+    """Source of a column in the table of bolts."""
     return str(_document("bolts")[1]["columns"][column]["source"])
 
 
 @cache
 def embedding() -> list[tuple[float, tuple[float, ...]]]:
-    """Greatest Rz [m] of the faces, ascending, and embedding [m] of thread, head or nut, and interface."""
+    """Read the table of embedding: (largest Rz [m], embedding [m] of thread, head or nut, and interface).
+
+    The rows are in ascending order of Rz.
+    """
     stated = dict(_document("bolts")[1]["embedding"])
     size = factor(stated.pop("unit"), "m")
     stated.pop("source")
@@ -109,7 +121,7 @@ def embedding() -> list[tuple[float, tuple[float, ...]]]:
 
 @cache
 def classes() -> dict[str, dict[str, tuple[float, float]]]:
-    """{property class: {yield, proof: stress [Pa] up to and above M16}}."""
+    """Read the property classes: {class: {"yield" or "proof": stress [Pa] up to M16, and above}}."""
     stated = _document("bolts")[1]["classes"]
     size = factor(stated["unit"], "Pa")
     return {
@@ -120,11 +132,11 @@ def classes() -> dict[str, dict[str, tuple[float, float]]]:
 
 
 LARGE = 16e-3
-"""Diameter [m] above which a property class has its second stresses."""
+"""Thread diameter [m] above which the second strength of a property class in the table holds."""
 
 
 def strength(name: str, key: str, thread: Thread) -> float:
-    """Stress [Pa] of a property class, yield or proof, for a thread."""
+    """Strength [Pa] of a property class, "yield" or "proof", for a thread."""
     return classes()[name][key][int(thread.d > LARGE)]
 
 

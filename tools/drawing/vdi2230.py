@@ -1,6 +1,7 @@
-"""Bolt and clamped parts as springs, the pressure cone and the preload of a bolt: VDI 2230, part 1.
+"""Compliance of bolt and clamped parts, deformation cone, assembly preload, embedding: VDI 2230, part 1.
 
-Concentrically clamped joints with one bolt. Lengths [m], moduli and stresses [Pa], compliances [m/N].
+Valid for concentrically clamped joints with one bolt. Lengths in m, moduli and stresses in Pa, compliances
+in m/N.
 """
 
 from collections.abc import Sequence
@@ -15,35 +16,35 @@ from .tables import Thread, strength, threads
 E_BOLT = 205e9
 """Young's modulus [Pa] of a steel bolt."""
 USE = 0.9
-"""Part of the yield strength that tightening uses [1]."""
+"""Share of the yield strength that is used during tightening [1]."""
 FRICTION = 0.12
-"""Coefficient of friction in the thread, without a better one [1]: Table A5, class B."""
+"""Default coefficient of friction in the thread [1]: Table A5, class B."""
 
 
 def pitch_diameter(thread: Thread) -> float:
-    """d_2 [m] (ISO 724)."""
+    """Pitch diameter d_2 [m] (ISO 724)."""
     return thread.d - 0.64952 * thread.pitch
 
 
 def minor_diameter(thread: Thread) -> float:
-    """d_3 [m] (ISO 724)."""
+    """Minor diameter d_3 [m] (ISO 724)."""
     return thread.d - 1.22687 * thread.pitch
 
 
 def stress_area(thread: Thread) -> float:
-    """A_s [m2] (ISO 898-1)."""
+    """Stress area A_s [m2] (ISO 898-1)."""
     return 0.0625 * np.pi * (pitch_diameter(thread) + minor_diameter(thread)) ** 2
 
 
 def bolt_compliance(
     thread: Thread, grip: float, shank: float, head: str, tapped: float | None = None
 ) -> float:
-    """delta_S [m/N] of a bolt: head, shank, free thread, engaged thread and nut (section 5.1.1).
+    """Compliance delta_S [m/N] of a bolt: head, shank, free thread, engaged thread and nut (section 5.1.1).
 
-    grip   : l_K between head and nut, or tapped part
-    shank  : length without thread in it
-    head   : "hexagon" (0.5 d of length) or "socket" (0.4 d)
-    tapped : modulus of the part with the thread; None: a nut of the bolt's modulus
+    grip           : clamping length l_K [m] between head and nut, or between head and tapped part
+    shank          : length of the shank without thread [m]
+    head           : "hexagon" (effective length 0.5 d) or "socket" (0.4 d)
+    thread_modulus : Young's modulus [Pa] of a tapped part; None: a nut with the modulus of the bolt
     """
     nominal = 0.25 * np.pi * thread.d**2
     minor = 0.25 * np.pi * minor_diameter(thread) ** 2
@@ -54,9 +55,10 @@ def bolt_compliance(
 
 
 def cone_slope(grip: float, bearing: float, outer: float, tapped: bool) -> float:
-    """tan(phi) of the deformation cone [1] (Eqs. 47 and 48): of a through-bolted or a tapped joint.
+    """tan(phi) [1] of the deformation cone of a through-bolted or a tapped joint (Eqs. 47 and 48).
 
-    bearing : outer diameter d_w under the head; outer: D_A of the parts, at least d_w
+    bearing_diameter : outer diameter d_w of the bearing face under the head [m]
+    outer_diameter   : diameter D_A of the clamped parts [m], at least d_w
     """
     beta, y = grip / bearing, max(outer / bearing, 1.0)
     if tapped:
@@ -65,7 +67,7 @@ def cone_slope(grip: float, bearing: float, outer: float, tapped: bool) -> float
 
 
 def cone_diameter(height: float, bearing: float, slope: float) -> float:
-    """Diameter [m] of a cone at a height [m] below the head."""
+    """Diameter [m] of the deformation cone at a distance [m] below the head."""
     return bearing + 2.0 * height * slope
 
 
@@ -80,20 +82,23 @@ class ClampedPart:
 def members_compliance(
     layers: Sequence[ClampedPart], bearing: float, hole: float, outer: float, slope: float, tapped: bool
 ) -> float:
-    """delta_P [m/N] of the clamped parts: cones that widen from the head (and the nut), inside D_A a sleeve.
+    """Compliance delta_P [m/N] of the clamped parts: deformation cones, and a sleeve beyond diameter D_A.
 
-    Equal to Eqs. 36 and 38 for one modulus; layers from the head on, of a tapped joint up to the thread. From
-    D_1 to D_2 a cone has ln[(D_1 + d_h)(D_2 - d_h)/((D_1 - d_h)(D_2 + d_h))]/(pi E d_h tan phi).
+    layers : clamped parts, starting at the head; of a tapped joint up to the thread
+
+    A cone widens from the head, and one from the nut. For one modulus the result equals Eqs. 36 and 38. A
+    section of a cone from diameter D_1 to D_2 around a hole d_h has the compliance
+    ln[(D_1 + d_h)(D_2 - d_h)/((D_1 - d_h)(D_2 + d_h))]/(pi E d_h tan phi).
     """
     grip = sum(layer.thickness for layer in layers)
     free = max(0.5 * (outer - bearing) / slope, 0.0)
     ends = {0.0, grip, *np.cumsum([layer.thickness for layer in layers]).tolist(), free}
     ends |= set() if tapped else {0.5 * grip, grip - free}
-    places = sorted(z for z in ends if 0.0 <= z <= grip)
-    total, begins = 0.0, np.cumsum([0.0, *(layer.thickness for layer in layers)])
-    for low, high in pairwise(places):
+    heights = sorted(z for z in ends if 0.0 <= z <= grip)
+    total, layer_starts = 0.0, np.cumsum([0.0, *(layer.thickness for layer in layers)])
+    for low, high in pairwise(heights):
         middle = 0.5 * (low + high)
-        E = layers[int(np.searchsorted(begins, middle)) - 1].E
+        E = layers[int(np.searchsorted(layer_starts, middle)) - 1].E
         D = [
             min(cone_diameter(z if tapped else min(z, grip - z), bearing, slope), max(outer, hole * 1.001))
             for z in (low, high)
@@ -107,26 +112,30 @@ def members_compliance(
 
 
 def assembly_preload(thread: Thread, yield_strength: float) -> float:
-    """F_M [N] that uses USE of the yield strength under tension and torsion (Table A1), shank bolt."""
+    """Assembly preload F_M [N] of a shank bolt (Table A1).
+
+    Tension and torsion together use the share YIELD_UTILISATION of the yield strength.
+    """
     d_2, d_0 = pitch_diameter(thread), 0.5 * (pitch_diameter(thread) + minor_diameter(thread))
     twist = 1.5 * d_2 / d_0 * (thread.pitch / (np.pi * d_2) + 1.155 * FRICTION)
     return float(stress_area(thread) * USE * yield_strength / np.sqrt(1.0 + 3.0 * twist**2))
 
 
 def embedding(Rz: float, interfaces: int, tapped: bool) -> float:
-    """f_Z [m], by which thread, head and nut and the interfaces of the parts come closer (Table 5).
+    """Embedding f_Z [m]: loss of length in the thread, under head and nut, and in the interfaces (Table 5).
 
-    Rz : of the roughest face [m]; beyond the table its last row
+    Rz              : maximum height of the roughest face [m]; above the table its last row holds
+    interface_count : number of interfaces between clamped parts
     """
     rows = tables.embedding()
-    thread, seat, interface = next((row for most, row in rows if most >= Rz), rows[-1][1])
+    thread, seat, interface = next((row for limit, row in rows if limit >= Rz), rows[-1][1])
     return thread + (1 if tapped else 2) * seat + interfaces * interface
 
 
 def shank_length(thread: Thread, grip: float, head: str, tapped: bool) -> float:
-    """Length [m] without thread inside the grip of a bolt that reaches two pitches beyond its nut.
+    """Length [m] of the shank without thread inside the grip; the bolt ends two pitches beyond its nut.
 
-    Length of the thread as in ISO 4014 (2 d + 6 mm) and ISO 4762 (2 d + 12 mm), up to 125 mm of bolt.
+    The thread length is that of ISO 4014 (2 d + 6 mm) and ISO 4762 (2 d + 12 mm), for bolts up to 125 mm.
     """
     length = grip + (thread.d if tapped else 0.8 * thread.d + 2.0 * thread.pitch)
     return float(np.clip(length - 2.0 * thread.d - {"hexagon": 6e-3, "socket": 12e-3}[head], 0.0, grip))
@@ -137,7 +146,10 @@ STRONGEST = "12.9"
 
 
 def proof_load(hole: float) -> tuple[float, str] | None:
-    """Proof load [N] of the largest bolt that passes a hole [m], and what that is; None if none is known."""
+    """Proof load [N] of the largest bolt that passes a hole [m], and its description.
+
+    None if no bolt of the tables fits the hole.
+    """
     fitting = [thread for thread in threads().values() if thread.d < hole]
     largest = max(threads().values(), key=lambda thread: thread.d)
     if not fitting or hole > 1.2 * largest.d:

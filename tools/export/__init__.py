@@ -1,1 +1,1 @@
-"""The joint for other solvers."""
+"""Export of joints to other solvers: finite elements, Modelica tables, CSV."""

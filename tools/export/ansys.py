@@ -1,8 +1,8 @@
-"""ANSYS: MATRIX27 stiffness and damping between node pairs (Zhao 2018, section 2), as an archive of blocks.
+"""ANSYS archive file: MATRIX27 stiffness and damping between node pairs (Zhao 2018, section 2).
 
-KEYOPT(2) = 0: symmetric, real constants C1 to C78 are the upper triangle row by row, degrees of freedom
-UX UY UZ ROTX ROTY ROTZ of node I, then of node J. KEYOPT(3) = 4: stiffness, 5: damping. A spring K along x
-is C1 = C58 = K, C7 = -K (element reference, MATRIX27).
+KEYOPT(2) = 0 is a symmetric matrix: the real constants C1 to C78 are its upper triangle row by row, with the
+degrees of freedom UX UY UZ ROTX ROTY ROTZ of node I, then of node J. KEYOPT(3) = 4 is stiffness, 5 damping.
+A spring K along x is C1 = C58 = K, C7 = -K (element reference, MATRIX27).
 """
 
 from collections.abc import Iterable, Sequence
@@ -18,9 +18,12 @@ _UPPER = np.triu_indices(12)
 
 
 def springs_text(springs: Springs, placing: Placing, about: Sequence[str]) -> str:
-    """The text of the file; two elements per pair, first all with stiffness.
+    """Format the springs as an ANSYS archive: for each pair one stiffness and one damping element.
 
-    Sets of real constants are shared by pairs that are equal to nine digits, which the format holds.
+    comment_lines : lines for the head of the file
+
+    All stiffness elements come first. Pairs that agree to nine digits, the precision of the format, share a
+    set of real constants.
     """
     first, first_set, units, count = placing.first, placing.first_set, placing.units, len(springs.nodes)
     stiffness = placing.along(units.of(springs.K_t, "N/m"), units.of(springs.K_n, "N/m"))
@@ -46,7 +49,7 @@ def springs_text(springs: Springs, placing: Placing, about: Sequence[str]) -> st
 
 
 def triangle(values: Array) -> Array:
-    """C1 to C78 (78) of three springs (3) along x, y, z between two nodes."""
+    """Upper triangle C1 to C78 (78) of the matrix of three springs (3) along x, y, z between two nodes."""
     matrix = np.zeros((12, 12))
     axes = np.arange(3)
     matrix[axes, axes] = matrix[axes + 6, axes + 6] = values
@@ -55,7 +58,7 @@ def triangle(values: Array) -> Array:
 
 
 def _real(sets: dict[tuple[str, ...], int], values: Array, first: int) -> int:
-    """Number of the set of real constants of three springs; new values get a new set."""
+    """Return the number of the set of real constants of three springs (3). New values get a new set."""
     return sets.setdefault(tuple(f"{v:.8E}" for v in values), first + len(sets))
 
 
@@ -75,11 +78,11 @@ def _type(type_number: int, matrix: int) -> Iterable[str]:
 
 
 def _nodes(springs: Springs, placing: Placing) -> Iterable[str]:
-    place = placing.coordinates(springs.position)
+    coordinates = placing.coordinates(springs.position)
     yield f"NBLOCK,6,SOLID,{springs.nodes.max():10d},{springs.nodes.size:10d}"
     yield "(3i9,6e21.13e3)"
     for side in (0, 1):
-        for node, xyz in zip(springs.nodes[:, side], place, strict=True):
+        for node, xyz in zip(springs.nodes[:, side], coordinates, strict=True):
             yield f"{node:9d}{0:9d}{0:9d}" + "".join(_exponential(v) for v in xyz)
     yield "N,R5.3,LOC,       -1,"
     for side in (0, 1):
@@ -94,6 +97,6 @@ def _integers(values: Iterable[int]) -> str:
 
 
 def _exponential(value: float) -> str:
-    """A number as Fortran writes it with e21.13e3: three digits of exponent."""
+    """Format a number as Fortran does with e21.13e3: three digits of exponent."""
     mantissa, exponent = f"{value:.13E}".split("E")
     return f"{mantissa}E{int(exponent):+04d}".rjust(21)

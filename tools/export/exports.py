@@ -1,6 +1,7 @@
-"""What a joint's part `export` says, EXPORTS: all that other solvers can be given of it; the formats.
+"""Exports that a joint offers (constant EXPORTS of the module `export` in its folder), and file formats.
 
-Loads no part of scipy, nor do the parts until something is written: the command line asks what there is.
+This module and the joints' modules do not load scipy before a file is written, because the help of the
+command line reads them.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -28,22 +29,23 @@ FORMS = {
     "modelica": ("curve",),
     "csv": ("springs", "contact", "curve"),
 }
-"""{format: what it can hold}."""
+"""{format: contents that a file of this format can have}."""
 ROBOTS = ("mjcf", "urdf")
-"""Formats of robots, which hold a drive."""
+"""Formats of robot simulators; a file has a drive."""
 WHAT = ("springs", "contact", "curve")
+"""Contents that can be exported."""
 ERROR = 1e-3
-"""Largest error of a table's load [1] by straight lines, unless another is asked for."""
+"""Default for the largest relative error of the load [1] when a table is interpolated linearly."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LoadCurve:
     """Load over displacement of the whole joint.
 
-    meaning : what the file holds, in words
-    columns : displacement, load and stiffness
-    name    : of the table in a Modelica file
-    table   : (parameters, working point or None, largest error [1]) -> Table
+    meaning       : content of the file in words
+    columns       : variables displacement, load and stiffness
+    name          : name of the table in a Modelica file
+    compute_table : (parameters, working point or None, largest error [1]) -> table
     """
 
     meaning: str
@@ -54,15 +56,15 @@ class LoadCurve:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Exports:
-    """What can be written of a joint; None: nothing of that sort.
+    """Exports that a joint offers. None: the joint does not offer this content.
 
-    state   : its working point, a dataclass of declared quantities whose text names them; the first must
-              be stated, the others are zero unless they are
-    springs : (parameters, working point or None, the user's node pairs or None, placing) -> springs and
-              from what they are, in words; a working point is None where the pairs state the pressure
-    contact : parameters -> pressure [Pa] over approach [m], and lines that say more of it
-    curve   : load over displacement; it needs the working point if there is one
-    lacks   : {what: why it cannot be written and what can}
+    working_point_class : dataclass of declared quantities. The user must state the first quantity; the others
+                          are zero by default
+    springs             : (parameters, working point, node pairs of the user or None, placement) -> springs,
+                          and their description; the working point is None if the pairs state the pressure
+    contact             : parameters -> pressure [Pa] over approach [m], and additional comment lines
+    curve               : load over displacement; it needs the working point if the joint has one
+    missing_reasons     : {content: why it cannot be written, and which content can}
     """
 
     state: type[object] | None = None
@@ -73,25 +75,25 @@ class Exports:
 
     @property
     def working_point(self) -> dict[str, str]:
-        """{name: meaning with unit} of the quantities of the working point, the one that is needed first."""
+        """Quantities of the working point, the required one first: {name: meaning with unit}."""
         declared = flat_fields(self.state) if self.state else ()
         return {name: f"{item.metadata['doc']} [{item.metadata['unit']}]" for name, item in declared}
 
 
 def of(joint: str) -> Exports:
-    """What can be written of a joint."""
-    found = part(KINDS[joint], "export")
-    exports: Exports = found.EXPORTS if found else Exports()
+    """Exports that a joint offers."""
+    module = part(KINDS[joint], "export")
+    exports: Exports = module.EXPORTS if module else Exports()
     return exports
 
 
 def able(what: str) -> list[str]:
-    """The joints of which springs, contact or curve can be written."""
+    """Names of the joints that offer a content: springs, contact or curve."""
     return [joint for joint in KINDS if getattr(of(joint), what)]
 
 
 def required(joint: str, what: str) -> Any:
-    """A joint's springs, contact or curve; ValueError if it lacks them."""
+    """Return a joint's springs, contact or curve. Raises ValueError if the joint does not offer it."""
     exports = of(joint)
     if what in exports.lacks:
         raise ValueError(f"the {what} of a {joint} cannot be exported: {exports.lacks[what]}")

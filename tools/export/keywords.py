@@ -1,4 +1,4 @@
-"""CalculiX and Abaqus: springs and dashpots between node pairs, and the law as tabular contact."""
+"""CalculiX and Abaqus keywords: springs and dashpots between node pairs, and tabular contact."""
 
 from collections.abc import Iterable, Sequence
 
@@ -10,15 +10,18 @@ from .placing import Placing, Springs, Units, header
 from .tables import LoadTable
 
 CALCULIX_ROWS = 200
-"""Most rows of a table in CalculiX (its arrays `xiso(200)`)."""
+"""Largest number of rows of a table in CalculiX (its arrays `xiso(200)`)."""
 FAR = 1.0
-"""Overclosure [m] of the last row, on the law's last tangent: no solver gets beyond the table."""
+"""Overclosure [m] by which the table is extrapolated linearly: no solver leaves the table."""
 
 
 def springs_text(springs: Springs, placing: Placing, about: Sequence[str], dashpots: bool) -> str:
-    """The text of the file: SPRING2 along the model's axes, and DASHPOT2 for Abaqus.
+    """Format the springs as SPRING2 elements along the model's axes, and for Abaqus also DASHPOT2 elements.
 
-    Sets of elements are shared by pairs that are equal to nine digits.
+    comment_lines : lines for the head of the file
+    dashpots      : whether to write dashpots
+
+    Pairs that agree to nine digits share an element set.
     """
     units = placing.units
     lines = [*header(about, "**"), *(_nodes(springs, placing) if placing.own else [])]
@@ -43,17 +46,20 @@ def springs_text(springs: Springs, placing: Placing, about: Sequence[str], dashp
 
 
 def _nodes(springs: Springs, placing: Placing) -> Iterable[str]:
-    place = placing.coordinates(springs.position)
+    coordinates = placing.coordinates(springs.position)
     for side in (0, 1):
         yield f"*NODE, NSET=JOINT_SIDE_{side + 1}"
-        for node, xyz in zip(springs.nodes[:, side], place, strict=True):
+        for node, xyz in zip(springs.nodes[:, side], coordinates, strict=True):
             yield f"{node}, " + ", ".join(f"{v:.12E}" for v in xyz)
 
 
 def contact_text(table: LoadTable, units: Units, about: Sequence[str], most: int | None = None) -> str:
-    """The text of the file: a surface interaction JOINT with the pressure over the overclosure.
+    """Format a surface interaction JOINT with the pressure over the overclosure.
 
-    most : rows that the solver can hold, or None. Raises ValueError if the table has more.
+    comment_lines : lines for the head of the file
+    max_rows      : largest number of rows that the solver can read; None: no limit
+
+    Raises ValueError if the table has more rows.
     """
     x, p, k = table.rows[-1]
     rows = np.vstack([table.rows[:, :2], [x + FAR, p + k * FAR]])

@@ -1,8 +1,8 @@
-"""Node pairs of the user's own mesh, from CSV.
+"""Node pairs of the user's mesh, read from CSV.
 
-The columns state their units, `node_1 [1], node_2 [1], x [mm], y [mm], area [mm2]` and, where a contact
-analysis gave it, `pressure [MPa]`: labels of the two nodes of a pair, place in the joint's plane, the
-part of the contact that the pair stands for, and the contact pressure there.
+The columns are `node_1 [1], node_2 [1], x [mm], y [mm], area [mm2]` and optionally `pressure [MPa]`: labels
+of the two nodes of a pair, position in the joint's plane, contact area of the pair, and contact pressure,
+for example from a contact analysis.
 """
 
 from collections.abc import Mapping
@@ -26,17 +26,18 @@ COLUMNS: Mapping[str, Sizes] = {
     "pressure": sizes("Pa", "MPa"),
 }
 LARGEST_LABEL = 99_999_999
-"""Largest label of a node: eight digits, what all solvers' fixed columns hold."""
+"""Largest label of a node: eight digits fit into the fixed columns of all solvers."""
 
 
 @dataclass(frozen=True, slots=True)
 class Mesh:
     """Node pairs of a mesh.
 
+    path     : file that the pairs were read from
     nodes    : (n, 2) labels on side 1 and side 2
-    position : (n, 2) [m] in the joint's plane, from the centroid of the contact
-    area     : (n)    [m2] part of the contact
-    pressure : (n)    [Pa], or None where the joint's own distribution is to be taken
+    position : (n, 2) [m] in the joint's plane, relative to the centroid of the contact
+    area     : (n)    [m2] contact area of each pair
+    pressure : (n)    [Pa]; None: the pressure distribution of the joint is used
     """
 
     path: Path
@@ -47,11 +48,11 @@ class Mesh:
 
 
 def read_pairs(path: str | Path) -> Mesh:
-    """Read node pairs; the origin of x and y does not matter.
+    """Read node pairs from a CSV file. The origin of x and y is arbitrary.
 
-    Raises ValueError with one line that names file and node: what `columns.read` refuses, a
-    missing column, a label that is no whole positive number or stands twice, an area that is not
-    positive, a negative pressure, no pressure at all.
+    Raises ValueError, one line with file and node: a file that `columns.read_columns` cannot read, a missing
+    column, a label that is no positive whole number or stands twice, an area that is not positive, a negative
+    pressure, or a pressure that is zero everywhere.
     """
     table = read(path, COLUMNS, 3)
     nodes = np.stack([_labels(table, name) for name in ("node_1", "node_2")], axis=1)
@@ -65,8 +66,8 @@ def read_pairs(path: str | Path) -> Mesh:
         _refuse(table, nodes, "pressure", pressure, pressure < 0.0, "a contact does not pull")
         if not np.any(pressure > 0.0):
             raise ValueError(f"{table.path}: pressure is zero everywhere; expected a closed contact")
-    place = np.stack([table.require(name, COLUMNS) for name in ("x", "y")], axis=1)
-    return Mesh(table.path, nodes, place - np.average(place, axis=0, weights=area), area, pressure)
+    position = np.stack([table.require(name, COLUMNS) for name in ("x", "y")], axis=1)
+    return Mesh(table.path, nodes, position - np.average(position, axis=0, weights=area), area, pressure)
 
 
 def _labels(table: Columns, name: str) -> NDArray[np.int64]:

@@ -1,4 +1,4 @@
-"""How the joint lies in the model: springs between node pairs, axes, units, labels; the head of a file."""
+"""Placement of a joint in the user's model: node pairs with springs, axes, units, element numbers."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -18,40 +18,40 @@ T = TypeVar("T", float, NDArray[np.float64])
 class Units:
     """A consistent set of units.
 
-    name    : length, force, pressure and mass
-    symbols : {SI symbol: its own} where they differ
+    name    : units of length, force, pressure and mass, as `mm-N-MPa-t`
+    symbols : {SI symbol: symbol in this set}, where they differ
     """
 
     name: str
     symbols: Mapping[str, str]
 
     def of(self, value: T, unit: str) -> T:
-        """A value given in an SI unit, in this set."""
+        """Convert a value from an SI unit to the unit of this set."""
         return value * factor(unit, self.symbol(unit))
 
     def symbol(self, unit: str) -> str:
-        """How the set writes an SI unit."""
+        """Symbol in this set for an SI unit."""
         return rewritten(unit, self.symbols)
 
 
 SI = Units("m-N-Pa-kg", {})
 UNITS = {units.name: units for units in (SI, Units("mm-N-MPa-t", {"m": "mm", "Pa": "MPa", "kg": "t"}))}
-"""The sets by name, SI first; the second is the one usual in finite elements."""
+"""{name: set of units}: SI, and the set that is common in finite-element models."""
 
 
 @dataclass(frozen=True, slots=True)
 class Springs:
-    """Springs and dashpots of the closed node pairs; x and y lie in the joint's plane, z is its normal.
+    """Springs and dashpots of the closed node pairs. x and y lie in the joint's plane, z is its normal.
 
     nodes      : (n, 2) labels on side 1 and side 2
-    position   : (n, 2) [m] from the centroid of the contact
+    position   : (n, 2) [m] relative to the centroid of the contact
     area       : (n)    [m2]
     pressure   : (n)    [Pa]
-    K_n, K_t   : (n)    [N/m] along z; along x and along y
-    C_n, C_t   : (n)    [N.s/m] the same
-    sums       : what the joint has, and what the pairs add up to: K_ [N/m], C_ [N.s/m]
-    correction : [1] factor by which the pairs' stiffness was multiplied to add up to the joint's
-    opened     : pairs that are open and left out
+    K_n, K_t   : (n)    [N/m] stiffness along z; along x and along y
+    C_n, C_t   : (n)    [N.s/m] damping along z; along x and along y
+    totals     : {name: stiffness K_ [N/m] or damping C_ [N.s/m]} of the joint, and summed over the pairs
+    correction : [1] factor on the stiffness of the pairs, so that their sum is the stiffness of the joint
+    open_pairs : number of open pairs, which are left out
     """
 
     nodes: NDArray[np.int64]
@@ -68,18 +68,18 @@ class Springs:
 
 
 AXES = {"x": (1, 2, 0), "y": (2, 0, 1), "z": (0, 1, 2)}
-"""{axis of the model that is the joint's normal: axes of the model along the joint's x, y, z}."""
+"""{axis of the model along the joint's normal: indices of the model axes along the joint's x, y, z}."""
 
 
 @dataclass(frozen=True, slots=True)
 class Placing:
-    """What the springs need to stand in a model.
+    """Placement of the springs in the user's model.
 
-    units     : of the model
-    normal    : axis of the model along the joint's normal, a key of AXES
-    first     : first number that is free in the model for elements and nodes
-    first_set : the same for element types and sets of real constants (ANSYS)
-    own       : whether the file brings its own nodes
+    units            : units of the model
+    normal           : axis of the model along the joint's normal, a key of AXIS_ORDER
+    first_number     : first free number for elements and nodes
+    first_set_number : first free number for element types and sets of real constants (ANSYS)
+    has_own_nodes    : whether the written file defines the nodes, in place of nodes of the model
     """
 
     units: Units = SI
@@ -89,19 +89,19 @@ class Placing:
     own: bool = True
 
     def coordinates(self, position: Array) -> Array:
-        """Coordinates (n, 3) in the model of places (n, 2) [m] in the joint's plane."""
+        """Coordinates (n, 3) in the model, in its units, of positions (n, 2) [m] in the joint's plane."""
         placed = np.zeros((len(position), 3))
         placed[:, AXES[self.normal][:2]] = self.units.of(position, "m")
         return placed
 
     def along(self, tangential: Array, normal: Array) -> Array:
-        """Columns (n, 3) along the model's x, y, z of values in the joint's plane and along its normal."""
+        """Assign tangential (n) and normal (n) values to the model's axes x, y, z; returns (n, 3)."""
         placed = np.stack([tangential] * 3, axis=1)
         placed[:, AXES[self.normal][2]] = normal
         return placed
 
 
 def header(lines: Sequence[str], mark: str) -> list[str]:
-    """The comment at the head of a file: every line behind `mark`, plain ASCII."""
+    """Format the comment at the head of a file in ASCII; each line starts with the comment mark."""
     plain = (" ".join(line.split()).encode("ascii", "replace").decode() for line in lines)
     return [f"{mark} written by jointfmu {__version__}", *(f"{mark} {line}" for line in plain)]

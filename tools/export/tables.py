@@ -1,4 +1,4 @@
-"""Curves as tables that a solver joins by straight lines; as CSV, and for Modelica's CombiTable1D blocks."""
+"""Curves as tables for linear interpolation, written as CSV and for Modelica's CombiTable1D blocks."""
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
@@ -15,24 +15,24 @@ from ..thinning import kept
 from .placing import Placing, Springs, Units, header
 
 STIFFNESS = 0.01
-"""Error of the stiffness [1] above which a table's reader should know."""
+"""Relative error of the stiffness [1] above which a warning is printed."""
 _DENSE = 64
-"""Points per segment of a curve at which errors are measured."""
+"""Sample points per segment of a curve, at which errors are measured."""
 _LEAST = 10_000
-"""The same of a whole curve at least: some have few segments."""
+"""Smallest number of sample points of a whole curve, for curves with few segments."""
 _FINE = 4 * _LEAST
-"""The same where slopes are kept too: the corners of a catalogue's lines are short."""
+"""Smallest number of sample points if the stiffness error is limited too: some curves have short corners."""
 _FEWEST = 12
-"""Fewest of them on a line: a parabola's top is then met within a per cent."""
+"""Smallest number of sample points on a line: the peak of a parabolic error is then found within 1 %."""
 
 
 @dataclass(frozen=True, slots=True)
 class LoadTable:
-    """A load over a displacement.
+    """Table of a load over a displacement.
 
-    rows      : (n, 3) displacement, load, stiffness of the curve there
-    straight  : [1] largest errors of load and stiffness where a solver joins the rows by lines
-    monotone  : [1] the same with the monotone cubic of Fritsch and Butland
+    rows                  : (n, 3) displacement, load, and stiffness of the curve at this displacement
+    linear_errors         : [1] largest relative errors of load and stiffness with linear interpolation
+    monotone_cubic_errors : [1] the same errors with the monotone cubic of Fritsch and Butland
     """
 
     rows: Array
@@ -41,27 +41,37 @@ class LoadTable:
 
 
 def law_table(curve: Curve, error: float) -> LoadTable:
-    """Pressure [Pa] over approach [m] from first touch, stiffness [N/m3], up to the hardness.
+    """Tabulate an interface law: approach [m] from first touch, pressure [Pa], stiffness [N/m3].
 
-    One line leads over the closing of the contact, where the law itself does not reach; the errors are
-    those above it.
+    error : largest relative error [1] of the pressure with linear interpolation
+
+    The table ends at the hardness. Below the range of the law one line leads to first touch; the errors are
+    those above this line.
     """
     x, y, k = _dense(curve)
-    some = x >= 0.0
-    table = thinned(x[some] - curve.displacement[0], y[some], k[some], error)
+    in_range = x >= 0.0
+    table = thinned(x[in_range] - curve.displacement[0], y[in_range], k[in_range], error)
     rows = np.vstack([[0.0, 0.0, 0.0], table.rows])
     return LoadTable(rows, table.straight, table.monotone)
 
 
 def load_table(curve: Curve, area: float, error: float) -> LoadTable:
-    """`law_table` of an area [m2]: load [N] and stiffness [N/m], and a row without load before it."""
+    """Tabulate the load [N] and stiffness [N/m] of an interface law on an area [m2].
+
+    The first row is open, without load.
+    """
     table = law_table(curve, error)
     rows = table.rows * [1.0, area, area]
     return LoadTable(np.vstack([[-rows[-1, 0], 0.0, 0.0], rows]), table.straight, table.monotone)
 
 
 def odd_table(curve: Curve, error: float) -> LoadTable:
-    """A curve through zero with its mirror image; the stiffness within STIFFNESS, if it has no jump."""
+    """Tabulate an odd curve through zero, with both signs of the displacement.
+
+    error : largest relative error [1] of the load with linear interpolation
+
+    The stiffness error is kept below MAX_STIFFNESS_ERROR, unless the curve has a jump of the stiffness.
+    """
     half = _dense(curve, _FINE)
     try:
         rows = thinned(*half, error, stiffness=STIFFNESS).rows
@@ -81,14 +91,15 @@ def thinned(
     keep: Collection[int] = (),
     stiffness: float = np.inf,
 ) -> LoadTable:
-    """The fewest of the points (n) of a curve, taken one after the other, whose lines keep to it.
+    """Select few of the points (n) of a curve so that linear interpolation stays within an error.
 
-    error : [1] largest error of y by straight lines, relative to y or floor[0], the larger
-    floor : load and stiffness to which errors refer at least
-    keep  : points that stay
-    stiffness : [1] largest error of a line's slope
+    x, y, k         : displacement, load and stiffness (n)
+    error           : [1] largest error of y, relative to y, or to min_reference[0] if that is larger
+    min_reference   : smallest load and stiffness to which errors are relative
+    fixed_points    : indices of points that are always selected
+    stiffness_error : [1] largest relative error of the slope of a line
 
-    Raises ValueError for errors that a table cannot keep.
+    The points are selected one after the other. Raises ValueError if the error is out of range or too small.
     """
     if not 0.0 < error < 0.5:
         raise ValueError(f"error = {error:g} is outside (0, 0.5)")
@@ -117,34 +128,35 @@ def thinned(
 def _errors(
     rows: Array, x: Array, y: Array, k: Array, floor: tuple[float, float]
 ) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Largest errors of load and stiffness by straight lines and by the monotone cubic."""
+    """Largest relative errors of load and stiffness: with linear interpolation, with the monotone cubic."""
     which = np.clip(np.searchsorted(rows[:, 0], x, side="right") - 1, 0, len(rows) - 2)
     slope = np.array([(b[1] - a[1]) / (b[0] - a[0]) for a, b in pairwise(rows)])[which]
     cubic = PchipInterpolator(rows[:, 0], rows[:, 1])
 
     def worst(approximate: Array, exact: Array, least: float) -> float:
         size = np.maximum(np.abs(exact), least)
-        some = size > 0.0
-        return float(np.max(np.abs(approximate - exact)[some] / size[some]))
+        positive = size > 0.0
+        return float(np.max(np.abs(approximate - exact)[positive] / size[positive]))
 
     straight = worst(np.interp(x, rows[:, 0], rows[:, 1]), y, floor[0]), worst(slope, k, floor[1])
     return straight, (worst(cubic(x), y, floor[0]), worst(cubic(x, 1), k, floor[1]))
 
 
 def _dense(curve: Curve, least: int = _LEAST) -> tuple[Array, Array, Array]:
-    """The curve at many points."""
+    """Sample a curve at many points: displacement, load and stiffness."""
     nodes = curve.displacement
-    dense = max(_DENSE, least // (nodes.size - 1))
-    part = np.arange(dense) / dense
-    x = np.append((nodes[:-1, None] + np.diff(nodes)[:, None] * part).ravel(), nodes[-1])
+    count = max(_DENSE, least // (nodes.size - 1))
+    fraction = np.arange(count) / count
+    x = np.append((nodes[:-1, None] + np.diff(nodes)[:, None] * fraction).ravel(), nodes[-1])
     load, stiffness = curve.derivatives(x, 1)
     return x, load, stiffness
 
 
 Heads = Sequence[tuple[str, str]]
-"""(name, SI unit) of every column."""
+"""Headings of columns: (name, SI unit) of each."""
 
 DIGITS = 12
+"""Significant digits of numbers in tables."""
 LABEL_HEADS: Heads = (("node_1", "1"), ("node_2", "1"))
 SPRING_HEADS: Heads = (
     ("x", "m"),
@@ -161,9 +173,10 @@ SPRING_HEADS: Heads = (
 
 
 def springs_csv(springs: Springs, placing: Placing, about: Sequence[str]) -> str:
-    """One row per pair: labels, place in the joint's plane, area, pressure, springs and dashpots.
+    """Format the springs as CSV, one row per pair.
 
-    Springs and dashpots lie along the model's axes.
+    Columns: labels, position in the joint's plane, area, pressure, stiffness and damping along the model's
+    axes.
     """
     stiffness = placing.along(springs.K_t, springs.K_n)
     damping = placing.along(springs.C_t, springs.C_n)
@@ -172,23 +185,26 @@ def springs_csv(springs: Springs, placing: Placing, about: Sequence[str]) -> str
 
 
 def contact_csv(table: LoadTable, units: Units, about: Sequence[str]) -> str:
-    """Overclosure, pressure and stiffness per area."""
+    """Format a contact law as CSV: overclosure, pressure, stiffness per area."""
     heads = (("overclosure", "m"), ("pressure", "Pa"), ("stiffness", "N/m3"))
     return columns_csv([*table.rows.T], heads, units, about)
 
 
 def columns_csv(values: Sequence[Column], heads: Heads, units: Units, about: Sequence[str]) -> str:
-    """Columns (n) of SI values."""
-    shown = [
+    """Format columns (n) of SI values as CSV in other units."""
+    converted = [
         column if unit == "1" else units.of(column, unit)
         for column, (_, unit) in zip(values, heads, strict=True)
     ]
     names = [(name, units.symbol(unit)) for name, unit in heads]
-    return text(names, shown, digits=DIGITS, above=header(about, "#"))
+    return text(names, converted, digits=DIGITS, above=header(about, "#"))
 
 
 def modelica_text(table: Array, name: str, about: Sequence[str]) -> str:
-    """A table (n, columns) of SI values as `tableName = name` of a text file, first column ascending."""
+    """Format a table (n, columns) of SI values as the table `name` in a text file of Modelica.
+
+    The first column must be ascending.
+    """
     body = rows(table.T, [DIGITS] * table.shape[1], between=" ")
     return "\n".join(
         ["#1", *header(about, "#"), f"double {name}({table.shape[0]},{table.shape[1]})", *body, ""]

@@ -1,4 +1,4 @@
-"""One file of each kind: the numbers of a joint, its comment, its text."""
+"""Contents of exported files: numbers of a joint with a comment at the head, for each format."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ from .placing import Placing, Springs, Units
 
 @dataclass(frozen=True, slots=True)
 class Written:
-    """The text of a file and what is worth saying about it."""
+    """Content of an exported file, facts about it for the user, and warnings."""
 
     text: str
     facts: dict[str, object]
@@ -31,8 +31,8 @@ _SPRINGS: dict[str, tuple[Callable[[Springs, Placing, list[str]], str], tuple[st
     "abaqus": (partial(keywords.springs_text, dashpots=True), ()),
     "csv": (tables.springs_csv, ()),
 }
-"""{format: what writes springs, and lines about them}."""
-_FAR = f"the last row is {keywords.FAR:g} m further on the last tangent"
+"""{format: (function that formats springs, comment lines)}."""
+_FAR = f"the last row extrapolates the last tangent by {keywords.FAR:g} m"
 _CONTACTS: dict[str, tuple[Callable[[tables.LoadTable, Units, list[str]], str], tuple[str, ...]]] = {
     "calculix": (
         partial(keywords.contact_text, most=keywords.CALCULIX_ROWS),
@@ -41,16 +41,16 @@ _CONTACTS: dict[str, tuple[Callable[[tables.LoadTable, Units, list[str]], str], 
     "abaqus": (keywords.contact_text, (_FAR,)),
     "csv": (tables.contact_csv, ()),
 }
-"""{format: what writes a contact, and lines about it}."""
+"""{format: (function that formats a contact, comment lines)}."""
 
 
 def springs(form: str, file: ParameterFile, state: object, mesh: Mesh | None, placing: Placing) -> Written:
-    """Springs (and dashpots) of a joint between node pairs.
+    """Export springs and dashpots of a joint between node pairs.
 
-    state : working point, or None where the mesh states the pressures
-    mesh  : the user's node pairs, or None for the joint's own nodes
+    working_point : None if the mesh states the pressures
+    mesh          : node pairs of the user; None: nodes of the joint
 
-    Raises ValueError if the joint has no springs, or they do not go with the pairs.
+    Raises ValueError if the joint offers no springs, or they do not fit the node pairs.
     """
     field, where = required(file.joint, "springs")(file.values, state, mesh, placing)
     units = placing.units
@@ -71,9 +71,9 @@ def springs(form: str, file: ParameterFile, state: object, mesh: Mesh | None, pl
 
 
 def contact(form: str, file: ParameterFile, units: Units, error: float) -> Written:
-    """The interface's pressure over its approach, for a contact of two surfaces.
+    """Export the interface's pressure over its approach, for a contact of two surfaces.
 
-    Raises ValueError if the joint has none.
+    Raises ValueError if the joint does not offer it.
     """
     curve, more = required(file.joint, "contact")(file.values)
     table = tables.law_table(curve, error)
@@ -91,9 +91,9 @@ def contact(form: str, file: ParameterFile, units: Units, error: float) -> Writt
 
 
 def curve(form: str, file: ParameterFile, state: object, units: Units, error: float) -> Written:
-    """Load over displacement of the whole joint, with its stiffness.
+    """Export the load over the displacement of the whole joint, with its stiffness.
 
-    Raises ValueError if the joint has no such curve or its working point is missing.
+    Raises ValueError if the joint does not offer the curve, or if the working point is missing.
     """
     load: LoadCurve = required(file.joint, "curve")
     table = load.table(file.values, state, error)
@@ -115,7 +115,7 @@ def curve(form: str, file: ParameterFile, state: object, units: Units, error: fl
 
 
 def _warnings(table: tables.LoadTable) -> tuple[str, ...]:
-    """What a reader of the slope should know."""
+    """Warn if the slope of the table differs from the stiffness by more than MAX_STIFFNESS_ERROR."""
     straight, cubic = table.straight[1], table.monotone[1]
     if straight <= tables.STIFFNESS:
         return ()

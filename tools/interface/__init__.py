@@ -1,4 +1,4 @@
-"""The public interface of `import jointfmu`, whose `__all__` lists it: joints, laws, fits and runs."""
+"""Public interface of `import jointfmu`: joints, laws, fits and FMU runs. `jointfmu.__all__` lists it."""
 
 from jointfmu.joints import KINDS
 

@@ -1,6 +1,4 @@
-"""Columns of numbers with their units, what evaluating a joint and running an FMU give, and tables of
-numbers: text at a prompt, HTML in a notebook.
-"""
+"""Results of joints and FMU runs: columns of numbers with units, and tables; text or HTML for notebooks."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
@@ -25,12 +23,17 @@ if TYPE_CHECKING:
 
 
 LONGEST = 60
-"""Letters of a cell at a prompt; a notebook shows all."""
+"""Largest number of characters of a cell in printed text; a notebook shows all."""
 
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """Rows of cells under a title and heads; `lines` stand between title and rows.
+    """Table of text cells with a title and column headings.
+
+    title : first line
+    heads : headings of the columns
+    rows  : cells (rows, columns)
+    lines : lines of text between title and rows
 
     >>> import jointfmu
     >>> table = jointfmu.load("GearContact").parameters
@@ -53,7 +56,7 @@ class Table:
     __repr__ = __str__
 
     def _repr_html_(self) -> str:
-        """The table for a notebook."""
+        """HTML of the table for a notebook."""
         head = "".join(f"<th>{escape(cell)}</th>" for cell in self.heads)
         body = "".join(f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in row)}</tr>" for row in self.rows)
         lines = "".join(f"<div>{escape(line)}</div>" for line in self.lines)
@@ -64,11 +67,11 @@ class Table:
 
 
 ENDS = 5
-"""Rows at the begin and at the end that are printed."""
+"""Number of rows that are printed at the start and at the end of long columns."""
 
 
 class Tabled(ABC):
-    """What is printed as a table."""
+    """Base class of objects that are displayed as a table."""
 
     @abstractmethod
     def _table(self) -> Table: ...
@@ -77,15 +80,15 @@ class Tabled(ABC):
         return str(self._table())
 
     def _repr_html_(self) -> str:
-        """The table for a notebook."""
+        """HTML of the table for a notebook."""
         return self._table()._repr_html_()
 
 
 class Frame(Tabled, Mapping[str, Array]):
-    """Columns (n) of numbers in SI units by name.
+    """Mapping of names to columns (n) of numbers in SI units.
 
     units    : {name: unit}
-    messages : what an FMU logged, one line each
+    messages : warnings and errors of the FMU, or warnings of the joint or law, one line each
 
     >>> import jointfmu
     >>> frame = jointfmu.drive("CSG-25-100").evaluate("HarmonicDriveCompliance", tau=[0.0, 48.0, 96.0])
@@ -125,7 +128,7 @@ class Frame(Tabled, Mapping[str, Array]):
 
     @plots.style()
     def plot(self, x: str | None = None, y: str | None = None) -> "Figure":
-        """Draw one column over another, by default the last over the first; a matplotlib figure.
+        """Draw one column over another, by default the last over the first; returns a matplotlib figure.
 
         Raises KeyError for a name that is no column.
         """
@@ -139,9 +142,9 @@ class Frame(Tabled, Mapping[str, Array]):
         return figure
 
     def save(self, path: str | Path, *, force: bool = False) -> Path:
-        """Write the columns as CSV with a header `name [unit]`, numbers exact.
+        """Write the columns as CSV with headings `name [unit]`; numbers are written exactly.
 
-        force : replace a file that is no such table
+        force : replace a file that is no table of jointfmu
 
         Raises ValueError if the file may not or cannot be written.
         """
@@ -151,7 +154,7 @@ class Frame(Tabled, Mapping[str, Array]):
         return Path(path)
 
     def to_pandas(self) -> Any:
-        """The same as a pandas DataFrame, units in its `attrs`. Needs pandas."""
+        """Convert to a pandas DataFrame, with the units in `attrs["units"]`. Needs pandas."""
         import pandas  # type: ignore[import-untyped]
 
         table = pandas.DataFrame(dict(self))
@@ -166,14 +169,14 @@ def run(
     time: ArrayLike | None = None,
     settings: Mapping[str, object] | None = None,
 ) -> Frame:
-    """Run an FMU in co-simulation along points of its inputs; every output at every point.
+    """Run an FMU in co-simulation along points of its inputs; returns every output at every point.
 
     inputs   : {input: values (n) or one value} [SI]
-    time     : (n) [s] from the start on, rising; one second each by default
-    settings : {parameter or other input: value}
+    time     : (n) [s], increasing from the start; by default one second per point
+    settings : {parameter or other input: value} [SI]
 
-    Raises ValueError, one line, for what is no FMU, an unknown name, inputs of different lengths, or what the
-    FMU itself refuses; RuntimeError if it does not instantiate.
+    Raises ValueError, one line, for a file that is no FMU, an unknown name, inputs of different lengths, or a
+    value that the FMU rejects; RuntimeError if the FMU does not instantiate.
 
     >>> import jointfmu
     >>> fmu = jointfmu.load("GearContact").build("dist", "fmi2")[0]
@@ -183,5 +186,5 @@ def run(
     """
     points = {name: np.atleast_1d(np.asarray(x, dtype=np.float64)) for name, x in inputs.items()}
     clock = None if time is None else np.asarray(time, dtype=np.float64)
-    found = ramp.drive(fmu, points, clock, settings)
-    return Frame(found.columns, found.units, found.messages)
+    result = ramp.drive(fmu, points, clock, settings)
+    return Frame(result.columns, result.units, result.messages)

@@ -1,4 +1,4 @@
-"""A joint as an object: its numbers, what it does, and what can be made of it."""
+"""The class Joint: parameters of a joint, its evaluation, plots, FMUs and reports."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -27,15 +27,16 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Facts = Mapping[str, tuple[float, str, str]]
-"""{name: (value [SI], unit, meaning)}."""
+"""Additional results of a joint: {name: (value [SI], unit, meaning)}."""
 
 
 @dataclass(frozen=True, repr=False)
 class Joint(Tabled):
-    """A joint with its parameters. It does not change: `with_values` gives another one.
+    """A joint with its parameters. The object is immutable: `with_values` returns a new one.
 
-    file  : its parameter file, with the source of each number
-    facts : what was computed beside the parameters, if it was made of a drawing or a catalogue
+    file  : parameter file, with the source of each number
+    facts : additional results {name: (value [SI], unit, meaning)} of a joint from a drawing or a catalogue
+    notes : warnings from making the joint, one line each
 
     >>> import jointfmu
     >>> joint = jointfmu.load("GearContact")
@@ -54,33 +55,36 @@ class Joint(Tabled):
 
     @property
     def values(self) -> dict[str, Any]:
-        """{structured name: value [SI]} of the parameters, and of the start values of inputs."""
+        """Parameters and start values of inputs: {structured name: value [SI]}."""
         return {**self.file.flat, **{f"inputs.{name}": value for name, value in self.file.inputs.items()}}
 
     @property
     def fmus(self) -> dict[str, Model]:
-        """{FMU: its model} that can be built of the joint; where none is named, the first is meant."""
+        """FMUs that can be built of the joint: {name: model}. Methods evaluate the first one by default."""
         return {model.name: model for model in KINDS[self.file.joint].models}
 
     @property
     def law(self) -> Law:
-        """Its interface law. ValueError if it has none: a drive given by a table or by catalogue lines."""
-        found = KINDS[self.file.joint].law_of(self.file.values)
-        if found is None:
+        """Interface law of the joint.
+
+        Raises ValueError if the joint has none, for example a drive given by a table or by catalogue lines.
+        """
+        parameters = KINDS[self.file.joint].law_of(self.file.values)
+        if parameters is None:
             raise ValueError(f"{self.name}: law = {self.file.law!r} is of no interface")
-        return Law(self.file.law, found, known_height(self.file))
+        return Law(self.file.law, parameters, known_height(self.file))
 
     @property
     def warnings(self) -> list[str]:
-        """What is to be said of its numbers, a line each."""
+        """Warnings about the parameters and the stiffness, one line each."""
         return [*self.notes, *judge_file(self.file).warnings]
 
     @property
     def parameters(self) -> Table:
-        """All numbers with unit, meaning, kind and source."""
+        """Table of all parameters with value, unit, meaning, kind and source."""
         rows = [
-            (one.name, *quantity(one.value, one.unit), one.doc, one.kind, one.source)
-            for one in stated(self.file)
+            (entry.name, *quantity(entry.value, entry.unit), entry.doc, entry.kind, entry.source)
+            for entry in stated(self.file)
         ]
         return Table(self._title, ("name", "value", "unit", "meaning", "kind", "source"), rows)
 
@@ -89,16 +93,16 @@ class Joint(Tabled):
         return f"{self.name}: {KINDS[self.file.joint].title}, law {self.file.law}"
 
     def _table(self) -> Table:
-        """What is printed: facts and warnings above the parameters, without their meaning."""
-        told = ((name, " ".join(quantity(v, u, 4)), text) for name, (v, u, text) in self.facts.items())
-        facts = [f"{name} = {value.strip()}: {text}" for name, value, text in told]
+        """Printed table: facts and warnings, then the parameters without their meaning."""
+        texts = ((name, " ".join(quantity(v, u, 4)), text) for name, (v, u, text) in self.facts.items())
+        facts = [f"{name} = {value.strip()}: {text}" for name, value, text in texts]
         table = self.parameters
         rows = [(name, value, unit, kind, source) for name, value, unit, _, kind, source in table.rows]
         lines = [*facts, *(f"warning: {text}" for text in self.warnings)]
         return Table(table.title, ("name", "value", "unit", "kind", "source"), rows, lines)
 
     def with_values(self, values: Mapping[str, Any] | None = None, **more: Any) -> "Joint":
-        """The joint with some numbers changed (SI units), names as in `values`.
+        """Return the joint with changed parameters (SI units), names as in the property `values`.
 
         Raises ValueError, one line, for an unknown name or a value outside its interval.
 
@@ -112,31 +116,31 @@ class Joint(Tabled):
         if unknown := [name for name in inputs if name not in known]:
             raise ValueError(f"unknown input {unknown[0]!r}, allowed are {', '.join(sorted(known))}")
         file = self.file.with_values(changes, "user", "set in Python")
-        stated = {f"inputs.{name}": "user" for name in inputs}
+        origins = {f"inputs.{name}": "user" for name in inputs}
         file = replace(
             file,
             inputs={**file.inputs, **inputs},
-            origins={**file.origins, **stated},
-            sources={**file.sources, **dict.fromkeys(stated, "set in Python")},
+            origins={**file.origins, **origins},
+            sources={**file.sources, **dict.fromkeys(origins, "set in Python")},
         )
         return replace(self, file=file, facts={}, notes=())
 
     def model(self, fmu: str | None = None) -> Model:
-        """What one of its FMUs is: inputs, outputs, units. ValueError if it has none of that name."""
+        """Model of one of the joint's FMUs: inputs, outputs, units. Raises ValueError for an unknown name."""
         return KINDS[self.file.joint].model(fmu).of(self.file.joint, self.file.values)
 
     @cached_property
     def spring(self) -> Spring:
-        """The tabulated joint: what all outputs are computed from."""
+        """Tabulated load-displacement curves of the joint, from which all outputs are computed."""
         return KINDS[self.file.joint].models[0].spring(self.file.values)
 
     def evaluate(self, fmu: str | None = None, /, **inputs: ArrayLike) -> Frame:
-        """Every output at inputs, each point on the straight way from rest.
+        """Compute every output for given inputs. Each point is loaded on a straight path from rest.
 
-        fmu    : which of the joint's FMUs; its first
-        inputs : numbers or arrays (n) [SI]; those that are not named have their start values
+        fmu    : name of one of the joint's FMUs; default: the first
+        inputs : numbers or arrays (n) [SI]; inputs that are not named have their start values
 
-        Raises ValueError for an unknown input, or one that no array of the others fits.
+        Raises ValueError for an unknown input, a value outside its interval, or arrays of different lengths.
 
         >>> import jointfmu
         >>> plate = jointfmu.load("BoltedJoint")
@@ -152,7 +156,12 @@ class Joint(Tabled):
         return self._points(model, inputs, step, np.zeros(0))
 
     def follow(self, fmu: str | None = None, /, **inputs: ArrayLike) -> Frame:
-        """Every output along a path of inputs from rest, with the memory of friction, if there is any.
+        """Compute every output along a path of inputs from rest. Friction keeps its history along the path.
+
+        fmu    : name of one of the joint's FMUs; default: the first
+        inputs : numbers or arrays (n) [SI]; inputs that are not named have their start values
+
+        Raises ValueError for an unknown input, a value outside its interval, or arrays of different lengths.
 
         >>> import jointfmu
         >>> plate = jointfmu.load("BoltedJoint")
@@ -171,7 +180,7 @@ class Joint(Tabled):
         return self._points(model, inputs, step, model.rest(self.spring))
 
     def _points(self, model: Model, inputs: Mapping[str, ArrayLike], step: Any, memory: Memory) -> Frame:
-        """One step after the other over the broadcast inputs."""
+        """Evaluate the steps one after the other, with inputs broadcast to the same length."""
         names = [v.name for v in model.inputs]
         if unknown := [name for name in inputs if name not in names]:
             raise ValueError(f"{model.name}: unknown input {unknown[0]!r}, allowed are {', '.join(names)}")
@@ -179,23 +188,23 @@ class Joint(Tabled):
         columns = {name: np.ravel(np.asarray(value, dtype=np.float64)) for name, value in inputs.items()}
         columns, count = broadcast(columns, model.name)
         for variable in model.inputs:
-            wrong = [x for x in columns.get(variable.name, ()) if not variable.interval.contains(x)]
-            if wrong:
+            outside = [x for x in columns.get(variable.name, ()) if not variable.interval.contains(x)]
+            if outside:
                 allowed = f"{variable.interval} {variable.unit}"
-                raise ValueError(f"{model.name}: {variable.name} = {wrong[0]:g} is outside {allowed}")
+                raise ValueError(f"{model.name}: {variable.name} = {outside[0]:g} is outside {allowed}")
         rows: list[dict[str, float]] = []
         for i in range(count):
             point = rest | {name: float(column[i]) for name, column in columns.items()}
             outputs, memory = step(point, memory)
             rows.append(point | {name: float(value) for name, value in outputs.items()})
         units = {v.name: v.unit for v in (*model.inputs, *model.outputs)}
-        warned = dict.fromkeys(text for row in rows for text in model.warnings(self.spring, row).values())
-        shown = [name for name in rows[0] if name in columns or name not in rest]
-        return Frame({name: [row[name] for row in rows] for name in shown}, units, tuple(warned))
+        warnings = dict.fromkeys(text for row in rows for text in model.warnings(self.spring, row).values())
+        names = [name for name in rows[0] if name in columns or name not in rest]
+        return Frame({name: [row[name] for row in rows] for name in names}, units, tuple(warnings))
 
     @plots.style()
     def plot(self, fmu: str | None = None) -> "Figure":
-        """Draw the curves over the load, and loops where there is friction: a matplotlib figure."""
+        """Draw the curves over the load, and hysteresis loops if the joint has any: a matplotlib figure."""
         with needing("draw"):
             from ..report.course import Course
             from ..report.figure import drawn
@@ -210,7 +219,7 @@ class Joint(Tabled):
         return figure
 
     def save(self, path: str | Path, *, force: bool = False) -> Path:
-        """Write the parameter file (TOML), above it its facts.
+        """Write the parameter file (TOML), with the facts as comments at its head.
 
         force : replace a file that jointfmu did not write, or that was edited
 
@@ -233,11 +242,11 @@ class Joint(Tabled):
         name: str | None = None,
         force: bool = False,
     ) -> list[Path]:
-        """Build the joint's FMUs into OUT/FLAVOUR/NAME.fmu; their paths.
+        """Build the joint's FMUs as OUT/FLAVOUR/NAME.fmu; returns the paths.
 
         flavour : fmi2, fmi3, python, or several of them
-        fmu     : one of `fmus`; all
-        name    : that the one FMU has instead of its own
+        fmu     : name of one FMU, a key of `fmus`; default: all
+        name    : model name of this one FMU, in place of its own
         force   : replace FMUs of these names that jointfmu did not write
 
         Raises ValueError for an unknown name or flavour, or a folder that cannot be written.
@@ -250,8 +259,9 @@ class Joint(Tabled):
             return building.build(names, flavours, self.file, Path(out), alias=name, force=force)
 
     def report(self, path: str | Path, fmu: str | None = None, *, force: bool = False) -> Path:
-        """Write a page about the joint that opens in a browser: curves, loops, sources of its numbers.
+        """Write a page about the joint (HTML): curves, loops, sources of its numbers.
 
+        fmu   : FMU that the page describes; default: the first
         force : replace a file that jointfmu did not write
 
         Raises ValueError if the file may not or cannot be written.

@@ -1,4 +1,4 @@
-"""An interface law as an object."""
+"""The class Law: an interface law with its parameters."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 class Law(Tabled):
     """An interface law: load, stiffness, real area and dissipation of two rough surfaces in contact.
 
-    parameters : the law's parameter set, see `values`; numbers or arrays (n)
-    h          : rms height of both surfaces together [m], by which the level is judged; None: not known
+    parameters : parameter set of the law, see `values`; numbers or arrays (n)
+    h          : rms height of both surfaces together [m], to judge the stiffness; None: not known
 
     >>> import jointfmu
     >>> law = jointfmu.law("roughness", Ra1=0.8e-6, Ra2=0.8e-6)
@@ -42,7 +42,7 @@ class Law(Tabled):
 
     @property
     def values(self) -> dict[str, object]:
-        """{structured name: value [SI]}."""
+        """Parameters of the law: {structured name: value [SI]}."""
         return flatten(self.parameters)
 
     def _table(self) -> Table:
@@ -54,10 +54,10 @@ class Law(Tabled):
         return Table(f"law {self.name}", ("name", "value", "unit", "meaning"), rows)
 
     def at_pressure(self, pressure: ArrayLike) -> Frame:
-        """The interface under nominal pressures (n) [Pa]: F, K_N, K_T, A_r of the whole nominal area A_0.
+        """Evaluate the law at nominal pressures (n) [Pa]: F, K_N, K_T, A_r for the nominal area A_0.
 
-        `messages` of the frame say where the law's level or range is in doubt; arrays of parameters are not
-        judged.
+        The `messages` of the result warn if level or range of the law are doubtful. Arrays of parameters are
+        not judged.
 
         Raises ValueError for a pressure that is negative, NaN, infinite or not representable, or arrays of
         different lengths.
@@ -68,7 +68,7 @@ class Law(Tabled):
         return self._frame(state, judge(self.parameters, state["pressure"].tolist(), self.h).warnings)
 
     def at_largest_spot(self, area: ArrayLike) -> Frame:
-        """The interface whose largest contact spot has an area (n) [m2]."""
+        """Evaluate the law for areas (n) [m2] of the largest contact spot."""
         return self._frame(at_largest_spot(self.parameters, self._column("largest_spot", area)), ())
 
     @property
@@ -76,40 +76,40 @@ class Law(Tabled):
         return {name: value for name, value in self.values.items() if isinstance(value, np.ndarray)}
 
     def _column(self, name: str, values: ArrayLike) -> Array:
-        """Values (n), or (1), that go with the arrays of parameters."""
+        """Convert values to an array (n) or (1). Raises ValueError if parameters have another length."""
         column = np.ravel(np.asarray(values, dtype=np.float64))
         broadcast({name: column, **self._arrays}, f"law {self.name}")
         return column
 
     def _frame(self, state: Mapping[str, Any], messages: tuple[str, ...]) -> Frame:
         names = [name for name in (*ROW, *(n for n in state if n not in ROW)) if name in state]
-        known = {name: state[name] for name in names if not np.all(np.isnan(state[name]))}
-        return Frame(known, UNITS, messages)
+        defined = {name: state[name] for name in names if not np.all(np.isnan(state[name]))}
+        return Frame(defined, UNITS, messages)
 
     @plots.style()
     def plot(self, pressure: ArrayLike | None = None) -> "Figure":
-        """Draw normal and tangential stiffness per area over the pressure: a matplotlib figure."""
+        """Draw normal and tangential stiffness per area over the pressure [Pa]: a matplotlib figure."""
         p = (
             np.geomspace(1e5, 1e8, 60)
             if pressure is None
             else np.ravel(np.asarray(pressure, dtype=np.float64))
         )
-        found = self.at_pressure(p)
+        frame = self.at_pressure(p)
         figure = plots.figure((6.4, 4.0))
         axes = figure.subplots()
         for name, color in (("K_N", plots.BLUE), ("K_T", plots.RED)):
-            if name in found and np.all(np.isfinite(found[name])):
-                axes.loglog(p / 1e6, found[name] / self.parameters.A_0 * 1e-12, color=color, label=name)
+            if name in frame and np.all(np.isfinite(frame[name])):
+                axes.loglog(p / 1e6, frame[name] / self.parameters.A_0 * 1e-12, color=color, label=name)
         axes.set(xlabel="pressure [MPa]", ylabel="stiffness per area [N/(um mm2)]", title=self.name)
         axes.legend()
         return figure
 
 
 def law(name: str, **parameters: Any) -> Law:
-    """An interface law: `roughness`, `zhao2018`, `hu2023` or `yu2022`.
+    """Make an interface law: `roughness`, `zhao2018`, `hu2023` or `yu2022`.
 
-    parameters : values or arrays (n) [SI] by name, structured ones as `**{"surface.D": 1.42}`; others have
-        the values of the shipped joint with this law.
+    parameters : values or arrays (n) [SI] by name, structured names as `**{"surface.D": 1.42}`. Parameters
+        that are not named have the values of the shipped joint with this law.
         `roughness` takes Ra1, Ra2, Rq1, Rq2 or h.
 
     Raises ValueError for an unknown law or parameter, or a value outside its interval.
@@ -120,6 +120,6 @@ def law(name: str, **parameters: Any) -> Law:
     """
     if name not in LAWS:
         raise ValueError(f"law = {name!r}, allowed are {', '.join(LAWS)}")
-    given = {n: np.ravel(v) if np.ndim(v) else v for n, v in parameters.items()}
-    found = law_parameters(name, None, given)
-    return Law(name, found, surfaces_height(name, found, None, given))
+    settings = {n: np.ravel(v) if np.ndim(v) else v for n, v in parameters.items()}
+    values = law_parameters(name, None, settings)
+    return Law(name, values, surfaces_height(name, values, None, settings))

@@ -1,4 +1,4 @@
-"""Joints from names, files, drawings and measurements."""
+"""Functions that make joints: from names, parameter files, drawings and measurements."""
 
 import inspect
 import re
@@ -29,12 +29,12 @@ if TYPE_CHECKING:
 
 _HELP = """Make {}.
 
-    Numbers have the unit of the drawing, stated below; a text may carry one: '0.8 um'. A size is (200, 100),
-    what is stated of each side or bolt [0.8, 1.6]; lists, tuples and arrays are the same.
+    Numbers have the unit stated below; a text may have its own unit: '0.8 um'. Write a size as (200, 100),
+    and different values for each side or bolt as [0.8, 1.6]. Lists, tuples and arrays are equivalent.
 
 {}
 
-    Raises ValueError, one line, for what is missing or cannot be.
+    Raises ValueError, one line, for a missing or impossible value.
 
     >>> import jointfmu
     >>> {}
@@ -43,18 +43,18 @@ _FLAG = re.compile(r"--([A-Za-z][\w-]*)")
 
 
 def joint_of(file: ParameterFile, facts: Facts | None = None, notes: Sequence[str] = ()) -> Joint:
-    """The object of a parameter file, of the joint's own class if it has one."""
-    own = part(KINDS[file.joint], "interface")
-    return (own.CLASS if own else Joint)(file, facts or {}, tuple(notes))
+    """Make the joint object of a parameter file; some joints have a subclass of Joint."""
+    module = part(KINDS[file.joint], "interface")
+    return (module.CLASS if module else Joint)(file, facts or {}, tuple(notes))
 
 
 def load(source: str | Path) -> Joint:
-    """A joint from a parameter file (TOML), or by name.
+    """Load a joint from a parameter file (TOML), or by name.
 
-    source : path of a file; an FMU (`BoltedJoint`), a joint (`bolted_joint`): the shipped default; or a
-        name of a catalogue (`CSG-25-100`)
+    source : path of a file; name of an FMU (`BoltedJoint`) or of a joint (`bolted_joint`), for its shipped
+        default; or name of a catalogue entry (`CSG-25-100`)
 
-    Raises ValueError, one line, for a file that is wrong or a name that is unknown.
+    Raises ValueError, one line, for a wrong file or an unknown name.
 
     >>> import jointfmu
     >>> jointfmu.load("BoltedJoint").name
@@ -66,8 +66,8 @@ def load(source: str | Path) -> Joint:
     if Path(source).suffix == ".toml" or Path(source).is_file():
         return joint_of(load_file(source))
     for kind in KINDS.values():
-        own = part(kind, "catalogue")
-        if own and any(item.name.lower() == name.lower() for item in own.CATALOGUE.items()):
+        module = part(kind, "catalogue")
+        if module and any(item.name.lower() == name.lower() for item in module.CATALOGUE.items()):
             with _named_as_in_python():
                 return made(part(kind, "new").NEW, {"catalogue": name})  # type: ignore[union-attr]
     raise ValueError(
@@ -77,8 +77,13 @@ def load(source: str | Path) -> Joint:
 
 
 def made(drawing: Drawing, stated: Mapping[str, object]) -> Joint:
-    """The joint of a drawing. ValueError for an unknown or missing name, or a value that cannot be; it names
-    options as on the command line."""
+    """Make the joint of a drawing.
+
+    option_values : {option: value}, in the forms that `_to_command_line_value` accepts
+
+    Raises ValueError for an unknown or missing option, or an impossible value. The message names options as
+    on the command line.
+    """
     options = {option.name: option for option in drawing.options}
     if unknown := [name for name in stated if name not in options]:
         raise ValueError(f"unknown name {unknown[0]!r}, allowed are {', '.join(options)}")
@@ -90,7 +95,7 @@ def made(drawing: Drawing, stated: Mapping[str, object]) -> Joint:
 
 @contextmanager
 def _named_as_in_python() -> Iterator[None]:
-    """Refusals of the command line with the names that arguments have in Python."""
+    """Context that replaces option names of the command line in errors by argument names of Python."""
     try:
         yield
     except ValueError as error:
@@ -98,13 +103,16 @@ def _named_as_in_python() -> Iterator[None]:
 
 
 def _given(option: Option, value: Any) -> object:
-    """A value as the command line has it, numbers as text: a size as 200x100, else several as several."""
+    """Convert a value to its form on the command line: text, a list of texts, or a bool for a flag.
+
+    A size becomes one text such as 200x100. Raises ValueError for too many values, or an unknown choice.
+    """
     if option.flag:
         return bool(value)
     if value is None:
         return None
-    each = value.tolist() if isinstance(value, np.ndarray) else value
-    texts = [_text(v) for v in (each if isinstance(each, list | tuple) else [each])]
+    values = value.tolist() if isinstance(value, np.ndarray) else value
+    texts = [_text(v) for v in (values if isinstance(values, list | tuple) else [values])]
     if option.by and not (option.many and any(sign in text for text in texts for sign in (",", option.by))):
         texts = [option.by.join(texts)]
     if not texts or (len(texts) > 1 and not option.many):
@@ -117,26 +125,28 @@ def _given(option: Option, value: Any) -> object:
 
 
 def _text(value: Any) -> str:
-    """A number, a text, or the place X,Y of two numbers."""
+    """Format a number or a text; two numbers become a position X,Y."""
     if isinstance(value, list | tuple | np.ndarray):
         return ",".join(map(_text, value))
     return repr(float(value)) if isinstance(value, float) else str(value)
 
 
 def maker(name: str, kind: Kind, example: str, first: str | None = None) -> Callable[..., Joint]:
-    """The function that makes a joint of its drawing; its signature and help are the drawing's options.
+    """Create the public function that makes a joint from its drawing.
 
-    name    : of the function
-    example : a call of it, and what it gives, as in a doctest
-    first   : option that may be given without its name
+    The signature and the docstring of the function list the options of the drawing.
+
+    name    : name of the function
+    example : call of the function and its result, as in a doctest
+    first   : option that may be passed as the first positional argument
     """
     drawing: Drawing = part(kind, "new").NEW  # type: ignore[union-attr]
     positional, keyword = inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY
 
-    def make(*args: object, **stated: object) -> Joint:
-        bound = signature.bind(*args, **stated).arguments
+    def make(*args: object, **options: object) -> Joint:
+        arguments = signature.bind(*args, **options).arguments
         with _named_as_in_python():
-            return made(drawing, bound)
+            return made(drawing, arguments)
 
     ordered = sorted(drawing.options, key=lambda option: option.name != first)
     parameters = [
@@ -151,8 +161,8 @@ def maker(name: str, kind: Kind, example: str, first: str | None = None) -> Call
     make.__name__ = make.__qualname__ = name
     make.__module__ = "jointfmu"
     make.__signature__ = signature  # type: ignore[attr-defined]
-    options = "\n".join(f"    {option.name} : {_meaning(option)}" for option in ordered)
-    make.__doc__ = _HELP.format(drawing.text, options, example.replace("\n", "\n    "))
+    meanings = "\n".join(f"    {option.name} : {_meaning(option)}" for option in ordered)
+    make.__doc__ = _HELP.format(drawing.text, meanings, example.replace("\n", "\n    "))
     return make
 
 
@@ -162,7 +172,9 @@ def _meaning(option: Option) -> str:
 
 @dataclass(frozen=True, repr=False)
 class Fit(Tabled):
-    """A fit: `joint` has the fitted parameters; prints each of them with its spread.
+    """Result of a fit. `joint` has the fitted parameters; the printed table has each with its uncertainty.
+
+    outcome : fitted parameters, their uncertainty, and facts about the fit
 
     >>> import jointfmu
     >>> fit = jointfmu.fit("catalogue", K1=4700.0, K2=6100.0, K3=7100.0, T1=2.0, T2=6.9)
@@ -189,29 +201,29 @@ class Fit(Tabled):
             for row in self.outcome.rows()
         ]
         doubt = self.outcome.doubt()
-        lines = [f"warning: the fit says nothing of the joint: {doubt}"] if doubt else []
+        lines = [f"warning: the fit does not determine the joint: {doubt}"] if doubt else []
         lines += [f"note: {line}" for line in self.outcome.warnings()]
         return Table("fit", ("name", "value", "unit", "spread", "determined"), rows, lines)
 
     @plots.style()
     def plot(self) -> "Figure":
-        """Draw data, fitted law and residuals: a matplotlib figure."""
+        """Draw data, fitted law and residuals; returns a matplotlib figure."""
         figure = plots.figure(size(self.outcome))
         draw(figure, self.outcome)
         return figure
 
 
 def _paths(procedure: str, many: bool, file: str | Path | Sequence[str | Path]) -> Path | list[Path]:
-    """What a procedure takes: one path, or a list of them."""
+    """Convert the argument `file` to what a procedure takes: one path, or a list of paths."""
     if isinstance(file, str | Path):
         return [Path(file)] if many else Path(file)
     if not many:
         raise ValueError(f"procedure {procedure!r} takes one file")
-    return [Path(each) for each in file]
+    return [Path(path) for path in file]
 
 
 def _taken(option: Option, value: Any) -> object:
-    """An option of a procedure as its function takes it."""
+    """Convert an option to the form that the function of a procedure takes; numbers are in SI units."""
     if value is None or not (option.number or option.unit):
         return _given(option, value)
     if option.unit and isinstance(value, str):
@@ -230,44 +242,44 @@ def fit(
     free: str | Sequence[str] | None = None,
     **options: object,
 ) -> Fit:
-    """Fit a joint's parameters to a measurement or a catalogue row, as `jointfmu fit PROCEDURE` does.
+    """Fit a joint's parameters to a measurement or to catalogue values, as `jointfmu fit PROCEDURE` does.
 
     procedure : catalogue, torque-angle, log, loop or preload
-    file      : measured data (CSV; the heading names columns and units), where the procedure has some;
-                several files where it takes them
-    joint     : `bolted_joint`, ... where procedures of several joints have the name
-    start     : joint to start from
+    file      : measured data (CSV; the heading names columns and units), if the procedure needs data; a list
+                if it takes several files
+    joint     : name of the joint, as `bolted_joint`, if several joints have the procedure
+    start     : joint whose parameters are the start of the fit
     free      : names of the parameters to fit, or one name
-    options   : of the procedure, numbers in SI units
+    options   : options of the procedure, numbers in SI units
 
-    Raises ValueError for bad input, RuntimeError if the fit finds no end.
+    Raises ValueError for bad input, RuntimeError if the fit does not converge.
 
     >>> import jointfmu
     >>> drive = jointfmu.fit("catalogue", K1=4700.0, K2=6100.0, K3=7100.0, T1=2.0, T2=6.9).joint
     >>> drive.values["K1"]
     4700.0
     """
-    wanted, every = joint or (start.file.joint if start else None), procedures()
-    known = {
-        name: [of for of in choices if wanted in (None, of)]
-        for name, choices in every.items()
-        if wanted is None or wanted in choices
+    requested, available = joint or (start.file.joint if start else None), procedures()
+    allowed = {
+        name: [other for other in choices if requested in (None, other)]
+        for name, choices in available.items()
+        if requested is None or requested in choices
     }
-    if procedure not in known:
-        raise ValueError(f"procedure = {procedure!r}, allowed are {', '.join(known)}")
-    if len(joints := known[procedure]) > 1:
+    if procedure not in allowed:
+        raise ValueError(f"procedure = {procedure!r}, allowed are {', '.join(allowed)}")
+    if len(joints := allowed[procedure]) > 1:
         raise ValueError(f"procedure {procedure!r} is of several joints; expected joint = one of {joints}")
-    chosen = every[procedure][joints[0]]
+    chosen = available[procedure][joints[0]]
     if chosen.file == (file is None):
         raise ValueError(f"procedure {procedure!r} takes {'a' if chosen.file else 'no'} file")
-    by = {option.unit_by for option in chosen.options}  # units of texts; numbers here are SI
-    own = {option.name: option for option in chosen.options if option.name not in by}
-    if unknown := [name for name in options if name not in own]:
-        raise ValueError(f"unknown name {unknown[0]!r}, allowed are {', '.join(own)}")
-    if missing := [name for name, option in own.items() if option.required and name not in options]:
-        raise ValueError(f"{', '.join(missing)} missing: {own[missing[0]].text}")
+    units = {option.unit_by for option in chosen.options}  # for text without a unit; numbers here are SI
+    declared = {option.name: option for option in chosen.options if option.name not in units}
+    if unknown := [name for name in options if name not in declared]:
+        raise ValueError(f"unknown name {unknown[0]!r}, allowed are {', '.join(declared)}")
+    if missing := [name for name, option in declared.items() if option.required and name not in options]:
+        raise ValueError(f"{', '.join(missing)} missing: {declared[missing[0]].text}")
     data = () if file is None else (_paths(procedure, chosen.many, file),)
     names = [free] if isinstance(free, str) else free
     with _named_as_in_python():
-        taken = {name: _taken(option, options.get(name, option.default)) for name, option in own.items()}
-        return Fit(chosen.run(*data, start and start.file, names, **taken))
+        values = {n: _taken(option, options.get(n, option.default)) for n, option in declared.items()}
+        return Fit(chosen.run(*data, start and start.file, names, **values))

@@ -1,1 +1,1 @@
-"""A page that runs the C of the native FMUs in the browser."""
+"""The laboratory: a page that runs the C code of the native FMUs in the browser."""

@@ -1,6 +1,7 @@
-"""The page: template, style, scripts, and its content, packed.
+"""Assembly of the laboratory page from template, style, scripts and packed content.
 
-The content is one gzip stream: the length of a JSON text, the text that describes the modules, the modules.
+The content is one gzip stream: the length of a JSON text, the JSON text that describes the WebAssembly
+modules, and the modules.
 """
 
 import gzip
@@ -23,18 +24,18 @@ from .describe import compiled, described, modules
 
 _FOLDER = Path(__file__).with_name("web")
 _SCRIPTS = (*("engine", "sight", "controls"), *("curves", "path", "turn", "contact", "body", "files", "main"))
-"""Files of the page, in the order in which they are run, after the charts."""
+"""Scripts of the page in the order of execution, after the script of the charts."""
 _FILE_UNITS = {
     "rad": ("rad", "mrad", "deg", "arcmin", "arcsec"),
     "m": ("m", "mm", "um", "nm"),
     "N.m": ("N.m", "mN.m", "kN.m"),
     "N": ("N", "kN"),
 }
-"""Units of the columns that the page reads."""
+"""{SI unit: units that columns of an opened file may have}."""
 
 
 def write_laboratory(path: Path) -> None:
-    """Write the page, self-contained; an existing file is replaced in one go.
+    """Write the self-contained page; an existing file is replaced atomically.
 
     Raises ValueError if it cannot be written, ImportError if ziglang is missing, RuntimeError if the
     compiler fails.
@@ -43,17 +44,17 @@ def write_laboratory(path: Path) -> None:
 
 
 def page() -> str:
-    """The page as text."""
-    every = modules()
-    binaries = compiled(every)
+    """Render the page as HTML text."""
+    page_modules = modules()
+    binaries = compiled(page_modules)
     sizes = [len(binary) for binary in binaries]
-    known = {
-        "modules": [described(module) | {"size": n} for module, n in zip(every, sizes, strict=True)],
+    document = {
+        "modules": [described(module) | {"size": n} for module, n in zip(page_modules, sizes, strict=True)],
         "origins": ORIGINS,
         "roughness": {"factor": FACTOR, "close": SAME_HEIGHT},
         "units": {base: units.sizes(base, *others) for base, others in _FILE_UNITS.items()},
     }
-    text = json.dumps(known, ensure_ascii=False, allow_nan=False, separators=(",", ":")).encode()
+    text = json.dumps(document, ensure_ascii=False, allow_nan=False, separators=(",", ":")).encode()
     content = gzip.compress(b"".join([struct.pack("<I", len(text)), text, *binaries]), 9, mtime=0)
     return template(_FOLDER / "page.html").render(
         version=__version__,
@@ -65,5 +66,5 @@ def page() -> str:
 
 
 def web_file(name: str) -> str:
-    """A file of the page as text; the report takes the style from here."""
+    """Read a file of the page as text. The report uses the style sheet too."""
     return (_FOLDER / name).read_text(encoding="utf-8")

@@ -1,4 +1,4 @@
-"""What the page knows of a module: its variables, parameter sets, curves, points; JSON in the end."""
+"""Description of the laboratory's modules as JSON: variables, parameter sets, curves, published points."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -35,68 +35,79 @@ _GENERATES = Lock()
 
 @dataclass(frozen=True, slots=True)
 class Module:
-    """A model with the parameter files that share its C; the first one gives its start values."""
+    """A model with the parameter files that share its C code.
+
+    files : parameter files; the first one gives the start values
+    """
 
     model: Model
     files: Sequence[ParameterFile]
 
     @property
     def map(self) -> Path | None:
-        """C that shows the contact, if the part `laboratory` has it; need not be there."""
-        bench = part(KINDS[self.model.joint], "laboratory")
-        return Path(str(bench.__file__)).with_name(_MAP) if bench else None
+        """Path of the C source for the map of the contact; None if the joint has no module `laboratory`.
+
+        The file need not exist.
+        """
+        module = part(KINDS[self.model.joint], "laboratory")
+        return Path(str(module.__file__)).with_name(_MAP) if module else None
 
     def sources(self) -> dict[str, str]:
-        """{file name: text} of all C sources: those of the FMU, and what the page calls."""
-        # needs casadi, pages of the report do not
+        """Collect all C sources, of the FMU and of the functions that the page calls: {file name: text}."""
+        # imported here because it needs casadi, which pages of the report do not need
         from jointfmu_fmu_src.native.code.generate import sources, token
 
         files = sources(self.model.name, self.files[0])
         return files | self._added() | {"token.h": f'#define TOKEN "{token(files)}"\n'}
 
     def compiled(self) -> bytes:
-        """The module, a reactor without imports; its functions are those of laboratory.c.
+        """Compile the module to WebAssembly (a WASI reactor without imports), or read it from the cache.
 
-        Raises ImportError if ziglang is missing, RuntimeError with the compiler's first error.
+        It exports the functions of laboratory.c. Raises ImportError if ziglang is missing, RuntimeError with
+        the first error of the compiler.
         """
         return keeping(f"{dump(self.files[0])} {self._added()}", self.model, self._compiled)
 
     def _added(self) -> dict[str, str]:
-        """{file name: text} of what the page calls."""
-        own = [Path(__file__).with_name(_OWN), *([self.map] if self.map and self.map.is_file() else [])]
-        return {path.name: path.read_text(encoding="utf-8") for path in own}
+        """C sources of the functions that the page calls: {file name: text}."""
+        paths = [Path(__file__).with_name(_OWN), *([self.map] if self.map and self.map.is_file() else [])]
+        return {path.name: path.read_text(encoding="utf-8") for path in paths}
 
     def _compiled(self) -> bytes:
-        with _GENERATES:  # casadi knows no threads
+        with _GENERATES:  # casadi is not thread-safe
             files = self.sources()
         units = [name for name in files if name.endswith(".c") and not name.startswith("fmi")]
         return webassembly(self.model.name, files, units)
 
 
 def modules() -> list[Module]:
-    """Those of all joints and shipped parameter files, in the order in which they are shown."""
+    """List the modules of all joints and shipped parameter files, in display order."""
     return [module for kind in KINDS.values() for model in kind.models for module in _of(kind, model)]
 
 
 def compiled(some: Sequence[Module]) -> list[bytes]:
-    """The modules in binary form."""
+    """Compile modules in parallel threads; returns the binaries."""
     with ThreadPoolExecutor() as pool:
         return list(pool.map(Module.compiled, some))
 
 
 def _of(kind: Kind, model: Model) -> Iterator[Module]:
-    """Files share the C if they have the same law, and the same of all that cannot be set."""
+    """Group the shipped files of a joint into modules.
+
+    Files share the C code if they have the same law and the same values of all parameters that the FMU does
+    not expose.
+    """
     groups: dict[tuple[object, ...], list[ParameterFile]] = {}
     for file in _files(kind):
         exposed = model.of(kind.name, file.values).parameter_fields()
-        baked = tuple((name, value) for name, value in file.flat.items() if name not in exposed)
-        groups.setdefault((file.law, baked), []).append(file)
+        fixed = tuple((name, value) for name, value in file.flat.items() if name not in exposed)
+        groups.setdefault((file.law, fixed), []).append(file)
     for files in groups.values():
         yield Module(model.of(kind.name, files[0].values), files)
 
 
 def _files(kind: Kind) -> list[ParameterFile]:
-    """The shipped files of a joint, the default one first."""
+    """Load the shipped parameter files of a joint, the default file first."""
     default = kind.default_file()
     return [
         load(path, kind.name) for path in sorted(default.parent.glob("*.toml"), key=lambda p: p != default)
@@ -104,17 +115,17 @@ def _files(kind: Kind) -> list[ParameterFile]:
 
 
 _NOMINALS = 2.0
-"""Half the span of an input's slider over its nominal value."""
+"""Largest value of an input's slider over the nominal value of the input [1]."""
 _DECADE = 10.0
-"""Span of a slider to both sides of a start value that has no better interval."""
+"""Factor between start value and both ends of a parameter's slider, if no interval is known [1]."""
 
 
 def described(module: Module) -> dict[str, object]:
-    """All of a module but its binary form."""
+    """JSON object of a module: everything except the binary."""
     model, first = module.model, module.files[0]
     kind, bench = KINDS[model.joint], _bench(model)
     bound = set(_bound(first))
-    curves = (*panels(model), *bench.panels)  # those of the documentation, or its default, come first
+    curves = (*panels(model), *bench.panels)  # the panels of the documentation come first
     rows = [_row(v, model, bench) | {"bound": v.name in bound} for v in listed(model, first)]
     return {
         "name": model.name,
@@ -142,18 +153,22 @@ def described(module: Module) -> dict[str, object]:
 
 
 def pairs(model: Model) -> dict[str, str]:
-    """{input: the output whose product with it is an energy}, of the same suffix, else the first one."""
-    found = {}
+    """Energy-conjugate pairs of inputs and outputs: {input: output}.
+
+    The output has the same suffix as the input. For the input of the ramp without a suffix it is the first
+    output with a matching unit.
+    """
+    conjugates = {}
     for i in model.inputs:
-        fitting = [o.name for o in model.outputs if {i.unit, o.unit} in ({"N", "m"}, {"N.m", "rad"})]
-        same = [name for name in fitting if suffix(name) == suffix(i.name)]
-        if same or (fitting and not suffix(i.name) and i.name == model.ramp.input):
-            found[i.name] = (same or fitting)[0]
-    return found
+        candidates = [o.name for o in model.outputs if {i.unit, o.unit} in ({"N", "m"}, {"N.m", "rad"})]
+        same = [name for name in candidates if suffix(name) == suffix(i.name)]
+        if same or (candidates and not suffix(i.name) and i.name == model.ramp.input):
+            conjugates[i.name] = (same or candidates)[0]
+    return conjugates
 
 
 def _bench(model: Model) -> LaboratoryModel:
-    """What the joint's folder adds; nothing if it has no part."""
+    """Additions of the joint's module `laboratory` to a model; an empty object if there are none."""
     module = part(KINDS[model.joint], "laboratory")
     benches: dict[str, LaboratoryModel] = module.LABORATORY if module else {}
     return benches.get(model.name, LaboratoryModel())
@@ -185,7 +200,7 @@ def _end(v: Listed, which: str) -> float | None:
 
 
 def _span(v: Listed, model: Model, row: dict[str, Any]) -> tuple[float, float]:
-    """From where to where a slider goes."""
+    """Lower and upper end of a slider [SI]."""
     if v.boolean:
         return 0.0, 1.0
     start = float(v.start or 0.0)
@@ -194,8 +209,8 @@ def _span(v: Listed, model: Model, row: dict[str, Any]) -> tuple[float, float]:
     if v.causality == "input":
         driven = {i.name: i.unit for i in model.inputs}[model.ramp.input]
         unit = v.attributes["unit"]
-        most = model.ramp.end if unit == driven else _NOMINALS * float(v.attributes["nominal"])
-        return max(low, -most), most
+        end = model.ramp.end if unit == driven else _NOMINALS * float(v.attributes["nominal"])
+        return max(low, -end), end
     if start == 0.0:
         return 0.0, high if math.isfinite(high) else 1.0
     if abs(low) > 1e-300 and math.isfinite(high - low) and high - low <= 1.0 + abs(low):
@@ -207,7 +222,7 @@ def _span(v: Listed, model: Model, row: dict[str, Any]) -> tuple[float, float]:
 
 
 def _bound(file: ParameterFile) -> Iterator[str]:
-    """Parameters that cannot be others without contradicting what is baked in."""
+    """Yield the parameters that must not change because values compiled into the code depend on them."""
     kind = KINDS[file.joint]
     for name, value in file.flat.items():
         if isinstance(value, float):
@@ -220,18 +235,18 @@ def _bound(file: ParameterFile) -> Iterator[str]:
 
 
 def _entries(model: Model, file: ParameterFile) -> dict[str, dict[str, object]]:
-    """{structured name: unit, value, default, interval} of the entries that a parameter file may have.
+    """Entries that a parameter file may have: {structured name: {unit, value, default, interval}}.
 
-    value    : that of the module's first file; roughnesses and start values of inputs have none
-    default  : where a file may lack the entry
-    interval : low and high end, and whether these are open, of numbers that the C does not check
+    value    : value in the module's first file; roughnesses and start values of inputs have none
+    default  : value if a file does not have the entry
+    interval : lower and upper end, and whether they are open, of numbers that the C code does not check
     """
     exposed, flat, variables = model.parameter_fields(), file.flat, KINDS[model.joint].variables
     rows: dict[str, dict[str, object]] = {}
     for name, item in declared_entries(model.joint, type(file.values)).items():
         section, _, leaf = name.partition(".")
         if section not in ("inputs", "roughness", "comparison") and name not in flat:
-            continue  # of another alternative of a group
+            continue  # the entry belongs to another alternative of a group
         meta = item.metadata
         rows[name] = row = {"unit": meta.get("unit")}
         if name in flat:
@@ -246,13 +261,13 @@ def _entries(model: Model, file: ParameterFile) -> dict[str, dict[str, object]]:
 
 
 def _ends(interval: Interval) -> list[float | bool | None]:
-    """Low and high end, None where infinite, and whether these are open."""
+    """Lower and upper end of an interval, None if infinite, and whether the ends are open."""
     ends = [end if math.isfinite(end) else None for end in (interval.low, interval.high)]
     return [*ends, interval.low_open, interval.high_open]
 
 
 def _set(file: ParameterFile, model: Model) -> dict[str, object]:
-    """A parameter file: values of what can be set, and its text."""
+    """JSON object of a parameter file: values of exposed parameters, start values of inputs, TOML text."""
     names = model.parameter_fields()
     values = {name: value for name, value in file.flat.items() if name in names}
     inputs = {v.name: file.start(v.name) for v in model.inputs}
@@ -268,7 +283,7 @@ def _points(model: Model, bench: LaboratoryModel) -> Iterator[dict[str, object]]
             if shown is None or not set(point.where) <= set(shown.arguments):
                 continue
             at = {shown.arguments[name]: value for name, value in point.where.items()}
-            if not set(at) <= known:  # a law without this parameter
+            if not set(at) <= known:  # the law does not have this parameter
                 continue
             factor = units.factor(point.unit, outputs[shown.output].unit)
             yield {

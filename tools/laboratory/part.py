@@ -1,4 +1,7 @@
-"""What a joint's part `laboratory` adds to what its variables say: LABORATORY, {FMU: Bench}."""
+"""Additions of a joint to the laboratory page: curves, sliders, points, maps.
+
+The module `laboratory` in a joint's folder defines LABORATORY, {FMU: LaboratoryModel}.
+"""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -8,17 +11,18 @@ from jointfmu_fmu_src.joint_parts import RampPanel
 
 
 class Shown(NamedTuple):
-    """Where the FMU shows a published quantity: its output, and a variable for each argument."""
+    """Output of the FMU for a published quantity, and {argument of the quantity: variable of the FMU}."""
 
     output: str
     arguments: Mapping[str, str]
 
 
 class MeasuredCurve(NamedTuple):
-    """A measured curve beside a panel.
+    """A measured curve to compare with a panel.
 
-    over, quantity : variables of the panel
-    x, y  : in their SI units, y per unit of the parameter `times`
+    label, source      : name of the curve, source of the data
+    abscissa, ordinate : variables of the panel
+    x, y               : values (n) in SI units; y is per unit of the parameter `scale_parameter`
     """
 
     label: str
@@ -31,10 +35,10 @@ class MeasuredCurve(NamedTuple):
 
 
 class Map(NamedTuple):
-    """A quantity over the contact, from `lab_map` of the C file `map.c` in the part's folder.
+    """Map of a quantity over the contact, computed by `lab_map` in the file `map.c` of the joint.
 
-    shown : the unit in which it is shown
-    marks : parameter set -> places (n, 2) [m] that are marked, and what they are; none if it has none
+    unit, display_unit : SI unit, unit on the page
+    compute_marks      : parameter set -> positions (n, 2) [m] of marks, and their meaning; may be empty
     """
 
     name: str
@@ -45,14 +49,14 @@ class Map(NamedTuple):
 
 
 class Turn(NamedTuple):
-    """A shaft that turns while another follows by a ratio against a load.
+    """Animation of a transmission: an input shaft turns, an output shaft follows against a load.
 
-    driven, speed             : inputs of the shaft
-    follower, follower_speed  : of the other
-    torque, load              : outputs: torque on the first shaft, and on the other
-    error                     : output by which the other runs ahead
-    ratio, rated              : parameters: the first shaft's turns to one of the other, a usual load
-    usual                     : a usual speed [rad/s]
+    input_angle, speed       : inputs of the FMU: angle and speed of the input shaft
+    follower, follower_speed : inputs of the FMU: angle and speed of the output shaft
+    torque, load             : outputs of the FMU: torque on the input shaft, torque on the output shaft
+    error                    : output of the FMU: transmission error, positive if the output shaft leads
+    ratio, rated             : parameters: transmission ratio input/output, typical load
+    default_speed            : speed of the input shaft [rad/s]
     """
 
     driven: str
@@ -68,7 +72,7 @@ class Turn(NamedTuple):
 
 
 class Example(NamedTuple):
-    """Values beside the default ones that show more of the joint, and what they are."""
+    """Example values that show additional behaviour of the joint, and their description."""
 
     doc: str
     values: Mapping[str, float]
@@ -76,16 +80,16 @@ class Example(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LaboratoryModel:
-    """One model on the page.
+    """Additions to one model on the laboratory page.
 
-    panels   : curves beside those of the FMU's documentation
-    spans    : {variable: (from, to) of its slider}, SI, where nothing else says it
-    path     : inputs along which the pointer draws; none: the driven one
-    points   : {quantity of a reference file: where the FMU shows it}
-    measured : curves of other joints
-    picture  : a map of the contact
-    turn     : two shafts that turn
-    example  : values that a button sets
+    panels           : curves in addition to those of the FMU's documentation
+    slider_spans     : {variable: (lower, upper end of its slider [SI])}, in place of the computed ends
+    path_inputs      : inputs that the user varies with the pointer; empty: the input of the ramp
+    published_points : {quantity of a reference file: its output and arguments in the FMU}
+    measured_curves  : measured curves of other joints
+    contact_map      : map of a quantity over the contact
+    transmission     : animation of two shafts
+    example          : values that a button sets
     """
 
     panels: Sequence[RampPanel] = ()

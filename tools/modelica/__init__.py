@@ -1,1 +1,1 @@
-"""The Modelica library JointStiffness, written from the one list of variables and the parameter files."""
+"""The Modelica library JointStiffness, generated from the models' variables and the parameter files."""

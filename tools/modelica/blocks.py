@@ -1,4 +1,4 @@
-"""What the packages Interfaces and Wrappers show of an FMU: its variables, and how they meet flanges."""
+"""Template variables of the packages Interfaces and Wrappers: variables and flanges of an FMU, diagram."""
 
 from collections.abc import Mapping, Sequence
 
@@ -29,9 +29,10 @@ _TAKES_MOTION = "It takes motion and gives force, so it belongs between inertias
 
 
 def interface(model: Model) -> dict[str, object]:
-    """Content of the partial block with an FMU's inputs and outputs."""
+    """Template variables of the partial block with an FMU's inputs and outputs."""
 
     def column(variables: Sequence[Variable]) -> list[dict[str, object]]:
+        """Rows of the connectors on one side of the block."""
         return [
             {
                 "name": v.name,
@@ -48,12 +49,12 @@ def interface(model: Model) -> dict[str, object]:
 
 
 def wrapper(model: Model) -> dict[str, object]:
-    """Content of the model that puts an FMU between flanges."""
+    """Template variables of the model that connects an FMU to flanges."""
     flanges = terminals(model)
     members = {variable for t in flanges for variable, _ in t.members.values()}
     note = _TAKES_MOTION
-    if not _takes_motion(model):  # that of the same joint which does belongs between inertias
-        others = [one.name for one in KINDS[model.joint].models if _takes_motion(one)]
+    if not _takes_motion(model):  # name another FMU of the joint, which can be used between inertias
+        others = [other.name for other in KINDS[model.joint].models if _takes_motion(other)]
         note = _TAKES_FORCE.format(between_inertias=f" or the FMU {others[0]}" if others else "")
     parameters = [
         {
@@ -77,11 +78,12 @@ def wrapper(model: Model) -> dict[str, object]:
 
 
 def _takes_motion(model: Model) -> bool:
+    """Return whether the inputs of an FMU are motions and its outputs forces."""
     return all(flow != "inflow" for t in terminals(model) for _, flow in t.members.values())
 
 
 def _ports(model: Model) -> dict[str, tuple[float, float]]:
-    """Places of the FMU's inputs and outputs in a wrapper's diagram."""
+    """Positions (x, y) of the FMU's inputs and outputs in the diagram of a wrapper."""
     sides = zip((-24.0, 22.0), (model.inputs, model.outputs), strict=True)
     return {
         v.name: (x, round(0.2 * y, 1)) for x, side in sides for v, y in zip(side, _heights(side), strict=True)
@@ -89,12 +91,15 @@ def _ports(model: Model) -> dict[str, tuple[float, float]]:
 
 
 def _heights(variables: Sequence[Variable]) -> list[int]:
-    """Heights of the connectors of a block's side, from 90 down to -90."""
+    """Vertical positions of the connectors on one side of a block, from 90 down to -90."""
     return [round(90 - (i + 0.5) * 180 / len(variables)) for i in range(len(variables))]
 
 
 def _flange(terminal: Terminal, ports: Mapping[str, tuple[float, float]]) -> dict[str, object]:
-    """A flange with its adaptor; potential, rate and force of the terminal go to p, pder and f."""
+    """Template variables of a flange with its adaptor.
+
+    Potential, rate and force of the terminal are connected to p, pder and f of the adaptor.
+    """
     rotational = ".Rotational." in terminal.kind
     potential, rate, force = (
         next((terminal.members[m][0] for m in names if m in terminal.members), None)
@@ -140,7 +145,7 @@ def _flange(terminal: Terminal, ports: Mapping[str, tuple[float, float]]) -> dic
 
 
 def _line(start: tuple[float, float], end: tuple[float, float], color: str) -> str:
-    """A connection's line: across, up or down halfway, across."""
+    """Format the line of a connection: horizontal, vertical at half width, horizontal."""
     middle = 0.5 * (start[0] + end[0])
     corners = [start, (middle, start[1]), (middle, end[1]), end] if start[1] != end[1] else [start, end]
     points = ",".join(f"{{{x:g},{y:g}}}" for x, y in corners)

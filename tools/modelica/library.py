@@ -1,4 +1,4 @@
-"""All files of the Modelica library: templates filled with tables, variables, terminals and numbers."""
+"""Generation of all files of the Modelica library from templates, tables, variables and numbers."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -30,7 +30,7 @@ from .systems import model_name, system_model
 
 NAME = "JointStiffness"
 _PARTNERS = ("LinkWeight", "Load", "AngleProfile", "TorqueCurve")
-"""Components that the systems need beside joints."""
+"""Components of systems that are no joints: loads, profiles, weight."""
 _FUNCTIONS = (
     "load",
     "stiffness",
@@ -45,12 +45,18 @@ _FUNCTIONS = (
     "stiffnessDerivative",
 )
 Points = Mapping[str, Sequence[WorkingPoint]]
-"""{joint: working points of its records}."""
+"""Working points of the records: {joint: working points}."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Joint:
-    """A joint in the library: its parameters, its form, its records by working point, and its templates."""
+    """A joint in the library.
+
+    file      : parameter file
+    component : Modelica component that the joint defines
+    records   : {working point: record}
+    templates : templates of the joint
+    """
 
     kind: Kind
     file: ParameterFile
@@ -60,7 +66,7 @@ class _Joint:
 
     @property
     def record(self) -> ModelicaRecord:
-        """The one that the component shows."""
+        """Default record of the component."""
         return next(iter(self.records.values()))
 
 
@@ -71,10 +77,10 @@ def write(
     *,
     force: bool = False,
 ) -> list[Path]:
-    """Write the library into a folder; returns its files.
+    """Write the library into a folder; returns the paths of its files.
 
-    file   : parameters of one joint, in place of its default
-    points : of some joints, in place of their own
+    file   : parameter file of one joint, in place of its default file
+    points : {joint: working points}, in place of the default working points
     force  : replace a library of this name that jointfmu did not write
     """
     check_output(folder / NAME / "package.mo", TEXT, force)
@@ -82,7 +88,7 @@ def write(
 
 
 def library(file: ParameterFile | None = None, points: Points | None = None) -> dict[str, str]:
-    """{path in the library: text} of every file."""
+    """Render all files of the library: {path in the library: text}."""
     joints = [
         _joint(kind, module, file, (points or {}).get(kind.name))
         for kind in KINDS.values()
@@ -114,26 +120,27 @@ def library(file: ParameterFile | None = None, points: Points | None = None) -> 
 def _joint(
     kind: Kind, module: ModuleType, file: ParameterFile | None, points: Sequence[WorkingPoint] | None
 ) -> _Joint:
-    own = file if file and file.joint == kind.name else default(kind.name)
+    """Collect parameters, component, records and templates of a joint."""
+    joint_file = file if file and file.joint == kind.name else default(kind.name)
     component: ModelicaComponent = module.COMPONENT
-    wanted = points or (*_start(own), *component.points)
-    records = dict(zip(wanted, component.records(own, wanted), strict=True))
-    return _Joint(kind, own, component, records, environment(Path(str(module.__file__)).parent))
+    used_points = points or (*_start(joint_file), *component.points)
+    records = dict(zip(used_points, component.records(joint_file, used_points), strict=True))
+    return _Joint(kind, joint_file, component, records, environment(Path(str(module.__file__)).parent))
 
 
 def _start(file: ParameterFile) -> list[WorkingPoint]:
-    """The working point that the file states as the start of its inputs, if it does."""
+    """Working point given by the start values of the inputs in a parameter file, as a list of one or none."""
     point = tuple(file.start(name) for name in KINDS[file.joint].working_point)
     return [point] if point and point[0] > 0.0 else []
 
 
 def _order(names: Mapping[str, object]) -> str:
-    """The file package.order."""
+    """Render the file package.order."""
     return "\n".join(names) + "\n"
 
 
 def _plain(shared: Environment, package: str, names: Sequence[str], **terms: object) -> dict[str, str]:
-    """{class: text} of classes that nothing of a joint is filled in."""
+    """Render classes that do not depend on a joint: {class: text}."""
     return {name: shared.get_template(f"{package}/{name}.mo").render(terms) for name in names}
 
 
@@ -152,7 +159,10 @@ def _components(joints: Sequence[_Joint]) -> dict[str, str]:
 
 
 def _data(joints: Sequence[_Joint]) -> dict[str, str]:
-    """The records that others extend, then those with tables."""
+    """Render the base records and the records with tables: {record: text}, base records first.
+
+    Raises ValueError if a record has the name of a base record.
+    """
     bases, tables = {}, {}
     for joint in joints:
         base = joint.component.base
@@ -170,7 +180,7 @@ def _data(joints: Sequence[_Joint]) -> dict[str, str]:
 
 
 def _examples(joints: Sequence[_Joint], shared: Environment) -> dict[str, str]:
-    """The systems that are shipped."""
+    """Render the shipped systems: {class: text}."""
     by_kind = {joint.kind.name: joint for joint in joints}
     classes = {}
     for system in systems().values():
@@ -183,14 +193,14 @@ def _examples(joints: Sequence[_Joint], shared: Environment) -> dict[str, str]:
 
 
 def system_text(system: System) -> str:
-    """A system as a model of its own, with the library's components."""
+    """Render a system as a stand-alone model that uses the components of the library."""
     return f"// {MARK}\n{system_model(system, environment(), lambda kind, file, point: None)}"
 
 
 def _known(
     joints: Mapping[str, _Joint], kind: str, file: ParameterFile, point: WorkingPoint
 ) -> ModelicaRecord | None:
-    """The record of the library for a joint's parameters, if they are those of the library."""
+    """Find the record of the library with a joint's parameters at a working point; None if there is none."""
     joint = joints[kind]
     special = joint.component.special
     same = all(joint.file.flat.get(name) == value for name, value in file.flat.items() if name not in special)
@@ -198,7 +208,7 @@ def _known(
 
 
 def _meanings(kind: Kind) -> dict[str, str]:
-    """Meanings of the parameters of all its laws."""
+    """Meanings of the parameters of all laws of a joint: {structured name: meaning}."""
     return {
         name: text(item.metadata["doc"])
         for parameters in kind.laws.values()
@@ -208,9 +218,9 @@ def _meanings(kind: Kind) -> dict[str, str]:
 
 
 def _documentation(model: Model, file: ParameterFile) -> dict[str, str]:
-    """Parts of the FMU's documentation page, as text of a Modelica annotation."""
-    here = Path(__file__).parent
-    page = template(asset(model, "page.html"), here, FRAME)
+    """Render sections of the FMU's documentation page for a Modelica annotation: {section: text}."""
+    folder = Path(__file__).parent
+    page = template(asset(model, "page.html"), folder, FRAME)
     names = ("what", "law", "trust", "paper")
     terms = {"model": model, "fmu": False, **law_terms(file)}
     return {name: text(page.render(terms, part=name).strip()) for name in names}

@@ -1,6 +1,4 @@
-"""What the library holds of one joint: its component, the records of the package Data that fill it in,
-tables; how Modelica writes numbers and texts.
-"""
+"""Modelica component of a joint, its records in the package Data, interpolation tables; formatting."""
 
 import re
 from collections.abc import Callable, Collection, Mapping, Sequence
@@ -22,43 +20,43 @@ from jointfmu.quantity import Array
 from ..thinning import kept
 
 GIVEN, COMPUTED = 15, 10
-"""Digits of numbers that a file gives, and of those computed from them: later digits depend on the
-processor, and the tables err by 1e-7."""
+"""Digits of numbers from a parameter file, and of computed numbers. More digits of computed numbers would
+depend on the processor; the error of the tables is 1e-7."""
 
 
 def number(value: float, digits: int = GIVEN) -> str:
-    """A number, or a Boolean."""
+    """Format a number or a Boolean as a Modelica expression."""
     if isinstance(value, bool):
         return str(value).lower()
     return f"{value + 0.0:.{digits}g}"
 
 
 def matrix(rows: NDArray[np.float64]) -> str:
-    """A matrix of computed numbers, one row per line."""
+    """Format a matrix of computed numbers as a Modelica expression, one row per line."""
     lines = (", ".join(number(x, COMPUTED) for x in row) for row in rows)
     return "[\n      " + ";\n      ".join(lines) + "]"
 
 
 def text(content: str) -> str:
-    """The inside of a Modelica string; it ends with no backslash, which simple readers misread."""
+    """Escape a text for a Modelica string. A blank is added after a final backslash for simple parsers."""
     content += " " * content.endswith("\\")
     return content.replace("\\", "\\\\").replace('"', '\\"')
 
 
 def html(content: str) -> str:
-    """A plain text in the HTML of a documentation annotation, which is a Modelica string."""
+    """Escape a plain text for the HTML of a documentation annotation, which is a Modelica string."""
     return text(escape(content, quote=False))
 
 
 def identifier(name: str) -> str:
-    """A Modelica identifier of a title."""
+    """Make a Modelica identifier from a title."""
     words = re.sub(r"[^A-Za-z0-9]+", "_", name).strip("_")
     plain = words[:1].isalpha() and not reserved(words) and words.lower() != "package"
     return words[0].upper() + words[1:] if plain else f"Joint_{words}"
 
 
 def environment(*folders: Path) -> Environment:
-    """Templates of the folders, then those of the library; an unknown name is an error."""
+    """Jinja environment with the templates of the folders, then of the library. Unknown names are errors."""
     return Environment(
         loader=FileSystemLoader([*folders, Path(__file__).parent / "templates"]),
         undefined=StrictUndefined,
@@ -74,14 +72,15 @@ def environment(*folders: Path) -> Environment:
 
 
 TOLERANCE = 1e-7
-"""Largest relative error of load and stiffness [1] against the package's curve."""
+"""Largest relative error [1] of load and stiffness of a table, against the original curve."""
 _INNER = np.linspace(0.0, 1.0, 9)[1:-1]
 
 
 class InterpolationTable(NamedTuple):
-    """A quintic spline: rows (n, 5) of displacement, load, stiffness, and its derivative before and after.
+    """Quintic spline of a load curve.
 
-    error : [1] largest relative error of load and stiffness against what it was made of
+    rows  : (n, 5) displacement, load, stiffness, derivative of the stiffness before and after the node
+    error : [1] largest relative error of load and stiffness against the original curve
     """
 
     rows: Array
@@ -89,7 +88,7 @@ class InterpolationTable(NamedTuple):
 
 
 def curve_of(table: InterpolationTable) -> Curve:
-    """The table as a curve of the package."""
+    """Convert a table to a curve."""
     x, y, k, before, after = table.rows.T
     return Curve(x, y, k, after[:-1], before[1:])
 
@@ -100,20 +99,22 @@ def thinned(
     keep: Collection[int] = (),
     fits: Callable[[int, int], bool] | None = None,
 ) -> InterpolationTable:
-    """The fewest nodes of a curve, taken one after the other, that reproduce it within TOLERANCE.
+    """Select few nodes of a curve whose quintic spline reproduces it within RELATIVE_TOLERANCE.
 
-    reference : node whose load and stiffness the errors refer to where the curve's own are smaller;
-                -1: each value's own
-    keep      : nodes that stay
-    fits      : a further demand on the segment from one node to another
+    reference_node : node whose load and stiffness are the smallest reference of the relative errors; -1: the
+                     errors are relative to each value
+    fixed_nodes    : nodes that are always selected
+    segment_fits   : (i, j) -> whether an additional condition allows a segment from node i to node j
+
+    The nodes are selected one after the other.
     """
     kinks = np.flatnonzero(curve.bend_end[:-1] != curve.bend_start[1:]) + 1
     stops = {*kinks.tolist(), *keep, curve.displacement.size - 1}
     floor = (0.0, 0.0) if reference < 0 else (curve.load[reference], curve.stiffness[reference])
 
     def reproduces(i: int, j: int) -> bool:
-        close = _segment_error(curve, i, j, floor) <= TOLERANCE
-        return close and (fits is None or fits(i, j))
+        accurate = _segment_error(curve, i, j, floor) <= TOLERANCE
+        return accurate and (fits is None or fits(i, j))
 
     index = kept(stops, reproduces)
     worst = max(_segment_error(curve, i, j, floor) for i, j in pairwise(index.tolist()))
@@ -124,7 +125,10 @@ def thinned(
 
 
 def _segment_error(curve: Curve, i: int, j: int, floor: tuple[float, float]) -> float:
-    """Largest relative error of one quintic from node i to node j."""
+    """Largest relative error of load and stiffness if one quintic leads from node i to node j.
+
+    min_reference : smallest load and stiffness to which the errors are relative
+    """
     ends = [i, j]
     quintic = Curve(
         curve.displacement[ends],
@@ -136,28 +140,29 @@ def _segment_error(curve: Curve, i: int, j: int, floor: tuple[float, float]) -> 
     x = curve.displacement[i : j + 1]
     points = np.concatenate([x[1:-1], (x[:-1, None] + np.diff(x)[:, None] * _INNER).ravel()])
     worst = 0.0
-    for exact, rough, least in zip(
+    for exact, approximate, reference in zip(
         curve.derivatives(points), quintic.derivatives(points), floor, strict=True
     ):
-        size = np.maximum(np.abs(exact), least)
-        some = size > 0.0
-        worst = max(worst, float(np.max(np.abs(rough - exact)[some] / size[some], initial=0.0)))
+        size = np.maximum(np.abs(exact), reference)
+        positive = size > 0.0
+        errors = np.abs(approximate - exact)[positive] / size[positive]
+        worst = max(worst, float(np.max(errors, initial=0.0)))
     return worst
 
 
 WorkingPoint = tuple[float, ...]
-"""Values of the inputs Kind.working_point of a joint, SI; empty for a joint that has none."""
+"""Values [SI] of the inputs `Kind.working_point` of a joint; empty if the joint has no such inputs."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ModelicaRecord:
-    """A joint as a table.
+    """Record of the library with the table and the parameters of a joint.
 
-    name   : of the record, an identifier
-    title  : the same as words
-    table  : load over displacement
-    values : {name in the base record: expression} besides the table
-    more   : what the table's error refers to, where not to each value
+    name       : identifier of the record
+    title      : title in words
+    table      : load over displacement
+    values     : {name in the base record: Modelica expression} in addition to the table
+    error_note : quantity to which the table's error is relative, if it is not each value
     """
 
     name: str
@@ -168,11 +173,14 @@ class ModelicaRecord:
 
     @property
     def end(self) -> float:
-        """Largest load of the table."""
+        """Largest load of the table [N or N.m]."""
         return float(self.table.rows[-1, 1])
 
     def content(self, base: str) -> dict[str, object]:
-        """What the template of records needs; `base` is the record that it extends."""
+        """Template variables of the record.
+
+        base : name of the record that it extends
+        """
         return {
             "name": self.name,
             "title": text(self.title),
@@ -186,22 +194,24 @@ class ModelicaRecord:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ModelicaComponent:
-    """COMPONENT in the folder `modelica` of a joint.
+    """Modelica component of a joint: the constant COMPONENT in the folder `modelica` of the joint.
 
-    The templates lie beside it as in the library: Components/NAME.mo and Data/BASE.mo. The component's gets
-    the meanings of parameters `meta` and of outputs `docs`, the FMU's page `html`, the name of its first
-    record `record`, and `texts`.
+    This folder has the templates Components/NAME.mo and Data/BASE.mo. The template of the component gets the
+    variables `meta` (meanings of the parameters), `docs` (meanings of inputs and outputs), `html` (sections
+    of the FMU's page), `record` (name of the default record), and the result of `template_texts`.
 
-    name    : of the component, and of the FMU that it stands for
-    base    : of its records
-    points  : working points of the records unless others are asked for
-    records : (parameters, working points) -> a record for each, the first the component's own
-    texts   : first record -> {name: text}
-    flanges : names of its flanges
-    of_system : parameters -> {parameter of the component: text} that a system sets beside the record
-    held    : {input of the joint: parameter of the component} at which a system may hold it
-    special : parameters of the joint that only these decide, not the record's table
-    note    : HTML for the description of all components
+    name           : name of the component, and of the FMU that it replaces
+    base           : name of the base record of its records
+    points         : default working points of the records
+    records        : (parameter file, working points) -> one record for each; the first is the default record
+    template_texts : default record -> {template variable: text}
+    flanges        : names of its flanges
+    system_parameters         : parameter file -> {parameter of the component: text} that a system sets in
+                                addition to the record
+    fixed_input_parameters    : {input of the joint: parameter of the component}, for inputs that a system may
+                                hold constant
+    component_only_parameters : parameters of the joint that do not change the table of the record
+    note           : HTML for the description of the package of components
     """
 
     name: str
@@ -217,10 +227,10 @@ class ModelicaComponent:
 
 
 def given(values: Mapping[str, float]) -> dict[str, str]:
-    """Values of a file as expressions."""
+    """Format values of a parameter file as Modelica expressions."""
     return {name: number(value, GIVEN) for name, value in values.items()}
 
 
 def computed(values: Mapping[str, float]) -> dict[str, str]:
-    """Values computed from those of a file as expressions."""
+    """Format computed values as Modelica expressions."""
     return {name: number(value, COMPUTED) for name, value in values.items()}

@@ -1,4 +1,4 @@
-"""Systems as Modelica models, of the library's components and those of the Modelica Standard Library."""
+"""Systems as Modelica models, made of components of this library and of the Modelica Standard Library."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
@@ -19,15 +19,16 @@ from .records import ModelicaComponent, ModelicaRecord, html, number, text
 _MSL = "Modelica.Mechanics"
 _LIBRARY = "JointStiffness.Components"
 _NOMINAL = {"phi": "1e-3", "w": "0.1", "s": "1e-6", "v": "1e-3"}
+"""{state: nominal value [SI]} of bodies."""
 _APART, _ROW = 30, 30
-"""Between components and between chains on a diagram."""
+"""Distances on the diagram: between columns of components, and between rows."""
 
 Records = Callable[[str, ParameterFile, tuple[float, ...]], ModelicaRecord | None]
-"""(kind, parameters, working point) -> the library's record of these parameters, if it has one."""
+"""(kind of joint, parameter file, working point) -> record of the library; None if it has no such record."""
 
 
 class Declared(NamedTuple):
-    """A declaration: type, name, modifications, and its place on the diagram."""
+    """Declaration of a component: type, name, modifications (`values`), position (x, y) on the diagram."""
 
     type: str
     name: str
@@ -37,53 +38,57 @@ class Declared(NamedTuple):
 
 
 def system_model(system: System, shared: Environment, library: Records, within: str = "") -> str:
-    """The text of a model.
+    """Render a system as a Modelica model.
 
-    library : records that are there; others stand inside the model
+    find_record : finds the record of a joint in the library; a joint without one gets a record in the model
+    package     : package of the model; empty: none
 
-    Raises ValueError for a joint without a component in the library, and as `wiring.ends`.
+    Raises ValueError for a joint without a component in the library, and for a wrong connection as
+    `wiring.ends`.
     """
     connected = ends(system)
-    places = _places(system, connected)
+    positions = _places(system, connected)
     records: list[dict[str, object]] = []
-    parts: list[Declared] = []
+    declarations: list[Declared] = []
     lines: list[tuple[str, str, str]] = []
 
     def declare(kind: str, name: str, values: Iterable[str], of: str = "") -> None:
-        """Declare a component; one `of` another stands beside it, below those that do already."""
-        x, y = places[of or name]
+        """Declare a component; it is placed to the right of the component `of` to which it belongs."""
+        x, y = positions[of or name]
         if of:
-            x, y = x + _APART, y - _ROW * sum((part.x, part.y) == (x + _APART, y) for part in parts)
-        parts.append(Declared(kind, name, ", ".join(values), x, y))
-        places[name] = (x, y)
+            x += _APART
+            y -= _ROW * sum((declared.x, declared.y) == (x, y) for declared in declarations)
+        declarations.append(Declared(kind, name, ", ".join(values), x, y))
+        positions[name] = (x, y)
 
     def connect(one: str, other: str) -> None:
-        points = (places[end.partition(".")[0]] for end in (one, other))
+        """Connect two flanges, `component.flange`."""
+        points = (positions[end.partition(".")[0]] for end in (one, other))
         lines.append((one, other, ",".join(f"{{{x},{y}}}" for x, y in points)))
 
-    for name, part in system.components.items():
-        if part.file:
-            data, own = _record(part, library, records)
-            declare(f"{_LIBRARY}.{part.model}", name, [*data, *own])
+    for name, component in system.components.items():
+        if component.file:
+            data, changes = _record(component, library, records)
+            declare(f"{_LIBRARY}.{component.model}", name, [*data, *changes])
         else:
-            _PARTNERS[part.model](part, declare, connect)
-    for one, other in connected:
-        assert one.component
-        here, there = _flange(one), _flange(other) if other.component else None
-        if here is None:
+            _PARTNERS[component.model](component, declare, connect)
+    for end, other_end in connected:
+        assert end.component
+        flange, other_flange = _flange(end), _flange(other_end) if other_end.component else None
+        if flange is None:
             continue
-        if there is None:
-            held = f"{here.replace('.', '_')}_held"
-            domain = "Rotational" if one.flange and one.flange.kind == ROTATIONAL else "Translational"
-            declare(f"{_MSL}.{domain}.Components.Fixed", held, [], one.component.name)
-            there = f"{held}.flange"
-        connect(here, there)
+        if other_flange is None:
+            support = f"{flange.replace('.', '_')}_held"
+            domain = "Rotational" if end.flange and end.flange.kind == ROTATIONAL else "Translational"
+            declare(f"{_MSL}.{domain}.Components.Fixed", support, [], end.component.name)
+            other_flange = f"{support}.flange"
+        connect(flange, other_flange)
     return shared.get_template("Examples/system.mo").render(
         within=within,
         name=model_name(system),
         title=text(system.title),
         records=records,
-        parts=parts,
+        parts=declarations,
         lines=lines,
         stop=number(system.stop_time),
         interval=number(system.interval),
@@ -93,12 +98,12 @@ def system_model(system: System, shared: Environment, library: Records, within: 
 
 
 def model_name(system: System) -> str:
-    """Of a system, as Modelica names models."""
+    """Name of the Modelica model of a system: six_axis_robot becomes SixAxisRobot."""
     return system.name.title().replace("_", "")
 
 
 def _flange(end: End) -> str | None:
-    """What a connection names in Modelica; None if the component there has no such flange."""
+    """Name `component.flange` of the end of a connection; None if the component has no such flange."""
     assert end.component
     name = end.component.name
     if end.load:
@@ -111,6 +116,7 @@ def _flange(end: End) -> str | None:
 
 
 def _component(part: Part) -> ModelicaComponent:
+    """Modelica component of a joint in a system. Raises ValueError if the library has none."""
     module = joint_part(KINDS[part.kind], "modelica")
     if module is None or module.COMPONENT.name != part.model:
         raise ValueError(f"{part.name}: the Modelica library has no component of a {part.model}")
@@ -121,23 +127,26 @@ def _component(part: Part) -> ModelicaComponent:
 def _record(
     part: Part, library: Records, records: list[dict[str, object]]
 ) -> tuple[Sequence[str], Sequence[str]]:
-    """Modifications of a joint: its record, and what it changes of it."""
+    """Modifications of a joint's component: its record, and other parameters that the system sets.
+
+    records : list of records in the model, to which a record is added if the library has none
+    """
     assert part.file
     component = _component(part)
     file = part.file
     point = tuple(part.state.get(name, file.start(name)) for name in KINDS[part.kind].working_point)
-    own = [f"{key}={value}" for key, value in component.of_system(file).items()]
-    own += [
+    changes = [f"{key}={value}" for key, value in component.of_system(file).items()]
+    changes += [
         f"{component.held[name]}={number(part.state[name])}" for name in component.held if name in part.state
     ]
-    shown = library(part.kind, file, point)
-    if shown:
-        return [f"data=JointStiffness.Data.{shown.name}()"], own
+    known_record = library(part.kind, file, point)
+    if known_record:
+        return [f"data=JointStiffness.Data.{known_record.name}()"], changes
     (record,) = component.records(file, [point])
     name = f"{part.name[0].upper()}{part.name[1:]}Data"
     title = text(f"{file.name}, of {part.name}")
     records.append(record.content(component.base) | {"name": name, "title": title})
-    return [f"data={name}()"], own
+    return [f"data={name}()"], changes
 
 
 def _numbers(values: Mapping[str, Any], names: Iterable[str] | None = None) -> list[str]:
@@ -166,16 +175,18 @@ def _inertia(part: Part, declare: Declare, connect: Connect) -> None:
 
 
 def _source(block: str, domain: str, kind: str, signal: str) -> Callable[[Part, Declare, Connect], None]:
+    """Return the function that declares a load: a signal block and a source of force or torque."""
+
     def add(part: Part, declare: Declare, connect: Connect) -> None:
         values = part.values
         points = [number(values[f"p{k}"]) for k in range(1, POINTS + 1) if f"p{k}" in values]
-        given = _numbers({key: value for key, value in values.items() if not key[1:].isdigit()})
+        modifications = _numbers({key: value for key, value in values.items() if not key[1:].isdigit()})
         if points:
-            given.append(f"p={{{', '.join(points)}}}")
-        declare(f"{_LIBRARY}.{block}", part.name, given)
-        acting = f"{part.name}_{signal}"
-        declare(f"{_MSL}.{domain}.Sources.{kind}", acting, [], part.name)
-        connect(f"{part.name}.y", f"{acting}.{signal}")
+            modifications.append(f"p={{{', '.join(points)}}}")
+        declare(f"{_LIBRARY}.{block}", part.name, modifications)
+        source = f"{part.name}_{signal}"
+        declare(f"{_MSL}.{domain}.Sources.{kind}", source, [], part.name)
+        connect(f"{part.name}.y", f"{source}.{signal}")
 
     return add
 
@@ -197,7 +208,7 @@ _PARTNERS: dict[str, Callable[[Part, Declare, Connect], None]] = {
 
 
 def _places(system: System, connected: Sequence[tuple[End, End]]) -> dict[str, tuple[int, int]]:
-    """Places of the components: a row for each chain, in the order of the file."""
+    """Positions of the components on the diagram: a row for each connected chain, in file order."""
     chains: list[set[str]] = []
     for pair in connected:
         names = {end.component.name for end in pair if end.component}

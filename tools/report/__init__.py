@@ -1,1 +1,1 @@
-"""The report that opens in a browser: of the main job (`page`), and of one joint (`joint`)."""
+"""Reports as HTML pages: of all joints, from `python build_fmus.py` (`page`), and of one joint (`joint`)."""

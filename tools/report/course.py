@@ -1,4 +1,4 @@
-"""A joint of a parameter file over its load and to and fro, by the Python package: nothing is compiled."""
+"""Load histories of a joint for its report: load ramp and load cycles, computed in Python without an FMU."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -14,21 +14,25 @@ from ..ramps.loops import HysteresisLoops, Swing, conjugate, of
 from ..ramps.ramp import RampResult
 
 _POINTS = 101
+"""Number of points of the load ramp."""
 _SWING = Swing(points=80)
+"""Load cycle: points per cycle, shape, number of cycles."""
 PARTS = (0.25, 0.5, 1.0)
-"""Amplitudes of the loops over the largest [1]."""
+"""Amplitudes of the load cycles over the largest amplitude [1]."""
 _FAR, _SURE = 10, 12
-"""Doublings of the load ramp in which the end of the law is sought, and halvings to find it."""
+"""Doublings of the load in the search for the end of the law, and bisections to locate it."""
 _SETTLED = 0.95
-"""Part of the force of gross slip at which a joint counts as slipping [1]."""
+"""Force over the force at gross slip [1] above which the joint counts as slipping."""
 
 
 class Course:
-    """What a joint does; all other inputs stay at the start values of the file.
+    """Load ramp and load cycles of a joint. All other inputs have the start values of the file.
 
-    model : with the ramp and the loop of the file
-    rest  : {input: start value}
-    limit : (value of the ramped input, warning) where the law ends; None if far from the ramp
+    file, spring : parameter file, tabulated curves of the joint
+    model        : model of the FMU, with ramp and load cycle for this file
+    start_values : {input: start value}
+    limit        : (value of the ramped input, warning) at the end of the law's range; None if there is no end
+                   near the ramp
     """
 
     def __init__(self, model: Model, file: ParameterFile) -> None:
@@ -38,7 +42,7 @@ class Course:
         self.limit = _limit(self.model, self.spring, self.rest)
 
     def ramp(self) -> dict[str, Array]:
-        """Inputs and outputs (n) along the load ramp, dense where curves bend."""
+        """Compute inputs and outputs (n) along the load ramp; points are dense where curves bend."""
         ramp = self.model.ramp
         points = [{**self.rest, ramp.input: float(x)} for x in ramp.points(_POINTS)]
         rows = [point | evaluated(self.model, self.spring, point) for point in points]
@@ -46,13 +50,13 @@ class Course:
 
     @property
     def about(self) -> dict[str, float]:
-        """Inputs at which the loops are run: start values, and the model's where they are zero."""
+        """Inputs during the load cycles: start values, or the settings of the model if these are zero."""
         assert self.model.loop
-        given = self.model.loop.settings
-        return {name: value or float(given.get(name, 0.0)) for name, value in self.rest.items()}
+        settings = self.model.loop.settings
+        return {name: value or float(settings.get(name, 0.0)) for name, value in self.rest.items()}
 
     def loops(self) -> HysteresisLoops:
-        """Loops of growing amplitude, each from rest, of a joint with memory."""
+        """Compute hysteresis loops of increasing amplitude, each from rest, of a joint with friction."""
         loop, driven = self.model.loop, {v.name: v.unit for v in self.model.inputs}
         assert loop
         outputs = {v.name: v.unit for v in self.model.outputs}
@@ -63,7 +67,10 @@ class Course:
         return of(results, loop.input, output, swing)
 
     def _amplitude(self, output: str) -> float:
-        """Of the largest loop: the model's, or twice the way on which the output settles if that is less."""
+        """Largest amplitude of the load cycles.
+
+        It is the amplitude of the model, or, if that is less, twice the displacement at gross slip.
+        """
         loop = self.model.loop
         assert loop
         largest = loop.amplitude
@@ -82,6 +89,7 @@ class Course:
         return min(largest, float(f"{2.0 * high:.2g}"))
 
     def _driven(self, name: str, points: Array, units: dict[str, str]) -> RampResult:
+        """Compute the outputs along a path of one input, from rest."""
         evolve, rest = self.model.evolve, self.model.rest
         assert evolve
         assert rest
@@ -93,7 +101,10 @@ class Course:
 
 
 def _limit(model: Model, spring: Any, rest: Mapping[str, float]) -> tuple[float, str] | None:
-    """Where the ramped input first makes a warning that it does not make at zero, and the warning."""
+    """Find the end of the law: smallest ramped input with a warning that is absent at zero, and the warning.
+
+    None if no such warning appears up to 2^10 times the end of the ramp.
+    """
 
     def said(x: float) -> dict[int, str]:
         inputs = {**rest, model.ramp.input: x}

@@ -1,4 +1,4 @@
-"""A figure of the report, and a row of a joint's page: a published number beside what the joint does."""
+"""Figures of reports, and rows that compare a published number with the computed one."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -16,12 +16,12 @@ if TYPE_CHECKING:
 
 
 def style() -> str:
-    """The style sheet."""
+    """Style sheet (CSS) of the reports."""
     return chart.style() + web_file("style.css") + _own("report.css")
 
 
 def script(*names: str) -> str:
-    """The charts of the figures, and scripts of this folder that use them."""
+    """JavaScript of the charts, and of the named scripts of this folder."""
     return chart.script("figures") + "".join(map(_own, names))
 
 
@@ -29,16 +29,18 @@ def _own(name: str) -> str:
     return Path(__file__).with_name(name).read_text(encoding="utf-8")
 
 
-SET, OWN, PREDICTED = "set by it", "a parameter of its own", "predicted"
-"""What the published number is for the file: a parameter comes from it; one is of the same meaning, but does
-not come from it; none of the two."""
+SET, OWN, PREDICTED = "set by it", "set independently", "predicted"
+"""Role of a published number: a parameter was set from it; a parameter has the same meaning but another
+source; the number is independent of all parameters, so it is a prediction."""
 
 
 class Beside(NamedTuple):
-    """Numbers in the SI unit `unit`.
+    """Comparison of a published number with the number that the joint has.
 
-    bound : the published number is an upper limit
-    role  : SET, OWN or PREDICTED
+    unit                : SI unit of both numbers
+    published, computed : the numbers
+    is_upper_limit      : whether the published number is an upper limit
+    role                : ROLE_SET, ROLE_INDEPENDENT or ROLE_PREDICTED
     """
 
     name: str
@@ -56,8 +58,14 @@ _COLOURS = (BLUE, RED, GREEN, GREY, "#8055a8", "#b8860b")
 
 
 class Figure(NamedTuple):
-    """Title, what is to be seen, panels or pictures as SVG elements, the CSV file beside the page, and rows
-    of a table, its head first."""
+    """A figure of a report.
+
+    title, text : heading, and description of what the figure shows
+    panels      : charts
+    pictures    : SVG elements
+    data        : name of the CSV file next to the page
+    table       : rows of a table; the first row has the headings
+    """
 
     title: str
     text: str
@@ -68,18 +76,21 @@ class Figure(NamedTuple):
 
 
 def published(points: Sequence[Point], over: str) -> list[Series]:
-    """Published numbers over an argument, by role; what proves nothing is empty."""
-    found = []
+    """Series of published numbers over an argument, one for each role.
+
+    Marks are empty if numbers of this role are no independent check.
+    """
+    series = []
     for role in dict.fromkeys(point.role for point in points):
-        some = [point for point in points if point.role == role]
-        x, y = [p.where[over] for p in some], [float(p.value) for p in some]
+        chosen = [point for point in points if point.role == role]
+        x, y = [p.where[over] for p in chosen], [float(p.value) for p in chosen]
         marks = "empty" if role in PROVES_NOTHING else "full"
-        found.append(Series(f"published: {ROLES[role]}", x, y, marks, titles=[p.id for p in some]))
-    return found
+        series.append(Series(f"published: {ROLES[role]}", x, y, marks, titles=[p.id for p in chosen]))
+    return series
 
 
 def drawn(canvas: "Canvas", panels: Sequence[Panel]) -> None:
-    """The panels side by side, as a picture for the command line."""
+    """Draw panels side by side with matplotlib."""
     for axes, panel in zip(canvas.subplots(1, len(panels), squeeze=False)[0], panels, strict=True):
         for series, color in zip(panel.series, _COLOURS, strict=False):
             style = {"ls": "", "marker": "o", "mfc": "white" if series.marks == "empty" else color}

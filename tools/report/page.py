@@ -1,4 +1,4 @@
-"""The page: a tab per joint with figures, the table of published against computed, the checks."""
+"""The report page of all joints: a tab per joint with figures, comparison with published numbers, checks."""
 
 import platform
 from pathlib import Path
@@ -22,12 +22,18 @@ from .systems import motions, resonances, ring_downs
 
 
 def drawn(outcome: Any) -> dict[str, list[Figure]]:
-    """{joint: its figures} of an outcome of the main job whose systems have been run."""
+    """Build the figures of all joints: {joint: figures}.
+
+    outcome : result of `python build_fmus.py` with simulated systems
+    """
     return {name: _figures(kind, outcome) for name, kind in KINDS.items()}
 
 
 def write_report(path: Path, outcome: Any) -> None:
-    """Write the self-contained page of an outcome with its figures."""
+    """Write the self-contained page.
+
+    outcome : result of `python build_fmus.py`, with the figures of `build_figures`
+    """
     page = template(Path(__file__).with_name("page.html")).render(
         version=__version__,
         python=platform.python_version(),
@@ -47,10 +53,10 @@ def write_report(path: Path, outcome: Any) -> None:
 
 
 def _tab(kind: Kind, outcome: Any) -> dict[str, Any]:
-    """What the page shows of a joint."""
+    """Template variables for the tab of one joint."""
     names = [model.name for model in kind.models]
     kinds = {name: {j.kind for j in system.joints.values()} for name, system in systems().items()}
-    names += [name for name, found in kinds.items() if kind.name in found]
+    names += [name for name, joints in kinds.items() if kind.name in joints]
     return {
         "name": kind.name,
         "title": kind.title,

@@ -234,7 +234,7 @@ def test_what_is_made_of_the_interface_alone_says_so(made, tmp_path, capsys):
     words = ["export", "csv", "springs", "--params", path, "--preload", "15e3", "--out", out, "--json"]
     assert cli.main(words) == 0
     (line,) = json.loads(capsys.readouterr().out)["warnings"]
-    assert line.startswith("'plate 80x80 with 4xM8' is a whole joint (sides = elastic), this its interface")
+    assert line.startswith("'plate 80x80 with 4xM8' is a whole joint (sides = elastic), but this file has")
     docs = {
         v.name: v.doc for v in KINDS["bolted_joint"].models[0].of("bolted_joint", load(path).values).outputs
     }

@@ -112,7 +112,7 @@ def test_the_page_of_a_drive_says_what_friction_costs(tmp_path: Path) -> None:
     write_joint_report(tmp_path / "plain.html", drive_file())
     plain = (tmp_path / "plain.html").read_text(encoding="utf-8")
     assert "None with these parameters" in plain
-    assert "Beside what is published" not in plain
+    assert "Compared with the catalogue" not in plain
 
 
 SCATTER = 0.03
@@ -225,7 +225,7 @@ def test_the_page_has_what_is_published_of_the_drive(tmp_path):
     assert [*beside(SPRING, warm)] == [*rows.values()]  # catalogues hold at 20 degrees C
     write_joint_report(tmp_path / "drive.html", replace(warm, name="Shoulder"))
     page = (tmp_path / "drive.html").read_text(encoding="utf-8")
-    assert "Beside what is published of it" in page
+    assert "Compared with the catalogue" in page
     assert "3.06 N m" in page
     assert "the lubricant is at 45 degrees C" in page
     assert {"-10", "20", "45", "60"} == set(re.findall(r"\"(-?\d+) degrees C\"", page))

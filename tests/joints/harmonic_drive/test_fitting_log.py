@@ -254,7 +254,7 @@ def test_noise_is_not_written(drive, tmp_path, capsys):
     path, out = written(tmp_path / "log.csv", tau=("N.m", 0.3 + 0.02 * noise)), tmp_path / "out.toml"
     asked = ["fit", "log", str(path), "--params", str(drive), "--out", str(out)]
     assert cli.main(asked) == 1
-    assert "the fit says nothing of the joint" in capsys.readouterr().err
+    assert "the fit does not determine the joint" in capsys.readouterr().err
     assert not out.exists()
     assert cli.main([*asked, "--force"]) == 0
     assert out.exists()

@@ -1,4 +1,4 @@
-"""Commands on a bolted assembly by finite elements, `footprint` and `modes`; what they share."""
+"""Commands that analyse a bolted assembly by finite elements, `footprint` and `modes`: shared functions."""
 
 import argparse
 import math
@@ -19,14 +19,17 @@ if TYPE_CHECKING:
 
 
 def assembly_arguments(sub: argparse.ArgumentParser) -> None:
-    """Declare the assembly, `--preload` and `--params`."""
-    argument(sub, "assembly", Path, "bodies and bolts (TOML)", "ASSEMBLY")
-    argument(sub, "--preload", float, "per bolt [N]", "F", default=9e3)
-    argument(sub, "--params", Path, "parameters of the interface (default: box specimen)")
+    """Declare the assembly file, `--preload` and `--params`."""
+    argument(sub, "assembly", Path, "assembly file: bodies and bolts (TOML)", "ASSEMBLY")
+    argument(sub, "--preload", float, "preload of each bolt [N]", "F", default=9e3)
+    argument(sub, "--params", Path, "parameter file of the interface (default: box specimen)")
 
 
 def joint_file(path: Path | None) -> ParameterFile:
-    """Parameters of a joint with bolts: of a file, or the default of the first such joint."""
+    """Load the parameter file of a bolted joint; None: the default file of the first bolted joint.
+
+    Raises ValueError for a file of another joint.
+    """
     joints = list(clamped())
     if path is None:
         return default(joints[0])
@@ -38,7 +41,7 @@ def joint_file(path: Path | None) -> ParameterFile:
 
 
 def check_bolts(option: str, file: ParameterFile) -> None:
-    """Refuse an option for the whole joint where the file has no bolts that bear."""
+    """Raise ValueError if an option for the whole joint is set and the file has no bolt stiffness."""
     if not file.flat.get("bolt_stiffness", 0.0) > 0.0:
         raise ValueError(
             f"{option} without the stiffness of a bolt: expected bolt_stiffness above 0 N/m in the file of "
@@ -49,15 +52,23 @@ def check_bolts(option: str, file: ParameterFile) -> None:
 def judge_assembly(
     file: ParameterFile, assembly: "Assembly", preload: float, mean: float, peak: float
 ) -> Judgement:
-    """The judgement of an assembly's contact at a preload [N] per bolt, mean and greatest pressure [Pa]."""
-    found = judge(KINDS[file.joint].law_of(file.values), [mean], known_height(file), peak)
-    return found.with_warnings(overload("preload", preload, proof_load(assembly.bolts.hole_diameter)))
+    """Judge the stiffness of an assembly's contact, and the preload against the proof load of the bolts.
+
+    preload       : preload of each bolt [N]
+    mean_pressure : mean contact pressure [Pa]
+    peak_pressure : greatest contact pressure [Pa]
+    """
+    judgement = judge(KINDS[file.joint].law_of(file.values), [mean], known_height(file), peak)
+    return judgement.with_warnings(overload("preload", preload, proof_load(assembly.bolts.hole_diameter)))
 
 
 def with_assembly(file: ParameterFile, assembly: "Assembly", whole: bool) -> ParameterFile:
-    """The joint's parameters with the area and the materials of an assembly; all of its bolts if `whole`.
+    """Return the joint's parameters with contact area and materials of an assembly.
 
-    Where the bolts are no two rows, the pressure under their heads carries a moment.
+    include_bolts : also set number and rows of the bolts
+
+    If the bolts do not form two rows, the row distance is the head diameter: the pressure under the heads
+    carries the moment.
     """
     changes = {"A_0": assembly.contact_area}
     for name in ("side1", "side2"):

@@ -1,4 +1,4 @@
-"""Bodies of an imported contact: plates of stated thickness, by the bolts' places and heads."""
+"""Bodies of an imported contact field: two plates of stated thickness, with bolts."""
 
 import argparse
 from typing import TYPE_CHECKING
@@ -19,35 +19,35 @@ if TYPE_CHECKING:
     from ...fem.geometry import Assembly
 
 OUTSIDE = 1e-6
-"""Distance [m] by which a bolt may lie outside the contact's rectangle."""
+"""Largest distance [m] of a bolt outside the bounding rectangle of the contact."""
 COVERED, MOVED = 0.9, 0.01
-"""Part of its rectangle [1] that a contact has at least, and distance of both centroids over its size [1]
-below which nothing is said."""
+"""Limits for a warning: contact area over the area of the plates [1], at least, and distance between the
+centroids of contact and plates over the plate size [1], at most."""
 
 
 def arguments(step: argparse.ArgumentParser) -> None:
-    """Declare what is stated of the bodies."""
+    """Declare the options that describe the plates and the bolts."""
     step.add_argument(
         "--thickness",
         nargs=2,
         metavar=("T1", "T2"),
-        help="of both plates [mm]: write the whole joint (sides = elastic), its plates as large as the "
-        "rectangle around the contact (default: the interface alone)",
+        help="thicknesses of both plates [mm]: write the whole joint (sides = elastic), with plates as large "
+        "as the rectangle around the contact (default: write the interface only)",
     )
     step.add_argument(
         "--attached",
         choices=("faces", "edge", "heads"),
-        help="what moves with the bodies that the joint connects (default: faces)",
+        help="faces of the plates that move with the connected bodies (default: faces)",
     )
-    text = "place of each bolt in the plane of the file [mm] (default: of --params, about the centroid)"
-    argument(step, "--bolts", str, text, "X,Y", nargs="+")
-    argument(step, "--hole", str, "clearance hole [mm] (default: of --params)", "D")
-    text = "outer diameter of what presses [mm] (default: of --params, else the hexagon head of the "
+    text = "position of each bolt in the plane of the file [mm] (default: positions of --params, relative to "
+    argument(step, "--bolts", str, text + "the centroid)", "X,Y", nargs="+")
+    argument(step, "--hole", str, "diameter of the clearance holes [mm] (default: from --params)", "D")
+    text = "outer diameter of head or washer [mm] (default: from --params, else the hexagon head of the "
     argument(step, "--head", str, text + "largest bolt that passes the hole)", "D")
 
 
 def check(args: argparse.Namespace, file: ParameterFile) -> None:
-    """Refuse what cannot be a whole joint before the work."""
+    """Raise ValueError before the work starts if the options do not describe a whole joint."""
     if args.attached and not args.thickness:
         raise ValueError(f"--attached {args.attached} without --thickness: expected that of both plates")
     for name in ("hole", "head"):
@@ -60,18 +60,18 @@ def check(args: argparse.Namespace, file: ParameterFile) -> None:
 
 
 def places(args: argparse.Namespace, file: ParameterFile, field: ContactField) -> Array | None:
-    """Places (b, 2) [m] of the bolts in the plane of the field; None if they are not known.
+    """Positions (b, 2) [m] of the bolts in the plane of the field; None if they are not known.
 
-    Those of the parameter file lie about the centroid of its contact as in the field; if one of them is
-    outside the field, it is another contact.
+    Without `--bolts` they are the positions of the parameter file, relative to the centroid of the field. If
+    one of them lies outside the field, the file is of another contact: None.
 
-    Raises ValueError for stated ones that are too few, too many, or outside.
+    Raises ValueError if `--bolts` has too few or too many positions, or one outside the contact.
     """
     low, high = np.min(field.position, axis=0) - OUTSIDE, np.max(field.position, axis=0) + OUTSIDE
     if not args.bolts:
-        found = clamping(file.joint).layout(file.values).bolts + field.centroid
-        inside = np.all((found > low) & (found < high))
-        return found if len(found) == file.values.n_bolts and inside else None
+        positions = clamping(file.joint).layout(file.values).bolts + field.centroid
+        inside = np.all((positions > low) & (positions < high))
+        return positions if len(positions) == file.values.n_bolts and inside else None
     stated = np.array([numbers("bolts", text, "mm", "m", by=",", count=2, least=None) for text in args.bolts])
     if len(stated) != file.values.n_bolts:
         raise ValueError(f"--bolts has {len(stated)} places, expected {file.values.n_bolts:g}: n_bolts")
@@ -89,10 +89,12 @@ def places(args: argparse.Namespace, file: ParameterFile, field: ContactField) -
 def assembly(
     args: argparse.Namespace, file: ParameterFile, field: ContactField, at: Array | None
 ) -> tuple["Assembly", list[str]]:
-    """The plates of a field with bolts at (b, 2) [m], and what is to be known of them.
+    """Build the plates of a field with bolts; returns the assembly and notes about its shape.
 
-    Raises ValueError if places or sizes of the bolts are missing, heads overlap or leave the plates, or
-    these are too thin.
+    bolt_positions : (b, 2) [m] in the plane of the field
+
+    Raises ValueError if positions or sizes of the bolts are missing, if heads overlap or extend beyond the
+    plates, or if the plates are too thin.
     """
     from ...fem.geometry import Assembly, BoltList, Plate, check_thickness
 
@@ -102,18 +104,19 @@ def assembly(
     thick = [number("thickness", text, "mm", "m") for text in args.thickness]
     low, high = np.min(field.position, axis=0), np.max(field.position, axis=0)
     (length, width), area = high - low, float(np.sum(field.area))
-    # nodes in the middle of their areas end half of one before the edge
-    more = area + len(at) * 0.25 * np.pi * hole**2 - length * width
+    # a node in the middle of its area lies half an area's width inside the edge: enlarge to the true area
+    missing_area = area + len(at) * 0.25 * np.pi * hole**2 - length * width
     half = 0.5 * (length + width)
-    grown = float(np.clip(np.sqrt(max(half**2 + more, 0.0)) - half, 0.0, np.sqrt(field.area.max())))
+    extension = np.sqrt(max(half**2 + missing_area, 0.0)) - half
+    extension = float(np.clip(extension, 0.0, np.sqrt(field.area.max())))
     sides = [
         Plate(
-            length=float(length + grown),
-            width=float(width + grown),
+            length=float(length + extension),
+            width=float(width + extension),
             thickness=thick[i],
             E=file.flat[f"side{i + 1}.E"],
             nu=file.flat[f"side{i + 1}.nu"],
-            density=1.0,  # nothing moves here
+            density=1.0,  # not used: the analysis is static
         )
         for i in range(2)
     ]
@@ -121,31 +124,31 @@ def assembly(
     bolts = BoltList(
         x=tuple(places[:, 0].tolist()), y=tuple(places[:, 1].tolist()), hole_diameter=hole, head_diameter=head
     )
-    made = Assembly(file.name, sides[0], sides[1], bolts)
-    check_thickness(made)
-    told = [
+    plates = Assembly(file.name, sides[0], sides[1], bolts)
+    check_thickness(plates)
+    notes = [
         f"the plates are the rectangle around the contact, {1e3 * sides[0].length:.4g} x "
         f"{1e3 * sides[0].width:.4g} mm, heads {1e3 * head:.4g} mm over holes of {1e3 * hole:.4g} mm"
     ]
-    centroid = -0.25 * np.pi * hole**2 * places.sum(axis=0) / made.contact_area
-    moved = np.hypot(*(field.centroid - 0.5 * (low + high) - centroid)) / max(length, width)
-    if (part := area / made.contact_area) < COVERED or moved > MOVED:
-        told.append(
-            f"the contact has {part:.0%} of that rectangle, its centroid lies {moved:.1%} of its size "
-            "beside: plates of another outline are not as stiff"
+    centroid = -0.25 * np.pi * hole**2 * places.sum(axis=0) / plates.contact_area
+    offset = np.hypot(*(field.centroid - 0.5 * (low + high) - centroid)) / max(length, width)
+    if (share := area / plates.contact_area) < COVERED or offset > MOVED:
+        notes.append(
+            f"the contact covers {share:.0%} of that rectangle, its centroid is off by {offset:.1%} of the "
+            "plate size: plates of another outline have another stiffness"
         )
-    return made, told
+    return plates, notes
 
 
 def _sizes(args: argparse.Namespace, file: ParameterFile) -> tuple[float, float]:
-    """Diameters [m] of hole and head."""
-    own = clamping(file.joint).layout(file.values)
-    hole = number("hole", args.hole, "mm", "m") if args.hole else own.hole
+    """Diameters [m] of clearance hole and head. Raises ValueError if one of them is not known."""
+    layout = clamping(file.joint).layout(file.values)
+    hole = number("hole", args.hole, "mm", "m") if args.hole else layout.hole
     if not hole > 0.0:
         raise ValueError("--thickness without the holes of the bolts: expected --hole")
     if args.head:
         return hole, number("head", args.head, "mm", "m")
     fitting = [thread for thread in threads().values() if thread.d < hole]
-    if own.head <= 0.0 and not fitting:
+    if layout.head <= 0.0 and not fitting:
         raise ValueError(f"no bolt of the tables passes a hole of {1e3 * hole:g} mm: expected --head")
-    return hole, own.head or max(fitting, key=lambda thread: thread.d).hexagon
+    return hole, layout.head or max(fitting, key=lambda thread: thread.d).hexagon

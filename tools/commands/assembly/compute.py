@@ -1,4 +1,4 @@
-"""`jointfmu footprint compute`: the pressure of a bolted joint by finite elements."""
+"""`jointfmu footprint compute`: contact pressure of a bolted joint by finite elements."""
 
 import argparse
 from collections.abc import Iterator
@@ -22,32 +22,32 @@ if TYPE_CHECKING:
 
 
 FINEST = 5
-"""Most meshes of `--refine`."""
+"""Largest number of meshes for `--refine`."""
 COARSEST = 0.3
-"""Least refinement [1] at which a hole still looks like one."""
+"""Smallest refinement [1] at which the mesh still resolves a hole."""
 
 
 def add(commands: Commands) -> None:
-    """Declare the command."""
+    """Declare the command `jointfmu footprint compute` with its options."""
     text = "compute the contact pressure of a bolted joint by finite elements"
     sub = command(commands, "compute", run, text)
     assembly_arguments(sub)
     argument(sub, "--moment", float, "bending moment about x [N.m] (default: 0)", "M")
-    output(sub, "--out", PARAMETERS, "write the joint with this field, for FMUs (TOML)")
+    output(sub, "--out", PARAMETERS, "write the parameter file of the joint with this field (TOML)")
     sub.add_argument(
         "--attached",
         choices=("faces", "edge", "heads"),
-        help="write the whole joint (sides = elastic) between these parts of the bodies: outer faces, edges "
-        "(side 1 at -x, side 2 at +x), or what lies under the heads (default: the interface alone)",
+        help="write the whole joint (sides = elastic) between these surfaces of the bodies: outer faces, "
+        "edges (side 1 at -x, side 2 at +x), or seats of the heads (default: write the interface only)",
     )
-    output(sub, "--field", FIELD, "write the field (.csv, .vtu)")
+    output(sub, "--field", FIELD, "write the pressure field (.csv, .vtu)")
     output(sub, "--plot", PICTURE, "draw the pressure (.png, .svg)")
-    argument(sub, "--refine", int, f"number of meshes, 1 to {FINEST}", default=1)
-    argument(sub, "--refinement", float, "divides the sizes of elements", "R", default=1.0)
+    argument(sub, "--refine", int, f"number of meshes of a convergence study, 1 to {FINEST}", default=1)
+    argument(sub, "--refinement", float, "factor that divides the element sizes", "R", default=1.0)
 
 
 def run(args: argparse.Namespace) -> Answer:
-    """Run the command."""
+    """Run the command `jointfmu footprint compute`."""
     with installed("the finite-element analysis"):
         from ...fem import convergence, results
         from ...fem.assembly import load as read
@@ -67,20 +67,20 @@ def run(args: argparse.Namespace) -> Answer:
     with installed("the finite-element analysis"):
         curve = approach_curve(file.values)
         rows, solution = convergence.study(assembly, curve, args.preload, moment, levels)
-    made = _with_field(args, file, solution) if args.out else file
-    whole = clamping(file.joint).facts(made, tightening(args, made)) if args.attached else {}
-    written = _write(args, made, solution)
+    result = _with_field(args, file, solution) if args.out else file
+    whole = clamping(file.joint).facts(result, tightening(args, result)) if args.attached else {}
+    written = _write(args, result, solution)
     facts = _findings(solution, moment, args.preload)
-    found = judge_assembly(file, assembly, args.preload, facts["p_mean"], solution.peak)
-    found = found.with_warnings(unlike_holes(solution.field, assembly.bolts.positions, moment != 0.0))
+    judgement = judge_assembly(file, assembly, args.preload, facts["p_mean"], solution.peak)
+    judgement = judgement.with_warnings(unlike_holes(solution.field, assembly.bolts.positions, moment != 0.0))
     document = facts | {"meshes": [_mesh(row) for row in rows], "written": written}
     document |= {"whole": fact_document(whole)} if whole else {}
     lines = [*_lines(facts), *_table(rows), *fact_lines(whole)]
-    return Answer(document=document, lines=lines, judgement=found, written=written)
+    return Answer(document=document, lines=lines, judgement=judgement, written=written)
 
 
 def _check(args: argparse.Namespace) -> None:
-    """Refuse what cannot be done or written before the work."""
+    """Raise ValueError before the work starts if an option is out of range or `--out` is missing."""
     if not 1 <= args.refine <= FINEST:
         raise ValueError(f"--refine = {args.refine} is outside [1, {FINEST}]: number of meshes")
     if not COARSEST <= args.refinement <= 4.0:
@@ -90,7 +90,7 @@ def _check(args: argparse.Namespace) -> None:
 
 
 def _write(args: argparse.Namespace, file: ParameterFile, solution: "JointSolution") -> list[str]:
-    """Write what was asked for; returns the paths."""
+    """Write the files of `--out`, `--field` and `--plot`; returns their paths."""
     from ...fem import results
 
     if args.out:
@@ -103,18 +103,21 @@ def _write(args: argparse.Namespace, file: ParameterFile, solution: "JointSoluti
 
 
 def _with_field(args: argparse.Namespace, file: ParameterFile, solution: "JointSolution") -> ParameterFile:
-    """The joint with the field at the preload that embedding leaves, what a moment adds, and its bodies."""
+    """Return the joint with the computed pressure field, and with elastic bodies if `--attached` is set.
+
+    The field is of the preload after embedding; it contains the change of pressure under a moment.
+    """
     from ...fem.bolted_contact import with_solution
 
-    made, shape = with_solution(file, solution, args.preload, args.moment or 0.0)
+    interface, shape = with_solution(file, solution, args.preload, args.moment or 0.0)
     if not args.attached:
-        return made
-    preload = tightening(args, made)
-    return clamping(made.joint).whole(made, solution.joint.assembly, preload, args.attached, shape)
+        return interface
+    preload = tightening(args, interface)
+    return clamping(interface.joint).whole(interface, solution.joint.assembly, preload, args.attached, shape)
 
 
 def tightening(args: argparse.Namespace, file: ParameterFile) -> float:
-    """Force [N] of each bolt before embedding."""
+    """Tightening force [N] of each bolt: the preload before embedding."""
     return float(args.preload + file.values.embedding)
 
 
@@ -138,7 +141,7 @@ def _findings(solution: "JointSolution", moment: float, preload: float) -> dict[
 
 
 def _lines(facts: dict[str, Any]) -> Iterator[str]:
-    """The findings for people."""
+    """Format the results as lines of text."""
     yield f"{facts['assembly']}: {facts['preload']:g} N per bolt, moment {facts['moment']:g} N.m"
     yield f"contact   {facts['area'] * 1e4:.2f} cm2, {100 * facts['open_share']:.3g} % open"
     yield f"force     {facts['force']:.6g} N"
@@ -153,7 +156,7 @@ def _mesh(row: "MeshResult") -> dict[str, object]:
 
 
 def _table(rows: list["MeshResult"]) -> Iterator[str]:
-    """Meshes with the relative change from one to the next and the observed order."""
+    """Format the convergence study: results of each mesh, relative changes, observed order."""
     if len(rows) < 2:
         return
     from ...fem.convergence import COLUMNS, changes, orders

@@ -1,4 +1,4 @@
-"""`jointfmu footprint`: the pressure field of a bolted joint, brought along or computed."""
+"""`jointfmu footprint`: pressure field of a bolted joint, imported from a file or computed."""
 
 import argparse
 from dataclasses import replace
@@ -9,7 +9,7 @@ from jointfmu.files.outputs import PARAMETERS, PICTURE, write_parameter_text
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile, dump
 
-from ...command_line.common import Answer, Commands, Parser, argument, command
+from ...command_line.common import Answer, Commands, Parser, argument, command, sentence
 from ...command_line.outputs import output
 from ...fields.clamped import clamping
 from ...judgement import judge, known_height
@@ -23,39 +23,45 @@ if TYPE_CHECKING:
 
 
 def add_footprint(commands: Commands) -> None:
-    """Declare the command and its sub-commands."""
-    text = "the contact pressure of a bolted joint: from a file, or by finite elements"
-    top = commands.add_parser("footprint", help=text, description=text)
+    """Declare the command `jointfmu footprint` with its sub-commands."""
+    text = "import or compute the contact pressure of a bolted joint"
+    top = commands.add_parser("footprint", help=text, description=sentence(text))
     steps = top.add_subparsers(dest="step", required=True, metavar="STEP", parser_class=Parser)
     _import(steps)
     compute.add(steps)
 
 
 OPTIONS = {"length": "length_unit", "pressure": "pressure_unit", "beside": "with"}
-"""{name of the library's argument: the option's} where they differ."""
+"""{name of an argument in the library: name of its option}, where the names differ."""
 
 
 def _import(steps: Commands) -> None:
-    step = command(steps, "import", _run_import, "bring a nodal contact result into a joint's parameter file")
-    argument(step, "file", Path, "CSV, CalculiX .frd, ANSYS or Abaqus listing or a mesh")
-    argument(step, "--preload", float, "force of each bolt in the file [N]", "F", required=True)
-    argument(step, "--params", Path, "parameters of the joint (default: Zhao 2018)")
-    output(step, "--out", PARAMETERS, "write the joint with the field (TOML)")
+    text = "import a nodal contact result into the parameter file of a joint"
+    step = command(steps, "import", _run_import, text)
+    argument(step, "file", Path, "contact result: CSV, CalculiX .frd, ANSYS or Abaqus listing, or a mesh")
+    argument(step, "--preload", float, "force of each bolt in the contact result [N]", "F", required=True)
+    argument(step, "--params", Path, "parameter file of the joint (default: Zhao 2018)")
+    output(step, "--out", PARAMETERS, "write the parameter file of the joint with the field (TOML)")
     output(step, "--plot", PICTURE, "draw the field (.png, .svg)")
-    argument(step, "--format", str, "csv, mesh, ansys, abaqus or frd (default: by the name)", "FORMAT")
-    argument(step, "--length-unit", str, "of the file: m, mm, um; a CSV file states it", "UNIT")
-    argument(step, "--pressure-unit", str, "of the file: Pa, kPa, MPa, GPa", "UNIT")
-    argument(step, "--data", str, "mesh: point data, NAME or NAME:COMPONENT")
-    argument(step, "--normal", str, "normal to the contact", "AXIS", default="z")
-    argument(step, "--rows", str, "axis along the bolt rows (default: the next, x for z)", "AXIS")
-    argument(step, "--side", str, "where both bodies have pressure: below or above", "SIDE")
-    argument(step, "--open", str, "nodes without pressure: keep or drop", "WHAT", default="refuse")
-    beside = "further listings, or the mesh of a listing: ANSYS archive .cdb, Abaqus deck .inp"
-    step.add_argument("--with", dest="beside", nargs="+", type=Path, default=[], metavar="FILE", help=beside)
-    text = "part by which the force of the pressures may differ from that of the bolts, to which they are "
-    argument(step, "--force-tolerance", float, text + "scaled (0.01)", "P")
+    text = "format of the file: csv, mesh, ansys, abaqus or frd (default: by the file name)"
+    argument(step, "--format", str, text, "FORMAT")
+    text = "length unit of the file: m, mm, um; not needed for CSV, which states it"
+    argument(step, "--length-unit", str, text, "UNIT")
+    argument(step, "--pressure-unit", str, "pressure unit of the file: Pa, kPa, MPa, GPa", "UNIT")
+    argument(step, "--data", str, "mesh: point data with the pressure, NAME or NAME:COMPONENT")
+    argument(step, "--normal", str, "axis normal to the contact", "AXIS", default="z")
+    argument(step, "--rows", str, "axis along the bolt rows (default: the next axis, x for z)", "AXIS")
+    text = "side of the contact to read if both bodies have pressure: below or above"
+    argument(step, "--side", str, text, "SIDE")
+    argument(step, "--open", str, "nodes without pressure: keep, drop or refuse", "WHAT", default="refuse")
+    text = "more listings, or the mesh of a listing: ANSYS archive .cdb, Abaqus deck .inp"
+    step.add_argument("--with", dest="beside", nargs="+", type=Path, default=[], metavar="FILE", help=text)
+    text = (
+        "largest relative difference between contact force and bolt force; the pressures are scaled to the "
+    )
+    argument(step, "--force-tolerance", float, text + "bolt force (default: 0.01)", "P")
     argument(step, "--moment", float, "bending moment of --moment-file [N.m]", "M")
-    argument(step, "--moment-file", Path, "the same nodes under a moment too")
+    argument(step, "--moment-file", Path, "contact result of the same nodes under an additional moment")
     bodies.arguments(step)
     step.set_defaults(options=OPTIONS)
 
@@ -73,7 +79,7 @@ def _run_import(args: argparse.Namespace) -> Answer:
     if args.moment_file:
         source += f" and {args.moment_file.name}"
     at = bodies.places(args, start, field)
-    plates, told = bodies.assembly(args, start, field, at) if args.thickness else (None, [])
+    plates, notes = bodies.assembly(args, start, field, at) if args.thickness else (None, [])
     file, reduction = with_field(
         start,
         field,
@@ -87,31 +93,33 @@ def _run_import(args: argparse.Namespace) -> Answer:
     file = replace(file, name=f"{start.name}, field of {args.file.name}")
     whole = {}
     if plates:
-        preload, own = compute.tightening(args, file), clamping(file.joint)
-        file = own.whole(file, plates, preload, args.attached or "faces", reduction.field)
-        whole = own.facts(file, preload)
+        preload, joint = compute.tightening(args, file), clamping(file.joint)
+        file = joint.whole(file, plates, preload, args.attached or "faces", reduction.field)
+        whole = joint.facts(file, preload)
     if args.plot:
         joint_parameters.draw(field, reduction, args.plot)
     if args.out:
         write_parameter_text(args.out, dump(file))
     facts = _findings(args, file, field, reduction)
-    found = judge(
+    judgement = judge(
         KINDS[file.joint].law_of(file.values), [facts["p_mean"]], known_height(file), facts["p_max"]
     )
-    facts |= {"outline": told[0]} if told else {}
-    found = found.with_warnings([*told[1:], *([] if plates else without_members(start))])
-    scaled = facts["force_of_the_bolts"] / field.force - 1.0
-    if abs(scaled) > FORCE_ERROR:
-        text = f"the pressures are scaled by {100.0 * scaled:+.2g} % to the force of the bolts"
-        found = found.with_warnings([f"{text}: ask the run's own contact force which of the two is wrong"])
+    facts |= {"outline": notes[0]} if notes else {}
+    judgement = judgement.with_warnings([*notes[1:], *([] if plates else without_members(start))])
+    scaling = facts["force_of_the_bolts"] / field.force - 1.0
+    if abs(scaling) > FORCE_ERROR:
+        text = f"the pressures are scaled by {100.0 * scaling:+.2g} % to the force of the bolts"
+        judgement = judgement.with_warnings(
+            [f"{text}: compare with the contact force of your finite-element run to see which is wrong"]
+        )
     lines = [*_lines(facts, start.values.A_0), *fact_lines(whole)]
     lines += [f"wrote {path}" for path in facts["written"]]
     facts |= {"whole": fact_document(whole)} if whole else {}
-    return Answer(document=facts, lines=lines, judgement=found)
+    return Answer(document=facts, lines=lines, judgement=judgement)
 
 
 def _reading(args: argparse.Namespace) -> Any:
-    """How the file is to be read; every choice checked."""
+    """Build the reader of the contact result. Raises ValueError for a choice that does not exist."""
     from ...fields.contact_surface import AXES, OPEN, SIDES, Plane
     from ...fields.nodal_result import LENGTHS, PRESSURES
     from ...fields.reading import FORMATS, Reading
@@ -164,12 +172,12 @@ def _lines(facts: dict[str, Any], before: float) -> list[str]:
     from ...fields.sums import PRELOADS
 
     low, high = PRELOADS
-    part = 100.0 * (facts["force"] / facts["force_of_the_bolts"] - 1.0)
+    difference = 100.0 * (facts["force"] / facts["force_of_the_bolts"] - 1.0)
     lines = [
         f"{facts['nodes']} nodes ({facts['open_nodes']} open), pressure up to "
         f"{facts['p_max'] / 1e6:.4g} MPa, mean {facts['p_mean'] / 1e6:.4g} MPa",
-        f"force {facts['force']:.6g} N, {part:+.2g} % of the bolts' {facts['force_of_the_bolts']:.6g} N; "
-        "the field is scaled to theirs",
+        f"force {facts['force']:.6g} N, {difference:+.2g} % from the bolt force, "
+        f"{facts['force_of_the_bolts']:.6g} N; the field is scaled to the bolt force",
         f"A_0 is the nodes' area, {facts['A_0']:.6g} m2 (it was {before:.6g} m2)",
     ]
     if facts["loads"]:

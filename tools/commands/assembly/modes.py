@@ -1,4 +1,4 @@
-"""`jointfmu modes`: natural frequencies of a bolted assembly that hangs freely."""
+"""`jointfmu modes`: natural frequencies of a bolted assembly without supports."""
 
 import argparse
 from collections.abc import Iterator
@@ -18,22 +18,22 @@ if TYPE_CHECKING:
     from ...fem.modes import NaturalModes
 
 MOST = 40
-"""Most modes that are asked for."""
+"""Largest number of modes."""
 
 
 def add_modes(commands: Commands) -> None:
-    """Declare the command."""
-    text = "natural frequencies of a free bolted assembly on the stiffness of its contact"
+    """Declare the command `jointfmu modes` with its options."""
+    text = "compute natural frequencies of a free bolted assembly with contact stiffness"
     sub = command(commands, "modes", run, text)
     assembly_arguments(sub)
-    argument(sub, "--moment", float, "about x [N.m]", "M", default=0.0)
-    argument(sub, "--count", int, f"modes, 1 to {MOST}", default=6)
-    argument(sub, "--refinement", float, "divides all element sizes", "R", default=1.0)
-    output(sub, "--vtu", MESH, "write the shapes of the modes (.vtu)")
+    argument(sub, "--moment", float, "bending moment about x [N.m]", "M", default=0.0)
+    argument(sub, "--count", int, f"number of modes, 1 to {MOST}", default=6)
+    argument(sub, "--refinement", float, "factor that divides all element sizes", "R", default=1.0)
+    output(sub, "--vtu", MESH, "write the mode shapes (.vtu)")
 
 
 def run(args: argparse.Namespace) -> Answer:
-    """Run the command."""
+    """Run the command `jointfmu modes`."""
     with installed("the finite-element analysis"):
         from ...fem import modes as assembly_modes
         from ...fem import results
@@ -51,10 +51,10 @@ def run(args: argparse.Namespace) -> Answer:
         even = assembly_modes.uniform(contact, law, force, shear, args.count)
     if args.vtu:
         write_bytes(args.vtu, results.modes_vtu(contact.bodies, modes))
-    found = judge_assembly(file, assembly, args.preload, force / assembly.contact_area, solution.peak)
+    judgement = judge_assembly(file, assembly, args.preload, force / assembly.contact_area, solution.peak)
     head = f"{assembly.name}: {args.preload:g} N per bolt, moment {args.moment:g} N.m, {modes.mass:.4g} kg"
     document = _document(args, assembly.name, modes, even)
-    return Answer(document=document, lines=[head, *_table(modes, even)], judgement=found)
+    return Answer(document=document, lines=[head, *_table(modes, even)], judgement=judgement)
 
 
 def _check(args: argparse.Namespace) -> None:

@@ -1,4 +1,4 @@
-"""`jointfmu surface`: D and G from measured heights; `jointfmu surface synthesize`: made heights."""
+"""`jointfmu surface`: identify D and G of measured heights, or synthesize a rough surface."""
 
 import argparse
 from dataclasses import replace
@@ -11,7 +11,7 @@ from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile, default, dump, load
 from jointfmu.quantity.refusal import Refusal
 
-from ...command_line.common import IMPLIED, Answer, Commands, Parser, argument, command, joint_name
+from ...command_line.common import IMPLIED, Answer, Commands, Parser, argument, command, joint_name, sentence
 from ...command_line.outputs import FORCE, output
 from ...judgement import known_height
 from ...surfaces.heights import FORMS
@@ -23,47 +23,46 @@ if TYPE_CHECKING:
     from ...surfaces.results import Identification
 
 SUBCOMMANDS = IMPLIED["surface"]
-"""The first is what the command does where none is named."""
+"""Sub-commands of `surface`; the first one runs if the user names none."""
 
 
 def add(commands: Commands) -> None:
-    """Declare the command and its sub-commands."""
-    text = "identify D and G of a measured surface or of a pair"
-    top = commands.add_parser("surface", help=text, description=f"{text}; make a surface")
+    """Declare the command `jointfmu surface` with its sub-commands."""
+    text = "identify fractal dimension D and roughness G of a measured surface or of a pair"
+    top = commands.add_parser("surface", help=text, description=f"{sentence(text)} Synthesize a surface.")
     steps = top.add_subparsers(dest="step", metavar="STEP", parser_class=Parser)
     top.usage = f"{top.prog} [-h] [{'|'.join(SUBCOMMANDS)}] ..."
     top.epilog = f"{top.prog} FILE ... is {top.prog} {SUBCOMMANDS[0]} FILE ..."
     find = command(steps, SUBCOMMANDS[0], _identify, text)
-    argument(find, "files", Path, "one surface, or the two of a pair", nargs="+")
+    argument(find, "files", Path, "scan of one surface, or scans of both surfaces of a pair", nargs="+")
     argument(find, "--unit", str, "length unit of files that state none: m, mm, um, nm", "UNIT")
-    argument(find, "--unit-x", str, "the same of x and y alone, in columns", "UNIT")
-    argument(find, "--unit-z", str, "the same of z alone", "UNIT")
+    argument(find, "--unit-x", str, "length unit of x and y only, for files of columns", "UNIT")
+    argument(find, "--unit-z", str, "length unit of z only", "UNIT")
     find.add_argument("--form", choices=FORMS, default=FORMS[0], help="form to remove (default: tilt)")
-    find.add_argument("--keep-spikes", action="store_true", help="take spikes for heights, not as missing")
-    text = "scaling range: lags and wavelengths [m] (default: the longest straight one)"
+    text = "treat spikes as heights, not as missing points"
+    find.add_argument("--keep-spikes", action="store_true", help=text)
+    text = "scaling range: lags and wavelengths [m] (default: the longest range with a power law)"
     find.add_argument("--range", dest="span", nargs=2, type=float, metavar=("LOW", "HIGH"), help=text)
-    text = "longest wave of h [m] (default: the length of a profile, the shorter side of a map)"
-    argument(find, "--longest-wave", float, text, "L")
-    find.add_argument(
-        "--side",
-        choices=SIDES,
-        help="side of the contact that a single file is, the other one smooth; or both alike",
-    )
-    find.add_argument("--method", choices=METHODS, help="method to take for the joint (default: the surer)")
-    text = "frequency ratio of Zhao's Eq. 30; only G_eq30 depends on it"
+    text = "longest wavelength that counts for the rms height h [m] (default: the length of a profile, the "
+    argument(find, "--longest-wave", float, text + "shorter side of a map)", "L")
+    text = "side of the contact that a single file describes: 1 or 2, the other side is smooth; or both equal"
+    find.add_argument("--side", choices=SIDES, help=text)
+    text = "method whose result the joint gets (default: the one with the smaller uncertainty)"
+    find.add_argument("--method", choices=METHODS, help=text)
+    text = "frequency ratio in Eq. 30 of Zhao 2018; only G_eq30 depends on it"
     argument(find, "--gamma", float, text, "GAMMA", default=1.5)
     find.add_argument(
         "--joint", type=joint_name, choices=list(KINDS), metavar="JOINT", help=f"one of {', '.join(KINDS)}"
     )
     laws = dict.fromkeys(law for kind in KINDS.values() if kind.surfaces for law in kind.laws)
-    text = f"of the joint: {ROUGHNESS_LAW} (default), on which h acts, or one on which D and G do: "
+    text = f"law of the joint: {ROUGHNESS_LAW} (default), which uses h, or a law that uses D and G: "
     text += ", ".join(law for law in laws if law != ROUGHNESS_LAW)
     argument(find, "--law", str, text, "LAW", choices=[*laws])
     argument(find, "--params", Path, "parameter file to start from (TOML)")
-    text = f"{FORCE}; take a field of any size; write D and G although they are not determined"
+    text = f"{FORCE}; accept any size of scan and any height; write D and G even if they are not determined"
     find.add_argument("--force", action="store_true", help=text)
     output(find, "--out", PARAMETERS, "write the parameter file (TOML)", second="--write")
-    output(find, "--plot", PICTURE, "picture of data, law and range (.png, .svg)")
+    output(find, "--plot", PICTURE, "draw data, law and scaling range (.png, .svg)")
     synthesize.add(steps, SUBCOMMANDS[1])
 
 
@@ -71,7 +70,7 @@ def _identify(args: argparse.Namespace) -> Answer:
     base = _base(args)
     _check(args)
     heights = [read(path, args.unit, args.force, args.unit_x, args.unit_z) for path in args.files]
-    from ...surfaces.identify import identify  # scipy: after what is refused at once
+    from ...surfaces.identify import identify  # needs scipy: loaded after the quick checks
     from ...surfaces.joint_parameters import with_surface
     from . import results
 
@@ -89,7 +88,7 @@ def _identify(args: argparse.Namespace) -> Answer:
 
 
 def _usual(identified: "Identification", force: bool) -> None:
-    """Refuse heights that no surface in contact has, most often those of a wrong unit."""
+    """Raise an error for rms heights above those of any machined surface: most often the unit is wrong."""
     for name, scan in zip(identified.names, identified.scans, strict=True):
         if scan.rms > ROUGHEST and not force:
             raise Refusal(
@@ -100,7 +99,7 @@ def _usual(identified: "Identification", force: bool) -> None:
 
 
 def _check(args: argparse.Namespace) -> None:
-    """Refuse options before any file is read."""
+    """Raise ValueError before any file is read if an option is out of range or missing."""
     if not 1.0 < args.gamma < float("inf"):
         raise ValueError(f"gamma = {args.gamma:g} is outside (1, inf)")
     if args.span and not 0.0 < args.span[0] < args.span[1] < float("inf"):
@@ -116,9 +115,10 @@ def _check(args: argparse.Namespace) -> None:
 
 
 def _base(args: argparse.Namespace) -> ParameterFile | None:
-    """The parameter file to start from, if one is to be made; a default one without its roughness.
+    """Load the parameter file to start from: `--params`, or the default of `--joint`; None: no file.
 
-    Its law is `roughness`, so that what is measured acts; another one is asked for.
+    The roughness of a default file is removed. Its law is `roughness`, which uses the measured heights,
+    unless `--law` names another one. Raises ValueError for options that contradict each other.
     """
     if args.params:
         file = load(args.params, args.joint)
@@ -135,7 +135,7 @@ def _base(args: argparse.Namespace) -> ParameterFile | None:
         law = args.law or ROUGHNESS_LAW
         if law not in KINDS[args.joint].laws:
             raise Refusal(f"{args.joint} has no law {law!r}, but {', '.join(KINDS[args.joint].laws)}", "law")
-        return replace(default(args.joint, law), roughness={})  # that of another surface
+        return replace(default(args.joint, law), roughness={})  # the default file is of another surface
     if args.law:
         raise Refusal(f"law {args.law} needs --joint, one of {', '.join(KINDS)}", "law")
     if args.out:

@@ -1,4 +1,4 @@
-"""What `jointfmu surface` found: one JSON object, or lines and a table."""
+"""Results of `jointfmu surface` as a JSON object, or as lines and a table."""
 
 import argparse
 import math
@@ -22,7 +22,7 @@ from ...surfaces.results import Estimate, Identification, Result
 from . import synthesize
 
 UNIT_PRESSURE = 1e6
-"""Pressure [Pa] at which the level of the stiffness is stated."""
+"""Pressure [Pa] at which the stiffness per area is reported."""
 
 
 def as_dict(
@@ -31,7 +31,10 @@ def as_dict(
     file: ParameterFile | None,
     args: argparse.Namespace,
 ) -> dict[str, object]:
-    """Everything, SI; `file` is the parameter file with the surface, if one is made."""
+    """JSON object of all results, in SI units.
+
+    file : parameter file with the identified surface, if one is made
+    """
     joints = joints_shown(args, file)
     judged = (judge_file(file) if file else Judgement(None, ())).document()
     return {
@@ -60,13 +63,13 @@ def as_dict(
 def _joint_dict(
     identified: Identification, joint: str, args: argparse.Namespace
 ) -> Mapping[str, float | None]:
-    sure = args.force or doubt(identified, joint) is None
+    determined = args.force or doubt(identified, joint) is None
     values = changes(identified, joint, args.method)
-    return {name: _number(value) if sure else None for name, (value, _) in values.items()}
+    return {name: _number(value) if determined else None for name, (value, _) in values.items()}
 
 
 def _roughness_dict(identified: Identification, file: ParameterFile | None) -> dict[str, object]:
-    """Of every scan and of both sides together, SI; the stiffness per area under UNIT_PRESSURE."""
+    """JSON object of the roughness: heights of each scan and of both sides together, stiffness per area."""
     h = together(identified, file)
     return {
         "scans": [
@@ -109,22 +112,22 @@ def _interval(estimate: Estimate) -> dict[str, float | None]:
 
 
 def _number(value: Number) -> float | None:
-    """A number of JSON; null if it is not determined."""
+    """Convert a number for JSON; None if it is not finite, which means not determined."""
     return float(value) if math.isfinite(float(value)) else None
 
 
 def together(identified: Identification, file: ParameterFile | None) -> float:
-    """Rms height h [m] of both sides: of a parameter file with what else it knows, else of the scans."""
+    """Rms height h [m] of both sides together: from the parameter file if it has one, else from the scans."""
     return height(file.roughness if file else {}) or identified.h
 
 
 def joints_shown(args: argparse.Namespace, file: ParameterFile | None) -> list[str]:
-    """Joints with a rough surface, or the one that is asked for."""
+    """Joints to report: that of the parameter file, else all joints with a rough surface."""
     return [file.joint] if file else [name for name, kind in KINDS.items() if kind.surfaces]
 
 
 def warnings(identified: Identification, file: ParameterFile | None, args: argparse.Namespace) -> list[str]:
-    """What a user must know, of the surface and of what is written."""
+    """Collect warnings about the identified surface and the written parameter file."""
     lines = list(identified.warnings)
     if not file or not args.out:
         return lines
@@ -136,8 +139,8 @@ def warnings(identified: Identification, file: ParameterFile | None, args: argpa
     else:
         alone.append(names)
     if alone and len(identified.sides) < len({name[-1] for name in file.roughness}):
-        of = f"those of side {identified.side} alone"
-        lines.append(f"{', '.join(alone)} are {of}; give both scans for those of the pair")
+        side = f"values of side {identified.side} alone"
+        lines.append(f"{', '.join(alone)} are {side}; give both scans for the values of the pair")
     return lines
 
 
@@ -147,7 +150,10 @@ def answer(
     file: ParameterFile | None,
     args: argparse.Namespace,
 ) -> Answer:
-    """Everything; `file` is the parameter file with the surface, if one is made."""
+    """Build the result of the command: lines, table and warnings.
+
+    file : parameter file with the identified surface, if one is made
+    """
     lines = [
         f"{surface.name}: {synthesize.size(surface)}; {_scan(scan)}"
         for surface, scan in zip(heights, identified.scans, strict=True)
@@ -161,13 +167,13 @@ def answer(
     lines.append("brackets: 95 % confidence intervals")
     for joint in joints_shown(args, file):
         lines.append(f"{joint} ({meaning(joint)}, {_values(identified, joint, args)}")
-    judged = judge_file(file) if file and file.law != ROUGHNESS_LAW else Judgement(None, ())
-    of = f"law {file.law}: " if file else ""
-    warned = [*(f"{of}{text}" for text in judged.warnings), *warnings(identified, file, args)]
+    judgement = judge_file(file) if file and file.law != ROUGHNESS_LAW else Judgement(None, ())
+    prefix = f"law {file.law}: " if file else ""
+    texts = [*(f"{prefix}{text}" for text in judgement.warnings), *warnings(identified, file, args)]
     return Answer(
         document=as_dict(identified, heights, file, args),
-        lines=[*lines, *(f"{of}{line}" for line in judged.lines())],
-        notes=[f"warning: {text}" for text in warned],
+        lines=[*lines, *(f"{prefix}{line}" for line in judgement.lines())],
+        notes=[f"warning: {text}" for text in texts],
         written=(args.out, args.plot),
     )
 

@@ -1,4 +1,4 @@
-"""`jointfmu surface synthesize`: a seeded Weierstrass-Mandelbrot surface."""
+"""`jointfmu surface synthesize`: make a random Weierstrass-Mandelbrot surface from a seed."""
 
 import argparse
 
@@ -10,27 +10,28 @@ from ...surfaces import csvfile, synthesis
 from ...surfaces.heights import Areal, Heights
 
 MEMORY = 2e9
-"""Memory [B] that making a surface and its file may take."""
+"""Largest memory [B] for a surface and the text of its file."""
 MAP_POINT, PROFILE_POINT = 64.0, 190.0
-"""Memory [B] for a point of a map and of a profile, with its text (measured at a million points)."""
+"""Memory [B] for one point of a map and of a profile, with its text (measured at a million points)."""
 MOST_RIDGES = 1000
+"""Largest number of superposed directions of an isotropic surface."""
 SHAPES = ("isotropic", "textured", "profile")
 
 
 def add(steps: Commands, name: str) -> None:
-    """Declare the sub-command."""
-    make = command(steps, name, _synthesize, "make a Weierstrass-Mandelbrot surface")
-    make.add_argument(
-        "--shape", choices=SHAPES, default=SHAPES[0], help="default: isotropic (Hu 2023, Eq. 1)"
-    )
+    """Declare the command `jointfmu surface synthesize` with its options."""
+    make = command(steps, name, _synthesize, "make a random Weierstrass-Mandelbrot surface")
+    text = "kind of surface (default: isotropic, Hu 2023, Eq. 1)"
+    make.add_argument("--shape", choices=SHAPES, default=SHAPES[0], help=text)
     argument(make, "--size", float, "side length [m]", "SIZE", required=True)
-    argument(make, "--points", int, "points along a side", "POINTS", required=True)
-    text = "isotropic: D_s of the surface (2 to 3); textured: D along x and y; profile: D (1 to 2)"
+    argument(make, "--points", int, "number of points along a side", "POINTS", required=True)
+    text = "fractal dimension; isotropic: D_s (2 to 3); textured: D along x and y; profile: D (1 to 2)"
     argument(make, "--D", float, text, "D", nargs="+", required=True)
-    argument(make, "--G", float, "[m], as many as D", "G", nargs="+", required=True)
-    argument(make, "--gamma", float, "frequency ratio", "GAMMA", default=1.5)
-    argument(make, "--ridges", int, "M of an isotropic surface, superposed directions", "RIDGES", default=20)
-    argument(make, "--seed", int, "of the random phases", "SEED", default=0)
+    argument(make, "--G", float, "fractal roughness [m], one value for each D", "G", nargs="+", required=True)
+    argument(make, "--gamma", float, "frequency ratio of neighbouring waves", "GAMMA", default=1.5)
+    text = "number M of superposed directions of an isotropic surface"
+    argument(make, "--ridges", int, text, "RIDGES", default=20)
+    argument(make, "--seed", int, "seed of the random phases", "SEED", default=0)
     output(make, "--out", csvfile.SCAN, "file to write (.csv)", required=True)
 
 
@@ -39,7 +40,7 @@ def _synthesize(args: argparse.Namespace) -> Answer:
         raise ValueError(f"{args.out}: suffix {args.out.suffix!r}, allowed is .csv")
     heights = _made(args)
     write_text(args.out, csvfile.text(heights))
-    shown = {
+    document = {
         "file": str(args.out),
         "shape": args.shape,
         "points": heights.z.size,
@@ -49,34 +50,34 @@ def _synthesize(args: argparse.Namespace) -> Answer:
         "gamma": args.gamma,
         "seed": args.seed,
     }
-    lines = [f"wrote {args.out}: {size(heights)}, rms height {shown['rms']:.4g} m"]
-    return Answer(document=shown, lines=lines)
+    lines = [f"wrote {args.out}: {size(heights)}, rms height {document['rms']:.4g} m"]
+    return Answer(document=document, lines=lines)
 
 
 def _check_memory(args: argparse.Namespace) -> None:
-    """Refuse more points than MEMORY holds."""
+    """Raise ValueError if the points need more memory than MAX_MEMORY."""
     if args.shape == "profile":
-        each, number = PROFILE_POINT, float(args.points)
-        most = MEMORY / each
+        point_memory, count = PROFILE_POINT, float(args.points)
+        max_points = MEMORY / point_memory
     else:
-        each, number = MAP_POINT, float(args.points) ** 2
-        most = (MEMORY / each) ** 0.5
-    if number * each > MEMORY:
+        point_memory, count = MAP_POINT, float(args.points) ** 2
+        max_points = (MEMORY / point_memory) ** 0.5
+    if count * point_memory > MEMORY:
         raise ValueError(
-            f"points = {args.points} take {number * each / 1e9:.3g} GB, allowed are {MEMORY / 1e9:g} GB: "
-            f"at most {int(most)} points along a side of shape {args.shape}"
+            f"points = {args.points} take {count * point_memory / 1e9:.3g} GB, allowed are "
+            f"{MEMORY / 1e9:g} GB: at most {int(max_points)} points along a side of shape {args.shape}"
         )
 
 
 def _made(args: argparse.Namespace) -> Heights:
     count = 2 if args.shape == "textured" else 1
-    for name, given in (("D", args.D), ("G", args.G)):
-        if len(given) != count:
+    for name, values in (("D", args.D), ("G", args.G)):
+        if len(values) != count:
             raise ValueError(
-                f"--{name} has {len(given)} values, a surface of shape {args.shape} takes {count}"
+                f"--{name} has {len(values)} values, a surface of shape {args.shape} takes {count}"
             )
-        if name == "G" and any(not 0.0 < value < float("inf") for value in given):
-            raise ValueError(f"G = {min(given):g} m is outside (0, inf): fractal roughness")
+        if name == "G" and any(not 0.0 < value < float("inf") for value in values):
+            raise ValueError(f"G = {min(values):g} m is outside (0, inf): fractal roughness")
     if args.seed < 0:
         raise ValueError(f"seed = {args.seed} is negative, allowed are 0, 1, 2, ...")
     if not 1 <= args.ridges <= MOST_RIDGES:
@@ -91,7 +92,7 @@ def _made(args: argparse.Namespace) -> Heights:
 
 
 def size(heights: Heights) -> str:
-    """Kind, points and lengths in words."""
+    """Format kind, number of points and side lengths of a surface."""
     points = " x ".join(str(n) for n in heights.z.shape[::-1])
     lengths = " x ".join(f"{1e3 * length:.4g}" for length in heights.lengths)
     return f"{'areal map' if isinstance(heights, Areal) else 'profile'}, {points} points, {lengths} mm"

@@ -18,7 +18,7 @@ class Body {
     this.pulled = 0.2;
     const controls = [lab.beside(body, this.inertia, (x) => { if (x > 0) { this.inertia = x; lab.redraw(); } })];
     const half = this.input.span[1];
-    if (this.moves) controls.push(lab.beside({ name: "pull", doc: `${this.input.name} from which it is let go, beside the slider's`, unit: this.input.unit, shown: this.input.shown, factor: this.input.factor, span: [0.002 * half, half], log: true }, (this.pull = this.pulled * half), (x) => { this.pull = x; lab.redraw(); }));
+    if (this.moves) controls.push(lab.beside({ name: "pull", doc: `initial deflection of ${this.input.name}, relative to the value of its slider`, unit: this.input.unit, shown: this.input.shown, factor: this.input.factor, span: [0.002 * half, half], log: true }, (this.pull = this.pulled * half), (x) => { this.pull = x; lab.redraw(); }));
     place.append(element("div", { class: "row bodies" }, ...controls.map((c) => c.node)));
     const charts = element("div", { class: "charts" });
     place.append(charts);
@@ -55,7 +55,7 @@ class Body {
     const held = joint.get(output.name), K = this.stiffness();
     if (!(K > 0)) {
       this.decay.draw([], { label: "time [ms]" }, { label: label(input) });
-      this.decay.note.textContent = "At the sliders the joint has no stiffness; nothing rings.";
+      this.decay.note.textContent = "At the sliders the joint has no stiffness; the body does not vibrate.";
       return;
     }
     const step = (2 * Math.PI) / Math.sqrt(K / inertia) / PER_PERIOD, time = [], moved = [];
@@ -81,8 +81,8 @@ function decayText(time, moved) {
     if (moved[i - 1] < 0 && moved[i] >= 0) up.push(time[i - 1] + ((time[i] - time[i - 1]) * -moved[i - 1]) / (moved[i] - moved[i - 1]));
     if (i + 1 < moved.length && moved[i] > 0 && moved[i] >= moved[i - 1] && moved[i] > moved[i + 1]) peaks.push(moved[i]);
   }
-  if (up.length < 2 || peaks.length < 3) return "It does not swing.";
+  if (up.length < 2 || peaks.length < 3) return "The body does not vibrate.";
   const hertz = (1e3 * (up.length - 1)) / (up.at(-1) - up[0]);
   const ratio = Math.log(peaks[0] / peaks.at(-1)) / (2 * Math.PI * (peaks.length - 1));
-  return `It swings with ${digits(hertz)} Hz; damping ratio ${digits(100 * ratio, 3)} % over the swings shown.`;
+  return `Frequency ${digits(hertz)} Hz, damping ratio ${digits(100 * ratio, 3)} % over the cycles shown.`;
 }

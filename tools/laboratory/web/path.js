@@ -17,8 +17,8 @@ class Path {
     const { path, pairs } = joint.about, ways = [path, ...Object.keys(pairs).filter((name) => path.length > 1 || name !== path[0]).map((name) => [name])];
     const moved = element("select", { id: "moved", onchange: () => lab.follow(ways[Number(moved.value)]) }, ...ways.map((way, i) => element("option", { value: i, selected: way.join() === names.join() }, way.map((name) => `${name}: ${joint.variables.get(name).doc.split(/[,;:(]/)[0].trim()}`).join("; "))));
     place.append(element("div", { class: "row" },
-      ...(ways.length > 1 ? [element("label", { for: "moved" }, "What moves"), moved] : []), element("label", { for: "amplitude" }, "Size of the loop"), this.amplitude, button("Loop to and fro", () => this.loop()),
-      ...(this.inputs.length > 1 ? [button("Round in a circle", () => this.circle())] : []), button("Clear the path", () => this.clear())));
+      ...(ways.length > 1 ? [element("label", { for: "moved" }, "Varied input"), moved] : []), element("label", { for: "amplitude" }, "Size of the loop"), this.amplitude, button("Back and forth", () => this.loop()),
+      ...(this.inputs.length > 1 ? [button("Circle", () => this.circle())] : []), button("Clear the path", () => this.clear())));
     const places = element("div", { class: "charts" });
     place.append(places);
     const across = this.inputs[1] ? ` and ${this.inputs[1].name}` : "";
