@@ -7,7 +7,7 @@ from ..model import BEYOND, Model, Outside, Ramp, Variable
 from .spring import GearContact, GearContactSpring, RoughGearContact
 
 _PART = 0.05
-"""Mean pressure over the hardness [1] that the ramp reaches, and twice a stated load."""
+"""Mean pressure over the hardness [1] at the end of the load ramp, or beyond: at twice a stated load."""
 
 MODELS = (
     Model(

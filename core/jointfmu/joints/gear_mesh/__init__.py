@@ -7,11 +7,11 @@ from .spring import GearMesh, GearMeshSpring, RoughGearMesh
 
 _ANGLES = ("phi1", "phi2")
 _PART = 0.3
-"""Of the deflection at the hardness [1], which the ramp reaches: gears are loaded less."""
+"""Deflection at the end of the load ramp over that at the end of the table [1]: gears are loaded less."""
 
 
 def _reach(spring: GearMeshSpring, v: Values) -> tuple[float, float]:
-    """phi1 [rad] at which the driving flanks touch, and at which they are loaded."""
+    """Angles phi1 [rad] at which the driving flanks touch, and at which the load ramp ends."""
     mesh = spring.joint
     touch = 0.5 * mesh.backlash - mesh.r_b2 * v["phi2"]
     return touch / mesh.r_b1, (touch + _PART * spring.curve.end[0]) / mesh.r_b1
