@@ -11,8 +11,11 @@ from ..quantity import Number, where
 LONGEST = 1e3
 """[s]: without stiffness, and of what is held, no step is too long; this one stands for it."""
 STEPS = (
-    ("step_at_once", "largest stable step if the master passes the force on before the body steps"),
-    ("step_side_by_side", "largest stable step if it steps all side by side and lag_b = 1; 0: none is"),
+    ("step_at_once", "largest stable step if the master passes the new force on before the body steps"),
+    (
+        "step_side_by_side",
+        "largest stable step for a parallel (Jacobi) master with lag_b = 1; 0: unstable at any step",
+    ),
 )
 """Names and meanings of outputs of a joint."""
 _DAMPED = 0.39

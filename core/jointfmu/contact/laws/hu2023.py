@@ -38,7 +38,9 @@ class Hu2023(Checked):
     mu: float = quantity("1", "coefficient of static friction", gt=0.0)
     traction_ratio: float = quantity("1", "shear over friction limit, x = T/(mu P)", ge=0.0, lt=1.0)
     A_0: float = quantity("m2", "nominal contact area", gt=0.0)
-    shear_traction: float = quantity("Pa", "shear traction on the real area, if traction is so", gt=0.0)
+    shear_traction: float = quantity(
+        "Pa", "shear traction on the real area, used if traction is real_area", gt=0.0
+    )
     traction: str = choice(
         "ratio", "real_area", doc="shear of a spot: the node's traction ratio, or a traction on the real area"
     )

@@ -29,7 +29,7 @@ class Yu2022(Checked):
 
     surface1: FlankSurface = group("fractal parameters along the major axis")
     surface2: FlankSurface = group("fractal parameters along the minor axis")
-    surface: Spectrum = group("what both directions share")
+    surface: Spectrum = group("frequency ratio of both directions")
     e: float = quantity("1", "eccentricity of the contact ellipses", ge=0.0, lt=1.0)
     lambda_: float = quantity("1", "contact coefficient of the curved flanks", gt=0.0, le=1.0)
     side1: Elastic = group("first body")

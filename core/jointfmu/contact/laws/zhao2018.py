@@ -32,7 +32,9 @@ class Zhao2018(Checked):
     mu: float = quantity("1", "coefficient of static friction", gt=0.0)
     traction_ratio: float = quantity("1", "shear over friction limit, x = T/(mu P)", ge=0.0, lt=1.0)
     A_0: float = quantity("m2", "nominal contact area", gt=0.0)
-    mass: float = quantity("kg", "mass of the structure, for the viscous equivalent", gt=0.0)
+    mass: float = quantity(
+        "kg", "mass of the structure, used for the equivalent viscous damping C_N, C_T", gt=0.0
+    )
     critical_area: str = choice(
         "continuity", "printed", "yield", doc="area below which a spot is plastic (Eq. 4)"
     )

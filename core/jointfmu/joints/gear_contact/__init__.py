@@ -25,7 +25,7 @@ MODELS = (
         ),
         evaluate=lambda s, v: s.approach(v["f"]),
         outside=(
-            Outside("f", lambda j, end, v: (0.0, math.inf), "it pulls, the flanks are apart"),
+            Outside("f", lambda j, end, v: (0.0, math.inf), "the force is tensile, the flanks are separated"),
             Outside("f", lambda j, end, v: (-math.inf, j.A_0 * end[1]), BEYOND),
         ),
         ramp=Ramp(

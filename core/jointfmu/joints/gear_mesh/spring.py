@@ -39,10 +39,16 @@ class Wheels:
         "1", "face width over the axial pitch of a helical mesh, 0 of a spur one", ge=0.0, default=0.0
     )
     inertia1: float = quantity(
-        "kg.m2", "of wheel 1 with all on it, for the stable steps alone; 0: held", ge=0.0, default=0.0
+        "kg.m2",
+        "inertia of wheel 1 and its load, used only for the stable steps; 0: fixed",
+        ge=0.0,
+        default=0.0,
     )
     inertia2: float = quantity(
-        "kg.m2", "of wheel 2 with all on it, for the stable steps alone; 0: held", ge=0.0, default=1.0
+        "kg.m2",
+        "inertia of wheel 2 and its load, used only for the stable steps; 0: fixed",
+        ge=0.0,
+        default=1.0,
     )
 
 

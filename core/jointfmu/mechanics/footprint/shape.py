@@ -127,25 +127,40 @@ class NodalField:
     and of 0 of `tilt`, within BALANCE.
     """
 
-    share: tuple[float, ...] = series("1", "parts of the nominal area, which sum to 1", gt=0.0)
+    share: tuple[float, ...] = series("1", "shares of the points in the nominal area, which sum to 1", gt=0.0)
     x: tuple[float, ...] = series("m", "positions along the bolt rows, from the centroid")
     y: tuple[float, ...] = series("m", "positions across the bolt rows, from the centroid")
     equal: tuple[float, ...] = series("1", "pressures over mean pressure with equal bolt forces", ge=0.0)
     tilt: tuple[float, ...] = series(
         "1", "pressures that a moment adds, over the mean pressure of one row's share of it"
     )
-    patch_share: tuple[float, ...] = series("1", "the same of the patches of friction", gt=0.0, optional=True)
-    patch_x: tuple[float, ...] = series("m", "places of the patches along the bolt rows", optional=True)
-    patch_y: tuple[float, ...] = series("m", "places of the patches across the bolt rows", optional=True)
-    patch_equal: tuple[float, ...] = series("1", "`equal` of the patches", ge=0.0, optional=True)
-    patch_tilt: tuple[float, ...] = series("1", "`tilt` of the patches", optional=True)
-    patch_radius: tuple[float, ...] = series(
-        "m",
-        "radii of the circles around the patches on which their sliders stand, below 0 where opposite",
+    patch_share: tuple[float, ...] = series(
+        "1", "shares of the friction patches in the nominal area, which sum to 1", gt=0.0, optional=True
+    )
+    patch_x: tuple[float, ...] = series(
+        "m", "positions of the friction patches along the bolt rows, from the centroid", optional=True
+    )
+    patch_y: tuple[float, ...] = series(
+        "m", "positions of the friction patches across the bolt rows, from the centroid", optional=True
+    )
+    patch_equal: tuple[float, ...] = series(
+        "1",
+        "pressures at the friction patches over mean pressure with equal bolt forces",
+        ge=0.0,
         optional=True,
     )
-    bolt_x: float = quantity("m", "mean of the bolts' places along the rows, from the centroid", default=0.0)
-    bolt_y: float = quantity("m", "mean of the bolts' places across the rows, from the centroid", default=0.0)
+    patch_tilt: tuple[float, ...] = series(
+        "1", "pressures at the friction patches that a moment adds, as tilt", optional=True
+    )
+    patch_radius: tuple[float, ...] = series(
+        "m",
+        "radii of the circles on which the sliders of a patch lie; negative: circle turned by 180 degrees",
+        optional=True,
+    )
+    bolt_x: float = quantity("m", "mean position of the bolts along the rows, from the centroid", default=0.0)
+    bolt_y: float = quantity(
+        "m", "mean position of the bolts across the rows, from the centroid", default=0.0
+    )
     bolt_x2: float = quantity(
         "m2", "mean square of the bolts' distances along the rows, from the centroid", ge=0.0, default=0.0
     )
@@ -153,7 +168,7 @@ class NodalField:
         "m2", "mean square of the bolts' distances across the rows, from the centroid", ge=0.0, default=0.0
     )
     bolt_xy: float = quantity(
-        "m2", "mean product of the bolts' places along and across the rows", default=0.0
+        "m2", "mean product of the bolts' positions along and across the rows, from the centroid", default=0.0
     )
 
     def __post_init__(self) -> None:
