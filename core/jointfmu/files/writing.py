@@ -11,7 +11,7 @@ from pathlib import Path
 
 
 def write_text(path: str | Path, text: str) -> None:
-    """Write a text file (UTF-8) as `write_bytes` does. Raises ValueError also for text that UTF-8 cannot hold."""
+    """Write a text file (UTF-8) as `write_bytes` does; ValueError also if UTF-8 cannot encode the text."""
     try:
         data = text.encode()
     except UnicodeEncodeError as error:
@@ -134,9 +134,10 @@ def write_files(folder: Path, files: Mapping[str, str]) -> list[Path]:
 
 
 def check_place(path: Path, folder: Path) -> None:
-    """Raise ValueError, which names the path, if no file can be created in a folder or a parent of it.
+    """Raise ValueError, which names the path, if no file can be created in a folder.
 
-    The folder need not exist. Call it before long work; it leaves no file behind.
+    If the folder does not exist, its nearest existing parent is checked. Call it before long work; it leaves
+    no file behind.
     """
     folder = folder.absolute()
     folder = next(one for one in (folder, *folder.parents) if one.exists())
