@@ -194,7 +194,7 @@ class Foundation:
         return np.asarray(each * part[..., None, :])
 
     def backbone(self, approach: ArrayLike, shift: ArrayLike) -> Array:
-        """Virgin curve: traction (...) [Pa] at displacements u (...) >= 0 [m] and constant approach (...) [m].
+        """Virgin curve: traction (...) [Pa] at displacements u (...) >= 0 [m], constant approach (...) [m].
 
         mu [p(delta) - p(delta - ratio u/mu)], the sum over all springs, without discretisation by sliders.
         """
@@ -216,7 +216,7 @@ class Foundation:
         return load, left, self.curve.energy(now) - self.curve.energy(then)
 
     def loop(self, approach: ArrayLike, size: ArrayLike) -> tuple[Array, Array]:
-        """Loss (...) [J/m2] of a cycle with amplitudes (...) [m], and elastic energy (...) [J/m2] at its ends.
+        """Loss (...) [J/m2] of a cycle with amplitudes (...) [m], elastic energy (...) [J/m2] at its ends.
 
         At constant approaches (...) [m]. The relative accuracy is full also for amplitudes near zero.
         """
@@ -320,7 +320,7 @@ class Foundation:
 class _Path:
     """Increment of the relative displacement.
 
-    first, last             : (..., 1) [m] approaches at its ends
+    start, end              : (..., 1) [m] approaches at its ends
     tangential_displacement : (..., 2, 1) or (..., 2, n) [m]
     """
 
