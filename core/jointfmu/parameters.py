@@ -96,14 +96,14 @@ class ParameterFile:
 
         A new height h of the law removes the heights of the surfaces from which h was computed.
         """
-        gone = {*self.roughness} if any(map(is_height, changes)) else set[str]()
-        texts = {self.surfaces + name for name in gone}
+        removed = {*self.roughness} if any(map(is_height, changes)) else set[str]()
+        removed_names = {self.surfaces + name for name in removed}
         return replace(
             self,
             values=changed(self.values, changes),
-            origins=_without(texts, self.origins) | dict.fromkeys(changes, origin),
-            sources=_without(texts, self.sources) | dict.fromkeys(changes, source),
-            roughness=_without(gone, self.roughness),
+            origins=_without(removed_names, self.origins) | dict.fromkeys(changes, origin),
+            sources=_without(removed_names, self.sources) | dict.fromkeys(changes, source),
+            roughness=_without(removed, self.roughness),
             ranges=_without(changes, self.ranges),
         )
 
@@ -113,21 +113,21 @@ class ParameterFile:
         Earlier heights of the same side are removed. A law with the parameter h gets h computed from all
         heights. Raises ValueError as `roughness.check_heights` does.
         """
-        heights = roughness.check(stated, self.surfaces)
-        gone = {other for name in heights for other in roughness.excluded(name)}
-        texts = {self.surfaces + name for name in gone}
-        names = [self.surfaces + name for name in heights]
-        known = _without(gone, self.roughness) | heights
-        origins = _without(texts, self.origins) | dict.fromkeys(names, origin)
-        sources = _without(texts, self.sources) | dict.fromkeys(names, source)
-        of_law = {name: roughness.height(known) for name in self.flat if is_height(name)}
+        new_heights = roughness.check(stated, self.surfaces)
+        replaced = {other for name in new_heights for other in roughness.excluded(name)}
+        replaced_names = {self.surfaces + name for name in replaced}
+        new_names = [self.surfaces + name for name in new_heights]
+        all_heights = _without(replaced, self.roughness) | new_heights
+        origins = _without(replaced_names, self.origins) | dict.fromkeys(new_names, origin)
+        sources = _without(replaced_names, self.sources) | dict.fromkeys(new_names, source)
+        law_height = {name: roughness.height(all_heights) for name in self.flat if is_height(name)}
         return replace(
             self,
-            values=changed(self.values, of_law),
-            roughness=known,
-            origins=origins | dict.fromkeys(of_law, "derived"),
-            sources=sources | dict.fromkeys(of_law, _made_of(self.surfaces, known, sources)),
-            ranges=_without(of_law, self.ranges),
+            values=changed(self.values, law_height),
+            roughness=all_heights,
+            origins=origins | dict.fromkeys(law_height, "derived"),
+            sources=sources | dict.fromkeys(law_height, _made_of(self.surfaces, all_heights, sources)),
+            ranges=_without(law_height, self.ranges),
         )
 
 

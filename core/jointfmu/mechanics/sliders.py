@@ -262,16 +262,19 @@ class Foundation:
 
         The loss is exact for sliders of constant stiffness, else accurate to third order in the increment.
         """
-        path, end = _Path.of(before, after, self._along(shift)), self.carried(after)
-        start = self.carried(before) if np.any(path.change) else end
-        slid, springs = self._slid(force, start, end, path), (start.stiffness, end.stiffness)
-        loss, stays = slid.loss, springs[0] == springs[1]
-        if not np.all(stays):
-            across = ~self._touches_alike(path)
-            middle = self._halfway(force, start, path) if np.any(across) else [0.0, 0.0]
-            ends = _parts(force), slid.force
-            loss = np.where(stays, loss, changing_loss(*ends, path.parts, springs, slid.slip, across, middle))
-        return Moved(np.stack(slid.force, axis=-2), np.sum(loss, axis=-1), self._tangent(*slid.tangent))
+        path, properties_end = _Path.of(before, after, self._along(shift)), self.carried(after)
+        properties_start = self.carried(before) if np.any(path.change) else properties_end
+        update = self._slid(force, properties_start, properties_end, path)
+        stiffness = properties_start.stiffness, properties_end.stiffness
+        loss, is_constant = update.loss, stiffness[0] == stiffness[1]
+        if not np.all(is_constant):
+            changes = ~self._touches_alike(path)
+            middle = self._halfway(force, properties_start, path) if np.any(changes) else [0.0, 0.0]
+            varying = changing_loss(
+                _parts(force), update.force, path.parts, stiffness, update.slip, changes, middle
+            )
+            loss = np.where(is_constant, loss, varying)
+        return Moved(np.stack(update.force, axis=-2), np.sum(loss, axis=-1), self._tangent(*update.tangent))
 
     def _along(self, shift: ArrayLike) -> Array:
         """Displacements of the sliders [m]: (..., 2, 1) without rotation, (..., 2, n) with rotation."""

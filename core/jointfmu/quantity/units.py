@@ -88,10 +88,10 @@ def base(unit: str) -> dict[str, int]:
 
 def factor(unit: str, to: str) -> float:
     """Conversion factor from `unit` to `target`. Raises ValueError if they measure different quantities."""
-    source, target = _parsed(unit), _parsed(to)
-    if source[1] != target[1]:
+    (size, exponents), (target_size, target_exponents) = _parsed(unit), _parsed(to)
+    if exponents != target_exponents:
         raise ValueError(f"unit {to!r} does not measure what {unit!r} does")
-    return float(source[0] / target[0])
+    return float(size / target_size)
 
 
 def sizes(unit: str, *others: str) -> Sizes:

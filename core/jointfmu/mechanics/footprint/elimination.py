@@ -98,7 +98,7 @@ def _inverse(triangle: Array) -> Array:
 
 
 def _leaving(share: Array, held: Array, weight: float) -> tuple[int | None, float]:
-    """Ratio test: index of the node that leaves the basis, and weight transferred from the new node to the basis.
+    """Ratio test: index of the node that leaves the basis, and weight transferred from the new node.
 
     share         : change of the basis weights per unit of transferred weight [1]
     basis_weights : weights of the basis nodes

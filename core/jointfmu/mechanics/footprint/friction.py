@@ -236,7 +236,7 @@ class _Motions:
 class _Aim:
     """Target of the fit: sums over all nodes. Points (6, n) are share, x, y, both pressure shapes, radius.
 
-    motions     : cases whose friction is fitted
+    cases       : cases whose friction is fitted
     reach       : (2) [1] largest |x| and |y|
     scale       : (m) [1] weights of the sums of friction
     exact_scale : (12) [1] weights of the sums that must be exact

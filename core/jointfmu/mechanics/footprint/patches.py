@@ -168,7 +168,7 @@ def largest_moment(shape: PressureShape) -> float:
 
 
 def _functions(shape: PressureShape) -> Array:
-    """Functions (m, n) [1] of the nodes whose sums are approximated: pressure and stiffness in several states.
+    """Functions (m, n) [1] of the nodes whose sums are approximated: pressure and stiffness in all states.
 
     Each state has a power law, a moment, a normal displacement and a tilt. The pressure is multiplied by 1, x
     and y (normal force, moments) and by the distance from the centre (friction moment in a rotation about the
