@@ -31,7 +31,7 @@ def trial(force: Vector, keeps: Number, carries: Number, shift: Vector) -> Vecto
     force            : q, one or two components, at the start of the increment
     retention        : fraction [1] of q that remains while the normal load changes
     secant_stiffness : stiffness for the increment
-    shift            : u, displacement increment, as many components as q
+    displacement     : u, displacement increment, as many components as q
     """
     return [keeps * q + carries * u for q, u in zip(force, shift, strict=True)]
 
@@ -91,7 +91,7 @@ def slide(
     """Return mapping of a slider for one displacement increment.
 
     force                  : friction force at the start
-    retention, secant_stiffness, shift : see `elastic_predictor`
+    retention, secant_stiffness, displacement : see `elastic_predictor`
     limit_start, limit_end : friction limit at the start and at the end of the increment
     stiffness              : K at the end
     compliance             : 1/K, 0 without springs

@@ -3,7 +3,7 @@
 For elastically similar bodies the traction in partial slip is the difference of two normal contact solutions
 (Jaeger 1995, Ciavarella 1998). A foundation of independent springs that come into contact one after the other
 reproduces it for any history (Popov and Hess 2015). A spring at height h is in contact if the approach delta
-exceeds h. It has the normal stiffness p''(h) dh and `ratio` times this stiffness along the surface. It slips
+exceeds h. It has the normal stiffness p''(h) dh and the tangential stiffness kappa p''(h) dh. It slips
 if its tangential force reaches mu times its normal force. A spring that lifts off loses its force.
 
 Here two sliders represent all springs between two adjacent heights (a range). Their stiffness and friction
@@ -82,7 +82,7 @@ def around(curve: Curve, reference: ArrayLike, offset: ArrayLike) -> Array:
 def lowered(height: Array, lowest: ArrayLike) -> Array:
     """Slider heights after partial lift-off: the first height above the smallest approach moves down to it.
 
-    height       : (..., n) [m]
+    heights      : (..., n) [m]
     min_approach : (...) [m] smallest approach so far
 
     Springs above min_approach have lifted off and have no force, so this height can be changed. Springs that
@@ -140,11 +140,11 @@ class Carried:
 class Foundation:
     """Winkler foundation of n sliders for an interface, or for several parallel ones.
 
-    curve    : pressure [Pa] over approach [m], convex
-    ratio    : K_T/K_N [1]
-    friction : mu [1]
-    height   : (..., n/2 + 1) [m] increasing heights that separate the ranges of springs; parallel foundations
-               may have different heights
+    curve                : pressure [Pa] over approach [m], convex
+    stiffness_ratio      : kappa = K_T/K_N [1]
+    friction_coefficient : mu [1]
+    heights              : (..., n/2 + 1) [m] increasing heights that separate the ranges of springs; parallel
+                           foundations may have different heights
 
     The sliders are in the order of the heights, two per range: first the one that slips earlier.
     """
@@ -173,9 +173,9 @@ class Foundation:
     ) -> tuple[Array, Array]:
         """Update in full stick: traction (..., 3) [Pa] after an increment, and whether (...) it holds.
 
-        force         : (..., 3) [Pa] traction at the start, see `resultant`
-        start, end    : (...) [m] approaches
-        shift         : (..., 3) [m] displacement of the other side along x, y and around the centre
+        force      : (..., 3) [Pa] traction at the start, see `resultant`
+        start, end : (...) [m] approaches
+        tangential_displacement : (..., 3) [m] of the other side along x, y and around the centre
         """
         stiff, now = self.stick(before), self.stick(after)
         falls = np.asarray(after) < np.asarray(before)
@@ -196,19 +196,19 @@ class Foundation:
     def backbone(self, approach: ArrayLike, shift: ArrayLike) -> Array:
         """Virgin curve: traction (...) [Pa] at displacements u (...) >= 0 [m], constant approach (...) [m].
 
-        mu [p(delta) - p(delta - ratio u/mu)], the sum over all springs, without discretisation by sliders.
+        mu [p(delta) - p(delta - kappa u/mu)], the sum over all springs, without discretisation by sliders.
         """
         now, then, _ = self.slipped(approach, shift)
         return np.asarray(self.friction * (now - then))
 
     def slipped(self, approach: ArrayLike, shift: ArrayLike) -> tuple[Array, Array, Array]:
-        """Pressures (...) [Pa] at the approach delta and at delta - ratio u/mu, and the energy in between.
+        """Pressures (...) [Pa] at the approach delta and at delta - kappa u/mu, and the energy in between.
 
         Springs between both heights have slipped. The energy (...) [J/m2] is the integral of the pressure
         from the lower to the upper approach.
 
-        approach : delta (...) [m]
-        shift    : u (...) >= 0 [m] from the virgin state
+        approach                : delta (...) [m]
+        tangential_displacement : u (...) >= 0 [m] from the virgin state
         """
         now, moved = np.asarray(approach, dtype=np.float64), np.asarray(shift, dtype=np.float64)
         then = np.asarray(now - moved / (self.friction / self.ratio))
@@ -257,7 +257,7 @@ class Foundation:
 
         force      : (..., 2, n) [Pa] slider forces at the start
         start, end : (...) [m] approaches
-        shift      : (..., 2) [m] displacement of the other side along x and y, or (..., 3): also around the
+        tangential_displacement : (..., 2) [m] of the other side along x and y, or (..., 3): also around the
                      centre of the patch
 
         The loss is exact for sliders of constant stiffness, else accurate to third order in the increment.
@@ -375,7 +375,7 @@ def loop(
     With the virgin curve B(a), a the amplitude, and its integral I they are 8 (I - B a/2) and B a/2 (Masing).
     Differences cancel for small amplitudes: then use `small_cycle_energies`.
 
-    friction, ratio, amplitude : mu [1], K_T/K_N [1], a [m]
+    friction_coefficient, stiffness_ratio, amplitude : mu [1], kappa = K_T/K_N [1], a [m]
     load, slipped_load, energy : result of `Foundation.slipped_pressure`
     """
     reach = size * (ratio / friction)
@@ -387,7 +387,7 @@ def short_loop(
 ) -> tuple[Number, Number]:
     """Energies of `cycle_energies` for small amplitudes, exact within one segment of the curve.
 
-    upper, lower : first three derivatives of the pressure at delta and at delta - ratio a/mu
+    upper, lower : first three derivatives of the pressure at delta and at delta - kappa a/mu
     """
     reach, (stiffness, bend, twist), (first, bent, twisted) = size * (ratio / friction), now, then
     fall = reach * (0.5 * (stiffness + first) - reach * (bend - bent) / 12.0)
@@ -468,7 +468,7 @@ def changing_loss(
     """Loss [J/m2] of a slider whose stiffness changes in the increment: work minus change of elastic energy.
 
     force, new_force : at the start and at the end of the increment
-    shift            : displacement increment
+    tangential_displacement : displacement increment
     stiffness        : [Pa/m] at both ends
     slip             : slip of the return mapping, see `ReturnMapping`
     contact_changes  : whether the contact state changes. Then the work is computed by Simpson's rule with the

@@ -175,7 +175,7 @@ class _Motions:
         half rotations about loaded nodes. POLES more cases are gross slip about poles near loaded nodes.
 
         largest_moment : [1] largest factor on the pressure by a moment
-        reach          : (2) [1] largest |x| and |y|
+        extent         : (2) [1] largest |x| and |y|
         """
         number = np.arange(1, CASES + POLES + 1)
         unit = (0.5 + number[:, None] * _RATIOS) % 1.0
@@ -237,7 +237,7 @@ class _Aim:
     """Target of the fit: sums over all nodes. Points (6, n) are share, x, y, both pressure shapes, radius.
 
     cases       : cases whose friction is fitted
-    reach       : (2) [1] largest |x| and |y|
+    extent      : (2) [1] largest |x| and |y|
     scale       : (m) [1] weights of the sums of friction
     exact_scale : (12) [1] weights of the sums that must be exact
     exact_sums  : (12) [1] sums that must be exact
@@ -310,8 +310,8 @@ class _Around:
     """Linearised least-squares problem: residual of the sums as a function of relative changes of the points.
 
     residual : (m) residual of the sums [1]
-    size     : (5, n) sizes [1] to which the changes are relative
-    square   : (5 n, 5 n) normal matrix [1], J^T J of the Jacobian J
+    scale    : (5, n) sizes [1] to which the changes are relative
+    normal_matrix : (5 n, 5 n) J^T J [1] of the Jacobian J
     gradient : (5 n) gradient [1] of half the sum of squared residuals
     """
 
