@@ -3,8 +3,9 @@
 For elastically similar bodies the traction in partial slip is the difference of two normal contact solutions
 (Jaeger 1995, Ciavarella 1998). A foundation of independent springs that come into contact one after the other
 reproduces it for any history (Popov and Hess 2015). A spring at height h is in contact if the approach delta
-exceeds h. It has the normal stiffness p''(h) dh and the tangential stiffness kappa p''(h) dh. It slips
-if its tangential force reaches mu times its normal force. A spring that lifts off loses its force.
+exceeds h. It has the normal stiffness p''(h) dh and the tangential stiffness kappa p''(h) dh, with
+kappa = K_T/K_N. It slips if its tangential force reaches mu times its normal force. A spring that lifts off
+loses its force.
 
 Here two sliders represent all springs between two adjacent heights (a range). Their stiffness and friction
 limit are sums over the springs in contact, so the foundation is exact in full stick and in gross slip at

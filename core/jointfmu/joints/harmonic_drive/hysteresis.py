@@ -116,10 +116,10 @@ class Hysteresis(Sliders):
         return float(np.sum(self.limit) / np.sum(self.stiffness))
 
     def opening(self, curve: Curve, torque: float, half: float) -> float:
-        """Friction torque [N.m] on unloading from a torque [N.m], at the wind-up `half_opening` [rad]; sign reversed.
+        """Negative friction torque [N.m] on unloading from a torque [N.m], at the wind-up half_opening [rad].
 
-        By Masing's rule. If it equals the torque of the midline at `half_opening`, the total torque is zero there:
-        the branches of the loop are then 2 half_opening apart at zero torque.
+        By Masing's rule. If it equals the torque of the midline at half_opening, the total torque is zero
+        there: the branches of the loop are then 2 half_opening apart at zero torque.
         """
         turn = float(self.wind_up(curve, MEMORY.rest(), torque))
         back, there = self.moved(MEMORY.rest(), [0.5 * (turn - half), turn]).traction
