@@ -55,7 +55,7 @@ class ParameterFile:
     inputs  : {input: start value in its SI unit} of the inputs that the file states
     roughness : {name: height [m]} of the surfaces that the file states, see `roughness.HEIGHT_FIELDS`
     ranges  : {structured name: (smallest, largest value)} of the uncertain values, from the same source
-    flat    : {structured name: value} of `values`
+    values_by_name : {structured name: value} of `values`
 
     Raises ValueError if the name or a source is no text that `check_text` allows.
     """
@@ -247,7 +247,7 @@ def entries(
     """Values, origins and sources of the entries, each by structured name.
 
     declared : {structured name: field}; the unit of each entry is checked against its field
-    body     : nested sections and entries of the document
+    sections : nested sections and entries of the document
     keys     : keys that an entry may have
 
     Raises ValueError, one line, for an entry that is no table, or has an unknown key, a wrong unit, an

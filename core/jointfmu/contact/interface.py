@@ -116,7 +116,7 @@ def checked_spots(law: InterfaceLaw) -> Spots:
 
 
 def _checked(law: InterfaceLaw) -> tuple[Spots, list[Number]]:
-    """Spots of a law, checked as in `checked_spots`, and loads [N] at MIN_LOG_AREA, 0 and MAX_LOG_AREA."""
+    """Spots as from `find_checked_spots`, and their loads [N] at MIN_LOG_AREA, 0 and MAX_LOG_AREA."""
     ends = (LEAST, 0.0, MOST)
     with np.errstate(all="ignore"):
         try:

@@ -166,7 +166,7 @@ class Spots:
     m         : [1]  exponent of the size distribution
     weight    : [1]  prefactor w of the size distribution
     terms     : {quantity: regimes}; always contains `load` [N]
-    onset     : [1]  log-area at which the stiffness begins, for a law without plastic spots; else None
+    onset_log_area : [1] log-area at which the stiffness begins, for a law without plastic spots; else None
     has_spot_area : whether u is the log-area of the largest spot; else it only measures the load
     """
 

@@ -41,7 +41,7 @@ _BROKEN = (
 
 @contextmanager
 def open_archive(path: str | Path) -> Iterator[zipfile.ZipFile]:
-    """Context with the checked zip archive of an FMU, for `read_member` and `extract`.
+    """Context with the checked zip archive of an FMU, for `read_member` and `extract_members`.
 
     Raises ValueError, one line, if the file does not exist, is a pipe or device, is no zip file or a corrupt
     one, has no model description, or fails `check_members`.

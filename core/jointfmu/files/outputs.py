@@ -1,7 +1,7 @@
 """Checks before output files are overwritten.
 
 A file of another kind is never overwritten. A file that the program did not write is overwritten only if the
-user forces it. The program recognises its own files by their content, see `MARK` and `FileKind.is_own`.
+user forces it. The program recognises its own files by their content: `PROGRAM_MARK`, `FileKind.is_own`.
 """
 
 import os

@@ -39,7 +39,7 @@ def trial(force: Vector, keeps: Number, carries: Number, shift: Vector) -> Vecto
 def beyond(force: Vector, limit: Number) -> Number:
     """Yield function: positive if the force exceeds the limit.
 
-    |q| - limit along one direction; |q|^2 - (1 + ROUND_OFF) limit^2 in a plane.
+    |q| - limit along one direction; |q|^2 - (1 + ROUND_OFF_TOLERANCE) limit^2 in a plane.
     """
     if len(force) == 1:
         return np.abs(force[0]) - limit
@@ -47,9 +47,9 @@ def beyond(force: Vector, limit: Number) -> Number:
 
 
 def reaches(force: Vector, limit: Number) -> Number:
-    """Positive if the force is at its limit (within AT_LIMIT) or above; a further motion along it slips.
+    """Positive if the force is at its limit or above; a further motion in its direction causes slip.
 
-    |q| - limit along one direction; |q|^2 - limit^2 in a plane, with the limit reduced by AT_LIMIT.
+    |q| - limit along one direction; |q|^2 - limit^2 in a plane, with the limit reduced by AT_LIMIT_TOLERANCE.
     """
     least = (1.0 - AT_LIMIT) * limit
     if len(force) == 1:

@@ -33,7 +33,7 @@ def quantity(
 
 
 def series(unit: str, doc: str, *, optional: bool = False, **ends: float) -> Any:
-    """Dataclass field for a tuple of numbers, each of them inside the interval; arguments as in `quantity`.
+    """Dataclass field for a tuple of numbers, all inside the interval; arguments as in `quantity_field`.
 
     optional : the tuple may be empty, which is the default
     """

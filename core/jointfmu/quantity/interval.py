@@ -98,7 +98,7 @@ class Interval:
 
 
 def _beside(end: float, towards: float) -> float:
-    """Next float after `end` in the direction of `towards`; next to zero the smallest normal float."""
+    """Next float after `start` in the direction of `towards`; next to zero the smallest normal float."""
     if end == 0.0:
         return sys.float_info.min if towards > 0.0 else -sys.float_info.min
     return nextafter(end, towards)

@@ -109,7 +109,7 @@ def build(cls: type[T], values: Mapping[str, object]) -> T:
 def changed(obj: T, changes: Mapping[str, object]) -> T:
     """Copy of a parameter set with some values replaced, by structured name.
 
-    Raises ValueError as `build` does, and for names of an alternative that `obj` does not have.
+    Raises ValueError as `build_parameter_set` does, and for names of an alternative that `obj` does not have.
     """
     values = flatten(obj)
     everything = {name for name, _ in flat_fields(type(obj))}

@@ -48,7 +48,7 @@ class GearContactSpring:
         """Outputs at normal forces f (...) [N].
 
         s_rel [m] approach from first contact, K_N [N/m], A_r [m2], elastic_fraction [1]. For a tensile force
-        the flanks are separated: all outputs are zero, except the stiffness at first contact.
+        the flanks are separated: all outputs are zero.
         """
         force = np.maximum(np.asarray(f, dtype=np.float64), 0.0)
         delta = self.curve.inverse(force / self.joint.A_0)
@@ -67,7 +67,7 @@ def contact(
     approach  : [m] from first contact
     stiffness : [N/m3] per nominal area, of the curve
     area      : [m2] real contact area of the law
-    elastic   : [1] elastic fraction of the real area
+    elastic_fraction : [1] elastic fraction of the real area
     """
     return {
         "s_rel": approach,

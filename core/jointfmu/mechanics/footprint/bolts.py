@@ -106,7 +106,7 @@ def unit_pressures(pattern: BoltPattern, areas: Array, points: Array, at: Array)
     """Pressure (8, k) [Pa] by 1 N in each of the eight bolts.
 
     areas, cell_points : (n) [m2], (n, 2) [m] of the cells; the pressure of each bolt sums to 1 N over them
-    points             : (k, 2) [m] at which the pressure is computed
+    evaluation_points  : (k, 2) [m] at which the pressure is computed
     """
 
     def decay(where: Array) -> Array:

@@ -37,7 +37,7 @@ MOST_MOMENT = 2.5
 """Largest moment over that of `largest_moment` [1]."""
 LEAST_WAY, MOST_WAY = 0.05, 3.0
 """Shortest and longest motion [1], over the motion at which a node at the radius of gyration has mobilised
-all but the share STUCK of its friction."""
+all but STUCK_SHARE of its friction."""
 STUCK = 2.0**-13
 """Share of the friction that is not yet mobilised [1], for the scale of motions."""
 STEPS = 50
@@ -76,7 +76,7 @@ TINY = float(np.finfo(float).tiny)
 _RATIOS = powers(1.0 / 1.0969815577985598, 7)
 """Increments of a low-discrepancy sequence in seven dimensions [1]: powers of the root of x^8 = x + 1."""
 CIRCLE = to_digits(np.exp(2j * np.pi * (np.arange(ON_CIRCLE) + 0.25) / ON_CIRCLE).view(float)).reshape(-1, 2)
-"""Points (ON_CIRCLE, 2) [1] on the unit circle that represent the sliders of a patch."""
+"""Points (CIRCLE_POINT_COUNT, 2) [1] on the unit circle that represent the sliders of a patch."""
 
 
 def friction_patches(shape: PressureShape, count: int, begin: PressureShape | None = None) -> FrictionPatches:
@@ -120,7 +120,7 @@ def _divided(shape: PressureShape, places: Array) -> FrictionPatches:
     """Divide the nodes among m patches by Lloyd's method.
 
     Each node belongs to the nearest patch. Each patch then moves to the centre of the friction of its nodes;
-    this is repeated ROUNDS times.
+    this is repeated DIVISION_ITERATIONS times.
 
     centres : (m, 2) initial positions of the patches
     """
@@ -171,8 +171,8 @@ class _Motions:
     def of(cls, nodes: Array, largest_moment: float, reach: Array) -> "_Motions":
         """Sample the cases evenly (low-discrepancy sequence) for a contact with nodes (6, n).
 
-        Of the CASES of partial slip a quarter are translations, a quarter rotations about the centre, and
-        half rotations about loaded nodes. POLES more cases are gross slip about poles near loaded nodes.
+        Of the SLIP_CASES a quarter are translations, a quarter rotations about the centre, and
+        half rotations about loaded nodes. GROSS_SLIP_CASES more are gross slip about poles near loaded nodes.
 
         largest_moment : [1] largest factor on the pressure by a moment
         extent         : (2) [1] largest |x| and |y|

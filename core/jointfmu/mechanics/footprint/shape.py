@@ -41,7 +41,7 @@ class PressureShape:
     def merged(self, moment: bool = True) -> "MergedShape":
         """Merge nodes that have the same pressure at every preload and moment.
 
-        moment : False: merge nodes with the same pressure at every preload, without moment
+        with_moment : False: merge nodes with the same pressure at every preload, without moment
         """
         tilt = self.tilt if moment else 0.0 * self.tilt
         keys = np.round(np.column_stack([self.equal, tilt]), ALIKE)
