@@ -63,7 +63,7 @@ def is_standard_output(path: str | Path) -> bool:
 def _own_output(found: os.stat_result) -> int | None:
     """File descriptor, 1 or 2, of this process whose file has the status `status`; None if neither has."""
     for descriptor in (1, 2):
-        with suppress(OSError):  # closed
+        with suppress(OSError):  # this process has closed it
             if os.path.samestat(found, os.fstat(descriptor)):
                 return descriptor
     return None

@@ -241,7 +241,7 @@ class TableDrive(Measured):
         x, y = (np.array([0.0, *values]) for values in (self.table.angle, self.table.torque))
         h, rise = np.diff(x), np.diff(y)
         s = _slopes(h, rise / h)
-        after = (6.0 * rise / h - 4.0 * s[:-1] - 2.0 * s[1:]) / h  # of the cubic of each segment
+        after = (6.0 * rise / h - 4.0 * s[:-1] - 2.0 * s[1:]) / h  # of the cubic Hermite segments
         before = (-6.0 * rise / h + 2.0 * s[:-1] + 4.0 * s[1:]) / h
         mean = (h[1:] * before[:-1] + h[:-1] * after[1:]) / (h[:-1] + h[1:])
         even = np.concatenate([[0.0], mean, before[-1:]])

@@ -222,7 +222,7 @@ def peak_pressure(drive: PairDrive, torque: Number) -> tuple[Number, Number]:
         return (most * x) ** 2 / root, most * x / (bend * root)
 
     def distance(square: Number) -> Number:
-        return np.maximum(np.sqrt(square + smoothing**2), smoothing)  # also for a NaN
+        return np.maximum(np.sqrt(square + smoothing**2), smoothing)  # if smoothing**2 underflows
 
     def growth(square: Number) -> Number:
         return square / (distance(square) + smoothing)

@@ -269,7 +269,7 @@ class _Aim:
         scale *= weight.ravel()
         exact = _exact(nodes, reach)
         held, size = over(exact, share), over(np.abs(exact), share)
-        hold = np.divide(HOLDS, size, out=np.zeros_like(size), where=size > HOLDS * TINY)  # none of what is 0
+        hold = np.divide(HOLDS, size, out=np.zeros_like(size), where=size > HOLDS * TINY)  # 0 for sums of 0
         sums = np.concatenate([scale * friction, hold * held])
         return cls(motions, reach, scale, hold, held, sums)
 
