@@ -88,8 +88,8 @@ class ParameterFile:
 
     def start(self, name: str) -> float:
         """Start value of an input in its SI unit: that of the file, else the default of the joint."""
-        own = KINDS[self.joint].variables.get(name) if self.joint in KINDS else None
-        return self.inputs.get(name, own.start if own else 0.0)
+        variable = KINDS[self.joint].variables.get(name) if self.joint in KINDS else None
+        return self.inputs.get(name, variable.start if variable else 0.0)
 
     def with_values(self, changes: Mapping[str, object], origin: str, source: str) -> "ParameterFile":
         """Copy with some values replaced; names and intervals are checked.
@@ -162,9 +162,9 @@ def load(path: str | Path, joint: str | None = None) -> ParameterFile:
     declared = declared_entries(stated, cls)
     keys = ("value", "unit", "kind", "source", "range")
     values, origins, sources = entries(path, declared, body, keys)
-    given, surfaces = _section(values, _INPUTS), _section(values, prefix)
+    input_values, surface_heights = _section(values, _INPUTS), _section(values, prefix)
     try:
-        inputs, heights = _start_values(stated, given), roughness.check(surfaces, prefix)
+        inputs, heights = _start_values(stated, input_values), roughness.check(surface_heights, prefix)
         of_law = _height_of_law(declared, values, heights)
         parameters = build(cls, values | of_law)
     except ValueError as error:
@@ -285,7 +285,7 @@ def _ranges(
 
     Raises ValueError, one line, if the range does not contain the value or is outside the field's interval.
     """
-    found: dict[str, tuple[float, float]] = {}
+    ranges: dict[str, tuple[float, float]] = {}
     for name, entry in leaves(body):
         if "range" not in entry:
             continue
@@ -296,8 +296,8 @@ def _ranges(
         for text in (problem(name, float(end), declared[name]) for end in ends):
             if text:
                 raise ValueError(f"{path}: range of {text}")
-        found[name] = (float(ends[0]), float(ends[1]))
-    return found
+        ranges[name] = (float(ends[0]), float(ends[1]))
+    return ranges
 
 
 def leaves(table: Mapping[str, object], prefix: str = "") -> list[tuple[str, Any]]:
@@ -305,13 +305,13 @@ def leaves(table: Mapping[str, object], prefix: str = "") -> list[tuple[str, Any
 
     Innermost items are tables with a key `value`, empty tables and all items that are no table.
     """
-    found: list[tuple[str, Any]] = []
+    items: list[tuple[str, Any]] = []
     for key, value in table.items():
         if isinstance(value, Mapping) and value and "value" not in value:
-            found += leaves(value, f"{prefix}{key}.")
+            items += leaves(value, f"{prefix}{key}.")
         else:
-            found.append((prefix + key, value))
-    return found
+            items.append((prefix + key, value))
+    return items
 
 
 def _input_fields(joint: str) -> dict[str, Field[Any]]:

@@ -51,14 +51,14 @@ def told(name: str) -> Iterator[None]:
     if not sys.stderr.isatty():
         yield
         return
-    out, done, began = sys.stdout, Event(), time.monotonic()
+    out, finished, began = sys.stdout, Event(), time.monotonic()
     step("")
 
     def clear() -> None:
         print("\r\x1b[K", end="", file=sys.stderr, flush=True)
 
     def show() -> None:
-        while not done.wait(0.5):
+        while not finished.wait(0.5):
             passed = time.monotonic() - began
             if passed > PATIENCE and not _now["bars"]:
                 what = ", ".join(filter(None, (_now["step"], f"{passed:.0f} s")))
@@ -71,7 +71,7 @@ def told(name: str) -> Iterator[None]:
         yield
     finally:
         sys.stdout = out
-        done.set()
+        finished.set()
         shower.join()
         if time.monotonic() - began > PATIENCE:
             clear()
@@ -164,8 +164,8 @@ def run_jobs(
                 if died and attempt < MAX_ATTEMPTS:
                     begin(job, attempt + 1, None)
                     continue
-                for following in islice(waiting, 1):
-                    begin(following, 1, None if died else pool)
+                for next_job in islice(waiting, 1):
+                    begin(next_job, 1, None if died else pool)
                 yield job, None if died else future.result()
 
 
@@ -175,16 +175,16 @@ def _quiet_start() -> Iterator[None]:
 
     A terminal sends Ctrl-C to all processes of a program, also to those that have just started.
     """
-    with _STARTS, ExitStack() as after:
+    with _STARTS, ExitStack() as cleanup:
         if sys.platform != "win32":  # on Windows Ctrl-C acts until `_set_up_worker` ignores it
-            before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-            after.callback(signal.pthread_sigmask, signal.SIG_SETMASK, before)
+            old_mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+            cleanup.callback(signal.pthread_sigmask, signal.SIG_SETMASK, old_mask)
         with suppress(OSError):  # standard error is closed
-            kept = os.dup(2)
-            after.callback(os.close, kept)
+            stderr_copy = os.dup(2)
+            cleanup.callback(os.close, stderr_copy)
             with open(os.devnull, "wb") as nowhere:
                 os.dup2(nowhere.fileno(), 2)
-            after.callback(os.dup2, kept, 2)
+            cleanup.callback(os.dup2, stderr_copy, 2)
         yield
 
 

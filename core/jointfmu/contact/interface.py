@@ -105,8 +105,8 @@ def largest_spot(law: InterfaceLaw, pressure: ArrayLike) -> Array:
     shape = np.broadcast_shapes(load.shape, parameters)
     if load.size > _BLOCK and parameters == ():
         flat = load.ravel()
-        parts = [_solve(spots, flat[i : i + _BLOCK]) for i in range(0, flat.size, _BLOCK)]
-        return np.concatenate(parts).reshape(shape)
+        blocks = [_solve(spots, flat[i : i + _BLOCK]) for i in range(0, flat.size, _BLOCK)]
+        return np.concatenate(blocks).reshape(shape)
     return _solve(spots, np.broadcast_to(load, shape))
 
 
@@ -216,22 +216,22 @@ def beyond(law: InterfaceLaw, pressure: float, least: float | None = None) -> li
     Above the hardness of the softer body the contact yields as a whole. A real area above the nominal one
     means that spots overlap. Results beyond these limits are extrapolations.
     """
-    found = []
+    messages = []
     hardness = float(law.hardness)
     if pressure > hardness:
-        found.append(
+        messages.append(
             f"a pressure of {pressure:.4g} Pa is above the hardness of the softer body, {hardness:.4g} Pa, "
             "where the interface law ends: the contact yields as a whole, the numbers are an extrapolation"
         )
     limit = _full_contact(law, pressure)
     if limit is not None:
-        found.append(
+        messages.append(
             f"a pressure of {pressure:.4g} Pa gives a real area beyond the nominal one, {law.A_0:.4g} m2, "
             f"which the interface law reaches at {limit:.3g} Pa"
         )
     if isinstance(law, Bounded):
-        found += law.unproven(pressure if least is None else least, pressure)
-    return found
+        messages += law.unproven(pressure if least is None else least, pressure)
+    return messages
 
 
 def _full_contact(law: InterfaceLaw, pressure: float) -> float | None:
@@ -239,6 +239,6 @@ def _full_contact(law: InterfaceLaw, pressure: float) -> float | None:
     with np.errstate(over="ignore"):
         if not float(at_pressure(law, pressure)["A_r"]) > law.A_0:
             return None
-        below = np.geomspace(1e-6 * pressure, pressure, 400)
-        area = at_pressure(law, below)["A_r"]
-    return float(np.exp(np.interp(np.log(law.A_0), np.log(area), np.log(below))))
+        lower_pressures = np.geomspace(1e-6 * pressure, pressure, 400)
+        area = at_pressure(law, lower_pressures)["A_r"]
+    return float(np.exp(np.interp(np.log(law.A_0), np.log(area), np.log(lower_pressures))))

@@ -153,9 +153,9 @@ def clip(bound: Number, u: Number, open_end: Number = None) -> Number:
 
 def within(t: Number, lower: Number, upper: Number) -> Number:
     """1 where `lower < t <= upper`, else 0 [1]."""
-    above = 1.0 if lower is None else np.where(t > lower, 1.0, 0.0)
-    below = 1.0 if upper is None else np.where(t <= upper, 1.0, 0.0)
-    return above * below
+    is_above = 1.0 if lower is None else np.where(t > lower, 1.0, 0.0)
+    is_below = 1.0 if upper is None else np.where(t <= upper, 1.0, 0.0)
+    return is_above * is_below
 
 
 @dataclass(frozen=True, slots=True)
@@ -201,8 +201,8 @@ class Spots:
     @property
     def ends(self) -> list[Number]:
         """Log-areas [1] of the ends of the stiffness regimes: numbers or symbols, unsorted, repeated."""
-        own = [end for term in self.terms["normal"] for end in (term.lower, term.upper) if end is not None]
-        return own if self.onset is None else [*own, self.onset]
+        ends = [end for term in self.terms["normal"] for end in (term.lower, term.upper) if end is not None]
+        return ends if self.onset is None else [*ends, self.onset]
 
     def log_total(self, name: str, u: Number) -> tuple[Number, Number]:
         """Logarithm ln Q of the sum, and its derivative with respect to u; from one evaluation."""

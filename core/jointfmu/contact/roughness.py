@@ -74,9 +74,9 @@ def check(stated: Mapping[str, Any], prefix: str = "") -> dict[str, Number]:
     declared = {prefix + name: item for name, item in DECLARED.items()}
     texts = problems({prefix + name: value for name, value in stated.items()}, declared)
     for name in (name for name in stated if name in DECLARED):
-        beside = [other for other in excluded(name) if other in stated]
-        if beside:
-            others = ", ".join(prefix + other for other in beside)
+        conflicts = [other for other in excluded(name) if other in stated]
+        if conflicts:
+            others = ", ".join(prefix + other for other in conflicts)
             texts.append(f"{prefix}{name} beside {others}: expected one height of each side, or h alone")
             break
     if texts:

@@ -61,8 +61,8 @@ class FileKind:
 def _is_unedited(path: Path) -> bool:
     """Whether a parameter file is unchanged since the program wrote it; an edited file is the user's."""
     text = path.read_bytes().decode("utf-8", "replace").replace("\r\n", "\n")
-    stated = _CHECKSUM.match(text)
-    return stated is not None and stated[1] == _checksum(text[stated.end() :])
+    match = _CHECKSUM.match(text)
+    return match is not None and match[1] == _checksum(text[match.end() :])
 
 
 def _checksum(text: str) -> str:

@@ -36,8 +36,8 @@ def check_document(document: Mapping[str, object]) -> None:
     for name, key, value in _items(document, ""):
         check_text(f"a key of {name or 'the file'}", key, MAX_NAME_LENGTH)
         if isinstance(value, str):
-            own = f"{name}.{key}" if name else key
-            check_text(own, value, MAX_NAME_LENGTH if own == "name" else MAX_TEXT_LENGTH)
+            full_name = f"{name}.{key}" if name else key
+            check_text(full_name, value, MAX_NAME_LENGTH if full_name == "name" else MAX_TEXT_LENGTH)
 
 
 def toml_string(text: str) -> str:

@@ -31,31 +31,33 @@ def write_bytes(path: str | Path, data: bytes) -> None:
         _write_stream(path, data)
         return
     target = Path(os.path.realpath(path))
-    beside = _beside(path, target)
+    temporary = _beside(path, target)
     try:
-        beside.write_bytes(data)
-        beside.chmod(0o644)
-        beside.replace(target)
+        temporary.write_bytes(data)
+        temporary.chmod(0o644)
+        temporary.replace(target)
     except OSError as error:
         raise _unwritable(path, error) from None
     finally:
-        beside.unlink(missing_ok=True)
+        temporary.unlink(missing_ok=True)
 
 
 def is_stream(path: str | Path) -> bool:
     """Whether a path leads to a device, a pipe or an output of this process: these cannot be replaced."""
     try:
-        found = os.stat(path)
+        status = os.stat(path)
     except OSError:
         return False
-    return not (stat.S_ISREG(found.st_mode) or stat.S_ISDIR(found.st_mode)) or _own_output(found) is not None
+    return (
+        not (stat.S_ISREG(status.st_mode) or stat.S_ISDIR(status.st_mode)) or _own_output(status) is not None
+    )
 
 
 def is_standard_output(path: str | Path) -> bool:
     """Whether a path leads to the standard output of this process; False for the null device."""
     try:
-        found = os.stat(path)
-        return _own_output(found) == 1 and not os.path.samestat(found, os.stat(os.devnull))
+        status = os.stat(path)
+        return _own_output(status) == 1 and not os.path.samestat(status, os.stat(os.devnull))
     except OSError:
         return False
 
@@ -74,18 +76,18 @@ def _write_stream(path: str | Path, data: bytes) -> None:
 
     Raises BrokenPipeError if standard output is a pipe whose reader has ended.
     """
-    own = _own_output(os.stat(path))
+    descriptor = _own_output(os.stat(path))
     try:
-        if own is None:
+        if descriptor is None:
             with open(path, "wb") as stream:
                 stream.write(data)
         else:
             for printed in (sys.stdout, sys.stderr):
                 printed.flush()
-            with open(own, "wb", closefd=False) as stream:
+            with open(descriptor, "wb", closefd=False) as stream:
                 stream.write(data)
     except OSError as error:
-        if own is not None and isinstance(error, BrokenPipeError):
+        if descriptor is not None and isinstance(error, BrokenPipeError):
             raise
         raise _unwritable(path, error) from None
 
@@ -140,7 +142,7 @@ def check_place(path: Path, folder: Path) -> None:
     no file behind.
     """
     folder = folder.absolute()
-    folder = next(one for one in (folder, *folder.parents) if one.exists())
+    folder = next(parent for parent in (folder, *folder.parents) if parent.exists())
     try:
         if not folder.is_dir():
             raise OSError(ENOTDIR, os.strerror(ENOTDIR))

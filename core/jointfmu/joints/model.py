@@ -202,20 +202,20 @@ class Model:
         """
         if joint != self.joint:
             raise ValueError(f"{self.name}: the parameter file is of a {joint!r}, expected a {self.joint!r}")
-        own = replace(self, parameters=type(parameters))
-        return self.variant(own, parameters) if self.variant else own
+        model = replace(self, parameters=type(parameters))
+        return self.variant(model, parameters) if self.variant else model
 
     def loaded(self, spring: Spring, start: Values) -> "Model":
         """Model whose load ramp, and load cycle of the same input, are scaled to a joint and start values."""
         ramp, loop = self.ramp, self.loop
         if ramp.reach is None:
             return self
-        begin, end = (float(x) for x in ramp.reach(spring, start))
+        onset, end = (float(x) for x in ramp.reach(spring, start))
         end = max(end, start[ramp.input])
-        stretch = end / ramp.end
+        scale = end / ramp.end
         if loop and loop.input == ramp.input:
-            loop = replace(loop, amplitude=stretch * loop.amplitude)
-        ramp = replace(ramp, begin=max(begin, 0.0), end=end, step=stretch * ramp.step)
+            loop = replace(loop, amplitude=scale * loop.amplitude)
+        ramp = replace(ramp, begin=max(onset, 0.0), end=end, step=scale * ramp.step)
         return replace(self, ramp=ramp, loop=loop)
 
     def warnings(self, spring: Spring, values: Values) -> dict[int, str]:

@@ -64,8 +64,8 @@ class Curve:
         y, s = self.load, self.stiffness
         data = np.stack([y[:-1], s[:-1] * h, self.bend_start * h**2, y[1:], s[1:] * h, self.bend_end * h**2])
         object.__setattr__(self, "_coefficients", _TO_POLYNOMIAL @ data)
-        whole = h * (_MEANS @ self._coefficients)
-        object.__setattr__(self, "_energies", np.concatenate([[0.0], np.cumsum(whole)]))
+        areas = h * (_MEANS @ self._coefficients)
+        object.__setattr__(self, "_energies", np.concatenate([[0.0], np.cumsum(areas)]))
 
     @property
     def closed(self) -> float:
@@ -93,12 +93,12 @@ class Curve:
                 out[n] = out[n] * t + out[n - 1]
             out[0] = out[0] * t + coefficient[i]
         out = [value * (factorial(n) / h**n) for n, value in enumerate(out)]
-        beyond = x != inside
-        if not np.any(beyond):
+        is_outside = x != inside
+        if not np.any(is_outside):
             return out
         slope = out[1] if order else self.derivatives(inside, 1)[1]
         out[0] = out[0] + (x - inside) * slope
-        return out[:2] + [np.where(beyond, 0.0, value) for value in out[2:]]
+        return out[:2] + [np.where(is_outside, 0.0, value) for value in out[2:]]
 
     def energy(self, x: ArrayLike) -> Array:
         """Integral (...) of the load from the first node to displacements x (...)."""
@@ -109,14 +109,14 @@ class Curve:
         step = inside - nodes[i]
         t = step / (nodes[i + 1] - nodes[i])
         mean = np.zeros_like(t)
-        for part, coefficient in zip(_MEANS[::-1], self._coefficients[::-1, i], strict=True):
-            mean = mean * t + part * coefficient
+        for monomial_mean, coefficient in zip(_MEANS[::-1], self._coefficients[::-1, i], strict=True):
+            mean = mean * t + monomial_mean * coefficient
         energy = np.asarray(self._energies[i] + step * mean)
-        beyond = x - inside
-        if not np.any(beyond):
+        excess = x - inside
+        if not np.any(excess):
             return energy
         load, stiffness = self.derivatives(inside, 1)
-        return np.asarray(energy + beyond * (load + 0.5 * beyond * stiffness))
+        return np.asarray(energy + excess * (load + 0.5 * excess * stiffness))
 
     def odd_inverse(self, load: ArrayLike) -> Array:
         """Displacement (...) at loads (...) of either sign, for an odd curve tabulated from zero on."""
@@ -130,10 +130,10 @@ class Curve:
         if the stiffness there is zero.
         """
         y = np.asarray(load, dtype=np.float64)
-        nodes, places = self.load, self.displacement
+        nodes, displacements = self.load, self.displacement
         i = _segment(nodes, y)
         inside = np.minimum(np.maximum(y, nodes[0]), nodes[-1])
-        first, h = places[i], places[i + 1] - places[i]
+        first, h = displacements[i], displacements[i + 1] - displacements[i]
         low, high = np.zeros(y.shape), np.ones(y.shape)
         t = (inside - nodes[i]) / (nodes[i + 1] - nodes[i])
         top, *rest = self._coefficients[::-1, i]
@@ -143,15 +143,15 @@ class Curve:
                 slope = slope * t + value
                 value = value * t + coefficient
             residual = inside - value
-            rises = residual > 0.0
-            low, high = np.where(rises, t, low), np.where(rises, high, t)
+            is_below = residual > 0.0
+            low, high = np.where(is_below, t, low), np.where(is_below, high, t)
             with np.errstate(divide="ignore", invalid="ignore"):
                 step = t + residual / slope
             newton = (step >= low) & (step <= high)
             new = np.where(newton, step, 0.5 * (low + high))
-            done = np.all(np.abs(new - t) <= np.where(newton, CLOSE, 4e-16) * t)
+            is_converged = np.all(np.abs(new - t) <= np.where(newton, CLOSE, 4e-16) * t)
             t = new
-            if done:
+            if is_converged:
                 break
         x = first + t * h
         edge = np.where(y > nodes[-1], self.stiffness[-1], self.stiffness[0])
@@ -178,11 +178,11 @@ def assemble(pieces: list[tuple[Array, Array, Array, Array]], error: float = 0.0
     """
     fine, coarse = _join(pieces), _join([tuple(column[::2] for column in piece) for piece in pieces])  # type: ignore[misc]
     nodes = fine.displacement
-    points = np.concatenate([nodes[:-1] + part * np.diff(nodes) for part in (0.25, 0.5, 0.75)])
+    points = np.concatenate([nodes[:-1] + fraction * np.diff(nodes) for fraction in (0.25, 0.5, 0.75)])
     worst = error
-    for value, rough in zip(fine.derivatives(points), coarse.derivatives(points), strict=True):
+    for value, coarse_value in zip(fine.derivatives(points), coarse.derivatives(points), strict=True):
         loaded = value > 0.0
-        worst = max(worst, float(np.max(np.abs(rough - value)[loaded] / value[loaded])) / 2.0)
+        worst = max(worst, float(np.max(np.abs(coarse_value - value)[loaded] / value[loaded])) / 2.0)
     return Curve(nodes, fine.load, fine.stiffness, fine.bend_start, fine.bend_end, worst)
 
 
@@ -280,15 +280,15 @@ def _approach(spots: Spots, area: float, first: float, last: float, steps: int) 
     """Table with the closing, and `steps` per unit of log-area from `first` to `end_log_area`."""
     ends = [first, *(b for b in spots.breaks if first < b < last), last]
     pieces, offset = [], 0.0
-    for left, right in pairwise(ends):
-        n = max(2 * int(np.ceil(0.5 * steps * (right - left))), 2)
-        u = np.linspace(left, right, n + 1)
+    for start, end in pairwise(ends):
+        n = max(2 * int(np.ceil(0.5 * steps * (end - start))), 2)
+        u = np.linspace(start, end, n + 1)
         half = 0.5 * (u[1] - u[0])
         inner = u[:-1, None] + half * (1.0 + GAUSS[0])
-        rise = half * (spots.slope("load", inner) / spots.total("normal", inner)) @ GAUSS[1]
-        x = offset + np.concatenate([[0.0], np.cumsum(rise)])
+        increments = half * (spots.slope("load", inner) / spots.total("normal", inner)) @ GAUSS[1]
+        x = offset + np.concatenate([[0.0], np.cumsum(increments)])
         offset = x[-1]
-        side = np.clip(u, left + SIDE, right - SIDE)  # one-sided derivative where a regime ends
+        side = np.clip(u, start + SIDE, end - SIDE)  # one-sided derivative where a regime ends
         k = spots.total("normal", u) / area
         bend = k * spots.slope("normal", side) / spots.slope("load", side)
         pieces.append((x, spots.total("load", u) / area, k, bend))

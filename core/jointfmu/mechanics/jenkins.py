@@ -51,10 +51,10 @@ def reaches(force: Vector, limit: Number) -> Number:
 
     |q| - limit along one direction; |q|^2 - limit^2 in a plane, with the limit reduced by AT_LIMIT_TOLERANCE.
     """
-    least = (1.0 - AT_LIMIT) * limit
+    reduced_limit = (1.0 - AT_LIMIT) * limit
     if len(force) == 1:
-        return np.abs(force[0]) - least
-    return force[0] * force[0] + force[1] * force[1] - least * least
+        return np.abs(force[0]) - reduced_limit
+    return force[0] * force[0] + force[1] * force[1] - reduced_limit * reduced_limit
 
 
 _Returned = tuple[Vector, Vector, Number, Number]
@@ -101,12 +101,14 @@ def slide(
     Under constant load tan(angle/2) between both decreases as exp(-K distance/limit) (Krieg and Krieg 1977).
     Angle and loss are accurate to third order in the distance, and exact if the force does not turn.
     """
-    tried = trial(force, keeps, carries, shift)
-    if len(tried) == 1:
-        moved, tangent, slip, mean = _along(force, tried, before, after, stiffness)
+    predictor = trial(force, keeps, carries, shift)
+    if len(predictor) == 1:
+        new_force, tangent, slip, mean = _along(force, predictor, before, after, stiffness)
     else:
-        moved, tangent, slip, mean = _in_a_plane(force, tried, shift, carries, (before, after), stiffness)
-    return Slid(moved, tangent, mean * (slip * compliance), slip)
+        new_force, tangent, slip, mean = _in_a_plane(
+            force, predictor, shift, carries, (before, after), stiffness
+        )
+    return Slid(new_force, tangent, mean * (slip * compliance), slip)
 
 
 def returned(force: Number, limit: Number) -> Number:
@@ -115,13 +117,13 @@ def returned(force: Number, limit: Number) -> Number:
 
 
 def _along(force: Vector, tried: Vector, before: Number, limit: Number, stiffness: Number) -> _Returned:
-    moved = returned(tried[0], limit)
-    slip = np.abs(tried[0] - moved)
+    new_force = returned(tried[0], limit)
+    slip = np.abs(tried[0] - new_force)
     slips = slip > 0.0
     margin = np.maximum(before - where(tried[0] < 0.0, -force[0], force[0]), 0.0)
     onset = margin / np.maximum(margin + slip, NOTHING)
     mean = 0.5 * (limit + before + onset * (limit - before))
-    return [moved], [where(slips, 0.0, stiffness), stiffness], slip, mean
+    return [new_force], [where(slips, 0.0, stiffness), stiffness], slip, mean
 
 
 def _in_a_plane(
@@ -135,37 +137,45 @@ def _in_a_plane(
     force against the displacement does not change its side. The slip is |predictor| - limit, plus
     limit g^2 (sin^2 start - sin^2 end)/12 by Hermite's rule, of the angle between force and displacement.
     """
-    before, limit = limits
-    way = np.sqrt(np.maximum(shift[0] * shift[0] + shift[1] * shift[1], NOTHING))
-    e_x, e_y = shift[0] / way, shift[1] / way
+    limit_start, limit = limits
+    distance = np.sqrt(np.maximum(shift[0] * shift[0] + shift[1] * shift[1], NOTHING))
+    e_x, e_y = shift[0] / distance, shift[1] / distance
     square, squared = tried[0] * tried[0] + tried[1] * tried[1], limit * limit
     largest = np.maximum(np.maximum(squared, square), NOTHING)
     size = np.sqrt(largest)
     slips, out = beyond(tried, limit) > 0.0, size - limit
-    margin = np.maximum(before * size - (force[0] * tried[0] + force[1] * tried[1]), 0.0)
+    margin = np.maximum(limit_start * size - (force[0] * tried[0] + force[1] * tried[1]), 0.0)
     sum_ = margin + out * size
     inverse = 1.0 / np.maximum(limit * sum_, NOTHING)
     per_limit, share = np.minimum(inverse * sum_, LARGEST), inverse * (limit * (out * size))
-    left = share * (carries * way)
-    held = np.minimum(np.maximum(before * before, squared), largest)
-    lost = held - squared  # the limit decreased: slip starts from the reduced limit
-    shrinks = squared * squared + lost * lost / 16.0
-    per_shrinks = 1.0 / np.maximum(shrinks * held, NOTHING)
-    turns = 0.25 * (lost * squared * held + (largest - held) * shrinks) * per_shrinks
-    more_by = turns - TWELFTH * shrinks * per_shrinks * (left * left)
-    more = where(slips, left * more_by, 0.0)
-    ahead = [q + more * e for q, e in zip(tried, (e_x, e_y), strict=True)]
-    size2 = np.maximum(ahead[0] * ahead[0] + ahead[1] * ahead[1], NOTHING)
+    slip_angle = share * (carries * distance)
+    start_square = np.minimum(np.maximum(limit_start * limit_start, squared), largest)
+    decrease = start_square - squared  # the limit decreased: slip starts from the reduced limit
+    shrinks = squared * squared + decrease * decrease / 16.0
+    per_shrinks = 1.0 / np.maximum(shrinks * start_square, NOTHING)
+    turn_factor = (
+        0.25 * (decrease * squared * start_square + (largest - start_square) * shrinks) * per_shrinks
+    )
+    correction_factor = turn_factor - TWELFTH * shrinks * per_shrinks * (slip_angle * slip_angle)
+    correction = where(slips, slip_angle * correction_factor, 0.0)
+    corrected = [q + correction * e for q, e in zip(tried, (e_x, e_y), strict=True)]
+    size2 = np.maximum(corrected[0] * corrected[0] + corrected[1] * corrected[1], NOTHING)
     per_size = np.sqrt(size2) / size2
-    n = [per_size * q for q in ahead]
+    n = [per_size * q for q in corrected]
     across = n[0] * e_y - n[1] * e_x
-    turned = left * across
-    hermite = turned * turned * np.maximum(1.0 - squared * (per_size * per_size), 0.0) * (TWELFTH * per_limit)
-    spent = where(reaches(tried, limit) > 0.0, stiffness, 0.0)
-    tangent = [stiffness - spent * n[0] * n[0], -spent * n[0] * n[1], stiffness - spent * n[1] * n[1]]
-    moved = [where(slips, limit * m, q) for m, q in zip(n, tried, strict=True)]
-    mean = 0.5 * (before + limit + (1.0 - share) * (limit - before))
-    return moved, tangent, where(slips, out + hermite, 0.0), mean
+    rotation = slip_angle * across
+    hermite = (
+        rotation * rotation * np.maximum(1.0 - squared * (per_size * per_size), 0.0) * (TWELFTH * per_limit)
+    )
+    slip_stiffness = where(reaches(tried, limit) > 0.0, stiffness, 0.0)
+    tangent = [
+        stiffness - slip_stiffness * n[0] * n[0],
+        -slip_stiffness * n[0] * n[1],
+        stiffness - slip_stiffness * n[1] * n[1],
+    ]
+    new_force = [where(slips, limit * m, q) for m, q in zip(n, tried, strict=True)]
+    mean = 0.5 * (limit_start + limit + (1.0 - share) * (limit - limit_start))
+    return new_force, tangent, where(slips, out + hermite, 0.0), mean
 
 
 @dataclass(frozen=True, slots=True)
@@ -210,23 +220,27 @@ class Sliders:
         force                  : (..., n) at the start
         limit_start, limit_end : (..., n) friction limits
         """
-        moved = [np.asarray(shift)[..., None]]
-        slid = slide([force], 1.0, self.stiffness, moved, before, after, self.stiffness, self.compliance)
-        return Moved(np.asarray(slid.force[0]), np.sum(slid.loss, axis=-1), np.sum(slid.tangent[0], axis=-1))
+        increment = [np.asarray(shift)[..., None]]
+        mapping = slide(
+            [force], 1.0, self.stiffness, increment, before, after, self.stiffness, self.compliance
+        )
+        return Moved(
+            np.asarray(mapping.force[0]), np.sum(mapping.loss, axis=-1), np.sum(mapping.tangent[0], axis=-1)
+        )
 
     def path(self, ways: Array, limit: Array) -> Array:
         """Total force (m) after each of m displacement increments along one direction, from the virgin state.
 
         limit : (n) constant friction limits
         """
-        force, found = np.zeros_like(limit), np.empty(ways.size)
-        for n, way in enumerate(ways):
-            force = returned(trial([force], 1.0, self.stiffness, [way])[0], limit)
-            found[n] = np.add.reduce(force)
-        return found
+        force, totals = np.zeros_like(limit), np.empty(ways.size)
+        for n, increment in enumerate(ways):
+            force = returned(trial([force], 1.0, self.stiffness, [increment])[0], limit)
+            totals[n] = np.add.reduce(force)
+        return totals
 
 
 def compliance(stiffness: Number) -> Number:
     """Compliance 1/stiffness; 0 where the stiffness is zero."""
-    some = stiffness > 0.0
-    return where(some, 1.0 / where(some, stiffness, 1.0), 0.0)
+    has_spring = stiffness > 0.0
+    return where(has_spring, 1.0 / where(has_spring, stiffness, 1.0), 0.0)

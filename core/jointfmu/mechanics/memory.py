@@ -40,13 +40,13 @@ class Layout:
     def split(self, memory: Array) -> dict[str, Array]:
         """Views {name: variable (..., *shape)} into arrays of history variables (..., n)."""
         return {
-            name: memory[..., at : at + prod(shape)].reshape(memory.shape[:-1] + shape)
-            for (name, shape), at in zip(self.shapes.items(), self.places.values(), strict=True)
+            name: memory[..., start : start + prod(shape)].reshape(memory.shape[:-1] + shape)
+            for (name, shape), start in zip(self.shapes.items(), self.places.values(), strict=True)
         }
 
     def joined(self, parts: Mapping[str, ArrayLike], *shape: int) -> Array:
         """Array (*shape, n) of history variables from {name: variable (..., *its shape)}."""
         memory = np.empty((*shape, self.size))
-        for name, place in self.split(memory).items():
-            place[...] = parts[name]
+        for name, view in self.split(memory).items():
+            view[...] = parts[name]
         return memory

@@ -65,19 +65,24 @@ def around(curve: Curve, reference: ArrayLike, offset: ArrayLike) -> Array:
     offset    : (...) in (0, 1) [1] moves the heights. Parallel foundations with different offsets slip at
                 different displacements, so the errors of their stepwise slip cancel in the sum.
     """
-    given, part = np.asarray(reference, dtype=np.float64), np.asarray(offset, dtype=np.float64)[..., None]
+    reference_approach, offset_column = (
+        np.asarray(reference, dtype=np.float64),
+        np.asarray(offset, dtype=np.float64)[..., None],
+    )
     end = curve.end[1]
-    load = curve.derivatives(given, 0)[0]
+    load = curve.derivatives(reference_approach, 0)[0]
     touches = load > LOWEST * end
     load = np.where(touches, np.minimum(load, HIGHEST * end), USUAL * end)[..., None]
-    down = (np.arange(BELOW)[::-1] + part) / BELOW
-    up = (np.arange(ABOVE) + part) / ABOVE
-    below = load * (1.0 - down) ** 2 / (down**2 + (1.0 - down) ** 2)
-    above = load * np.exp(np.log(end / load) * up**2)
-    lowest, last = (np.full_like(load, x) for x in curve.displacement[[0, -1]])
-    between = curve.inverse(np.concatenate([below, load, above], axis=-1))
-    between[..., BELOW] = np.where(touches & (load[..., 0] < HIGHEST * end), given, between[..., BELOW])
-    return np.concatenate([lowest, between, last], axis=-1)
+    position_below = (np.arange(BELOW)[::-1] + offset_column) / BELOW
+    position_above = (np.arange(ABOVE) + offset_column) / ABOVE
+    loads_below = load * (1.0 - position_below) ** 2 / (position_below**2 + (1.0 - position_below) ** 2)
+    loads_above = load * np.exp(np.log(end / load) * position_above**2)
+    lowest, highest = (np.full_like(load, x) for x in curve.displacement[[0, -1]])
+    inner_heights = curve.inverse(np.concatenate([loads_below, load, loads_above], axis=-1))
+    inner_heights[..., BELOW] = np.where(
+        touches & (load[..., 0] < HIGHEST * end), reference_approach, inner_heights[..., BELOW]
+    )
+    return np.concatenate([lowest, inner_heights, highest], axis=-1)
 
 
 def lowered(height: Array, lowest: ArrayLike) -> Array:
@@ -89,11 +94,11 @@ def lowered(height: Array, lowest: ArrayLike) -> Array:
     Springs above min_approach have lifted off and have no force, so this height can be changed. Springs that
     touch and lift off periodically are then in another range than springs that stay in contact.
     """
-    given = np.asarray(lowest, dtype=np.float64)[..., None]
-    below = height < given
-    next_above = below[..., :-1] & ~below[..., 1:]
+    smallest = np.asarray(lowest, dtype=np.float64)[..., None]
+    is_below = height < smallest
+    next_above = is_below[..., :-1] & ~is_below[..., 1:]
     next_above[..., -1] = False  # no springs are beyond the last height
-    return np.concatenate([height[..., :1], np.where(next_above, given, height[..., 1:])], axis=-1)
+    return np.concatenate([height[..., :1], np.where(next_above, smallest, height[..., 1:])], axis=-1)
 
 
 @cache
@@ -108,9 +113,9 @@ def turning(sliders: int) -> Array:
     angle = np.pi * (GOLDEN * np.arange(sliders // 2) % 1.0)
     unit = to_digits(np.stack([-np.sin(angle), np.cos(angle)]))
     unit /= np.sqrt(unit[0] * unit[0] + unit[1] * unit[1])
-    both = np.asarray(np.stack([unit, -unit], axis=-1).reshape(2, -1))
-    both.flags.writeable = False
-    return both
+    directions = np.asarray(np.stack([unit, -unit], axis=-1).reshape(2, -1))
+    directions.flags.writeable = False
+    return directions
 
 
 def together(each: Array) -> Array:
@@ -166,8 +171,10 @@ class Foundation:
 
     def stick(self, approach: ArrayLike) -> Array:
         """Tangential stiffness (...) [Pa/m] in full stick at approaches (...) [m]."""
-        here, first = (self.curve.derivatives(x, 1)[1] for x in (approach, self.height[..., 0]))
-        return np.asarray(self.ratio * np.maximum(here - first, 0.0))
+        slope_here, slope_at_first = (
+            self.curve.derivatives(x, 1)[1] for x in (approach, self.height[..., 0])
+        )
+        return np.asarray(self.ratio * np.maximum(slope_here - slope_at_first, 0.0))
 
     def rested(
         self, force: Array, before: ArrayLike, after: ArrayLike, shift: ArrayLike
@@ -178,29 +185,31 @@ class Foundation:
         start, end : (...) [m] approaches
         tangential_displacement : (..., 3) [m] of the other side along x, y and around the centre
         """
-        stiff, now = self.stick(before), self.stick(after)
-        falls = np.asarray(after) < np.asarray(before)
-        rule = rest_rule(stiff, now, falls)
-        kept, gain = (np.asarray(each)[..., None] for each in rule)
-        traction = kept * force + gain * np.asarray(shift)
-        most = HARDLY * self.friction / self.ratio * now * (np.asarray(after) - self.height[..., 0])
-        return traction, np.sqrt(np.sum(traction**2, axis=-1)) <= most
+        stiffness_start, stiffness_end = self.stick(before), self.stick(after)
+        is_unloading = np.asarray(after) < np.asarray(before)
+        rule = rest_rule(stiffness_start, stiffness_end, is_unloading)
+        retention, secant_stiffness = (np.asarray(factor)[..., None] for factor in rule)
+        traction = retention * force + secant_stiffness * np.asarray(shift)
+        max_traction = (
+            HARDLY * self.friction / self.ratio * stiffness_end * (np.asarray(after) - self.height[..., 0])
+        )
+        return traction, np.sqrt(np.sum(traction**2, axis=-1)) <= max_traction
 
     def spread(self, force: Array, approach: ArrayLike) -> Array:
         """Distribute a traction (..., 3) of full stick to sliders, by stiffness: forces (..., 2, n) [Pa]."""
         stiffness = self.carried(approach).stiffness
-        whole = np.sum(stiffness, axis=-1, keepdims=True)
-        part = np.divide(stiffness, whole, out=np.zeros_like(stiffness), where=whole > 0.0)
-        each = force[..., :2, None] + force[..., 2:, None] * turning(self.sliders)
-        return np.asarray(each * part[..., None, :])
+        total = np.sum(stiffness, axis=-1, keepdims=True)
+        share = np.divide(stiffness, total, out=np.zeros_like(stiffness), where=total > 0.0)
+        unit_forces = force[..., :2, None] + force[..., 2:, None] * turning(self.sliders)
+        return np.asarray(unit_forces * share[..., None, :])
 
     def backbone(self, approach: ArrayLike, shift: ArrayLike) -> Array:
         """Virgin curve: traction (...) [Pa] at displacements u (...) >= 0 [m], constant approach (...) [m].
 
         mu [p(delta) - p(delta - kappa u/mu)], the sum over all springs, without discretisation by sliders.
         """
-        now, then, _ = self.slipped(approach, shift)
-        return np.asarray(self.friction * (now - then))
+        load, slipped_load, _ = self.slipped(approach, shift)
+        return np.asarray(self.friction * (load - slipped_load))
 
     def slipped(self, approach: ArrayLike, shift: ArrayLike) -> tuple[Array, Array, Array]:
         """Pressures (...) [Pa] at the approach delta and at delta - kappa u/mu, and the energy in between.
@@ -211,24 +220,28 @@ class Foundation:
         approach                : delta (...) [m]
         tangential_displacement : u (...) >= 0 [m] from the virgin state
         """
-        now, moved = np.asarray(approach, dtype=np.float64), np.asarray(shift, dtype=np.float64)
-        then = np.asarray(now - moved / (self.friction / self.ratio))
-        load, left = (self.curve.derivatives(x, 0)[0] for x in (now, then))
-        return load, left, self.curve.energy(now) - self.curve.energy(then)
+        upper, displacement = np.asarray(approach, dtype=np.float64), np.asarray(shift, dtype=np.float64)
+        lower = np.asarray(upper - displacement / (self.friction / self.ratio))
+        load, slipped_load = (self.curve.derivatives(x, 0)[0] for x in (upper, lower))
+        return load, slipped_load, self.curve.energy(upper) - self.curve.energy(lower)
 
     def loop(self, approach: ArrayLike, size: ArrayLike) -> tuple[Array, Array]:
         """Loss (...) [J/m2] of a cycle with amplitudes (...) [m], elastic energy (...) [J/m2] at its ends.
 
         At constant approaches (...) [m]. The relative accuracy is full also for amplitudes near zero.
         """
-        now, a = np.asarray(approach, dtype=np.float64), np.asarray(size, dtype=np.float64)
+        upper_approach, a = np.asarray(approach, dtype=np.float64), np.asarray(size, dtype=np.float64)
         law = self.friction, self.ratio, a
-        (load, *here), (_, *there) = (
-            self.curve.derivatives(x, 3) for x in (now, now - a / (self.friction / self.ratio))
+        (load, *upper), (_, *lower) = (
+            self.curve.derivatives(x, 3)
+            for x in (upper_approach, upper_approach - a / (self.friction / self.ratio))
         )
-        far, near = loop(*law, *self.slipped(now, a)), short_loop(*law, here, there)
-        small = short(*law, load, here[0])
-        loss, stored = (np.where(small, *each) for each in zip(near, far, strict=True))
+        general, small_amplitude = (
+            loop(*law, *self.slipped(upper_approach, a)),
+            short_loop(*law, upper, lower),
+        )
+        is_small = short(*law, load, upper[0])
+        loss, stored = (np.where(is_small, *each) for each in zip(small_amplitude, general, strict=True))
         return loss, stored
 
     @cached_property
@@ -240,18 +253,23 @@ class Foundation:
         """Stiffness, friction limit and slope of the sliders at approaches (...) [m]."""
         delta = np.asarray(approach, dtype=np.float64)[..., None]
         (low, p_low, k_low), (high, p_high, k_high) = (
-            [each[..., part] for each in (self.height, *self._ends)] for part in (slice(-1), slice(1, None))
+            [slider_stiffness[..., part] for slider_stiffness in (self.height, *self._ends)]
+            for part in (slice(-1), slice(1, None))
         )
-        touches, full = delta >= low, delta >= high
+        is_touching, is_full = delta >= low, delta >= high
         p, k, slope = self.curve.derivatives(delta, 2)
-        width = np.where(touches, np.where(full, high, delta) - low, 0.0)
-        load = np.where(touches, np.where(full, p_high, p) - p_low - k_low * width, 0.0)
-        springs = np.where(touches, np.where(full, k_high, k) - k_low, 0.0)
-        bend = np.where(touches & ~full, slope, 0.0)
-        each, rate, early, late = touching(load, springs, bend, width, self.ratio, self.friction)
-        grown = self.friction / self.ratio * each * np.where(full, delta - high, 0.0)
-        limit = np.stack([early + grown, late + grown], axis=-1).reshape(*each.shape[:-1], -1)
-        return Carried(np.repeat(each, 2, axis=-1), limit, np.repeat(rate, 2, axis=-1))
+        width = np.where(is_touching, np.where(is_full, high, delta) - low, 0.0)
+        load = np.where(is_touching, np.where(is_full, p_high, p) - p_low - k_low * width, 0.0)
+        springs = np.where(is_touching, np.where(is_full, k_high, k) - k_low, 0.0)
+        bend = np.where(is_touching & ~is_full, slope, 0.0)
+        slider_stiffness, rate, limit_early, limit_late = touching(
+            load, springs, bend, width, self.ratio, self.friction
+        )
+        grown = self.friction / self.ratio * slider_stiffness * np.where(is_full, delta - high, 0.0)
+        limit = np.stack([limit_early + grown, limit_late + grown], axis=-1).reshape(
+            *slider_stiffness.shape[:-1], -1
+        )
+        return Carried(np.repeat(slider_stiffness, 2, axis=-1), limit, np.repeat(rate, 2, axis=-1))
 
     def moved(self, force: Array, before: ArrayLike, after: ArrayLike, shift: ArrayLike) -> Moved:
         """Return-map all sliders for one increment, see `return_map`.
@@ -279,9 +297,11 @@ class Foundation:
 
     def _along(self, shift: ArrayLike) -> Array:
         """Displacements of the sliders [m]: (..., 2, 1) without rotation, (..., 2, n) with rotation."""
-        given = np.asarray(shift, dtype=np.float64)[..., None]
-        turns = given.shape[-2] > 2
-        return np.asarray(given[..., :2, :] + given[..., 2:, :] * turning(self.sliders) if turns else given)
+        column = np.asarray(shift, dtype=np.float64)[..., None]
+        has_rotation = column.shape[-2] > 2
+        return np.asarray(
+            column[..., :2, :] + column[..., 2:, :] * turning(self.sliders) if has_rotation else column
+        )
 
     def _tangent(self, xx: Array, xy: Array, yy: Array) -> Array:
         """Tangent stiffness (..., 6) [Pa/m] of the foundation: xx, xy, yy, and xt, yt, tt with the rotation.
@@ -290,8 +310,8 @@ class Foundation:
         """
         e_x, e_y = turning(self.sliders)
         x_t, y_t = xx * e_x + xy * e_y, xy * e_x + yy * e_y
-        each = np.stack([xx, xy, yy, x_t, y_t, x_t * e_x + y_t * e_y])
-        return np.asarray(np.moveaxis(np.sum(each, axis=-1), 0, -1))
+        components = np.stack([xx, xy, yy, x_t, y_t, x_t * e_x + y_t * e_y])
+        return np.asarray(np.moveaxis(np.sum(components, axis=-1), 0, -1))
 
     def _slid(self, force: Array, start: Carried, end: Carried, path: "_Path") -> Slid:
         """Return mapping of sliders (..., n); its loss is valid for constant stiffness, see `advance`."""
@@ -334,8 +354,8 @@ class _Path:
 
     @classmethod
     def of(cls, before: ArrayLike, after: ArrayLike, shift: Array) -> "_Path":
-        first, last = (np.asarray(x, dtype=np.float64)[..., None] for x in (before, after))
-        return cls(first, last, shift)
+        start, end = (np.asarray(x, dtype=np.float64)[..., None] for x in (before, after))
+        return cls(start, end, shift)
 
     @property
     def change(self) -> Array:
@@ -390,9 +410,13 @@ def short_loop(
 
     upper, lower : first three derivatives of the pressure at delta and at delta - kappa a/mu
     """
-    reach, (stiffness, bend, twist), (first, bent, twisted) = size * (ratio / friction), now, then
-    fall = reach * (0.5 * (stiffness + first) - reach * (bend - bent) / 12.0)
-    excess = reach**3 * ((bend + bent) / 24.0 - reach * (twist - twisted) / 120.0)
+    reach, (upper_stiffness, upper_d2p, upper_d3p), (lower_stiffness, lower_d2p, lower_d3p) = (
+        size * (ratio / friction),
+        now,
+        then,
+    )
+    fall = reach * (0.5 * (upper_stiffness + lower_stiffness) - reach * (upper_d2p - lower_d2p) / 12.0)
+    excess = reach**3 * ((upper_d2p + lower_d2p) / 24.0 - reach * (upper_d3p - lower_d3p) / 120.0)
     return _cycle(friction, ratio, size, fall, excess)
 
 
@@ -425,9 +449,9 @@ def rest_rule(stiff: Number, now: Number, falls: Number) -> tuple[Number, Number
     stiffness_start, stiffness_end : [Pa/m] tangential stiffness
     is_unloading                   : whether the approach decreases
     """
-    some = stiff > 0.0
-    kept = where(some, np.minimum(now / where(some, stiff, 1.0), 1.0), 0.0)
-    return where(falls, kept, 1.0), where(falls, now, 0.5 * (stiff + now))
+    has_stiffness = stiff > 0.0
+    retention = where(has_stiffness, np.minimum(now / where(has_stiffness, stiff, 1.0), 1.0), 0.0)
+    return where(falls, retention, 1.0), where(falls, now, 0.5 * (stiff + now))
 
 
 def carrying(
@@ -449,12 +473,14 @@ def carrying(
     is_small   : whether to compute the mean stiffness from `start` and `end` (fourth order), because
         stiffness_integral cancels
     """
-    (first, slope), (last, then) = start, end
-    touches, falls = first > 0.0, change < 0.0
-    kept = where(touches, np.minimum(last / where(touches, first, 1.0), 1.0), 0.0)
-    ends = 0.5 * (first + last) + change * (slope - then) / 12.0
-    mean = where(small, ends, where(first == last, last, rise / where(small, 1.0, change)))
-    return where(falls, kept, 1.0), where(falls, last, mean)
+    (stiffness_start, slope_start), (stiffness_end, slope_end) = start, end
+    touches, is_unloading = stiffness_start > 0.0, change < 0.0
+    retention = where(touches, np.minimum(stiffness_end / where(touches, stiffness_start, 1.0), 1.0), 0.0)
+    ends = 0.5 * (stiffness_start + stiffness_end) + change * (slope_start - slope_end) / 12.0
+    mean = where(
+        small, ends, where(stiffness_start == stiffness_end, stiffness_end, rise / where(small, 1.0, change))
+    )
+    return where(is_unloading, retention, 1.0), where(is_unloading, stiffness_end, mean)
 
 
 def changing_loss(
@@ -475,16 +501,20 @@ def changing_loss(
     contact_changes  : whether the contact state changes. Then the work is computed by Simpson's rule with the
         force `middle` in the middle of the increment, else by Hermite's rule from both ends.
     """
-    first, last = stiffness
+    stiffness_start, stiffness_end = stiffness
     ends = (force[0] + moved[0]) * shift[0] + (force[1] + moved[1]) * shift[1]
     half = middle[0] * shift[0] + middle[1] * shift[1]
-    bent = where(slip > 0.0, 0.0, (shift[0] * shift[0] + shift[1] * shift[1]) * ((first - last) / 12.0))
-    work = where(across, ends / 6.0 + 2.0 / 3.0 * half, 0.5 * ends + bent)
-    return np.maximum(work - (_elastic(moved, last) - _elastic(force, first)), 0.0)
+    hermite_term = where(
+        slip > 0.0,
+        0.0,
+        (shift[0] * shift[0] + shift[1] * shift[1]) * ((stiffness_start - stiffness_end) / 12.0),
+    )
+    work = where(across, ends / 6.0 + 2.0 / 3.0 * half, 0.5 * ends + hermite_term)
+    return np.maximum(work - (_elastic(moved, stiffness_end) - _elastic(force, stiffness_start)), 0.0)
 
 
 def _elastic(force: Vector, stiffness: Number) -> Number:
     """Elastic energy [J/m2] of a slider: force^2/(2 stiffness); 0 without stiffness."""
-    some = stiffness > 0.0
+    has_stiffness = stiffness > 0.0
     square = force[0] * force[0] + force[1] * force[1]
-    return where(some, square / (2.0 * where(some, stiffness, 1.0)), 0.0)
+    return where(has_stiffness, square / (2.0 * where(has_stiffness, stiffness, 1.0)), 0.0)

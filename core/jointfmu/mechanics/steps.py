@@ -25,8 +25,8 @@ _DAMPED = 0.39
 
 def mobility(inertia: Number, lever: Number = 1.0) -> Number:
     """Mobility lever^2/J of a body with inertia J at a lever arm [1 or m]; 0 for inertia 0: a fixed body."""
-    free = inertia > 0.0
-    return where(free, lever**2 / where(free, inertia, 1.0), 0.0 * inertia)
+    is_free = inertia > 0.0
+    return where(is_free, lever**2 / where(is_free, inertia, 1.0), 0.0 * inertia)
 
 
 def stable_steps(stiffness: Number, damping: Number, mobility: Number) -> tuple[Number, Number]:
@@ -44,10 +44,10 @@ def stable_steps(stiffness: Number, damping: Number, mobility: Number) -> tuple[
     step is stable: the second is 0.
     """
     square = where(stiffness > 0.0, stiffness, 0.0 * stiffness) * mobility + (2.0 / LONGEST) ** 2
-    lost = damping * mobility
-    damped = lost > 0.0
-    some = where(damped, lost, 1.0)
-    late = (some / (square**2 + some**4 / _DAMPED**3)) ** (1.0 / 3.0)
-    return 2.0 / (np.sqrt(square + lost**2) + lost), where(
-        damped, late, where(mobility > 0.0, 0.0 * lost, LONGEST)
+    damping_rate = damping * mobility
+    is_damped = damping_rate > 0.0
+    safe_rate = where(is_damped, damping_rate, 1.0)
+    late_step = (safe_rate / (square**2 + safe_rate**4 / _DAMPED**3)) ** (1.0 / 3.0)
+    return 2.0 / (np.sqrt(square + damping_rate**2) + damping_rate), where(
+        is_damped, late_step, where(mobility > 0.0, 0.0 * damping_rate, LONGEST)
     )

@@ -108,8 +108,8 @@ def problems(
         texts.append(f"allowed are {', '.join(declared)}")
     if missing:
         texts.append(f"missing {', '.join(missing)}")
-    known = (problem(name, value, declared[name]) for name, value in values.items() if name in declared)
-    return texts + [text for text in known if text]
+    messages = (problem(name, value, declared[name]) for name, value in values.items() if name in declared)
+    return texts + [text for text in messages if text]
 
 
 def _series_problem(name: str, values: object, item: Field[object]) -> str | None:
@@ -134,8 +134,8 @@ def _shown(value: object) -> str:
 
 def check(obj: Any) -> None:
     """Raise ValueError that names every field of `obj` outside its interval; NaN and infinity are outside."""
-    own = {label(item): item for item in fields(obj) if "group" not in item.metadata}
-    if texts := problems({name: getattr(obj, item.name) for name, item in own.items()}, own):
+    declared = {label(item): item for item in fields(obj) if "group" not in item.metadata}
+    if texts := problems({name: getattr(obj, item.name) for name, item in declared.items()}, declared):
         raise ValueError("; ".join(texts))
 
 

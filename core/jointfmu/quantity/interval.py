@@ -72,8 +72,8 @@ class Interval:
         """
         if self.low == self.high:
             return self.low_open or self.high_open
-        shown = 1e-5 * min(abs(self.low), abs(self.high))
-        return not self.low < self.high or bool(self.high - self.low <= shown < inf)
+        resolution = 1e-5 * min(abs(self.low), abs(self.high))
+        return not self.low < self.high or bool(self.high - self.low <= resolution < inf)
 
     def intersection(self, other: "Interval") -> "Interval":
         """Intersection of two intervals; a common end is open if it is open in one of them."""

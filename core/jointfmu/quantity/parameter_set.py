@@ -70,14 +70,14 @@ def flat_fields(
 @cache
 def _every_field(cls: Any) -> tuple[tuple[str, Field[object]], ...]:
     """Result of `flat_fields` with all alternatives of each group, cached."""
-    hints, found = _hints(cls), list[tuple[str, Field[Any]]]()
+    hints, found_fields = _hints(cls), list[tuple[str, Field[Any]]]()
     for item in fields(cls):
         if "group" in item.metadata:
             for name, inner in _sections(item, hints[item.name]).items():
-                found += flat_fields(inner, f"{name}.")
+                found_fields += flat_fields(inner, f"{name}.")
         elif item.metadata:
-            found.append((label(item), item))
-    return tuple(found)
+            found_fields.append((label(item), item))
+    return tuple(found_fields)
 
 
 def flatten(obj: Any) -> dict[str, Any]:
@@ -98,9 +98,9 @@ def build(cls: type[T], values: Mapping[str, object]) -> T:
     Raises ValueError, one line, that names every unknown or missing name and every value that is no number
     or lies outside its interval; also if names belong to two alternatives of a group.
     """
-    known = dict(flat_fields(cls, names=values))
-    required = {name for name, item in known.items() if item.default is MISSING}
-    if texts := problems(values, known, sorted(required - values.keys())):
+    declared = dict(flat_fields(cls, names=values))
+    required = {name for name, item in declared.items() if item.default is MISSING}
+    if texts := problems(values, declared, sorted(required - values.keys())):
         raise ValueError("; ".join(texts))
     plain = {name: _plain(value) for name, value in values.items()}
     return assemble(cls, plain, lambda part, arguments: part(**arguments))
@@ -112,9 +112,9 @@ def changed(obj: T, changes: Mapping[str, object]) -> T:
     Raises ValueError as `build_parameter_set` does, and for names of an alternative that `obj` does not have.
     """
     values = flatten(obj)
-    everything = {name for name, _ in flat_fields(type(obj))}
-    if beside := [name for name in changes if name in everything and name not in values]:
-        texts = [f"{name} is no parameter of a set that has [{_instead(obj, name)}]" for name in beside]
+    all_names = {name for name, _ in flat_fields(type(obj))}
+    if foreign := [name for name in changes if name in all_names and name not in values]:
+        texts = [f"{name} is no parameter of a set that has [{_instead(obj, name)}]" for name in foreign]
         raise ValueError("; ".join([*texts, f"allowed are {', '.join(values)}"]))
     return build(type(obj), values | dict(changes))
 
@@ -156,7 +156,7 @@ def _section(sections: Iterable[str], prefix: str, names: Collection[str]) -> st
     spoken = {
         section: [name for name in names if name.startswith(f"{prefix}{section}.")] for section in sections
     }
-    present = [section for section, own in spoken.items() if own]
+    present = [section for section, section_names in spoken.items() if section_names]
     if len(present) > 1:
         beside = " beside ".join(", ".join(spoken[section]) for section in present)
         raise ValueError(f"{beside}: allowed is one of {', '.join(f'[{prefix}{name}]' for name in spoken)}")

@@ -118,40 +118,44 @@ def rewritten(unit: str, symbols: Mapping[str, str]) -> str:
 @cache
 def _parsed(unit: str) -> tuple[Fraction, dict[str, int]]:
     """Size in SI units and exponents of the base units. Raises ValueError if the unit is unknown."""
-    whole, exponents = Fraction(1), dict[str, int]()
-    plain = unit
-    if ten := _POWER_OF_TEN.match(plain):
+    total, exponents = Fraction(1), dict[str, int]()
+    notation_text = unit
+    if ten := _POWER_OF_TEN.match(notation_text):
         power = int(ten[1].translate(_RAISED))
         if abs(power) <= MOST_POWER:
-            whole, plain = whole * Fraction(10) ** power, plain[ten.end() :]
-    for other, ours in _WRITTEN:
-        plain = other.sub(ours, plain)
-    above, slash, below = plain.partition("/")
-    for sign, part in ((1, above), (-1, below if slash else "1")):
-        for text in part.split("."):
+            total, notation_text = total * Fraction(10) ** power, notation_text[ten.end() :]
+    for spelling, notation in _WRITTEN:
+        notation_text = spelling.sub(notation, notation_text)
+    numerator, slash, denominator = notation_text.partition("/")
+    for sign, product in ((1, numerator), (-1, denominator if slash else "1")):
+        for text in product.split("."):
             if not (match := _FACTOR.fullmatch(text)):
                 raise ValueError(f"unit {unit!r} is none; expected symbols as in N.m.s/rad")
             power = sign * int(match[2] or 1)
-            own, its = _symbol(match[1], unit)
-            whole *= own**power
-            for name, exponent in its.items():
+            symbol_size, symbol_exponents = _symbol(match[1], unit)
+            total *= symbol_size**power
+            for name, exponent in symbol_exponents.items():
                 exponents[name] = exponents.get(name, 0) + power * exponent
-    return whole, {name: exponent for name, exponent in exponents.items() if exponent}
+    return total, {name: exponent for name, exponent in exponents.items() if exponent}
 
 
 def _symbol(symbol: str, unit: str) -> tuple[Fraction, dict[str, int]]:
     """Size and exponents of one symbol, with or without a prefix; `unit` is named in the error."""
     if symbol in _SYMBOLS:
-        own, its = _SYMBOLS[symbol]
-        return Fraction(own), its
-    ten, rest = _PREFIXES.get(symbol[0]), symbol[1:]
-    if ten is None or rest not in _PREFIXED:
+        symbol_size, symbol_exponents = _SYMBOLS[symbol]
+        return Fraction(symbol_size), symbol_exponents
+    exponent, rest = _PREFIXES.get(symbol[0]), symbol[1:]
+    if exponent is None or rest not in _PREFIXED:
         raise ValueError(f"unit {unit!r}: symbol {symbol!r} is unknown, allowed are {', '.join(_SYMBOLS)}")
-    return Fraction(10) ** ten, _SYMBOLS[rest][1]
+    return Fraction(10) ** exponent, _SYMBOLS[rest][1]
 
 
 def _unit(name: str, quantity: str, *display: str) -> Unit:
-    return Unit(quantity, base(name), {shown: factor(name, shown) for shown in display or (name,)})
+    return Unit(
+        quantity,
+        base(name),
+        {display_name: factor(name, display_name) for display_name in display or (name,)},
+    )
 
 
 UNITS: Mapping[str, Unit] = {

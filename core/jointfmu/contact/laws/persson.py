@@ -26,8 +26,8 @@ def contact_shares(pressure: Number, hardness: Number, spread: Number) -> tuple[
     """
     x = np.minimum(pressure / hardness, 1.0)
     t = (spread / hardness) ** 2
-    early, late = _images(x, np.minimum(t, _SHORT)), _waves(x, np.maximum(t, _SHORT))
-    elastic, load = (where(t < _SHORT, a, b) for a, b in zip(early, late, strict=True))
+    image_series, mode_series = _images(x, np.minimum(t, _SHORT)), _waves(x, np.maximum(t, _SHORT))
+    elastic, load = (where(t < _SHORT, a, b) for a, b in zip(image_series, mode_series, strict=True))
     return elastic, np.maximum(x - load, 0.0)
 
 
@@ -54,11 +54,11 @@ def _images(x: Number, t: Number) -> tuple[Number, Number]:
     for k in range(-2, 3):
         for sign in (1.0, -1.0):
             start = 2.0 * k + sign * x
-            near, far = (0.0 - start) / spread, (1.0 - start) / spread
-            part = 0.5 * (erf(far) - erf(near))
-            tails = spread / (2.0 * np.sqrt(np.pi)) * (np.exp(-(near**2)) - np.exp(-(far**2)))
-            share = share + sign * part
-            load = load + sign * (start * part + tails)
+            to_zero, to_hardness = (0.0 - start) / spread, (1.0 - start) / spread
+            weight = 0.5 * (erf(to_hardness) - erf(to_zero))
+            tails = spread / (2.0 * np.sqrt(np.pi)) * (np.exp(-(to_zero**2)) - np.exp(-(to_hardness**2)))
+            share = share + sign * weight
+            load = load + sign * (start * weight + tails)
     return share, load
 
 

@@ -74,8 +74,8 @@ class Roughness(RoughSurfaces, Checked):
         plastic_work : [J] 0: the surfaces have carried the load before
         """
         p, A, rho = first_pressure(self), self.A_0, self.shear_ratio()
-        many = p * A / (self.gamma * self.h)
-        few = FEW_SPOTS * p * A / self.h * FIRST_TOUCH ** (-self.hurst / (1.0 + self.hurst))
+        many_spots = p * A / (self.gamma * self.h)
+        few_spots = FEW_SPOTS * p * A / self.h * FIRST_TOUCH ** (-self.hurst / (1.0 + self.hurst))
         power = 1.0 / (1.0 + self.hurst)
         return Spots(
             reference=A,
@@ -83,8 +83,8 @@ class Roughness(RoughSurfaces, Checked):
             weight=1.0 / _SIZE,
             terms={
                 "load": (_grown(p * A, 1.0),),
-                "normal": (_grown(many, 1.0), _grown(few, power)),
-                "tangential": (_grown(rho * many, 1.0), _grown(rho * few, power)),
+                "normal": (_grown(many_spots, 1.0), _grown(few_spots, power)),
+                "tangential": (_grown(rho * many_spots, 1.0), _grown(rho * few_spots, power)),
                 "elastic_work": (_grown(self.gamma * self.h * p * A, 1.0),),
                 "plastic_work": (_grown(0.0, 1.0),),
             },
@@ -94,28 +94,28 @@ class Roughness(RoughSurfaces, Checked):
 
     def areas(self, pressure: Number) -> tuple[Number, Number]:
         """Real area (...) [m2] and its elastic fraction [1] at pressures (...) [Pa] (Persson 2001)."""
-        spread = 0.5 * contact_modulus(self.side1, self.side2) * self.slope
-        elastic, plastic = contact_shares(pressure, self.H, spread)
+        deviation = 0.5 * contact_modulus(self.side1, self.side2) * self.slope
+        elastic, plastic = contact_shares(pressure, self.H, deviation)
         return self.A_0 * (elastic + plastic), elastic / (elastic + plastic)
 
     def unproven(self, least: float, most: float) -> list[str]:
         """Messages if pressures from `lowest` to `highest` [Pa] leave the validated range, one line each."""
         scale = contact_modulus(self.side1, self.side2) * self.h
         few, flat = FEWEST * scale * self.longest_wave / self.A_0, FLATTEST * scale / self.longest_wave
-        found = []
+        messages = []
         if least < few:
-            found.append(
+            messages.append(
                 f"a pressure of {least:.4g} Pa is below {few:.3g} Pa, from where the law roughness is "
                 "proven: one hill carries, and surfaces of the same roughness differ by half and more "
                 "(docs/validity.md)"
             )
         if most > flat:
-            found.append(
+            messages.append(
                 f"a pressure of {most:.4g} Pa is above {flat:.3g} Pa, up to which the law roughness is "
                 "proven: the longest wave is pressed flat, the rest to its end is an extrapolation "
                 "(docs/validity.md)"
             )
-        return found
+        return messages
 
     def shear_ratio(self) -> Number:
         """Stiffness ratio rho = K_T/K_N = 4 G'/E* [1] without slip.
@@ -178,8 +178,8 @@ def loss_factor(x: Number) -> Number:
     series = x * (1.0 / 6.0 + x * (1.0 / 12.0 + x * (19.0 / 360.0 + x * (3.0 / 80.0 + x * 863.0 / 30240.0))))
     small = x < 0.01
     safe = np.where(small, 0.01, x)
-    closed = 2.0 / safe - 1.0 + 2.0 / np.log1p(-safe)
-    return 4.0 / np.pi * np.where(small, series, closed)
+    closed_form = 2.0 / safe - 1.0 + 2.0 / np.log1p(-safe)
+    return 4.0 / np.pi * np.where(small, series, closed_form)
 
 
 def approach(law: Roughness, p: Number) -> Number:

@@ -143,8 +143,8 @@ def areas(spots: Spots, u: Number) -> tuple[Number, Number]:
 
 def modulus(law: Yu2022) -> Number:
     """Contact modulus E' [Pa], Eq. 21; with a rigid flat only the first body deforms."""
-    alone = law.side1.E / (1.0 - law.side1.nu**2)
-    return where(law.rigid_flat, alone, contact_modulus(law.side1, law.side2))
+    single_body = law.side1.E / (1.0 - law.side1.nu**2)
+    return where(law.rigid_flat, single_body, contact_modulus(law.side1, law.side2))
 
 
 def shape_factors(e: Number) -> tuple[Number, Number]:

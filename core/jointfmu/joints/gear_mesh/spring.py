@@ -77,9 +77,9 @@ def deflection(mesh: Mesh, motion: Sequence[Number]) -> Number:
     It is r_b1 phi1 + r_b2 phi2 minus half the backlash, with its sign; 0 within the backlash.
     """
     phi1, _, phi2, _ = motion
-    along = mesh.r_b1 * phi1 + mesh.r_b2 * phi2
-    half = 0.5 * mesh.backlash
-    return along - np.minimum(np.maximum(along, 0.0 - half), half)
+    rolling = mesh.r_b1 * phi1 + mesh.r_b2 * phi2
+    half_backlash = 0.5 * mesh.backlash
+    return rolling - np.minimum(np.maximum(rolling, 0.0 - half_backlash), half_backlash)
 
 
 def phase(mesh: Mesh, motion: Sequence[Number]) -> Number:
@@ -121,18 +121,18 @@ def pair_curve(mesh: Mesh) -> tuple[Curve, float]:
 def _tabulate(mesh: Mesh, flanks: Curve, parts: int) -> Curve:
     """Table of a tooth pair; each segment of the flanks' curve is divided into `divisions` steps."""
     nodes = flanks.displacement
-    closed = int(np.searchsorted(nodes, 0.0))
+    closing_index = int(np.searchsorted(nodes, 0.0))
     t = np.linspace(0.0, 1.0, CLOSING_STEPS * parts + 1)
     kinks = 1 + np.flatnonzero(flanks.bend_end[:-1] != flanks.bend_start[1:])
-    ends = [closed, *(int(i) for i in kinks if i > closed), nodes.size - 1]
-    places = [(t**2 - 1.0) * -nodes[0]]
-    for first, last in pairwise(ends):
-        steps = np.diff(nodes[first : last + 1])[:, None] * np.arange(parts) / parts
-        places.append(np.append((nodes[first:last, None] + steps).ravel(), nodes[last]))
+    ends = [closing_index, *(int(i) for i in kinks if i > closing_index), nodes.size - 1]
+    abscissas = [(t**2 - 1.0) * -nodes[0]]
+    for first, end in pairwise(ends):
+        steps = np.diff(nodes[first : end + 1])[:, None] * np.arange(parts) / parts
+        abscissas.append(np.append((nodes[first:end, None] + steps).ravel(), nodes[end]))
     pieces = []
-    for x, last in zip(places, ends, strict=True):
+    for x, end in zip(abscissas, ends, strict=True):
         pressure, stiffness, bend = flanks.derivatives(x, 2)
-        bend[-1] = flanks.bend_end[last - 1]  # from below: the derivative jumps where a regime ends
+        bend[-1] = flanks.bend_end[end - 1]  # from below: the derivative jumps where a regime ends
         pieces.append(in_series(mesh, x - nodes[0], pressure, stiffness, bend))
     return assemble(pieces, flanks.error)
 
@@ -185,10 +185,10 @@ def torques(
     _, w1, _, w2 = motion
     s = deflection(mesh, motion)
     count, slope = pairs(mesh.contact_ratio, mesh.engagement, mesh.overlap_ratio, phase(mesh, motion))
-    touching = smooth_step(np.abs(s) / closing)
-    force = count * load * np.sign(s) + mesh.d * touching * (mesh.r_b1 * w1 + mesh.r_b2 * w2)
+    contact_factor = smooth_step(np.abs(s) / closing)
+    force = count * load * np.sign(s) + mesh.d * contact_factor * (mesh.r_b1 * w1 + mesh.r_b2 * w2)
     w = mobility(mesh.inertia1, mesh.r_b1) + mobility(mesh.inertia2, mesh.r_b2)
-    at_once, side_by_side = stable_steps(count * stiffness, mesh.d * touching, w)
+    at_once, side_by_side = stable_steps(count * stiffness, mesh.d * contact_factor, w)
     change = 0.5 * slope * energy / base_pitch(mesh)  # -dU/d(r_b phi) of one wheel by the change of the phase
     return {
         "tau1": 0.0 - mesh.r_b1 * (force + change),
@@ -221,11 +221,13 @@ def pairs(
     """
     helical = overlap_ratio > _NARROW
     length = np.where(helical, overlap_ratio, 1.0)
-    here, slope, _ = _section(contact_ratio, engagement, phase)
-    after, _, to = _section(contact_ratio, engagement, phase + 0.5 * length)
-    before, _, since = _section(contact_ratio, engagement, phase - 0.5 * length)
-    mean = contact_ratio + (to - since) / length
-    return np.where(helical, mean, here), np.where(helical, (after - before) / length, slope)
+    spur_pairs, slope, _ = _section(contact_ratio, engagement, phase)
+    pairs_after, _, integral_after = _section(contact_ratio, engagement, phase + 0.5 * length)
+    pairs_before, _, integral_before = _section(contact_ratio, engagement, phase - 0.5 * length)
+    mean = contact_ratio + (integral_after - integral_before) / length
+    return np.where(helical, mean, spur_pairs), np.where(
+        helical, (pairs_after - pairs_before) / length, slope
+    )
 
 
 def _section(contact_ratio: Number, engagement: Number, phase: Number) -> tuple[Number, Number, Number]:
@@ -236,18 +238,18 @@ def _section(contact_ratio: Number, engagement: Number, phase: Number) -> tuple[
     times the shorter of the durations with and without it. N is even in the phase; its mean over a cycle is
     the contact ratio.
     """
-    least = np.floor(contact_ratio)
-    part = contact_ratio - least
-    width = engagement * np.minimum(part, 1.0 - part)
+    whole_pairs = np.floor(contact_ratio)
+    fraction = contact_ratio - whole_pairs
+    width = engagement * np.minimum(fraction, 1.0 - fraction)
     changing = width > 0.0
     length = np.where(changing, width, 1.0)
-    away = phase - np.floor(phase + 0.5)
-    first = 0.5 + 0.5 * part / length
-    place = first - np.abs(away) / length
-    share, (slope, _) = smooth_step(place), smooth_step_slopes(place)
-    passed = length * (first - 0.5 - smooth_step_integral(place)) - part * np.abs(away)
+    distance = phase - np.floor(phase + 0.5)
+    first = 0.5 + 0.5 * fraction / length
+    position = first - np.abs(distance) / length
+    share, (slope, _) = smooth_step(position), smooth_step_slopes(position)
+    excess = length * (first - 0.5 - smooth_step_integral(position)) - fraction * np.abs(distance)
     return (
-        least + np.where(changing, share, 0.0),
-        np.where(changing, -np.sign(away) * slope / length, 0.0),
-        np.where(changing, np.sign(away) * passed, 0.0),
+        whole_pairs + np.where(changing, share, 0.0),
+        np.where(changing, -np.sign(distance) * slope / length, 0.0),
+        np.where(changing, np.sign(distance) * excess, 0.0),
     )

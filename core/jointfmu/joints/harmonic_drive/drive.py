@@ -182,14 +182,14 @@ def kinematic_error(drive: Drive, phi1: Number) -> tuple[Number, Number, Number]
     error = slope = bend = 0.0
     for n, amplitude in zip(HARMONICS, amplitudes(drive), strict=True):
         angle = n * phi1 + getattr(drive, f"error_{n}_phase")
-        wave, rise = amplitude * np.sin(angle), n * amplitude * np.cos(angle)
-        error, slope, bend = error + wave, slope + rise, bend - n * n * wave
+        wave, wave_slope = amplitude * np.sin(angle), n * amplitude * np.cos(angle)
+        error, slope, bend = error + wave, slope + wave_slope, bend - n * n * wave
     return error, slope, bend
 
 
 def play(drive: Drive, torque: Number) -> tuple[Number, Number, Number]:
     """phi_p (...) [rad] at torques (...) [N.m], its first [rad/(N.m)] and second derivative [rad/(N.m)2]."""
     width, half = WIDTH * drive.rated_torque, 0.5 * drive.lost_motion
-    part = np.tanh(torque / width)
-    slope = half * (1.0 - part * part) / width
-    return half * part, slope, -2.0 * part * slope / width
+    share = np.tanh(torque / width)
+    slope = half * (1.0 - share * share) / width
+    return half * share, slope, -2.0 * share * slope / width

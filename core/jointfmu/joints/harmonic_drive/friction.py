@@ -65,15 +65,15 @@ def limits(drive: Drive, w1: Number, tau: Number, temperature: Number = REFERENC
     Both functions of the sign of tau are smooth, with t = PLAY_WIDTH_RATIO rated_torque: |tau| is
     tau tanh(tau/t), and the weight of load_loss_back is (1 +- tanh(tau/t))/2.
     """
-    turned = np.tanh(tau / (WIDTH * drive.rated_torque))
-    size = tau * turned / np.abs(drive.ratio)
+    load_sign = np.tanh(tau / (WIDTH * drive.rated_torque))
+    size = tau * load_sign / np.abs(drive.ratio)
     stribeck = drive.friction_stribeck * np.exp(-((w1 / drive.stribeck_speed) ** 2))
-    more = drive.loss_back - drive.load_loss
-    back = 0.5 * (1.0 + turned * drive.ratio / np.abs(drive.ratio))
-    sides = (drive.load_loss + more * part for part in (back, 1.0 - back))
-    held = drive.friction_coulomb + stribeck
+    difference = drive.loss_back - drive.load_loss
+    back = 0.5 * (1.0 + load_sign * drive.ratio / np.abs(drive.ratio))
+    sides = (drive.load_loss + difference * weight for weight in (back, 1.0 - back))
+    constant = drive.friction_coulomb + stribeck
     factor = dry_factor(drive, temperature)
-    positive, negative = (factor * (held + loss * size) for loss in sides)
+    positive, negative = (factor * (constant + loss * size) for loss in sides)
     return positive, negative
 
 

@@ -148,22 +148,22 @@ class CatalogueDrive(Given):
     def nodes(self) -> list[Node]:
         """Nodes of the first line with the play, then both ends of each corner, then the end of the table."""
         (first, second), (K1, K2, K3) = self.corners, (self.K1, self.K2, self.K3)
-        one, two, end = self.half_width * first, self.half_width * second, self.reach
-        far = play(self, self._straight)[0]
+        first_width, second_width, end = self.half_width * first, self.half_width * second, self.reach
+        play_angle = play(self, self._straight)[0]
         return [
             *self._with_play(),
-            Node(first - one + far, self._straight, K1),
-            Node(first + one + far, self.T1 + K2 * one, K2),
-            Node(second - two + far, self.T2 - K2 * two, K2),
-            Node(second + two + far, self.T2 + K3 * two, K3),
-            Node(second + (end - self.T2) / K3 + far, end, K3),
+            Node(first - first_width + play_angle, self._straight, K1),
+            Node(first + first_width + play_angle, self.T1 + K2 * first_width, K2),
+            Node(second - second_width + play_angle, self.T2 - K2 * second_width, K2),
+            Node(second + second_width + play_angle, self.T2 + K3 * second_width, K3),
+            Node(second + (end - self.T2) / K3 + play_angle, end, K3),
         ]
 
     def _with_play(self) -> list[Node]:
         """Nodes of the first line with the play in series, denser at small torque."""
-        most, nodes = np.minimum(SPENT * WIDTH * self.rated_torque, self._straight), []
-        for part in np.arange(PLAY_NODES) / PLAY_NODES:
-            torque = most * float(part) ** 2
+        end_torque, nodes = np.minimum(SPENT * WIDTH * self.rated_torque, self._straight), []
+        for position in np.arange(PLAY_NODES) / PLAY_NODES:
+            torque = end_torque * float(position) ** 2
             angle, compliance, change = play(self, torque)
             softer = 1.0 + self.K1 * compliance
             bend = -(self.K1**3) * change / softer**3
@@ -204,8 +204,8 @@ class Measured(Given):
 
     def limits(self) -> list[Limit]:
         """Intervals that other parameters decide."""
-        none = Limit("lost_motion", Interval.of(ge=0.0, le=0.0), "a measured midline has it already")
-        return [*super().limits(), none]
+        no_play = Limit("lost_motion", Interval.of(ge=0.0, le=0.0), "a measured midline has it already")
+        return [*super().limits(), no_play]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -233,31 +233,38 @@ class TableDrive(Measured):
     def K_FTS(self) -> float:
         """Stiffness K_FTS [N.m/rad]: twice the largest stiffness of the midline."""
         columns = np.array(self.nodes(), dtype=np.float64).T
-        x, y, s, before, after = columns
-        return 2.0 * float(np.max(_stiffness(np.diff(x), np.diff(y), s, after[:-1], before[1:])))
+        x, y, s, slope_before, slope_after = columns
+        return 2.0 * float(np.max(_stiffness(np.diff(x), np.diff(y), s, slope_after[:-1], slope_before[1:])))
 
     def nodes(self) -> list[Node]:
         """Nodes at zero and at each point of the table."""
         x, y = (np.array([0.0, *values]) for values in (self.table.angle, self.table.torque))
-        h, rise = np.diff(x), np.diff(y)
-        s = _slopes(h, rise / h)
-        after = (6.0 * rise / h - 4.0 * s[:-1] - 2.0 * s[1:]) / h  # of the cubic Hermite segments
-        before = (-6.0 * rise / h + 2.0 * s[:-1] + 4.0 * s[1:]) / h
-        mean = (h[1:] * before[:-1] + h[:-1] * after[1:]) / (h[:-1] + h[1:])
-        even = np.concatenate([[0.0], mean, before[-1:]])
-        least = np.min(_stiffness(h, rise, s, even[:-1], even[1:]), axis=0)
-        firm = least > SOFTEST * np.minimum(np.minimum(s[:-1], s[1:]), rise / h)
-        after, before = np.where(firm, even[:-1], after), np.where(firm, even[1:], before)
-        ends = np.concatenate([[0.0], before]), np.concatenate([after, [0.0]])
+        h, torque_steps = np.diff(x), np.diff(y)
+        s = _slopes(h, torque_steps / h)
+        slope_after = (
+            6.0 * torque_steps / h - 4.0 * s[:-1] - 2.0 * s[1:]
+        ) / h  # of the cubic Hermite segments
+        slope_before = (-6.0 * torque_steps / h + 2.0 * s[:-1] + 4.0 * s[1:]) / h
+        mean = (h[1:] * slope_before[:-1] + h[:-1] * slope_after[1:]) / (h[:-1] + h[1:])
+        common_slope = np.concatenate([[0.0], mean, slope_before[-1:]])
+        smallest = np.min(_stiffness(h, torque_steps, s, common_slope[:-1], common_slope[1:]), axis=0)
+        is_stiff = smallest > SOFTEST * np.minimum(np.minimum(s[:-1], s[1:]), torque_steps / h)
+        slope_after, slope_before = (
+            np.where(is_stiff, common_slope[:-1], slope_after),
+            np.where(is_stiff, common_slope[1:], slope_before),
+        )
+        ends = np.concatenate([[0.0], slope_before]), np.concatenate([slope_after, [0.0]])
         return [Node(*row) for row in np.column_stack([x, y, s, *ends]).tolist()]
 
 
 def _slopes(h: Array, d: Array) -> Array:
     """Stiffness (n + 1) at the points, from widths h (n) and secant stiffnesses d (n); the curve is odd."""
-    one, two = 2.0 * h[1:] + h[:-1], h[1:] + 2.0 * h[:-1]
-    inner = (one + two) / (one / d[:-1] + two / d[1:])
-    last = ((2.0 * h[-1] + h[-2]) * d[-1] - h[-1] * d[-2]) / (h[-1] + h[-2])
-    return np.concatenate([d[:1], inner, [np.clip(last, LEAST_SLOPE * d[-1], LARGEST_SLOPE * d[-1])]])
+    weight_left, weight_right = 2.0 * h[1:] + h[:-1], h[1:] + 2.0 * h[:-1]
+    inner = (weight_left + weight_right) / (weight_left / d[:-1] + weight_right / d[1:])
+    end_stiffness = ((2.0 * h[-1] + h[-2]) * d[-1] - h[-1] * d[-2]) / (h[-1] + h[-2])
+    return np.concatenate(
+        [d[:1], inner, [np.clip(end_stiffness, LEAST_SLOPE * d[-1], LARGEST_SLOPE * d[-1])]]
+    )
 
 
 def _stiffness(h: Array, rise: Array, s: Array, after: Array, before: Array) -> Array:

@@ -67,9 +67,12 @@ def shares(m: Number, places: Sequence[float] = LEFT) -> tuple[list[Number], lis
     m                : exponent of K_N ~ P^m
     remaining_shares : values of s [1], decreasing from 1 to 0, that separate the sliders
     """
-    rate = [left**m if left else 0.0 for left in places]
-    used = [1.0 - left - _travel(left, m) * r if left else 1.0 for left, r in zip(places, rate, strict=True)]
-    return [a - b for a, b in pairwise(rate)], [b - a for a, b in pairwise(used)]
+    rate = [remaining**m if remaining else 0.0 for remaining in places]
+    used_shares = [
+        1.0 - remaining - _travel(remaining, m) * r if remaining else 1.0
+        for remaining, r in zip(places, rate, strict=True)
+    ]
+    return [a - b for a, b in pairwise(rate)], [b - a for a, b in pairwise(used_shares)]
 
 
 def _travel(left: float, m: Number) -> Number:
@@ -94,16 +97,16 @@ class Hysteresis(Sliders):
 
         Raises ValueError if no loop through rated torque can open by hysteresis_loss.
         """
-        least = float(curve.derivatives(0.5 * drive.hysteresis_loss)[0])
-        if not least < 0.5 * drive.rated_torque:
+        half_loop_torque = float(curve.derivatives(0.5 * drive.hysteresis_loss)[0])
+        if not half_loop_torque < 0.5 * drive.rated_torque:
             raise ValueError(
                 f"hysteresis_loss = {drive.hysteresis_loss:g} rad is outside "
                 f"[0, {2.0 * float(curve.inverse(0.5 * drive.rated_torque)):g}) rad: "
                 "friction would hold half of the rated torque"
             )
         springs, friction = (np.array(share, dtype=np.float64) for share in shares(exponent(drive)))
-        drawn = cls(_extra_stiffness(drive, curve, least) * springs, friction)
-        return replace(drawn, limit=_limit(drive, curve, drawn, least) * friction)
+        unit_sliders = cls(_extra_stiffness(drive, curve, half_loop_torque) * springs, friction)
+        return replace(unit_sliders, limit=_limit(drive, curve, unit_sliders, half_loop_torque) * friction)
 
     @property
     def acts(self) -> bool:
@@ -121,15 +124,17 @@ class Hysteresis(Sliders):
         By Masing's rule. If it equals the torque of the midline at half_opening, the total torque is zero
         there: the branches of the loop are then 2 half_opening apart at zero torque.
         """
-        turn = float(self.wind_up(curve, MEMORY.rest(), torque))
-        back, there = self.moved(MEMORY.rest(), [0.5 * (turn - half), turn]).traction
-        return float(2.0 * back - there)
+        turn_wind_up = float(self.wind_up(curve, MEMORY.rest(), torque))
+        friction_back, friction_at_turn = self.moved(
+            MEMORY.rest(), [0.5 * (turn_wind_up - half), turn_wind_up]
+        ).traction
+        return float(2.0 * friction_back - friction_at_turn)
 
     def moved(self, memory: Array, phi: ArrayLike) -> Moved:
         """Advance the sliders from history variables (..., n) on a path to wind-ups phi (...) [rad]."""
-        before = MEMORY.split(memory)
-        way = np.asarray(phi, dtype=np.float64) - before["wind_up"]
-        return self.along(before["force"], way, self.limit, self.limit)
+        variables = MEMORY.split(memory)
+        increment = np.asarray(phi, dtype=np.float64) - variables["wind_up"]
+        return self.along(variables["force"], increment, self.limit, self.limit)
 
     def after(self, moved: Moved, phi: ArrayLike, loss: Array) -> Array:
         """New history variables (..., n) after the path to phi (...) [rad]; loss (...) [J] is the total."""
@@ -141,16 +146,16 @@ class Hysteresis(Sliders):
         Safeguarded Newton iteration: the total torque increases monotonically with the wind-up. The iteration
         starts at the present wind-up, limited to the range in which not all sliders slip.
         """
-        tau, most = np.asarray(torque, dtype=np.float64), float(np.sum(self.limit))
-        slipping = curve.odd_inverse(np.stack([tau - most, tau + most]))
+        tau, friction_sum = np.asarray(torque, dtype=np.float64), float(np.sum(self.limit))
+        slipping = curve.odd_inverse(np.stack([tau - friction_sum, tau + friction_sum]))
         phi = np.clip(MEMORY.split(memory)["wind_up"], *slipping)
         low, high = np.full(tau.shape, -np.inf), np.full(tau.shape, np.inf)
         for _ in range(MOST_STEPS):
             load, stiffness = curve.derivatives(np.abs(phi), 1)
-            moved = self.moved(memory, phi)
-            rest = tau - (np.copysign(load, phi) + moved.traction)
-            low, high = np.where(rest > 0.0, phi, low), np.where(rest < 0.0, phi, high)
-            step = phi + rest / (stiffness + moved.tangent)
+            update = self.moved(memory, phi)
+            residual = tau - (np.copysign(load, phi) + update.traction)
+            low, high = np.where(residual > 0.0, phi, low), np.where(residual < 0.0, phi, high)
+            step = phi + residual / (stiffness + update.tangent)
             with np.errstate(invalid="ignore"):
                 new = np.where((step >= low) & (step <= high), step, 0.5 * (low + high))
             change, phi = np.abs(new - phi), new
@@ -180,13 +185,13 @@ def _limit(drive: Drive, curve: Curve, drawn: Hysteresis, least: float) -> float
     for _ in range(MOST_CORRECTIONS):
         if limit == 0.0:
             return limit
-        found = replace(drawn, limit=limit * drawn.limit)
-        before, opening = limit, found.opening(curve, drive.rated_torque, 0.5 * drive.hysteresis_loss)
+        sliders = replace(drawn, limit=limit * drawn.limit)
+        previous, opening = limit, sliders.opening(curve, drive.rated_torque, 0.5 * drive.hysteresis_loss)
         limit *= least / opening if opening > 0.0 else np.inf
         if not limit < drive.rated_torque:
             break
-        if abs(limit - before) <= SETTLED * limit:
-            return before
+        if abs(limit - previous) <= SETTLED * limit:
+            return previous
     raise ValueError(
         f"hysteresis_stiffness = {drive.hysteresis_stiffness:g} N.m/rad is too small for a loop through "
         f"rated torque that opens by {drive.hysteresis_loss:g} rad; allowed are 0 and larger ones"

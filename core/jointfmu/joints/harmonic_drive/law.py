@@ -164,9 +164,12 @@ class HarmonicDrive(PairDrive):
         """Intervals for which all spots stay elastic up to max_torque, as the printed law assumes."""
         highest = peak_pressure(self, self.max_torque)[0]
         law = self.pair_law
-        least = highest * law.sigma_y / elastic_pressure(law)
+        min_yield_strength = highest * law.sigma_y / elastic_pressure(law)
         why = "spots of the contact pair would yield below max_torque"
-        return [Limit(f"{side}.sigma_y", Interval.of(gt=least), why) for side in ("flexspline", "bearing")]
+        return [
+            Limit(f"{side}.sigma_y", Interval.of(gt=min_yield_strength), why)
+            for side in ("flexspline", "bearing")
+        ]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -212,14 +215,14 @@ def peak_pressure(drive: PairDrive, torque: Number) -> tuple[Number, Number]:
     `t(T) = T/(1 + (T/T_m)^4)^(1/4)` tends to T_m = SATURATION_TORQUE_RATIO times the rated torque, because
     the stiffness of catalogue drives becomes constant. Beyond rated torque this is an extrapolation.
     """
-    smoothing, most = drive.torque_smoothing, SETTLED * drive.rated_torque
+    smoothing, saturation = drive.torque_smoothing, SETTLED * drive.rated_torque
 
     def settled(T: Number) -> tuple[Number, Number]:
         """Squared saturated torque t^2 [(N.m)^2], and t dt/dT [N.m]."""
-        x = np.minimum(np.maximum(T / most, -1e3), 1e3)
+        x = np.minimum(np.maximum(T / saturation, -1e3), 1e3)
         bend = 1.0 + x**4
         root = np.sqrt(bend)
-        return (most * x) ** 2 / root, most * x / (bend * root)
+        return (saturation * x) ** 2 / root, saturation * x / (bend * root)
 
     def distance(square: Number) -> Number:
         return np.maximum(np.sqrt(square + smoothing**2), smoothing)  # if smoothing**2 underflows
@@ -229,9 +232,9 @@ def peak_pressure(drive: PairDrive, torque: Number) -> tuple[Number, Number]:
 
     zero, rated = drive.zero_torque_pressure, drive.rated_pressure
     factor = (rated**2 - zero**2) / growth(settled(drive.rated_torque)[0])
-    square, turn = settled(torque)
-    free = np.sqrt(zero**2 + factor * growth(square))
-    return free - drive.pressure_loss, 0.5 * factor * turn / distance(square) / free
+    square, square_slope = settled(torque)
+    unreduced = np.sqrt(zero**2 + factor * growth(square))
+    return unreduced - drive.pressure_loss, 0.5 * factor * square_slope / distance(square) / unreduced
 
 
 def pair_log_area(drive: PairDrive, torque: Number) -> Number:
@@ -247,11 +250,11 @@ def pair_stiffness(drive: PairDrive, torque: Number) -> tuple[Number, Number]:
     Computed from the mean pressure: the tangential stiffness of a point is nearly proportional to its
     pressure.
     """
-    peak, rise = peak_pressure(drive, torque)
+    peak, pressure_slope = peak_pressure(drive, torque)
     spots, u = drive.pair_law.spots(), pair_log_area(drive, torque)
     power = spots.log_total("load", 0.0)[1]
     slope = spots.slope("tangential", u) / (power * peak)
-    return drive.twist * spots.total("tangential", u), drive.twist * slope * rise
+    return drive.twist * spots.total("tangential", u), drive.twist * slope * pressure_slope
 
 
 def drive_stiffness(drive: PairDrive, torque: Number) -> tuple[Number, Number]:

@@ -38,8 +38,8 @@ def torque_curve(drive: Drive) -> Curve:
     if isinstance(drive, PairDrive):
         return refined(lambda steps: _windup(drive, steps), STEPS)
     if isinstance(drive, Given):
-        x, y, s, before, after = np.array(drive.nodes(), dtype=np.float64).T
-        return Curve(x, y, s, after[:-1], before[1:])
+        x, y, s, slope_before, slope_after = np.array(drive.nodes(), dtype=np.float64).T
+        return Curve(x, y, s, slope_after[:-1], slope_before[1:])
     raise TypeError(f"{type(drive).__name__} is no PairDrive and not Given")
 
 
@@ -116,33 +116,39 @@ class HarmonicDriveSpring:
         temperature : (...) [K] of the lubricant
         """
         motion = tuple(np.asarray(x, dtype=np.float64) for x in motion)
-        warmth = np.asarray(temperature, dtype=np.float64)
-        wound, brakes = _parts(memory)
+        kelvin = np.asarray(temperature, dtype=np.float64)
+        hysteresis_history, friction_history = _parts(memory)
         error, slope, _ = kinematic_error(self.joint, motion[0])
         phi = wind_up(self.joint, motion, error)
         load, stiffness = self.curve.derivatives(np.abs(phi), 1)
-        slid = self.hysteresis.moved(wound, phi)
+        hysteresis_update = self.hysteresis.moved(hysteresis_history, phi)
         load = np.copysign(load, phi)
-        state = State(phi, load, stiffness, slid.traction, error, slope)
-        most = limits(self.joint, motion[1], transmitted(self.joint, motion, state), warmth)
-        braked = self.friction.moved(brakes, motion[0], motion[1], most)
-        loss = hysteresis.MEMORY.split(wound)["loss"] + slid.loss + braked.loss
-        out = exported(self.joint, motion, warmth, state, braked.traction) | {"E_loss": loss}
-        after = self.friction.after(braked, motion[0], most)
-        return out, np.concatenate([self.hysteresis.after(slid, phi, loss), after], axis=-1)
+        state = State(phi, load, stiffness, hysteresis_update.traction, error, slope)
+        friction_limits_ = limits(self.joint, motion[1], transmitted(self.joint, motion, state), kelvin)
+        friction_update = self.friction.moved(friction_history, motion[0], motion[1], friction_limits_)
+        loss = (
+            hysteresis.MEMORY.split(hysteresis_history)["loss"]
+            + hysteresis_update.loss
+            + friction_update.loss
+        )
+        out = exported(self.joint, motion, kelvin, state, friction_update.traction) | {"E_loss": loss}
+        new_friction = self.friction.after(friction_update, motion[0], friction_limits_)
+        return out, np.concatenate(
+            [self.hysteresis.after(hysteresis_update, phi, loss), new_friction], axis=-1
+        )
 
     def loaded(self, tau: ArrayLike, memory: Array) -> tuple[dict[str, Array], Array]:
         """Outputs and new history variables after a path to torques tau (...) [N.m], phi1 locked."""
-        wound, brakes = _parts(memory)
+        hysteresis_history, friction_history = _parts(memory)
         if self.hysteresis.acts:
-            phi = self.hysteresis.wind_up(self.curve, wound, tau)
+            phi = self.hysteresis.wind_up(self.curve, hysteresis_history, tau)
         else:
             phi = self.curve.odd_inverse(tau)
         load, stiffness = self.curve.derivatives(np.abs(phi), 1)
-        slid = self.hysteresis.moved(wound, phi)
-        loss = hysteresis.MEMORY.split(wound)["loss"] + slid.loss
-        new = self.hysteresis.after(slid, phi, loss)
-        locked = np.broadcast_to(brakes, (*new.shape[:-1], brakes.shape[-1]))
+        update = self.hysteresis.moved(hysteresis_history, phi)
+        loss = hysteresis.MEMORY.split(hysteresis_history)["loss"] + update.loss
+        new = self.hysteresis.after(update, phi, loss)
+        locked = np.broadcast_to(friction_history, (*new.shape[:-1], friction_history.shape[-1]))
         out = {"phi_rel": phi, **parts(self.joint, load, stiffness), "E_loss": loss}
         return out, np.concatenate([new, locked], axis=-1)
 

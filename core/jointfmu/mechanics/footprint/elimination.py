@@ -25,21 +25,21 @@ def eliminated(values: Array, weights: Array) -> Array:
 
     weights : (n) >= 0
     """
-    places, base = independent(values, values.shape[1])
-    rows = product(values, base)
-    inverse = _inverse(rows[places])
-    held, out = weights[places], np.zeros_like(weights)
-    for node in np.setdiff1d(np.arange(len(values)), places):
+    basis, orthonormal = independent(values, values.shape[1])
+    rows = product(values, orthonormal)
+    inverse = _inverse(rows[basis])
+    basis_weights, out = weights[basis], np.zeros_like(weights)
+    for node in np.setdiff1d(np.arange(len(values)), basis):
         share = combined(rows[node], inverse)
-        place, taken = _leaving(share, held, weights[node])
-        held = np.maximum(held + taken * share, 0.0)
-        if place is None:
+        leaving, transfer = _leaving(share, basis_weights, weights[node])
+        basis_weights = np.maximum(basis_weights + transfer * share, 0.0)
+        if leaving is None:
             continue
-        held[place], places[place] = weights[node] - taken, node
-        column = inverse[:, place] / share[place]
+        basis_weights[leaving], basis[leaving] = weights[node] - transfer, node
+        column = inverse[:, leaving] / share[leaving]
         inverse -= column[:, None] * share
-        inverse[:, place] = column
-    out[places] = held
+        inverse[:, leaving] = column
+    out[basis] = basis_weights
     return out
 
 
@@ -51,18 +51,18 @@ def independent(vectors: Array, most: int, least: float = LEAST) -> tuple[Nodes,
 
     Returns their indices (r), in the order of the size of their remainder, and an orthonormal basis (r, d).
     """
-    rest, base, places = vectors.copy(), np.empty((0, vectors.shape[1])), np.empty(0, np.intp)
-    square = np.add.reduce(rest * rest, axis=1)
+    remainder, basis, indices = vectors.copy(), np.empty((0, vectors.shape[1])), np.empty(0, np.intp)
+    square = np.add.reduce(remainder * remainder, axis=1)
     end = least * least * np.max(square)
-    while places.size < most and np.max(square) > end:
-        place = int(np.argmax(square))
-        axis = rest[place] / np.sqrt(square[place])
-        axis -= combined(over(base, axis), base)
+    while indices.size < most and np.max(square) > end:
+        pivot = int(np.argmax(square))
+        axis = remainder[pivot] / np.sqrt(square[pivot])
+        axis -= combined(over(basis, axis), basis)
         axis /= length(axis)
-        rest -= over(rest, axis)[:, None] * axis
-        square = np.add.reduce(rest * rest, axis=1)
-        base, places = np.concatenate([base, axis[None]]), np.append(places, place)
-    return places, base
+        remainder -= over(remainder, axis)[:, None] * axis
+        square = np.add.reduce(remainder * remainder, axis=1)
+        basis, indices = np.concatenate([basis, axis[None]]), np.append(indices, pivot)
+    return indices, basis
 
 
 def solved(matrix: Array, right: Array) -> Array:
@@ -107,11 +107,11 @@ def _leaving(share: Array, held: Array, weight: float) -> tuple[int | None, floa
     The index is None if the basis can take the whole weight. A negative transfer moves weight from the basis
     to the new node.
     """
-    over = np.divide(held, np.abs(share), out=np.full_like(held, np.inf), where=share != 0.0)
-    first = int(np.argmin(np.where(share < 0.0, over, np.inf)))
-    if share[first] >= 0.0 or over[first] >= weight:
+    ratio = np.divide(held, np.abs(share), out=np.full_like(held, np.inf), where=share != 0.0)
+    decreasing = int(np.argmin(np.where(share < 0.0, ratio, np.inf)))
+    if share[decreasing] >= 0.0 or ratio[decreasing] >= weight:
         return None, weight
-    last = int(np.argmin(np.where(share > 0.0, over, np.inf)))
-    if share[last] > -share[first]:  # larger pivot: less round-off
-        return last, -float(over[last])
-    return first, float(over[first])
+    increasing = int(np.argmin(np.where(share > 0.0, ratio, np.inf)))
+    if share[increasing] > -share[decreasing]:  # larger pivot: less round-off
+        return increasing, -float(ratio[increasing])
+    return decreasing, float(ratio[decreasing])

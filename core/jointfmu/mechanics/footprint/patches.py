@@ -53,16 +53,18 @@ def few_points(shape: PressureShape, count: int) -> PressureShape:
     """
     if shape.share.size <= count:
         return shape
-    rough = rounded(shape)
-    group = _mirrored(rough)
+    rounded_shape = rounded(shape)
+    group = _mirrored(rounded_shape)
     if np.max(np.bincount(group)) * LEAST_GROUPS > count:
         group = np.arange(shape.share.size)
-    nodes, factor = _kept(rough, group, count)
-    before, exact = _sums(group, shape.share), _means(_exact(shape), shape, group)
-    after, some = np.zeros_like(before), exact[:, nodes]
-    after[nodes] = factor * before[nodes]
-    after[nodes] += changes(after[nodes], some, over(exact, before) - over(some, after[nodes]))
-    return cleared(_part(shape, group, after / before))
+    nodes, factor = _kept(rounded_shape, group, count)
+    old_shares, exact = _sums(group, shape.share), _means(_exact(shape), shape, group)
+    new_shares, exact_nodes = np.zeros_like(old_shares), exact[:, nodes]
+    new_shares[nodes] = factor * old_shares[nodes]
+    new_shares[nodes] += changes(
+        new_shares[nodes], exact_nodes, over(exact, old_shares) - over(exact_nodes, new_shares[nodes])
+    )
+    return cleared(_part(shape, group, new_shares / old_shares))
 
 
 def _kept(rough: PressureShape, group: Nodes, count: int) -> tuple[Nodes, Array]:
@@ -75,34 +77,36 @@ def _kept(rough: PressureShape, group: Nodes, count: int) -> tuple[Nodes, Array]
     exact = independent(factor * _means(_exact(rough), rough, group), share.size)[1]
     rest = factor * _means(_functions(rough), rough, group)
     rest -= product(product(rest, exact), exact.T)
-    kept = np.concatenate([exact, independent(rest, count)[1]]).T / factor[:, None]
-    held = _held(rough, group, share) if count >= HOLDING else np.zeros_like(share)
-    weights, number = share, kept.shape[1]
+    functions = np.concatenate([exact, independent(rest, count)[1]]).T / factor[:, None]
+    min_shares = _held(rough, group, share) if count >= HOLDING else np.zeros_like(share)
+    weights, number = share, functions.shape[1]
     while number >= len(exact):
-        free = np.flatnonzero(weights > held)
-        left = eliminated(kept[free, :number], (weights - held)[free])
-        weights = held.copy()
-        weights[free] += left
+        free_groups = np.flatnonzero(weights > min_shares)
+        reduced = eliminated(functions[free_groups, :number], (weights - min_shares)[free_groups])
+        weights = min_shares.copy()
+        weights[free_groups] += reduced
         excess = int(np.sum(size[weights > 0.0])) - count
         if excess <= 0:
             nodes = np.flatnonzero(weights > 0.0)
             return nodes, weights[nodes] / share[nodes]
-        number = min(number, int(np.sum(left > 0.0))) - max(excess // (2 * int(np.max(size))), 1)
+        number = min(number, int(np.sum(reduced > 0.0))) - max(excess // (2 * int(np.max(size))), 1)
     raise ValueError(f"{count} points are too few, expected at least {count + excess} for this contact")
 
 
 def _held(shape: PressureShape, group: Nodes, share: Array) -> Array:
     """Smallest shares (groups) [1] that the groups must keep: nonzero for nodes with the largest pressure."""
-    held, most = np.zeros_like(share), np.unique(group[highest(shape)])
-    held[most] = RESERVED * share[most]
-    return held
+    min_shares, peak_groups = np.zeros_like(share), np.unique(group[highest(shape)])
+    min_shares[peak_groups] = RESERVED * share[peak_groups]
+    return min_shares
 
 
 def _part(shape: PressureShape, group: Nodes, factor: Array) -> PressureShape:
     """Multiply shares by the factor (groups) [1] of their group; remove nodes with the factor zero."""
     nodes = np.flatnonzero(factor[group] > 0.0)
-    some = shape.part(nodes)
-    return PressureShape(some.share * factor[group[nodes]], some.position, some.equal, some.tilt)
+    selected = shape.part(nodes)
+    return PressureShape(
+        selected.share * factor[group[nodes]], selected.position, selected.equal, selected.tilt
+    )
 
 
 def _mirrored(shape: PressureShape) -> Nodes:
@@ -115,14 +119,14 @@ def _mirrored(shape: PressureShape) -> Nodes:
     def keys(along: float, across: float) -> Array:
         return np.column_stack([along * x, across * y, share, equal, across * tilt]) + 0.0  # no -0.0
 
-    own, group = keys(1.0, 1.0), np.arange(shape.share.size)
-    order = np.lexsort(own.T)
+    own_keys, group = keys(1.0, 1.0), np.arange(shape.share.size)
+    order = np.lexsort(own_keys.T)
     for sides in ((-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)):
         image = keys(*sides)
-        there = np.lexsort(image.T)
-        if np.array_equal(own[order], image[there]):
+        image_order = np.lexsort(image.T)
+        if np.array_equal(own_keys[order], image[image_order]):
             partner = np.empty_like(group)
-            partner[order] = there
+            partner[order] = image_order
             group = np.minimum(group, group[partner])
     return np.unique(group, return_inverse=True)[1]
 
@@ -146,8 +150,8 @@ def _scaled(shape: PressureShape) -> tuple[Array, Array]:
 
 def balanced(x: Array, y: Array, equal: Array, tilt: Array) -> Array:
     """Functions (12, n) of points (n) whose sums, weighted by share, are kept to round-off."""
-    one = np.ones_like(x)
-    return np.stack([one, x, y, x * x, x * y, y * y, equal, equal * x, equal * y, tilt, tilt * x, tilt * y])
+    ones = np.ones_like(x)
+    return np.stack([ones, x, y, x * x, x * y, y * y, equal, equal * x, equal * y, tilt, tilt * x, tilt * y])
 
 
 def _exact(shape: PressureShape) -> Array:
@@ -162,8 +166,8 @@ def largest_moment(shape: PressureShape) -> float:
     for _ in range(50):
         middle = 0.5 * (low + high)
         open_to = np.stack([side * middle * shape.tilt - shape.equal for side in (-1.0, 1.0)])
-        lost = np.max(over(np.maximum(open_to, 0.0), shape.share))
-        low, high = (middle, high) if lost < OPENED else (low, middle)
+        lost_share = np.max(over(np.maximum(open_to, 0.0), shape.share))
+        low, high = (middle, high) if lost_share < OPENED else (low, middle)
     return low
 
 
@@ -179,16 +183,16 @@ def _functions(shape: PressureShape) -> Array:
     of_pressure = np.stack([np.ones_like(x), x, y, distance / np.max(distance)])
     of_stiffness = np.stack([*of_pressure[:3], x * x, x * y, y * y])
     number = np.arange(STATES)[:, None]
-    moment, apart, about_x, about_y = 2.0 * ((0.5 + (number + 1.0) * _RATIOS) % 1.0).T[..., None] - 1.0
-    power, moves = np.choose(number % len(POWERS), POWERS), number >= UNTILTED * STATES
-    away = moves * (APART * apart + TILTED * (about_x * y - about_y * x))
+    moment, opening, about_x, about_y = 2.0 * ((0.5 + (number + 1.0) * _RATIOS) % 1.0).T[..., None] - 1.0
+    power, is_moved = np.choose(number % len(POWERS), POWERS), number >= UNTILTED * STATES
+    normal_displacement = is_moved * (APART * opening + TILTED * (about_x * y - about_y * x))
     approach = root(np.maximum(shape.equal + limit * moment * shape.tilt, 0.0), power)
-    approach = np.maximum(approach - np.max(approach, axis=1, keepdims=True) * away, 0.0)
+    approach = np.maximum(approach - np.max(approach, axis=1, keepdims=True) * normal_displacement, 0.0)
     pressure = to_power(approach, power)
     stiffness = np.divide(pressure, approach, out=np.zeros_like(pressure), where=approach > 0.0)
     rows = np.concatenate([pressure[:, None] * of_pressure, stiffness[:, None] * of_stiffness], axis=1)
     sizes = np.add.reduce(np.abs(rows) * shape.share, axis=2, keepdims=True)
-    rows *= np.where(moves, LESS, 1.0)[:, None] / np.maximum(sizes, np.finfo(float).tiny)
+    rows *= np.where(is_moved, LESS, 1.0)[:, None] / np.maximum(sizes, np.finfo(float).tiny)
     return np.asarray(rows.reshape(-1, x.size))
 
 

@@ -121,8 +121,8 @@ class BoltedPlate:
         if one_row(self):
             distance = _lever_of_one_row(self, share, position, unit)
             return PressureShape(share, position, equal, distance * growing(share, position[:, 1], equal))
-        away, distance = y - y.mean(), lever(y)[1]
-        return PressureShape(share, position, equal, distance / (away @ away) * (away @ unit))
+        distances, distance = y - y.mean(), lever(y)[1]
+        return PressureShape(share, position, equal, distance / (distances @ distances) * (distances @ unit))
 
 
 def check_holes(plate: BoltedPlate) -> None:
@@ -156,10 +156,12 @@ def lever(y: Array) -> tuple[float, float]:
     is the number of outermost bolts, L_a = sum(y^2)/(N_b max|y|), y from the centre. For two equal rows L_a
     is their distance.
     """
-    away = y - np.mean(y)
-    far = float(np.max(np.abs(away)))
-    count = min(np.sum(np.isclose(side * away, far, rtol=1e-6)) or np.inf for side in (1.0, -1.0))
-    return float(count), float(np.sum(away * away) / (count * far))
+    distances = y - np.mean(y)
+    max_distance = float(np.max(np.abs(distances)))
+    count = min(
+        np.sum(np.isclose(side * distances, max_distance, rtol=1e-6)) or np.inf for side in (1.0, -1.0)
+    )
+    return float(count), float(np.sum(distances * distances) / (count * max_distance))
 
 
 def cells(plate: BoltedPlate) -> tuple[Array, Array]:
@@ -173,8 +175,8 @@ def cells(plate: BoltedPlate) -> tuple[Array, Array]:
     middle = (index + 0.5) * side - 0.5 * plan
     done_middle, done_side = [], []
     while middle.size:
-        pressed = _distance(plate, middle, side) * EDGE < reach
-        split = pressed & (np.max(side) > reach / ACROSS * EDGE)
+        is_loaded = _distance(plate, middle, side) * EDGE < reach
+        split = is_loaded & (np.max(side) > reach / ACROSS * EDGE)
         done_middle.append(middle[~split])
         done_side.append(np.broadcast_to(side, middle[~split].shape))
         side = 0.5 * side
@@ -185,26 +187,28 @@ def cells(plate: BoltedPlate) -> tuple[Array, Array]:
 
 def _distance(plate: BoltedPlate, middle: Array, side: Array) -> Array:
     """Distance (n) [m] from cells, with centres (n, 2) and sides (2) [m], to the nearest bolt axis."""
-    beside = np.maximum(np.abs(middle[:, None, :] - plate.bolts) - 0.5 * side, 0.0)
-    return np.asarray(np.min(np.hypot(beside[..., 0], beside[..., 1]), axis=1))
+    gap = np.maximum(np.abs(middle[:, None, :] - plate.bolts) - 0.5 * side, 0.0)
+    return np.asarray(np.min(np.hypot(gap[..., 0], gap[..., 1]), axis=1))
 
 
 def _solid(plate: BoltedPlate, middle: Array, side: Array) -> tuple[Array, Array]:
     """Areas [m2] and centroids [m] of cells without the holes; cells inside a hole are omitted."""
-    part = (np.arange(_PARTS) + 0.5) / _PARTS - 0.5
-    grid = np.stack(np.meshgrid(part, part, indexing="ij"), -1).reshape(-1, 2)
+    positions = (np.arange(_PARTS) + 0.5) / _PARTS - 0.5
+    grid = np.stack(np.meshgrid(positions, positions, indexing="ij"), -1).reshape(-1, 2)
     areas, centroids = np.prod(side, axis=1), middle.copy()
     reach = 0.5 * np.hypot(*side.T) + 0.5 * plate.hole_diameter
     for bolt in plate.bolts:
-        near = np.flatnonzero(np.hypot(*(middle - bolt).T) < reach)
-        points = middle[near, None, :] + grid * side[near, None, :]
+        affected = np.flatnonzero(np.hypot(*(middle - bolt).T) < reach)
+        points = middle[affected, None, :] + grid * side[affected, None, :]
         solid = np.hypot(*np.moveaxis(points - bolt, -1, 0)) > 0.5 * plate.hole_diameter * EDGE
-        kept = solid.mean(axis=1)
-        areas[near] *= kept
+        solid_share = solid.mean(axis=1)
+        areas[affected] *= solid_share
         total = np.sum(points * solid[..., None], axis=1)
-        centroids[near] = np.where(kept[:, None] > 0.0, total / np.maximum(solid.sum(1), 1)[:, None], 0.0)
-    there = areas > 0.0
-    return areas[there], centroids[there]
+        centroids[affected] = np.where(
+            solid_share[:, None] > 0.0, total / np.maximum(solid.sum(1), 1)[:, None], 0.0
+        )
+    remaining = areas > 0.0
+    return areas[remaining], centroids[remaining]
 
 
 def decay(plate: BoltedPlate, distance: Array) -> Array:
@@ -228,9 +232,9 @@ def unit_pressures(plate: BoltedPlate) -> tuple[Array, Array, Array]:
 def _lever_of_one_row(plate: BoltedPlate, share: Array, position: Array, unit: Array) -> float:
     """Length L_a [m] of bolts in one row, see `BoltedPlate.rows`."""
     equal = unit.mean(axis=0)
-    away = position[:, 1] - share @ (equal * position[:, 1])
-    reach = np.max(np.abs(away[equal > 0.0]))
-    return float(len(plate.x) * (share @ (equal * away**2)) / reach)
+    distances = position[:, 1] - share @ (equal * position[:, 1])
+    reach = np.max(np.abs(distances[equal > 0.0]))
+    return float(len(plate.x) * (share @ (equal * distances**2)) / reach)
 
 
 def _balanced(plate: BoltedPlate, areas: Array, offset: Array) -> Array:
@@ -240,16 +244,16 @@ def _balanced(plate: BoltedPlate, areas: Array, offset: Array) -> Array:
     is a convex function of them.
     """
     force = areas * decay(plate, np.hypot(*offset.T))
-    pressed = force > 0.0
-    weight, at = force[pressed], offset[pressed] / plate.reach
+    is_loaded = force > 0.0
+    weight, relative = force[is_loaded], offset[is_loaded] / plate.reach
     factor = np.zeros(2)
     for _ in range(_STEPS):
-        part = weight * np.exp(at @ factor)
-        part /= part.sum()
-        mean = part @ at
+        share = weight * np.exp(relative @ factor)
+        share /= share.sum()
+        mean = share @ relative
         if np.max(np.abs(mean)) < _BALANCED:
             break
-        factor -= np.linalg.solve((at - mean).T @ (part[:, None] * (at - mean)), mean)
+        factor -= np.linalg.solve((relative - mean).T @ (share[:, None] * (relative - mean)), mean)
     result = np.zeros_like(areas)
-    result[pressed] = part / areas[pressed]
+    result[is_loaded] = share / areas[is_loaded]
     return result

@@ -32,8 +32,8 @@ def rounded(shape: PressureShape, digits: int = DIGITS) -> PressureShape:
     """
     mantissa, exponent = np.frexp(shape.share)
     share = np.ldexp(_steps(mantissa, digits), exponent)
-    others = (to_digits(values, digits) for values in (shape.position, shape.equal, shape.tilt))
-    return PressureShape(share, *others)
+    rounded_values = (to_digits(values, digits) for values in (shape.position, shape.equal, shape.tilt))
+    return PressureShape(share, *rounded_values)
 
 
 def to_digits(values: Array, digits: int = DIGITS) -> Array:
@@ -86,8 +86,8 @@ def squared(rows: Array) -> Array:
     columns, out = rows.T.copy(), np.empty((len(rows), len(rows)))
     for first in range(0, len(rows), TOGETHER):
         last = first + TOGETHER
-        for one, row in zip(out[first:last], rows[first:last], strict=True):
-            one[:last] = np.add.reduce(row[:, None] * columns[:, :last], axis=0)
+        for out_row, row in zip(out[first:last], rows[first:last], strict=True):
+            out_row[:last] = np.add.reduce(row[:, None] * columns[:, :last], axis=0)
         out[:first, first:last] = out[first:last, :first].T
     return out
 

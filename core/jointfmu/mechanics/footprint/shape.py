@@ -71,11 +71,11 @@ def growing(share: Array, y: Array, equal: Array) -> Array:
     Raises ValueError if all nodes in contact have the same y.
     """
     force = share * equal
-    away = y - force @ y
-    spread = float(force @ away**2)
-    if not spread > 0.0:
+    distances = y - force @ y
+    second_moment = float(force @ distances**2)
+    if not second_moment > 0.0:
         raise ValueError("all nodes that touch have the same y, expected a contact across the bolt rows")
-    return np.asarray(equal * away / spread)
+    return np.asarray(equal * distances / second_moment)
 
 
 BOLT_MEANS = ("bolt_x", "bolt_y", "bolt_x2", "bolt_y2", "bolt_xy")
