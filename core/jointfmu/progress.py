@@ -59,10 +59,10 @@ def told(name: str) -> Iterator[None]:
 
     def show() -> None:
         while not finished.wait(0.5):
-            passed = time.monotonic() - began
-            if passed > PATIENCE and not _now["bars"]:
-                what = ", ".join(filter(None, (_now["step"], f"{passed:.0f} s")))
-                print(f"\r{name}: {what}\x1b[K", end="", file=sys.stderr, flush=True)
+            elapsed = time.monotonic() - began
+            if elapsed > PATIENCE and not _now["bars"]:
+                status = ", ".join(filter(None, (_now["step"], f"{elapsed:.0f} s")))
+                print(f"\r{name}: {status}\x1b[K", end="", file=sys.stderr, flush=True)
 
     shower = Thread(target=show, daemon=True)
     shower.start()

@@ -90,18 +90,20 @@ def largest_spot(law: InterfaceLaw, pressure: ArrayLike) -> Array:
     RuntimeError : the inversion did not converge
     """
     p = np.asarray(pressure, dtype=np.float64)
-    bad = ~(np.isfinite(p) & (p >= 0.0))
-    if np.any(bad):
-        raise ValueError(f"pressure = {p[bad].flat[0]:g} Pa is outside [0, inf): nominal contact pressure")
-    spots, (least, _, most) = _checked(law)
-    load = np.where(p < NOTHING, 0.0, p) * law.A_0
-    if np.any(bad := (load > most) | ((load > 0.0) & (load < least))):
+    invalid = ~(np.isfinite(p) & (p >= 0.0))
+    if np.any(invalid):
         raise ValueError(
-            f"pressure = {np.broadcast_to(p, bad.shape)[bad].flat[0]:g} Pa is outside "
-            f"[{np.max(least / law.A_0):.3g}, {np.min(most / law.A_0):.3g}]: its largest spot is not "
+            f"pressure = {p[invalid].flat[0]:g} Pa is outside [0, inf): nominal contact pressure"
+        )
+    spots, (min_load, _, max_load) = _checked(law)
+    load = np.where(p < NOTHING, 0.0, p) * law.A_0
+    if np.any(invalid := (load > max_load) | ((load > 0.0) & (load < min_load))):
+        raise ValueError(
+            f"pressure = {np.broadcast_to(p, invalid.shape)[invalid].flat[0]:g} Pa is outside "
+            f"[{np.max(min_load / law.A_0):.3g}, {np.min(max_load / law.A_0):.3g}]: its largest spot is not "
             f"representable beside the critical area {np.max(spots.reference):.3g} m2 of this surface"
         )
-    parameters = np.shape(least)
+    parameters = np.shape(min_load)
     shape = np.broadcast_shapes(load.shape, parameters)
     if load.size > _BLOCK and parameters == ():
         flat = load.ravel()

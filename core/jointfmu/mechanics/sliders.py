@@ -354,8 +354,8 @@ class _Path:
 
     @classmethod
     def of(cls, before: ArrayLike, after: ArrayLike, shift: Array) -> "_Path":
-        start, end = (np.asarray(x, dtype=np.float64)[..., None] for x in (before, after))
-        return cls(start, end, shift)
+        first_approach, last_approach = (np.asarray(x, dtype=np.float64)[..., None] for x in (before, after))
+        return cls(first_approach, last_approach, shift)
 
     @property
     def change(self) -> Array:

@@ -94,8 +94,8 @@ def problem(name: str, value: object, item: Field[object]) -> str | None:
     if not np.all(inside):
         first = array[~inside].flat[0]
         return f"{name} = {first:.10g}{unit} is outside {meta['interval']}: {meta['doc']}"
-    if meta["whole"] and np.any(broken := array % 1.0 != 0.0):
-        return f"{name} = {array[broken].flat[0]:g} is no whole number, allowed are 1, 2, 3, ..."
+    if meta["whole"] and np.any(is_fractional := array % 1.0 != 0.0):
+        return f"{name} = {array[is_fractional].flat[0]:g} is no whole number, allowed are 1, 2, 3, ..."
     return None
 
 

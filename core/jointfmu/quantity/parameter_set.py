@@ -153,14 +153,16 @@ def _section(sections: Iterable[str], prefix: str, names: Collection[str]) -> st
 
     Raises ValueError, which lists the names, if they belong to two alternatives.
     """
-    spoken = {
+    names_by_section = {
         section: [name for name in names if name.startswith(f"{prefix}{section}.")] for section in sections
     }
-    present = [section for section, section_names in spoken.items() if section_names]
+    present = [section for section, section_names in names_by_section.items() if section_names]
     if len(present) > 1:
-        beside = " beside ".join(", ".join(spoken[section]) for section in present)
-        raise ValueError(f"{beside}: allowed is one of {', '.join(f'[{prefix}{name}]' for name in spoken)}")
-    return (present or list(spoken))[0]
+        beside = " beside ".join(", ".join(names_by_section[section]) for section in present)
+        raise ValueError(
+            f"{beside}: allowed is one of {', '.join(f'[{prefix}{name}]' for name in names_by_section)}"
+        )
+    return (present or list(names_by_section))[0]
 
 
 def _present(item: Field[object], value: object) -> str:

@@ -101,18 +101,21 @@ class Roughness(RoughSurfaces, Checked):
     def unproven(self, least: float, most: float) -> list[str]:
         """Messages if pressures from `lowest` to `highest` [Pa] leave the validated range, one line each."""
         scale = contact_modulus(self.side1, self.side2) * self.h
-        few, flat = FEWEST * scale * self.longest_wave / self.A_0, FLATTEST * scale / self.longest_wave
+        min_pressure, max_pressure = (
+            FEWEST * scale * self.longest_wave / self.A_0,
+            FLATTEST * scale / self.longest_wave,
+        )
         messages = []
-        if least < few:
+        if least < min_pressure:
             messages.append(
-                f"a pressure of {least:.4g} Pa is below {few:.3g} Pa, from where the law roughness is "
-                "proven: one hill carries, and surfaces of the same roughness differ by half and more "
+                f"a pressure of {least:.4g} Pa is below {min_pressure:.3g} Pa, from where the law roughness "
+                "is proven: one hill carries, and surfaces of the same roughness differ by half and more "
                 "(docs/validity.md)"
             )
-        if most > flat:
+        if most > max_pressure:
             messages.append(
-                f"a pressure of {most:.4g} Pa is above {flat:.3g} Pa, up to which the law roughness is "
-                "proven: the longest wave is pressed flat, the rest to its end is an extrapolation "
+                f"a pressure of {most:.4g} Pa is above {max_pressure:.3g} Pa, up to which the law roughness "
+                "is proven: the longest wave is pressed flat, the rest to its end is an extrapolation "
                 "(docs/validity.md)"
             )
         return messages

@@ -136,11 +136,11 @@ def check_holes(plate: BoltedPlate) -> None:
                 f"bolt {i + 1} at ({bolt[0]:g}, {bolt[1]:g}) m with a hole of {2.0 * radius:g} m leaves "
                 f"the plate; allowed are |x| < {x:g} m and |y| < {y:g} m"
             )
-        apart = np.hypot(*(bolts[:i] - bolt).T)
-        if apart.size and apart.min() <= plate.hole_diameter:
+        distances = np.hypot(*(bolts[:i] - bolt).T)
+        if distances.size and distances.min() <= plate.hole_diameter:
             raise ValueError(
-                f"the holes of bolts {apart.argmin() + 1} and {i + 1} overlap: hole_diameter = "
-                f"{plate.hole_diameter:g} m is outside (0, {apart.min():g}), their distance"
+                f"the holes of bolts {distances.argmin() + 1} and {i + 1} overlap: hole_diameter = "
+                f"{plate.hole_diameter:g} m is outside (0, {distances.min():g}), their distance"
             )
 
 

@@ -186,13 +186,13 @@ class NodalField:
         """Raise ValueError if the points (prefix "") or the patches do not balance, see the class."""
         count = len(getattr(self, f"{prefix}share"))
         for name in (*_POINTS, "radius") if prefix and self.patch_radius else _POINTS:
-            if (given := len(getattr(self, prefix + name))) != count:
+            if (length := len(getattr(self, prefix + name))) != count:
                 raise ValueError(
-                    f"{prefix}{name} has {given} numbers, expected as many as {prefix}share has: {count}"
+                    f"{prefix}{name} has {length} numbers, expected as many as {prefix}share has: {count}"
                 )
         if not count:
             return
-        shape, what = self._points(prefix), "of the patches" if prefix else ""
+        shape, owner = self._points(prefix), "of the patches" if prefix else ""
         reach = float(np.max(np.abs(shape.position)))
         x, y = shape.share @ shape.position
         steep = max(float(np.max(np.abs(shape.tilt))), 1.0)
@@ -204,7 +204,7 @@ class NodalField:
             (f"the mean of {prefix}tilt", float(shape.share @ shape.tilt), 0.0, steep),
         ):
             if not abs(value - expected) <= BALANCE * size:
-                text = f"{text} {what}".rstrip() if "centroid" in text else text
+                text = f"{text} {owner}".rstrip() if "centroid" in text else text
                 raise ValueError(f"{text} is {value:.9g}, expected {expected:g} within {BALANCE * size:.1g}")
 
     @property
