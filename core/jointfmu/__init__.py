@@ -1,4 +1,4 @@
-"""Joint stiffness from surface roughness, as laws, curves and FMUs.
+"""Stiffness, friction and damping of mechanical joints, as laws, curves and FMUs.
 
     import jointfmu
 
@@ -7,7 +7,7 @@
     drive.build("dist")                        # FMUs for any simulator
     jointfmu.load("my_joint.toml").report("my_joint.html")
 
-All numbers are in SI units, unless a drawing states them otherwise.
+All numbers are in SI units; arguments taken from a drawing (plate, grip, Ra, ...) have their own units.
 """
 
 from typing import Any
@@ -32,7 +32,7 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    """The public interface stands above this package and is loaded when it is asked for."""
+    """Import a name of the public interface (entry point `jointfmu.interface`) on first access."""
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     from importlib import import_module

@@ -1,4 +1,4 @@
-"""`python -m jointfmu`: the command line as it is installed, which stands above this package."""
+"""`python -m jointfmu`: runs the installed command `jointfmu`, found by its entry point."""
 
 import sys
 from importlib.metadata import entry_points

@@ -1,4 +1,4 @@
-"""TOML files <-> parameter sets: the only reader and writer of models/*.toml.
+"""Reader and writer of parameter files: TOML text from and to parameter sets.
 
 A file is `schema = 1`, `joint = KIND`, `law = LAW` (absent: the joint's first one), `name = ...` and one
 entry per parameter,
@@ -6,10 +6,11 @@ entry per parameter,
     [surface]
     D = { value = 1.42, unit = "1", kind = "published", source = "Zhao 2018, section 2" }
 
-`kind` is one of ORIGINS; the unit must be the SI unit that the code declares, nothing is converted.
-A section `[inputs]` of the same form gives start values of the joint's inputs; others start at their own.
-A section `[roughness]` states what is known of the surfaces, see `roughness`: a law with a height takes it
-from there. Another law has none; there `[comparison]` states the same, and the level is judged by it.
+`kind` is one of ORIGINS. The unit must be the SI unit that the code declares; nothing is converted.
+A section `[inputs]` of the same form gives start values of the joint's inputs; other inputs start at their
+default values. A section `[roughness]` states measured heights of the surfaces, see `contact.roughness`; a
+law with the rms height h as a parameter computes h from them. For a law without h the section is called
+`[comparison]`: its heights do not act, the stiffness of the law is only compared with the one they predict.
 """
 
 import tomllib
@@ -28,31 +29,35 @@ T = TypeVar("T")
 
 SCHEMA = 1
 ORIGINS = ("published", "derived", "catalogue", "estimate", "calibration", "user")
-"""Where a value comes from: printed in the paper, computed from printed values, a catalogue,
+"""Origin of a value (`kind`): printed in the paper, computed from printed values, a catalogue,
 an engineering estimate, fitted to calibration points, or set by the user."""
 _PER_LINE = 5
-"""Numbers of a list on a line."""
+"""Numbers of a list per line of the file [1]."""
 _INPUTS = "inputs."
 """Prefix of the names of start values."""
 SAME_HEIGHT = 0.01
-"""How far h of a law may be from what the roughnesses beside it make [1]: they are printed in two digits."""
+"""Largest relative difference [1] between h of a law and the h computed from the section [roughness]: such
+heights are printed with two digits."""
 _ACTS, _JUDGES = "roughness.", "comparison."
-"""Prefixes of the names of roughnesses: beside a law with a height, and beside another."""
+"""Sections of the surface heights, as prefixes: of a law with the parameter h, and of a law without it."""
 
 
 @dataclass(frozen=True, slots=True)
 class ParameterFile:
-    """A parameter set with where it comes from.
+    """Content of a parameter file: a parameter set with the origin and source of each value.
 
     joint   : a key of joints.KINDS
-    name    : of this parameter set; it and the sources are lines that `check_text` allows, else ValueError
-    values  : the parameter set, an instance of a value of KINDS[joint].laws
-    origins, sources : {structured name: one of ORIGINS, text}, also of `inputs.NAME`, `roughness.NAME` or
-        `comparison.NAME`
-    inputs  : {input: start value in its SI unit}, where it is given
-    roughness : {name: height [m]} of the surfaces, where it is known: names of `roughness.DECLARED`
-    ranges  : {structured name: least and greatest value} of what is known no better, by the same source
-    flat    : {structured name: value} of `values`, opened once
+    name    : name of the parameter set
+    values  : the parameter set, an instance of a class in KINDS[joint].laws
+    origins : {structured name: one of ORIGINS}, with entries for `inputs.NAME`, `roughness.NAME` and
+        `comparison.NAME` too
+    sources : {structured name: text}, for the same names
+    inputs  : {input: start value in its SI unit} of the inputs that the file states
+    roughness : {name: height [m]} of the surfaces that the file states, see `roughness.HEIGHT_FIELDS`
+    ranges  : {structured name: (smallest, largest value)} of the uncertain values, from the same source
+    values_by_name : {structured name: value} of `values`
+
+    Raises ValueError if the name or a source is no text that `check_text` allows.
     """
 
     joint: str
@@ -73,66 +78,67 @@ class ParameterFile:
 
     @property
     def law(self) -> str:
-        """Name of its interface law."""
+        """Name of the interface law."""
         return KINDS[self.joint].law(self.values)
 
     @property
     def surfaces(self) -> str:
-        """Prefix of the names of its roughnesses."""
+        """Prefix of the names of the surface heights: `roughness.` or `comparison.`."""
         return _prefix(type(self.values))
 
     def start(self, name: str) -> float:
-        """Start value of an input, in its SI unit: the joint's own unless it is given."""
-        own = KINDS[self.joint].variables.get(name) if self.joint in KINDS else None
-        return self.inputs.get(name, own.start if own else 0.0)
+        """Start value of an input in its SI unit: that of the file, else the default of the joint."""
+        variable = KINDS[self.joint].variables.get(name) if self.joint in KINDS else None
+        return self.inputs.get(name, variable.start if variable else 0.0)
 
     def with_values(self, changes: Mapping[str, object], origin: str, source: str) -> "ParameterFile":
-        """The same file with some values changed; names and intervals are checked.
+        """Copy with some values replaced; names and intervals are checked.
 
-        A height of the law stands in place of the roughnesses that made it.
+        A new height h of the law removes the heights of the surfaces from which h was computed.
         """
-        gone = {*self.roughness} if any(map(is_height, changes)) else set[str]()
-        texts = {self.surfaces + name for name in gone}
+        removed = {*self.roughness} if any(map(is_height, changes)) else set[str]()
+        removed_names = {self.surfaces + name for name in removed}
         return replace(
             self,
             values=changed(self.values, changes),
-            origins=_without(texts, self.origins) | dict.fromkeys(changes, origin),
-            sources=_without(texts, self.sources) | dict.fromkeys(changes, source),
-            roughness=_without(gone, self.roughness),
+            origins=_without(removed_names, self.origins) | dict.fromkeys(changes, origin),
+            sources=_without(removed_names, self.sources) | dict.fromkeys(changes, source),
+            roughness=_without(removed, self.roughness),
             ranges=_without(changes, self.ranges),
         )
 
     def with_roughness(self, stated: Mapping[str, float], origin: str, source: str) -> "ParameterFile":
-        """The same file with heights [m] of the surfaces; what spoke of the same side is replaced, and the
-        height of a law is that of all of them.
+        """Copy with new heights [m] of the surfaces, {name: height}.
 
-        Raises ValueError as `roughness.check`.
+        Earlier heights of the same side are removed. A law with the parameter h gets h computed from all
+        heights. Raises ValueError as `roughness.check_heights` does.
         """
-        heights = roughness.check(stated, self.surfaces)
-        gone = {other for name in heights for other in roughness.excluded(name)}
-        texts = {self.surfaces + name for name in gone}
-        names = [self.surfaces + name for name in heights]
-        known = _without(gone, self.roughness) | heights
-        origins = _without(texts, self.origins) | dict.fromkeys(names, origin)
-        sources = _without(texts, self.sources) | dict.fromkeys(names, source)
-        of_law = {name: roughness.height(known) for name in self.flat if is_height(name)}
+        new_heights = roughness.check(stated, self.surfaces)
+        replaced = {other for name in new_heights for other in roughness.excluded(name)}
+        replaced_names = {self.surfaces + name for name in replaced}
+        new_names = [self.surfaces + name for name in new_heights]
+        all_heights = _without(replaced, self.roughness) | new_heights
+        origins = _without(replaced_names, self.origins) | dict.fromkeys(new_names, origin)
+        sources = _without(replaced_names, self.sources) | dict.fromkeys(new_names, source)
+        law_height = {name: roughness.height(all_heights) for name in self.flat if is_height(name)}
         return replace(
             self,
-            values=changed(self.values, of_law),
-            roughness=known,
-            origins=origins | dict.fromkeys(of_law, "derived"),
-            sources=sources | dict.fromkeys(of_law, _made_of(self.surfaces, known, sources)),
-            ranges=_without(of_law, self.ranges),
+            values=changed(self.values, law_height),
+            roughness=all_heights,
+            origins=origins | dict.fromkeys(law_height, "derived"),
+            sources=sources | dict.fromkeys(law_height, _made_of(self.surfaces, all_heights, sources)),
+            ranges=_without(law_height, self.ranges),
         )
 
 
 def load(path: str | Path, joint: str | None = None) -> ParameterFile:
     """Read and check a parameter file.
 
-    Raises ValueError with one line that names the file, the entry, its value and what is allowed:
-    a missing or broken file, another joint's file, an unknown or missing name, a foreign unit, a
-    value of the wrong type or outside its interval, one that contradicts another; the same for the start
-    values of inputs.
+    joint : kind of joint that the file must have; None: any
+
+    Raises ValueError with one line that names the file, the entry, its value and what is allowed: a missing
+    or broken file, a file of another joint, an unknown or missing name, a wrong unit, a value of the wrong
+    type or outside its interval, a value that contradicts another one; the same for start values of inputs.
     """
     path = Path(path)
     document = read_document(path, "a parameter file")
@@ -156,9 +162,9 @@ def load(path: str | Path, joint: str | None = None) -> ParameterFile:
     declared = declared_entries(stated, cls)
     keys = ("value", "unit", "kind", "source", "range")
     values, origins, sources = entries(path, declared, body, keys)
-    given, surfaces = _section(values, _INPUTS), _section(values, prefix)
+    input_values, surface_heights = _section(values, _INPUTS), _section(values, prefix)
     try:
-        inputs, heights = _start_values(stated, given), roughness.check(surfaces, prefix)
+        inputs, heights = _start_values(stated, input_values), roughness.check(surface_heights, prefix)
         of_law = _height_of_law(declared, values, heights)
         parameters = build(cls, values | of_law)
     except ValueError as error:
@@ -174,7 +180,7 @@ def load(path: str | Path, joint: str | None = None) -> ParameterFile:
 
 
 def declared_entries(joint: str, cls: type) -> dict[str, Field[Any]]:
-    """{structured name: field} of every entry that a parameter file with the parameter set `cls` may have."""
+    """{structured name: field} of all entries that a parameter file with the parameter set `cls` may have."""
     return dict(flat_fields(cls)) | _input_fields(joint) | _roughness_fields(_prefix(cls))
 
 
@@ -183,7 +189,7 @@ def _without(gone: Collection[str], named: Mapping[str, T]) -> dict[str, T]:
 
 
 def _made_of(prefix: str, heights: Iterable[str], sources: Mapping[str, str]) -> str:
-    """Source of the height of a law that comes from those of the surfaces."""
+    """Source text of a height h that was computed from the heights of the surfaces."""
     names = [prefix + height for height in heights]
     return f"from {', '.join(names)}: {'; '.join(dict.fromkeys(sources[name] for name in names))}"
 
@@ -191,9 +197,10 @@ def _made_of(prefix: str, heights: Iterable[str], sources: Mapping[str, str]) ->
 def _height_of_law(
     declared: Mapping[str, object], values: Mapping[str, Any], heights: Mapping[str, float]
 ) -> dict[str, float]:
-    """{name: h [m]} of the law that takes one, where the file states it by its roughnesses alone.
+    """{name: h [m]} of the law, computed from the heights of the surfaces; empty if the file states h itself.
 
-    Raises ValueError if it states another h beside them.
+    Empty also for a law without the parameter h. Raises ValueError if the file states both and they differ
+    by more than HEIGHT_TOLERANCE.
     """
     stated = roughness.height(heights)
     name = next((name for name in declared if is_height(name)), None)
@@ -211,7 +218,7 @@ def _height_of_law(
 
 
 def read_document(path: Path, expected: str) -> dict[str, Any]:
-    """A TOML document of our schema; `expected` names what it should be.
+    """Read a TOML document with the schema of this package; `expected` says in errors what it should be.
 
     Raises ValueError with one line if the file cannot be read, is no TOML or of another schema, or if a key
     or a text is too long or has control characters.
@@ -237,7 +244,15 @@ def entries(
     body: Mapping[str, object],
     keys: tuple[str, ...] = ("value", "unit", "kind", "source"),
 ) -> tuple[dict[str, Any], dict[str, str], dict[str, str]]:
-    """Values, origins and sources by structured name; every unit checked against the field `declared`."""
+    """Values, origins and sources of the entries, each by structured name.
+
+    declared : {structured name: field}; the unit of each entry is checked against its field
+    sections : nested sections and entries of the document
+    keys     : keys that an entry may have
+
+    Raises ValueError, one line, for an entry that is no table, or has an unknown key, a wrong unit, an
+    unknown kind or no source. Unknown names and the values themselves are not checked here.
+    """
     values: dict[str, Any] = {}
     origins: dict[str, str] = {}
     sources: dict[str, str] = {}
@@ -266,8 +281,11 @@ def entries(
 def _ranges(
     path: Path, declared: Mapping[str, Field[Any]], body: Mapping[str, Any]
 ) -> dict[str, tuple[float, float]]:
-    """{structured name: least and greatest value} of the parameters whose entries state a range."""
-    found: dict[str, tuple[float, float]] = {}
+    """{structured name: (smallest, largest value)} of the entries that state a range.
+
+    Raises ValueError, one line, if the range does not contain the value or is outside the field's interval.
+    """
+    ranges: dict[str, tuple[float, float]] = {}
     for name, entry in leaves(body):
         if "range" not in entry:
             continue
@@ -278,49 +296,52 @@ def _ranges(
         for text in (problem(name, float(end), declared[name]) for end in ends):
             if text:
                 raise ValueError(f"{path}: range of {text}")
-        found[name] = (float(ends[0]), float(ends[1]))
-    return found
+        ranges[name] = (float(ends[0]), float(ends[1]))
+    return ranges
 
 
 def leaves(table: Mapping[str, object], prefix: str = "") -> list[tuple[str, Any]]:
-    """Entries by structured name: those with a value, and whatever is no table."""
-    found: list[tuple[str, Any]] = []
+    """(structured name, entry) for each innermost item of a nested table.
+
+    Innermost items are tables with a key `value`, empty tables and all items that are no table.
+    """
+    items: list[tuple[str, Any]] = []
     for key, value in table.items():
         if isinstance(value, Mapping) and value and "value" not in value:
-            found += leaves(value, f"{prefix}{key}.")
+            items += leaves(value, f"{prefix}{key}.")
         else:
-            found.append((prefix + key, value))
-    return found
+            items.append((prefix + key, value))
+    return items
 
 
 def _input_fields(joint: str) -> dict[str, Field[Any]]:
-    """Fields of the inputs of all models of a joint, named as their start values."""
+    """{`inputs.NAME`: field} of the inputs of all models of a joint."""
     inputs = (v for model in KINDS[joint].models for v in model.inputs)
     return {_INPUTS + v.name: quantity(v.unit, v.doc, ge=v.low) for v in inputs}
 
 
 def _prefix(cls: type) -> str:
-    """Of the names of roughnesses beside a parameter set of a class."""
+    """Prefix of the names of the surface heights for a parameter set class, see `_ACTIVE`."""
     return _ACTS if any(is_height(name) for name, _ in flat_fields(cls)) else _JUDGES
 
 
 def is_height(name: str) -> bool:
-    """Whether a parameter is the rms height of both surfaces."""
+    """Whether a parameter of a law is the combined rms height h of both surfaces."""
     return name.split(".")[-1] == "h" and not name.startswith((_ACTS, _JUDGES))
 
 
 def _roughness_fields(prefix: str) -> dict[str, Field[Any]]:
-    """Fields of the roughnesses, named as in a parameter file."""
+    """{prefix + name: field} of the heights of the surfaces."""
     return {prefix + name: item for name, item in roughness.DECLARED.items()}
 
 
 def _section(values: dict[str, Any], prefix: str) -> dict[str, Any]:
-    """What stands in a section, taken out of values by structured name: {name in the section: value}."""
+    """Remove a section from {structured name: value}; return {name in the section: value}."""
     return {n.removeprefix(prefix): values.pop(n) for n in list(values) if n.startswith(prefix)}
 
 
 def _start_values(joint: str, given: Mapping[str, Any]) -> dict[str, float]:
-    """{input: start value}, checked.
+    """Check start values, {input: value}; return them as floats.
 
     Raises ValueError, one line, naming every unknown name and every value outside its interval.
     """
@@ -331,7 +352,7 @@ def _start_values(joint: str, given: Mapping[str, Any]) -> dict[str, float]:
 
 
 def dump(parameters: ParameterFile) -> str:
-    """The parameter set, with roughnesses and the start values of inputs, as the text of a parameter file."""
+    """Text of a parameter file (TOML), with the heights of the surfaces and the start values of inputs."""
     declared = dict(flat_fields(type(parameters.values))) | _roughness_fields(parameters.surfaces)
     values = sorted(parameters.flat.items(), key=lambda item: "." in item[0])
     values += [(parameters.surfaces + name, value) for name, value in parameters.roughness.items()]
@@ -370,5 +391,5 @@ def _toml(value: Any) -> str:
 
 
 def default(joint: str, law: str | None = None) -> ParameterFile:
-    """The default parameter set of a joint, shipped with the package; with its first law, or another."""
+    """Read the default parameter file of a joint; `law` None: with the joint's first law."""
     return load(KINDS[joint].default_file(law), joint)

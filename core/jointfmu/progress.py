@@ -1,4 +1,4 @@
-"""Long work: a bar or a line on standard error, where that is a terminal, and processes that share it."""
+"""Progress bars and status lines on standard error (only if it is a terminal), and worker processes."""
 
 import multiprocessing
 import os
@@ -16,23 +16,23 @@ from typing import Any, TypeVar
 J = TypeVar("J")
 T = TypeVar("T")
 MAX_ATTEMPTS = 4
-"""How often a job is begun [1] whose process dies."""
+"""Attempts for a job [1] whose process dies."""
 PATIENCE = 2.0
-"""Time [s] after which a command says what it does."""
+"""Time [s] after which a command prints a status line."""
 _now: dict[str, Any] = {"step": "", "bars": 0}
-"""What goes on, and how many bars show it."""
+"""Text of the current step of the work, and number of progress bars on the screen."""
 _STARTS = Lock()
-"""Held while a process starts: standard error belongs to all threads."""
+"""Lock held while a process starts: its start redirects standard error, which all threads share."""
 
 
 def track(items: Iterable[T], text: str, total: int | None = None) -> Iterator[T]:
-    """Pass items on, with a bar if tqdm (extra `build`) is there and standard error is a terminal."""
+    """Yield the items; show a progress bar if tqdm (extra `build`) is installed and stderr is a terminal."""
     try:
         from tqdm import tqdm
     except ImportError:
         yield from items
         return
-    tqdm.set_lock(RLock())  # its own is shared by processes, and left behind by those that are ended
+    tqdm.set_lock(RLock())  # tqdm's default lock is shared by processes, and left behind by killed ones
     _now["bars"] += 1
     try:
         yield from tqdm(items, desc=text, total=total, file=sys.stderr, disable=None, leave=False)
@@ -41,28 +41,28 @@ def track(items: Iterable[T], text: str, total: int | None = None) -> Iterator[T
 
 
 def step(text: str) -> None:
-    """What goes on from here, for the line that `told` shows."""
+    """Set the text of the current step, which `show_status` prints."""
     _now["step"] = text
 
 
 @contextmanager
 def told(name: str) -> Iterator[None]:
-    """Show a line with name, step and seconds while work goes on without a bar, on a terminal."""
+    """Context that shows a status line with name, step and seconds, on a terminal without a progress bar."""
     if not sys.stderr.isatty():
         yield
         return
-    out, done, began = sys.stdout, Event(), time.monotonic()
+    out, finished, began = sys.stdout, Event(), time.monotonic()
     step("")
 
     def clear() -> None:
         print("\r\x1b[K", end="", file=sys.stderr, flush=True)
 
     def show() -> None:
-        while not done.wait(0.5):
-            passed = time.monotonic() - began
-            if passed > PATIENCE and not _now["bars"]:
-                what = ", ".join(filter(None, (_now["step"], f"{passed:.0f} s")))
-                print(f"\r{name}: {what}\x1b[K", end="", file=sys.stderr, flush=True)
+        while not finished.wait(0.5):
+            elapsed = time.monotonic() - began
+            if elapsed > PATIENCE and not _now["bars"]:
+                status = ", ".join(filter(None, (_now["step"], f"{elapsed:.0f} s")))
+                print(f"\r{name}: {status}\x1b[K", end="", file=sys.stderr, flush=True)
 
     shower = Thread(target=show, daemon=True)
     shower.start()
@@ -71,20 +71,20 @@ def told(name: str) -> Iterator[None]:
         yield
     finally:
         sys.stdout = out
-        done.set()
+        finished.set()
         shower.join()
         if time.monotonic() - began > PATIENCE:
             clear()
 
 
 class _Clearing:
-    """A stream before whose text the line goes away."""
+    """Output stream that clears the status line before it writes."""
 
     def __init__(self, stream: Any, clear: Callable[[], None]) -> None:
         self._stream, self._clear = stream, clear
 
     def write(self, text: str) -> int:
-        """Write; the line is shown again below if the work goes on."""
+        """Clear the status line and write; the line is printed again below the text while work continues."""
         self._clear()
         return int(self._stream.write(text))
 
@@ -93,10 +93,10 @@ class _Clearing:
 
 
 def each(pool: Executor | None, work: Callable[..., T], text: str, *jobs: Sequence[object]) -> list[T]:
-    """Results of a function for all jobs, in their order, with a bar.
+    """Apply a function to all jobs; return the results in the order of the jobs. Shows a progress bar.
 
-    pool : processes that share several jobs; None: this one does them
-    jobs : an argument of the function each
+    pool : processes that share the jobs; None: this process does them
+    jobs : sequences of the arguments of the function, as for `map`
     """
     count = len(jobs[0])
     run = pool.map if pool and count > 1 else map
@@ -104,7 +104,7 @@ def each(pool: Executor | None, work: Callable[..., T], text: str, *jobs: Sequen
 
 
 class _Pool(ProcessPoolExecutor):
-    """Processes that start from nothing (spawn), and talk to this one by pipes: none opens a port."""
+    """Process pool with the start method spawn; it communicates by pipes, without network ports."""
 
     def __init__(self, count: int) -> None:
         with _quiet_start():
@@ -117,12 +117,13 @@ class _Pool(ProcessPoolExecutor):
 
 @contextmanager
 def processes(count: int | None = None) -> Iterator[Executor]:
-    """Processes for functions and arguments that can be pickled; as many as there are cores by default.
+    """Context with a pool of worker processes; `count` None: one per core.
 
-    They print no errors and do not hear Ctrl-C; this process does, and ends them. They also end if this
-    process is killed. The program that starts them needs a guard, `if __name__ == "__main__"`.
+    Functions and arguments must be picklable. The workers print no errors and ignore Ctrl-C; this process
+    handles Ctrl-C and ends them. They also end if this process is killed. The program that starts them needs
+    a guard, `if __name__ == "__main__"`.
     """
-    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # of each: they would spin in vain
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # per process: more threads would only wait
     pool = _Pool(count or os.cpu_count() or 1)
     try:
         yield pool
@@ -137,11 +138,11 @@ def processes(count: int | None = None) -> Iterator[Executor]:
 def run_jobs(
     work: Callable[[J], T], jobs: Iterable[J], count: int | None = None
 ) -> Generator[tuple[J, T | None]]:
-    """(job, result of the function) in the order in which jobs end, from `count` processes.
+    """Run a function for all jobs in `count` processes; yield (job, result) in the order of completion.
 
-    A process does one job at a time, so that the job of a process that died is known: it is done again, and
-    after MAX_ATTEMPTS its result is None. Raises what the function raises. Close the iterator, if it is left
-    before its end: this ends the processes.
+    Each process does one job at a time, so the job of a process that died is known. This job is repeated; its
+    result is None after MAX_ATTEMPTS. Exceptions of the function are raised here. Close the iterator if you
+    stop before its end: this ends the processes. `count` None: one process per core.
     """
     waiting = iter(jobs)
     with ExitStack() as entered:
@@ -163,31 +164,32 @@ def run_jobs(
                 if died and attempt < MAX_ATTEMPTS:
                     begin(job, attempt + 1, None)
                     continue
-                for following in islice(waiting, 1):
-                    begin(following, 1, None if died else pool)
+                for next_job in islice(waiting, 1):
+                    begin(next_job, 1, None if died else pool)
                 yield job, None if died else future.result()
 
 
 @contextmanager
 def _quiet_start() -> Iterator[None]:
-    """Processes that start here do not hear Ctrl-C, which a terminal sends to all of them, and print no
-    errors: when this process ends, they may just be starting.
+    """Context in which new processes start with Ctrl-C blocked and without standard error.
+
+    A terminal sends Ctrl-C to all processes of a program, also to those that have just started.
     """
-    with _STARTS, ExitStack() as after:
-        if sys.platform != "win32":  # there they hear it until `_follow_parent`
-            before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-            after.callback(signal.pthread_sigmask, signal.SIG_SETMASK, before)
+    with _STARTS, ExitStack() as cleanup:
+        if sys.platform != "win32":  # on Windows Ctrl-C acts until `_set_up_worker` ignores it
+            old_mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+            cleanup.callback(signal.pthread_sigmask, signal.SIG_SETMASK, old_mask)
         with suppress(OSError):  # standard error is closed
-            kept = os.dup(2)
-            after.callback(os.close, kept)
+            stderr_copy = os.dup(2)
+            cleanup.callback(os.close, stderr_copy)
             with open(os.devnull, "wb") as nowhere:
                 os.dup2(nowhere.fileno(), 2)
-            after.callback(os.dup2, kept, 2)
+            cleanup.callback(os.dup2, stderr_copy, 2)
         yield
 
 
 def _follow_parent() -> None:
-    """What a process does as it starts: it is silent, ignores Ctrl-C, and ends when its parent has ended."""
+    """Set up a worker process: no standard error, ignore Ctrl-C, end when the parent process ends."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     sys.stderr = open(os.devnull, "w")  # noqa: SIM115
     Thread(target=_end_with_parent, daemon=True).start()

@@ -1,1 +1,1 @@
-"""Contact of rough surfaces: the interface laws and what they stand on."""
+"""Contact of rough surfaces: interface laws, surface and material parameters, size distribution."""

@@ -1,4 +1,4 @@
-"""From nominal pressure to the largest spot to stiffness, damping and real area of an interface."""
+"""Evaluation of interface laws: stiffness, damping and real area at a nominal pressure or largest spot."""
 
 from typing import Protocol, runtime_checkable
 
@@ -11,19 +11,19 @@ from .powerlaw import Spots
 TOLERANCE = 1e-13
 """Relative residual of the load at which the inversion stops [1]."""
 RATIOS = ("eta_n", "eta_t", "elastic_fraction")
-"""Quantities that are no sums over the area."""
+"""Quantities that are ratios, not sums over the nominal area."""
 LEAST, MOST = -600.0, 300.0
-"""Log-areas [1] between which the laws are evaluated: 260 decades of area below the reference, 130 above."""
+"""Range of log-areas u [1] in which laws are evaluated: 260 decades below the reference area, 130 above."""
 NOTHING = 1e-200
-"""Pressure [Pa] below which there is no load."""
+"""Pressure [Pa] below which the load counts as zero."""
 FLATTEST, STEEPEST = 0.5, 2.5
-"""Bounds of the slope of ln F over u [1]; the first in units of m."""
+"""Bounds of d(ln F)/du [1] used in the inversion; the lower one is divided by m."""
 CLOSE = 1e-8
-"""Relative residual or step [1] from which one more Newton step reaches round-off."""
+"""Relative residual or step [1] below which one more Newton step reaches round-off."""
 MOST_STEPS = 200
-"""Steps of an inversion [1], far beyond what any takes."""
+"""Largest number of iterations of an inversion [1], far above the usual number."""
 SIDE = 1e-9
-"""Where a regime ends its derivative is taken this far inside, in log-area [1]."""
+"""Distance in log-area [1] from the end of a regime at which its one-sided derivative is evaluated."""
 _NOT_REPRESENTABLE = (
     "the parameters give a reference area of {} m2 or a load that is not representable; "
     "is D close to the end of its interval, or G, h or another one extreme?"
@@ -32,7 +32,7 @@ _BLOCK = 16384
 
 
 class InterfaceLaw(Protocol):
-    """An interface law: parameters that give spots and quantities."""
+    """Interface law: contact quantities of two rough surfaces as functions of the largest spot."""
 
     @property
     def A_0(self) -> float:
@@ -43,24 +43,25 @@ class InterfaceLaw(Protocol):
         """Hardness of the softer body [Pa]."""
 
     def spots(self) -> Spots:
-        """Regimes of one spot and size distribution."""
+        """Regimes of a single spot, with the size distribution of the spots."""
 
     def state(self, u: Number) -> dict[str, Number]:
-        """Quantities for a largest spot of log-area u."""
+        """Contact quantities, {symbol: value}, for a largest spot of log-area u."""
 
 
 @runtime_checkable
 class Bounded(Protocol):
-    """A law whose range of pressures was set by a proof."""
+    """Interface law with a range of pressures in which it was validated."""
 
     def unproven(self, least: float, most: float) -> list[str]:
-        """What pressures [Pa] from the least to the most leave of the range, one line each."""
+        """Messages, one line each, if pressures from `lowest` to `highest` [Pa] leave the validated range."""
 
 
 def newton_step(spots: Spots, u: Number, log_load: Number) -> tuple[Number, Number, Number, Number]:
-    """One safeguarded Newton step in logarithms: (step, lower, upper, residual), all relative to u.
+    """One safeguarded Newton step for ln F(u) = log_load.
 
-    ln F is monotone in u with a slope between FLATTEST m and STEEPEST, so every evaluation brackets the root.
+    Returns step, lower and upper bound of the root (all relative to u), and residual [1]. The slope of ln F
+    over u lies between MIN_LOAD_SLOPE m and MAX_LOAD_SLOPE, so every evaluation brackets the root.
     """
     value, slope = spots.log_total("load", u)
     residual = log_load - value
@@ -89,36 +90,35 @@ def largest_spot(law: InterfaceLaw, pressure: ArrayLike) -> Array:
     RuntimeError : the inversion did not converge
     """
     p = np.asarray(pressure, dtype=np.float64)
-    bad = ~(np.isfinite(p) & (p >= 0.0))
-    if np.any(bad):
-        raise ValueError(f"pressure = {p[bad].flat[0]:g} Pa is outside [0, inf): nominal contact pressure")
-    spots, (least, _, most) = _checked(law)
-    load = np.where(p < NOTHING, 0.0, p) * law.A_0
-    if np.any(bad := (load > most) | ((load > 0.0) & (load < least))):
+    invalid = ~(np.isfinite(p) & (p >= 0.0))
+    if np.any(invalid):
         raise ValueError(
-            f"pressure = {np.broadcast_to(p, bad.shape)[bad].flat[0]:g} Pa is outside "
-            f"[{np.max(least / law.A_0):.3g}, {np.min(most / law.A_0):.3g}]: its largest spot is not "
+            f"pressure = {p[invalid].flat[0]:g} Pa is outside [0, inf): nominal contact pressure"
+        )
+    spots, (min_load, _, max_load) = _checked(law)
+    load = np.where(p < NOTHING, 0.0, p) * law.A_0
+    if np.any(invalid := (load > max_load) | ((load > 0.0) & (load < min_load))):
+        raise ValueError(
+            f"pressure = {np.broadcast_to(p, invalid.shape)[invalid].flat[0]:g} Pa is outside "
+            f"[{np.max(min_load / law.A_0):.3g}, {np.min(max_load / law.A_0):.3g}]: its largest spot is not "
             f"representable beside the critical area {np.max(spots.reference):.3g} m2 of this surface"
         )
-    parameters = np.shape(least)
+    parameters = np.shape(min_load)
     shape = np.broadcast_shapes(load.shape, parameters)
     if load.size > _BLOCK and parameters == ():
         flat = load.ravel()
-        parts = [_solve(spots, flat[i : i + _BLOCK]) for i in range(0, flat.size, _BLOCK)]
-        return np.concatenate(parts).reshape(shape)
+        blocks = [_solve(spots, flat[i : i + _BLOCK]) for i in range(0, flat.size, _BLOCK)]
+        return np.concatenate(blocks).reshape(shape)
     return _solve(spots, np.broadcast_to(load, shape))
 
 
 def checked_spots(law: InterfaceLaw) -> Spots:
-    """The law's spots, unless their reference area or load over- or underflows (D close to 1).
-
-    Raises ValueError.
-    """
+    """Spots of a law. Raises ValueError if their reference area or load over- or underflows (D near 1)."""
     return _checked(law)[0]
 
 
 def _checked(law: InterfaceLaw) -> tuple[Spots, list[Number]]:
-    """The same, and the loads [N] at the log-areas LEAST, 0 and MOST."""
+    """Spots as from `find_checked_spots`, and their loads [N] at MIN_LOG_AREA, 0 and MAX_LOG_AREA."""
     ends = (LEAST, 0.0, MOST)
     with np.errstate(all="ignore"):
         try:
@@ -155,9 +155,10 @@ def _solve(spots: Spots, load: Array) -> Array:
 
 
 def evaluate(law: InterfaceLaw, u: Number) -> dict[str, Number]:
-    """All quantities of the whole area A_0 at the log-area u, with the spot and the pressure.
+    """Contact quantities of the nominal area A_0 at the log-area u [1] of the largest spot.
 
-    Without load (u minus infinity) sums are zero and ratios have their limit.
+    Contains `largest_spot` [m2], `pressure` [Pa] and the quantities of the law. At zero load (u minus
+    infinity) sums are zero and ratios have their limit.
     """
     empty = np.isneginf(u)
     state = law.state(np.where(empty, LEAST, u))
@@ -169,14 +170,15 @@ def evaluate(law: InterfaceLaw, u: Number) -> dict[str, Number]:
 
 
 def at_pressure(law: InterfaceLaw, pressure: ArrayLike) -> dict[str, Number]:
-    """All quantities of the whole area A_0 under a nominal pressure (...) [Pa]."""
+    """Contact quantities of the nominal area A_0 at nominal pressures (...) [Pa], see `evaluate`."""
     return evaluate(law, largest_spot(law, pressure))
 
 
 def at_largest_spot(law: InterfaceLaw, area: ArrayLike) -> dict[str, Number]:
-    """All quantities of the whole area A_0 for a largest spot of the given area (...) [m2].
+    """Contact quantities of the nominal area A_0 for a largest spot with the area (...) [m2], see `evaluate`.
 
-    The area is the paper's: truncated for Zhao 2018, real for Hu 2023 and Yu 2022.
+    The area is that of the paper: truncated for Zhao 2018, real for Hu 2023 and Yu 2022. Raises ValueError
+    for a law without spot areas, and for an area that is not positive, or outside the representable range.
     """
     a = np.asarray(area, dtype=np.float64)
     spots = checked_spots(law)
@@ -195,9 +197,11 @@ def at_largest_spot(law: InterfaceLaw, area: ArrayLike) -> dict[str, Number]:
 
 
 def stiffness_curve(law: InterfaceLaw, pressure: ArrayLike, name: str = "normal") -> tuple[Array, Array]:
-    """Stiffness per nominal area k [N/m3] and dk/dp [1/m] at pressures (...) [Pa] > 0.
+    """Stiffness per nominal area k (...) [N/m3] and dk/dp (...) [1/m] at pressures (...) [Pa] > 0.
 
-    The derivative is exact: (dK/du)/(dF/du) of the same integral.
+    name : stiffness, "normal" or "tangential"
+
+    The derivative is exact: (dK/du)/(dF/du) from the same integrals.
     """
     spots = law.spots()
     u = largest_spot(law, pressure)
@@ -206,36 +210,37 @@ def stiffness_curve(law: InterfaceLaw, pressure: ArrayLike, name: str = "normal"
 
 
 def beyond(law: InterfaceLaw, pressure: float, least: float | None = None) -> list[str]:
-    """What a law no longer means at a nominal pressure [Pa], one line each with its limit; mostly nothing.
+    """Messages, one line each, if a law is outside its validity at a nominal pressure [Pa]; usually none.
 
-    least : [Pa] where a law is not proven for too small a load; None: as the pressure
+    lowest : [Pa] smallest pressure of interest, for laws that are validated from a smallest load on; None:
+        the same pressure
 
-    Above the hardness of the softer body the contact yields as a whole; a real area beyond the nominal one
-    says that the spots have run into each other. The numbers there are extrapolations.
+    Above the hardness of the softer body the contact yields as a whole. A real area above the nominal one
+    means that spots overlap. Results beyond these limits are extrapolations.
     """
-    found = []
+    messages = []
     hardness = float(law.hardness)
     if pressure > hardness:
-        found.append(
+        messages.append(
             f"a pressure of {pressure:.4g} Pa is above the hardness of the softer body, {hardness:.4g} Pa, "
             "where the interface law ends: the contact yields as a whole, the numbers are an extrapolation"
         )
     limit = _full_contact(law, pressure)
     if limit is not None:
-        found.append(
+        messages.append(
             f"a pressure of {pressure:.4g} Pa gives a real area beyond the nominal one, {law.A_0:.4g} m2, "
             f"which the interface law reaches at {limit:.3g} Pa"
         )
     if isinstance(law, Bounded):
-        found += law.unproven(pressure if least is None else least, pressure)
-    return found
+        messages += law.unproven(pressure if least is None else least, pressure)
+    return messages
 
 
 def _full_contact(law: InterfaceLaw, pressure: float) -> float | None:
-    """Pressure [Pa] at which the real area is A_0; None if it is less at the given one."""
+    """Pressure [Pa] at which the real area reaches A_0; None if it is smaller at `pressure`."""
     with np.errstate(over="ignore"):
         if not float(at_pressure(law, pressure)["A_r"]) > law.A_0:
             return None
-        below = np.geomspace(1e-6 * pressure, pressure, 400)
-        area = at_pressure(law, below)["A_r"]
-    return float(np.exp(np.interp(np.log(law.A_0), np.log(area), np.log(below))))
+        lower_pressures = np.geomspace(1e-6 * pressure, pressure, 400)
+        area = at_pressure(law, lower_pressures)["A_r"]
+    return float(np.exp(np.interp(np.log(law.A_0), np.log(area), np.log(lower_pressures))))

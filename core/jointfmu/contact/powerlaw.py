@@ -1,4 +1,4 @@
-r"""The one integral behind every law: power laws of the spot area over a power-law size distribution.
+r"""Sums over contact spots: power laws of the spot area, integrated over a power-law size distribution.
 
 A spot of area `a` carries a quantity `q(a) = c (a/a_ref)^p` on `[lower, upper]`; there are
 `n(a) da = m w (a_L/a)^m da/a` spots of area `a <= a_L`.  With `t = ln(a/a_ref)`, `u = ln(a_L/a_ref)`
@@ -6,8 +6,8 @@ A spot of area `a` carries a quantity `q(a) = c (a/a_ref)^p` on `[lower, upper]`
 .. math::  Q(u) = m w e^{m u} \sum_i c_i \int_{\min(lower_i, u)}^{\min(upper_i, u)} e^{(p_i - m) t} dt .
 
 All logarithms are relative to the reference area, which keeps the powers in range for -600 < u < 300
-(130 decades of area above, 260 below); the singularity at `p = m` (D = 1.5, D = 5/3,
-zeta (D1 + D2) = 1, ...) is removed by `exprel`.
+(130 decades of area above, 260 below). The removable singularity at `p = m` (D = 1.5, D = 5/3,
+zeta (D1 + D2) = 1, ...) is handled by `exprel`.
 """
 
 from collections.abc import Callable, Mapping
@@ -21,7 +21,7 @@ from ..quantity import Number
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(32)
 _FEW = 1024
-"""Numbers of which all nodes at once fit the cache."""
+"""Array size [1] up to which all quadrature nodes are evaluated at once, within the cache."""
 
 
 def exprel(z: Number) -> Number:
@@ -33,8 +33,8 @@ def exprel(z: Number) -> Number:
 def exp_integral(x: Number, lower: Number, upper: Number) -> Number:
     """Integral of exp(x t) over [lower, upper] [1], stable through x = 0.
 
-    With t = ln a this is `(upper^x - lower^x)/x` of the areas.  `lower = None` is minus infinity
-    (then x > 0).
+    With t = ln a this is `(upper^x - lower^x)/x` of the areas. `lower = None` stands for minus infinity,
+    with x > 0.
     """
     if lower is None:
         return np.exp(x * upper) / x
@@ -45,7 +45,7 @@ def exp_integral(x: Number, lower: Number, upper: Number) -> Number:
 def gauss(function: Callable[[Number], Number], lower: Number, upper: Number) -> Number:
     """Integral of a smooth function over [lower, upper] by 32 Gauss-Legendre nodes.
 
-    The function is called with one node after the other; few numbers go with all nodes at once.
+    The function is called once per node, or for small arrays once with all remaining nodes.
     """
     middle, half = 0.5 * (lower + upper), 0.5 * (upper - lower)
     total = _WEIGHTS[0] * function(middle + half * _NODES[0])
@@ -59,7 +59,7 @@ def gauss(function: Callable[[Number], Number], lower: Number, upper: Number) ->
 
 
 class Term(Protocol):
-    """One regime of a spot law, between two log-areas; None is an open end."""
+    """One regime of a spot law, between two log-areas [1]; an end None is infinite."""
 
     @property
     def lower(self) -> Number: ...
@@ -67,15 +67,15 @@ class Term(Protocol):
     def upper(self) -> Number: ...
 
     def spot(self, t: Number) -> Number:
-        """Value on one spot of log-area `t`; zero outside the regime."""
+        """Quantity of a single spot of log-area t; zero outside the regime."""
 
     def integral(self, m: Number, u: Number) -> Number:
-        """Integral of value times exp(-m t) over the regime, clipped to t <= u."""
+        """Integral of the quantity of a spot times exp(-m t) over the regime, for t <= u."""
 
 
 @dataclass(frozen=True, slots=True)
 class Power:
-    """`c exp(p t)` for `lower < t <= upper`; None is an open end."""
+    """Power law `c exp(p t)` for `lower < t <= upper`; an end None is infinite."""
 
     c: Number
     p: Number
@@ -92,7 +92,7 @@ class Power:
 
 @dataclass(frozen=True, slots=True)
 class Smooth:
-    """Any smooth function of the log-area on `[lower, upper]`, integrated by Gauss-Legendre."""
+    """Smooth function of the log-area on `[lower, upper]`, integrated by Gauss-Legendre quadrature."""
 
     function: Callable[[Number], Number]
     lower: Number
@@ -107,15 +107,17 @@ class Smooth:
             return self.function(np.maximum(t, self.lower)) * np.exp(-m * t)
 
         if isinstance(u, np.ndarray) and isinstance(self.upper, float) and np.all(u >= self.upper):
-            u = self.upper  # one number for all
+            u = self.upper  # the integral is the same for all points
         return gauss(integrand, clip(self.lower, u), clip(self.upper, u))
 
 
 @dataclass(frozen=True, slots=True)
 class Slip:
-    """`c exp(p t) (1 - h exp(-q t))^(1/3)`, zero where the bracket is negative (full slip).
+    """Tangential stiffness in partial slip, `c exp(p t) (1 - h exp(-q t))^(1/3)`; 0 in full slip.
 
-    The substitution `t = t_slip + r^3` removes the cube-root end point, so Gauss-Legendre converges.
+    Full slip is where the bracket is negative.
+
+    The substitution `t = t_slip + r^3` removes the cube root at the end of slip, so Gauss-Legendre converges.
     """
 
     c: Number
@@ -145,27 +147,27 @@ class Slip:
 
 
 def clip(bound: Number, u: Number, open_end: Number = None) -> Number:
-    """`min(bound, u)`; an open bound stays open."""
+    """Smaller of a bound of a regime and u; `open_end` if the bound is None (infinite)."""
     return open_end if bound is None else np.minimum(bound, u)
 
 
 def within(t: Number, lower: Number, upper: Number) -> Number:
     """1 where `lower < t <= upper`, else 0 [1]."""
-    above = 1.0 if lower is None else np.where(t > lower, 1.0, 0.0)
-    below = 1.0 if upper is None else np.where(t <= upper, 1.0, 0.0)
-    return above * below
+    is_above = 1.0 if lower is None else np.where(t > lower, 1.0, 0.0)
+    is_below = 1.0 if upper is None else np.where(t <= upper, 1.0, 0.0)
+    return is_above * is_below
 
 
 @dataclass(frozen=True, slots=True)
 class Spots:
-    """A spot law together with its size distribution.
+    """Spot law with the size distribution of the spots.
 
     reference : [m2] area at t = 0
     m         : [1]  exponent of the size distribution
-    weight    : [1]  its prefactor w
-    terms     : {quantity: regimes}; `load` [N] is always there
-    onset     : [1]  log-area where the stiffness begins, of a law without plastic spots
-    sized     : whether u is the log-area of a largest spot, and not just a measure of the load
+    weight    : [1]  prefactor w of the size distribution
+    terms     : {quantity: regimes}; always contains `load` [N]
+    onset_log_area : [1] log-area at which the stiffness begins, for a law without plastic spots; else None
+    has_spot_area : whether u is the log-area of the largest spot; else it only measures the load
     """
 
     reference: Number
@@ -176,34 +178,34 @@ class Spots:
     sized: bool = True
 
     def total(self, name: str, u: Number) -> Number:
-        """Sum over all spots, the largest of which has log-area `u`."""
+        """Sum Q(u) of a quantity over all spots, if the largest spot has the log-area u."""
         return self.m * self.weight * np.exp(self.m * u) * self._integral(name, u)
 
     def slope(self, name: str, u: Number) -> Number:
-        """Derivative of `total` in `u`: m Q + m w q(a_L)."""
+        """Derivative of `total` with respect to u: m Q + m w q(a_L)."""
         largest = sum(term.spot(u) for term in self.terms[name])
         return self.m * self.total(name, u) + self.m * self.weight * largest
 
     @property
     def stiff_onset(self) -> Number:
-        """Log-area [1] up to which every spot is plastic, so that the stiffness is zero."""
+        """Log-area [1] of the largest spot up to which all spots are plastic and the stiffness is zero."""
         if self.onset is not None:
             return self.onset
         return reduce(np.minimum, (term.lower for term in self.terms["normal"]))
 
     @property
     def breaks(self) -> list[float]:
-        """Log-areas [1], ascending, where a regime of the stiffness ends: its slope jumps there."""
+        """Log-areas [1], ascending, of the ends of the stiffness regimes: its derivative jumps there."""
         return sorted({float(end) for end in self.ends})
 
     @property
     def ends(self) -> list[Number]:
-        """The same as numbers or symbols, unsorted, with repetitions."""
-        own = [end for term in self.terms["normal"] for end in (term.lower, term.upper) if end is not None]
-        return own if self.onset is None else [*own, self.onset]
+        """Log-areas [1] of the ends of the stiffness regimes: numbers or symbols, unsorted, repeated."""
+        ends = [end for term in self.terms["normal"] for end in (term.lower, term.upper) if end is not None]
+        return ends if self.onset is None else [*ends, self.onset]
 
     def log_total(self, name: str, u: Number) -> tuple[Number, Number]:
-        """`ln Q` and its derivative in `u` (one pass, for the inversion)."""
+        """Logarithm ln Q of the sum, and its derivative with respect to u; from one evaluation."""
         integral = self._integral(name, u)
         largest = sum(term.spot(u) for term in self.terms[name])
         growth = largest * np.exp(-self.m * u) / integral

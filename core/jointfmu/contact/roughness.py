@@ -1,8 +1,8 @@
-"""What a roughness says of a contact: height of both surfaces together, and the level of its stiffness.
+"""Surface heights: combined rms height of two surfaces, and the contact stiffness that it predicts.
 
-Names of what a parameter file may state of the two surfaces, in its section [roughness] or [comparison]:
-`Ra1`, `Ra2` (arithmetic mean height), `Rq1`, `Rq2` (rms height), over the longest wave that machining
-leaves; or `h`, the rms height of both together. A side that is not stated counts as smooth.
+A parameter file states heights in its section [roughness] or [comparison]: `Ra1`, `Ra2` (arithmetic mean
+height of each surface), `Rq1`, `Rq2` (rms height), or `h`, the combined rms height of both. They include
+wavelengths up to the longest wave that machining leaves. A surface without a height counts as smooth.
 """
 
 from collections.abc import Mapping
@@ -15,14 +15,14 @@ import numpy as np
 from ..quantity import Number, problems, quantity
 
 GAMMA = 0.45
-"""Decay length of the pressure over the rms height [1]: p ~ exp(approach/(GAMMA h)) in elastic contact of
-many spots; boundary elements give 0.40 to 0.48 (docs/validity.md)."""
+"""Approach over which the pressure grows e-fold, over the rms height [1]: p ~ exp(approach/(GAMMA h)) in
+elastic contact of many spots. Boundary elements give 0.40 to 0.48 (docs/validity.md)."""
 FACTOR = (pi / 2.0) ** 0.5
 """R_q/R_a [1] of a Gaussian surface, 1.25."""
 
 
 ROUGHEST = 1e-4
-"""Largest height [m] that is taken for a roughness: cast and flame-cut faces have 50 um."""
+"""Largest accepted height of a surface [m]: cast and flame-cut faces have 50 um."""
 
 
 def _height(doc: str) -> Any:
@@ -36,46 +36,47 @@ DECLARED: dict[str, Field[Any]] = {
     "Rq2": _height("rms height of the second surface"),
     "h": _height("rms height of both surfaces together"),
 }
-"""{name: field} of what may be stated."""
+"""{name: field} of the heights that a parameter file may state."""
 
 
 def rms_of_mean(Ra: Number) -> Number:
-    """R_q [m] of a Gaussian surface of arithmetic mean height R_a [m]: sqrt(pi/2) R_a."""
+    """Rms height R_q [m] of a Gaussian surface with the arithmetic mean height Ra [m]: sqrt(pi/2) Ra."""
     return FACTOR * Ra
 
 
 def together(first: Number, second: Number) -> Number:
-    """Rms height h [m] of two independent surfaces of rms heights [m]."""
+    """Combined rms height h [m] of two statistically independent surfaces with rms heights [m]."""
     return np.sqrt(first**2 + second**2)
 
 
 def level(pressure: Number, h: Number) -> Number:
-    """Normal stiffness per area k [N/m3] under a nominal pressure [Pa]: p/(GAMMA h).
+    """Normal stiffness per area k [N/m3] at a nominal pressure p [Pa]: k = p/(GAMMA h).
 
-    Elastic contact of many spots (Persson 2007; Akarapu, Sharp and Robbins 2011); h [m] is the rms height of
-    both surfaces together.
+    Elastic contact of many spots (Persson 2007; Akarapu, Sharp and Robbins 2011). h [m] is the combined rms
+    height of both surfaces.
     """
     return pressure / (GAMMA * h)
 
 
 def excluded(name: str) -> tuple[str, ...]:
-    """Names that cannot stand beside one: they speak of the same side, or `h` of both."""
+    """Names of heights that exclude the height `name`: another height of the same surface, and `h`."""
     if name == "h":
         return tuple(other for other in DECLARED if other != "h")
     return ({"a": "Rq", "q": "Ra"}[name[1]] + name[2], "h")
 
 
 def check(stated: Mapping[str, Any], prefix: str = "") -> dict[str, Number]:
-    """{name: height [m]} as stated, floats or arrays. `prefix` is put before names in messages.
+    """Check {name: height [m]}, floats or arrays; return it with floats. `prefix` precedes names in errors.
 
-    Raises ValueError, one line: an unknown name, no number, outside (0, inf), or two heights of one side.
+    Raises ValueError, one line, for an unknown name, a value that is no number or outside its interval, or
+    two heights of one surface.
     """
     declared = {prefix + name: item for name, item in DECLARED.items()}
     texts = problems({prefix + name: value for name, value in stated.items()}, declared)
     for name in (name for name in stated if name in DECLARED):
-        beside = [other for other in excluded(name) if other in stated]
-        if beside:
-            others = ", ".join(prefix + other for other in beside)
+        conflicts = [other for other in excluded(name) if other in stated]
+        if conflicts:
+            others = ", ".join(prefix + other for other in conflicts)
             texts.append(f"{prefix}{name} beside {others}: expected one height of each side, or h alone")
             break
     if texts:
@@ -84,7 +85,7 @@ def check(stated: Mapping[str, Any], prefix: str = "") -> dict[str, Number]:
 
 
 def height(stated: Mapping[str, Number]) -> Number | None:
-    """Rms height h [m] of both surfaces together; None where nothing is stated."""
+    """Combined rms height h [m] of both surfaces; None if no height is stated."""
     if not stated:
         return None
     if "h" in stated:

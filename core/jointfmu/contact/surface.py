@@ -1,4 +1,4 @@
-"""Rough-surface and material parameters (SI) and the constants that follow from them."""
+"""Parameters of rough surfaces and materials, and constants derived from them."""
 
 from dataclasses import dataclass
 
@@ -9,7 +9,7 @@ from ..quantity import Checked, Number, quantity
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FlankSurface(Checked):
-    """Fractal parameters of one flank or of one direction of texture (Yu 2022)."""
+    """Fractal parameters of one tooth flank or one direction of a surface texture (Yu 2022)."""
 
     D: float = quantity("1", "fractal dimension of the profile", gt=1.0, lt=2.0)
     G: float = quantity("m", "fractal roughness", gt=0.0)
@@ -17,14 +17,14 @@ class FlankSurface(Checked):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ProfileSurface(FlankSurface):
-    """Self-affine surface described by its profile (Zhao 2018, Yu 2022)."""
+    """Self-affine surface, with the fractal parameters of a profile (Zhao 2018, Yu 2022)."""
 
     gamma: float = quantity("1", "frequency ratio of the Weierstrass-Mandelbrot function", gt=1.0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ArealSurface(Checked):
-    """Self-affine surface described by its area (Hu 2023); D = 1 + D of the profile."""
+    """Self-affine surface, with the fractal parameters of the surface (Hu 2023); D = 1 + D of a profile."""
 
     D: float = quantity("1", "fractal dimension of the surface", gt=2.0, lt=3.0)
     G: float = quantity("m", "fractal roughness", gt=0.0)
@@ -35,14 +35,14 @@ class ArealSurface(Checked):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Spectrum(Checked):
-    """What both flanks share of the Weierstrass-Mandelbrot function."""
+    """Parameter of the Weierstrass-Mandelbrot function common to both flanks."""
 
     gamma: float = quantity("1", "frequency ratio of the Weierstrass-Mandelbrot function", gt=1.0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Elastic(Checked):
-    """Isotropic linear elasticity of one body."""
+    """Isotropic linear elastic constants of one body."""
 
     E: float = quantity("Pa", "Young's modulus", gt=0.0)
     nu: float = quantity("1", "Poisson ratio", gt=-1.0, le=0.5)
@@ -50,34 +50,43 @@ class Elastic(Checked):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ElasticPlastic(Elastic):
-    """Isotropic elasticity and yield strength of one body."""
+    """Isotropic linear elastic constants and yield strength of one body."""
 
     sigma_y: float = quantity("Pa", "yield strength", gt=0.0)
 
 
 def contact_modulus(side1: Elastic, side2: Elastic) -> Number:
-    """E* [Pa], 1/E* = sum (1 - nu_i^2)/E_i. Zhao 2018 below Eq. 8; Hu 2023 below Eq. 7; Yu 2022 Eq. 21."""
+    """Contact modulus E* [Pa], 1/E* = sum (1 - nu_i^2)/E_i.
+
+    Zhao 2018 below Eq. 8; Hu 2023 below Eq. 7; Yu 2022 Eq. 21.
+    """
     return 1.0 / ((1.0 - side1.nu**2) / side1.E + (1.0 - side2.nu**2) / side2.E)
 
 
 def contact_shear_modulus(side1: Elastic, side2: Elastic) -> Number:
-    """G' [Pa], 1/G' = sum (2 - nu_i)/G_i with G_i = E_i/(2 (1 + nu_i)). Zhao 2018 below Eq. 21."""
+    """Contact shear modulus G' [Pa], 1/G' = sum (2 - nu_i)/G_i with G_i = E_i/(2 (1 + nu_i)).
+
+    Zhao 2018 below Eq. 21.
+    """
     compliance = sum((2.0 - s.nu) * 2.0 * (1.0 + s.nu) / s.E for s in (side1, side2))
     return 1.0 / compliance
 
 
 def hardness_coefficient(nu: Number) -> Number:
-    """k = 0.454 + 0.41 nu [1]: first yield at the maximum Hertz pressure k H. Hu 2023 below Eq. 7."""
+    """Hardness coefficient k = 0.454 + 0.41 nu [1]: yield begins at the peak Hertz pressure k H.
+
+    Hu 2023 below Eq. 7.
+    """
     return 0.454 + 0.41 * nu
 
 
 def domain_extension(D: Number) -> Number:
-    r"""psi [1], the root of Zhao 2018, Eq. 3, for a profile dimension 1 < D < 2.
+    r"""Domain extension factor psi [1], root of Zhao 2018, Eq. 3, for a profile dimension 1 < D < 2.
 
     With q = (2 - D)/D and A = (D/2) ln psi the equation reads
-    `(exp(q A) - (1 + exp(-A))^-q)/q = 1`; its removable singularity at D = 2 is taken by `expm1`.
-    Newton from a straight line between the two ends (A = ln golden ratio at D = 1, ln(e - 1) at
-    D = 2) is converged to round-off after four steps.
+    `(exp(q A) - (1 + exp(-A))^-q)/q = 1`; `expm1` handles its removable singularity at D = 2.
+    Newton's method starts from the line between the solutions at the two ends (A = ln golden ratio at D = 1,
+    ln(e - 1) at D = 2) and reaches round-off after four steps.
     """
     q = (2.0 - D) / D
     A = np.log(np.e - 1.0) + q * (np.log(0.5 + np.sqrt(1.25)) - np.log(np.e - 1.0))
@@ -91,14 +100,17 @@ def domain_extension(D: Number) -> Number:
 
 
 def domain_extension_fit(D: Number) -> Number:
-    """psi [1] for a surface dimension 2 < D < 3, Hu 2023 below Eq. 17 (within 0.38 % of the root)."""
+    """Domain extension factor psi [1] for a surface dimension 2 < D < 3: fit of Hu 2023 below Eq. 17.
+
+    It is within 0.38 % of the root of `domain_extension`.
+    """
     return 5.454 * np.exp((1.0 - D) / 0.628) + 1.499
 
 
 def complete_elliptic(e: Number) -> tuple[Number, Number]:
-    """K(e) and E(e) [1] of the modulus e, 0 <= e < 1 (Yu 2022, Eqs. 19-20).
+    """Complete elliptic integrals K(e) and E(e) [1] of the modulus e, 0 <= e < 1 (Yu 2022, Eqs. 19-20).
 
-    Arithmetic-geometric mean; eight steps reach round-off for e <= 1 - 1e-12.
+    Computed by the arithmetic-geometric mean; eight steps reach round-off for e <= 1 - 1e-12.
     """
     a: Number = 1.0
     b: Number = np.sqrt((1.0 - e) * (1.0 + e))

@@ -1,1 +1,1 @@
-"""Files: written whole or not at all, and the date in what is written."""
+"""Input and output files: checks, atomic writing, archives, build date."""

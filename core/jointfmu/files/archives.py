@@ -1,6 +1,6 @@
-"""Zip archives, FMUs above all: names and declared sizes are checked before anything is unpacked.
+"""Zip archives (FMUs): names and declared sizes of the members are checked before anything is unpacked.
 
-No member is unpacked beyond its declared size, so the sizes of the archive's list bound memory and disk.
+No member is unpacked beyond its declared size, so the declared sizes limit memory and disk space.
 """
 
 import os
@@ -14,19 +14,19 @@ from pathlib import Path
 from .reading import check_regular
 
 DESCRIPTION = "modelDescription.xml"
-"""The member that every FMU has."""
+"""Name of the member that every FMU has."""
 MAX_MEMBERS = 20_000
-"""Members of an archive [1]."""
+"""Largest number of members of an archive [1]."""
 MAX_SIZE = 1 << 30
-"""Unpacked size of all members [byte]."""
+"""Largest unpacked size of all members [byte]."""
 MAX_TEXT_SIZE = 1 << 26
-"""Unpacked size of a member that is read or parsed as a whole, as XML is [byte]."""
+"""Largest unpacked size [byte] of a member that is read as a whole, for example XML."""
 MAX_RATIO = 100
-"""Unpacked size of all members over the size of the archive [1], where it is above SMALL_SIZE."""
+"""Largest ratio [1] of the unpacked size of all members to the size of the archive, above SMALL_SIZE."""
 SMALL_SIZE = 1 << 26
-"""Unpacked size [byte] up to which the ratio is free."""
+"""Unpacked size [byte] up to which MAX_RATIO does not apply."""
 _METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
-"""Those of FMI. Others unpack a member in one go, whatever size it declares."""
+"""Compression methods that FMI allows. Python ignores the declared size when it unpacks other methods."""
 _BROKEN = (
     zipfile.BadZipFile,
     zlib.error,
@@ -36,15 +36,15 @@ _BROKEN = (
     OverflowError,
     UnicodeDecodeError,
 )
-"""What zipfile raises of a broken archive."""
+"""Exceptions that zipfile raises for a corrupt archive."""
 
 
 @contextmanager
 def open_archive(path: str | Path) -> Iterator[zipfile.ZipFile]:
-    """An FMU as an archive that may be unpacked; `read_member` and `extract` do it.
+    """Context with the checked zip archive of an FMU, for `read_member` and `extract_members`.
 
-    Raises ValueError, one line: there is no such file, it is a pipe or device, no zip or a broken one, it has
-    no description, or `check_members` refuses it.
+    Raises ValueError, one line, if the file does not exist, is a pipe or device, is no zip file or a corrupt
+    one, has no model description, or fails `check_members`.
     """
     expected = f"a zip with {DESCRIPTION}"
     if not os.path.exists(path):
@@ -64,10 +64,10 @@ def open_archive(path: str | Path) -> Iterator[zipfile.ZipFile]:
 
 
 def check_members(path: str | Path, archive: zipfile.ZipFile) -> None:
-    """Raise ValueError, one line, for an archive that is not to be unpacked.
+    """Raise ValueError, one line, if it is not safe to unpack an archive.
 
-    Refused are too many members, too large ones, too high a ratio (a zip bomb), encryption, compression
-    other than deflate, and names that lead out of the folder into which the archive is unpacked.
+    Errors are too many members, too large members, too high a compression ratio (a zip bomb), encryption,
+    compression other than deflate, and names that lead out of the target folder.
     """
     members = archive.infolist()
     if len(members) > MAX_MEMBERS:
@@ -93,13 +93,13 @@ def check_members(path: str | Path, archive: zipfile.ZipFile) -> None:
 
 
 def check_zip(path: str | Path) -> None:
-    """Check the members of a file that may be an archive (X3P), which another package will unpack."""
+    """Check the members of a file that another package will unpack (X3P); a file that is no zip passes."""
     with suppress(*_BROKEN), zipfile.ZipFile(path) as archive:
         check_members(path, archive)
 
 
 def read_member(archive: zipfile.ZipFile, name: str) -> bytes:
-    """A member of an archive. Raises KeyError if there is none, ValueError if it is too large."""
+    """Read a member of an archive. Raises KeyError if it does not exist, ValueError if it is too large."""
     member = archive.getinfo(name)
     _check_text_size(str(archive.filename), member)
     with archive.open(member) as stream:
@@ -107,7 +107,10 @@ def read_member(archive: zipfile.ZipFile, name: str) -> bytes:
 
 
 class Members(Mapping[str, bytes]):
-    """{name: content} of an FMU's members, read on access. Raises ValueError as `open_archive` does."""
+    """Mapping {name: content} of the members of an FMU, read on access.
+
+    Raises ValueError as `open_archive` does.
+    """
 
     def __init__(self, path: str | Path) -> None:
         self._path = path
@@ -134,5 +137,5 @@ def _check_text_size(path: str | Path, member: zipfile.ZipInfo) -> None:
 
 
 def extract(archive: zipfile.ZipFile, folder: str | Path, include: Callable[[str], bool]) -> None:
-    """Unpack the members of a checked archive whose names are included."""
+    """Unpack the members of a checked archive for whose names `include` is true."""
     archive.extractall(folder, [name for name in archive.namelist() if include(name)])

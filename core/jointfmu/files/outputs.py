@@ -1,6 +1,7 @@
-"""Which files may be written: never a file of another kind, and no foreign file unless replacement is forced.
+"""Checks before output files are overwritten.
 
-A file is the program's own if its content says so: `MARK` in its head, or the mark that its `FileKind` names.
+A file of another kind is never overwritten. A file that the program did not write is overwritten only if the
+user forces it. The program recognises its own files by their content: `PROGRAM_MARK`, `FileKind.is_own`.
 """
 
 import os
@@ -15,21 +16,21 @@ from ..quantity.refusal import Refusal
 from .writing import check_place, is_stream, write_text
 
 MARK = "written by jointfmu"
-"""What text files have in their first lines, in a comment of their language."""
+"""Text in a comment in the first lines of all text files that the program writes."""
 _MARK = re.compile(rb'(written|generated) by jointfmu|(generationTool|content)="jointfmu', re.IGNORECASE)
 _HEAD = 65536
-"""Bytes of a file in which the mark is looked for."""
+"""Number of bytes [1] at the start of a file in which the mark is searched."""
 _ARCHIVE = re.compile(r"modelDescription\.xml|SystemStructure\.ssd")
 _CHECKSUM = re.compile(rf"# {MARK}; checksum ([0-9a-f]{{8}})\n")
 _OTHER_ENDING = re.compile(
     r"\.(7z|bat|c|cpp|dll|docx|dylib|exe|frd|gz|h|ipynb|jpg|json|jsonl|m|mat|md|npy|npz|odb|pdf"
     r"|ps1|py|pyi|rst|sh|so|ssd|ssv|tar|vtk|xls|xlsx|yaml|yml|zip)"
 )
-"""Endings of files that are never written by name."""
+"""File name endings of kinds that no command writes to a path chosen by the user."""
 
 
 def _is_marked(path: Path) -> bool:
-    """Whether the head of a file has the mark, or the description in an FMU or an SSP archive."""
+    """Whether the head of a file, or of the description in an FMU or SSP archive, contains the mark."""
     with path.open("rb") as file:
         head = file.read(_HEAD)
     if head.startswith(b"PK"):
@@ -45,11 +46,11 @@ def _is_marked(path: Path) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class FileKind:
-    """One kind of output file.
+    """Kind of an output file.
 
-    noun    : its name in messages
+    noun    : name of the kind in messages
     endings : file name endings of this kind, lower case
-    is_own  : whether a file of this kind was written by the program
+    is_own  : function, path -> whether the program wrote this file
     """
 
     noun: str
@@ -58,10 +59,10 @@ class FileKind:
 
 
 def _is_unedited(path: Path) -> bool:
-    """Whether a parameter file is as it was written: one that a user edited is the user's."""
+    """Whether a parameter file is unchanged since the program wrote it; an edited file is the user's."""
     text = path.read_bytes().decode("utf-8", "replace").replace("\r\n", "\n")
-    stated = _CHECKSUM.match(text)
-    return stated is not None and stated[1] == _checksum(text[stated.end() :])
+    match = _CHECKSUM.match(text)
+    return match is not None and match[1] == _checksum(text[match.end() :])
 
 
 def _checksum(text: str) -> str:
@@ -79,16 +80,19 @@ _ENDINGS = {end for kind in (PARAMETERS, PAGE, PICTURE, ARCHIVE, TEXT, MESH) for
 
 
 def write_parameter_text(path: str | Path, text: str) -> None:
-    """Write the text of a parameter file below a line that tells an unedited file. Raises as `write_text`."""
+    """Write a parameter file; its first line has a checksum that reveals later edits.
+
+    Raises ValueError as `write_text` does.
+    """
     write_text(path, f"# {MARK}; checksum {_checksum(text)}\n{text}")
 
 
 def check_output(path: str | Path, kind: FileKind, force: bool = False) -> None:
-    """Raise ValueError naming the path if a file of a kind may not or cannot be written there.
+    """Raise ValueError, which names the path, if a file of this kind may not or cannot be written there.
 
-    Refused are a folder, the ending of another kind of file, a file that is write-protected, a place that
-    cannot be written, and, without `force`, a file with content that the program did not write. A device or
-    pipe is only written to. Leaves nothing; to be called before the work.
+    Errors are a folder, the ending of another kind of file, a write-protected file, a location that cannot be
+    written, and, without `force`, a file with content that the program did not write (Refusal). A device or
+    pipe only has to be writable. Call it before long work; it leaves no file behind.
     """
     path = Path(path)
     if kind is FOLDER:
@@ -122,13 +126,16 @@ def check_output(path: str | Path, kind: FileKind, force: bool = False) -> None:
 
 
 def check_outputs(paths: Iterable[Path], kind: FileKind, force: bool = False) -> None:
-    """Check several files of one kind, as `check_output` does."""
+    """Apply `check_output` to several files of one kind."""
     for path in paths:
         check_output(path, kind, force)
 
 
 def is_same_file(one: Path, other: Path) -> bool:
-    """Whether two paths lead to one file, through links too; names in any case unless both exist."""
+    """Whether two paths lead to the same file, also through links.
+
+    If one of them does not exist, names are compared without regard to case.
+    """
     try:
         return os.path.samefile(one, other)
     except OSError:  # one of them does not exist yet

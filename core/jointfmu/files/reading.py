@@ -1,4 +1,4 @@
-"""Input files: a pipe or a device is refused before it is opened, which could wait for ever."""
+"""Reading of input files. A pipe or a device is an error, before it is opened: reading might never end."""
 
 import os
 import stat
@@ -6,13 +6,13 @@ from pathlib import Path
 
 
 def check_regular(path: str | Path, expected: str) -> None:
-    """Raise ValueError if a path leads to a pipe, a device or a socket; a missing file passes.
+    """Raise ValueError if a path leads to a pipe, a device or a socket; a missing file is no error here.
 
     expected : what the file should be, for the error
     """
     try:
         mode = os.stat(path).st_mode
-    except OSError:  # reading says why
+    except OSError:  # reading the file reports the reason
         return
     if stat.S_ISREG(mode) or stat.S_ISDIR(mode):
         return
@@ -21,11 +21,11 @@ def check_regular(path: str | Path, expected: str) -> None:
 
 
 def read_bytes(path: str | Path, expected: str) -> bytes:
-    """Content of a file.
+    """Read a file.
 
     expected : what the file should be, for the error
 
-    Raises ValueError, one line, if there is none, or it cannot be read or is no regular file.
+    Raises ValueError, one line, if the file does not exist, cannot be read or is no regular file.
     """
     check_regular(path, expected)
     try:

@@ -1,21 +1,21 @@
-"""Texts of parameter files: what they may contain, and how TOML writes them."""
+"""Texts in parameter files: allowed characters and lengths, and TOML strings."""
 
 import json
 import re
 from collections.abc import Iterator, Mapping
 
 MAX_NAME_LENGTH = 200
-"""Characters of a parameter set's or a system's name, and of a key [1]."""
+"""Largest number of characters [1] of the name of a parameter set or system, and of a key."""
 MAX_TEXT_LENGTH = 10_000
-"""Characters of any other text in a file [1]."""
+"""Largest number of characters [1] of any other text in a file."""
 _FORBIDDEN = re.compile("[\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ud800-\udfff\ufffe\uffff]")
-"""Control characters, line separators, marks that reorder the text shown, and what XML cannot hold."""
+"""Control characters, line separators, marks of the writing direction, and characters invalid in XML."""
 
 
 def check_text(what: str, text: str, max_length: int = MAX_TEXT_LENGTH) -> None:
     """Raise ValueError, one line, if a text is too long or has a control character.
 
-    what : what the text is, for the error
+    subject : what the text is, for the error
     """
     if len(text) > max_length:
         raise ValueError(f"{what} has {len(text)} characters; allowed are at most {max_length}")
@@ -27,21 +27,21 @@ def check_text(what: str, text: str, max_length: int = MAX_TEXT_LENGTH) -> None:
 
 
 def printable(text: str) -> str:
-    """One line of a text of others: what `check_text` refuses is a question mark."""
+    """Replace characters that `check_text` does not allow by question marks: for texts of other programs."""
     return _FORBIDDEN.sub("?", text)
 
 
 def check_document(document: Mapping[str, object]) -> None:
-    """Raise ValueError if a key or a text of a TOML document is none that `check_text` allows."""
+    """Raise ValueError if `check_text` does not allow a key or a text of a TOML document."""
     for name, key, value in _items(document, ""):
         check_text(f"a key of {name or 'the file'}", key, MAX_NAME_LENGTH)
         if isinstance(value, str):
-            own = f"{name}.{key}" if name else key
-            check_text(own, value, MAX_NAME_LENGTH if own == "name" else MAX_TEXT_LENGTH)
+            full_name = f"{name}.{key}" if name else key
+            check_text(full_name, value, MAX_NAME_LENGTH if full_name == "name" else MAX_TEXT_LENGTH)
 
 
 def toml_string(text: str) -> str:
-    """A basic string of TOML: the escapes of JSON, and DEL."""
+    """Format a text as a basic string of TOML: with the escapes of JSON, and DEL escaped."""
     return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 

@@ -1,16 +1,16 @@
-"""The date that goes into what is written."""
+"""Date in written files; reproducible if SOURCE_DATE_EPOCH is set."""
 
 from datetime import UTC, datetime
 from os import environ
 
 
 def build_time() -> datetime:
-    """Now, or SOURCE_DATE_EPOCH where it is set, for files that repeat."""
+    """Date for written files: SOURCE_DATE_EPOCH if it is set, for reproducible files, else now."""
     return fixed_time() or datetime.now(UTC)
 
 
 def fixed_time() -> datetime | None:
-    """SOURCE_DATE_EPOCH (seconds since 1970) where it is set.
+    """Date in the variable SOURCE_DATE_EPOCH (seconds since 1970); None if it is not set.
 
     Raises ValueError if the variable is no such number.
     """

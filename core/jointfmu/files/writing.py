@@ -1,4 +1,4 @@
-"""Files and folders that are written whole or not at all."""
+"""Atomic writing of files and folders: they are complete, or nothing has changed."""
 
 import os
 import stat
@@ -11,7 +11,7 @@ from pathlib import Path
 
 
 def write_text(path: str | Path, text: str) -> None:
-    """Write a text file (UTF-8) as `write_bytes` does; ValueError also for what is no text."""
+    """Write a text file (UTF-8) as `write_bytes` does; ValueError also if UTF-8 cannot encode the text."""
     try:
         data = text.encode()
     except UnicodeEncodeError as error:
@@ -20,81 +20,84 @@ def write_text(path: str | Path, text: str) -> None:
 
 
 def write_bytes(path: str | Path, data: bytes) -> None:
-    """Write a file in one go: beside its place, then renamed; a failure leaves nothing behind.
+    """Write a file atomically: to a temporary file in the same folder, which is then renamed.
 
-    A symbolic link stays, the file that it leads to is replaced. A device, a pipe or standard output is
-    written to.
+    A symbolic link stays; the file that it leads to is replaced. A device, a pipe or standard output is
+    written directly. A failure leaves nothing behind.
 
-    Raises ValueError naming the path if it cannot be written.
+    Raises ValueError, which names the path, if it cannot be written.
     """
     if is_stream(path):
         _write_stream(path, data)
         return
     target = Path(os.path.realpath(path))
-    beside = _beside(path, target)
+    temporary = _beside(path, target)
     try:
-        beside.write_bytes(data)
-        beside.chmod(0o644)
-        beside.replace(target)
+        temporary.write_bytes(data)
+        temporary.chmod(0o644)
+        temporary.replace(target)
     except OSError as error:
         raise _unwritable(path, error) from None
     finally:
-        beside.unlink(missing_ok=True)
+        temporary.unlink(missing_ok=True)
 
 
 def is_stream(path: str | Path) -> bool:
-    """Whether a path is written to and not replaced: a device, a pipe, or an output of this process."""
+    """Whether a path leads to a device, a pipe or an output of this process: these cannot be replaced."""
     try:
-        found = os.stat(path)
+        status = os.stat(path)
     except OSError:
         return False
-    return not (stat.S_ISREG(found.st_mode) or stat.S_ISDIR(found.st_mode)) or _own_output(found) is not None
+    return (
+        not (stat.S_ISREG(status.st_mode) or stat.S_ISDIR(status.st_mode)) or _own_output(status) is not None
+    )
 
 
 def is_standard_output(path: str | Path) -> bool:
-    """Whether a path leads to the standard output of this process, the null device aside."""
+    """Whether a path leads to the standard output of this process; False for the null device."""
     try:
-        found = os.stat(path)
-        return _own_output(found) == 1 and not os.path.samestat(found, os.stat(os.devnull))
+        status = os.stat(path)
+        return _own_output(status) == 1 and not os.path.samestat(status, os.stat(os.devnull))
     except OSError:
         return False
 
 
 def _own_output(found: os.stat_result) -> int | None:
-    """The descriptor, 1 or 2, of the standard output or error that is this file."""
+    """File descriptor, 1 or 2, of this process whose file has the status `status`; None if neither has."""
     for descriptor in (1, 2):
-        with suppress(OSError):  # closed
+        with suppress(OSError):  # this process has closed it
             if os.path.samestat(found, os.fstat(descriptor)):
                 return descriptor
     return None
 
 
 def _write_stream(path: str | Path, data: bytes) -> None:
-    """Write to a device or pipe; to an output of this process after what it has printed.
+    """Write to a device, a pipe, or an output of this process; the latter is flushed first.
 
-    Raises BrokenPipeError if standard output is a pipe that nobody reads any more.
+    Raises BrokenPipeError if standard output is a pipe whose reader has ended.
     """
-    own = _own_output(os.stat(path))
+    descriptor = _own_output(os.stat(path))
     try:
-        if own is None:
+        if descriptor is None:
             with open(path, "wb") as stream:
                 stream.write(data)
         else:
             for printed in (sys.stdout, sys.stderr):
                 printed.flush()
-            with open(own, "wb", closefd=False) as stream:
+            with open(descriptor, "wb", closefd=False) as stream:
                 stream.write(data)
     except OSError as error:
-        if own is not None and isinstance(error, BrokenPipeError):
+        if descriptor is not None and isinstance(error, BrokenPipeError):
             raise
         raise _unwritable(path, error) from None
 
 
 @contextmanager
 def made_folder(path: Path) -> Iterator[None]:
-    """A folder, made with those above it where need be; what was made goes again, if empty, on a failure.
+    """Context in which a folder exists; it is created, with its parents, if necessary.
 
-    Raises ValueError naming the path if it cannot be made.
+    On an exception the new folders are removed again, if they are empty. Raises ValueError, which names the
+    path, if the folder cannot be created.
     """
     new = [folder for folder in (path, *path.parents) if not folder.exists()]
     try:
@@ -104,16 +107,17 @@ def made_folder(path: Path) -> Iterator[None]:
     try:
         yield
     except BaseException:
-        with suppress(OSError):  # the first that is not empty ends it
+        with suppress(OSError):  # stop at the first folder that is not empty
             for folder in new:
                 folder.rmdir()
         raise
 
 
 def write_files(folder: Path, files: Mapping[str, str]) -> list[Path]:
-    """Write text files, {path in the folder: text}, all of them or none: beside the folder, then moved.
+    """Write text files, {path in the folder: text}, first to a temporary folder, then move them.
 
-    Raises ValueError naming the folder if they cannot be written; a folder that was made for them goes again.
+    Raises ValueError, which names the folder, if they cannot be written; a new folder is removed again.
+    Returns the paths of the files.
     """
     with made_folder(folder.parent):
         try:
@@ -132,12 +136,13 @@ def write_files(folder: Path, files: Mapping[str, str]) -> list[Path]:
 
 
 def check_place(path: Path, folder: Path) -> None:
-    """Raise ValueError naming the path if no file could be made in a folder, which need not exist yet.
+    """Raise ValueError, which names the path, if no file can be created in a folder.
 
-    Leaves nothing; to be called before long work.
+    If the folder does not exist, its nearest existing parent is checked. Call it before long work; it leaves
+    no file behind.
     """
     folder = folder.absolute()
-    folder = next(one for one in (folder, *folder.parents) if one.exists())
+    folder = next(parent for parent in (folder, *folder.parents) if parent.exists())
     try:
         if not folder.is_dir():
             raise OSError(ENOTDIR, os.strerror(ENOTDIR))
@@ -150,7 +155,10 @@ def check_place(path: Path, folder: Path) -> None:
 
 
 def _beside(path: str | Path, target: Path) -> Path:
-    """A new empty file in the folder of `target`, which is made if need be; errors name `path`."""
+    """Create an empty temporary file in the folder of `target`, and this folder if necessary.
+
+    Raises ValueError, which names `path`.
+    """
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
         handle, name = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.")

@@ -1,4 +1,4 @@
-"""The joints, a folder each; KINDS is the only list of them."""
+"""Joints: one subpackage per joint. KINDS lists them all."""
 
 from importlib import import_module
 
@@ -12,15 +12,15 @@ _FOLDERS = (
     "gear_mesh",
 )
 KINDS: dict[str, Kind] = {name: import_module(f".{name}", __name__).KIND for name in _FOLDERS}
-"""{name: joint}, in the order in which they are shown."""
+"""{name of the joint: its description}, in the order of all listings."""
 MODELS: dict[str, Model] = {model.name: model for kind in KINDS.values() for model in kind.models}
-"""{name: exported model} of all joints."""
+"""{name of the FMU: its model} for all joints."""
 
 
 def register(kind: Kind) -> None:
-    """Add a joint of another package for this process: it is built, checked and listed like the others.
+    """Add a joint of another package, for this process: it is built, checked and listed like the others.
 
-    Raises ValueError if a joint or a model of that name is there.
+    Raises ValueError if its name, or the name of one of its models, is already in use.
     """
     taken = [name for name in (kind.name, *(model.name for model in kind.models)) if name in KINDS | MODELS]
     if taken:

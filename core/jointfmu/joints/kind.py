@@ -1,4 +1,4 @@
-"""What a joint's folder says of the joint; everything that knows joints loops over these."""
+"""Description of a joint: parameters, interface laws, models and checks. All tools loop over these."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -11,10 +11,10 @@ from .model import Model, Variable
 
 @dataclass(frozen=True, slots=True)
 class RoughSurface:
-    """Parameters `PREFIX.D` and `PREFIX.G` that a measured surface decides.
+    """Fractal parameters `PREFIX.D` and `PREFIX.G` that can be determined from a measured surface.
 
-    areal     : they are D_s and G_s of the surface, else D and G of a profile
-    direction : of the profile on a textured surface, "x" or "y"; None: whichever is surer
+    areal     : True: D_s and G_s of the surface; False: D and G of a profile
+    direction : direction of the profile on a textured surface, "x" or "y"; None: the one with less scatter
     """
 
     prefix: str
@@ -23,30 +23,31 @@ class RoughSurface:
 
 
 def itself(parameters: object) -> object:
-    """The interface law of a joint whose parameter set is one."""
+    """Return the parameter set: for a joint whose parameter set is itself the interface law."""
     return parameters
 
 
 def none(parameters: object) -> Iterable[str]:
-    """No contradictions: each parameter stands for itself."""
+    """Return no contradictions: for a joint with independent parameters."""
     return ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Kind:
-    """A joint.
+    """Description of one kind of joint.
 
-    name          : of its folders, and `joint = NAME` in parameter files
-    package       : import name of its folder
-    default       : stem of its default parameter file
-    laws          : {interface law: its parameter set with this law}, the default first; a name of
-                    contact.laws.LAWS, or any other if it has no interface law
-    law_of        : the law's parameter set out of the joint's; None with a law that is of no interface
-    models        : what it is exported as; the first is its component in a system model
-    surfaces      : its rough surfaces
-    working_point : names of inputs that its linearisations need (preload, ...), the first always
-    contradictions : of a parameter set: a line for each parameter that contradicts another; what a parameter
-                    file must not have
+    name          : name of its folders, and `joint = NAME` in parameter files
+    package       : import name of its subpackage
+    default_stem  : stem of the file name of its default parameter file
+    laws          : {name of a law: class of the joint's parameter set with this law}, the default law first.
+                    Interface laws have their name in contact.laws.LAWS, other laws any name.
+    extract_law   : function, parameter set of the joint -> that of its interface law; None if it has none
+    models        : exported models; the first is the component of the joint in a system model
+    surfaces      : rough surfaces whose parameters can be measured
+    working_point : names of the inputs that fix the point of linearisation (preload, ...); the first one is
+                    always required
+    find_contradictions : function, parameter set -> one message per parameter that contradicts another one;
+                    a parameter file with contradictions is an error
     """
 
     name: str
@@ -61,20 +62,20 @@ class Kind:
 
     @property
     def title(self) -> str:
-        """Its name as words."""
+        """Name in words: "gear mesh"."""
         return self.name.replace("_", " ")
 
     @property
     def parameters(self) -> type[object]:
-        """Its parameter set with the default law."""
+        """Class of the parameter set with the default law."""
         return next(iter(self.laws.values()))
 
     def law(self, parameters: object) -> str:
-        """Name of the interface law of a parameter set."""
+        """Name of the law of a parameter set, a key of `laws`."""
         return next(name for name, cls in self.laws.items() if type(parameters) is cls)
 
     def model(self, name: str | None = None) -> Model:
-        """The model of an FMU, of the first without a name. Raises ValueError if it has none of that name."""
+        """Model with the name of an FMU; None: the first model. Raises ValueError if there is none."""
         models = {model.name: model for model in self.models}
         if name is not None and name not in models:
             raise ValueError(f"fmu = {name!r} is none of a {self.name}, allowed are {', '.join(models)}")
@@ -82,21 +83,23 @@ class Kind:
 
     @property
     def variables(self) -> dict[str, Variable]:
-        """Inputs and outputs of all its models by name."""
+        """{name: input or output} of all models."""
         return {v.name: v for model in self.models for v in (*model.inputs, *model.outputs)}
 
     @property
     def own(self) -> bool:
-        """Whether it comes with this package, and not from another one."""
+        """Whether the joint is part of jointfmu, not of another package."""
         return self.package.startswith(f"{__package__}.")
 
     def spring(self, parameters: object) -> object:
-        """The tabulated joint of a parameter set."""
+        """Tabulate a parameter set, as the first model does."""
         return self.models[0].spring(parameters)
 
     def default_file(self, law: str | None = None) -> Path:
-        """Its default parameter file, models/NAME/DEFAULT.toml, with another law DEFAULT_LAW.toml; of another
-        package models/ in its folder."""
+        """Path of the default parameter file: models/NAME/DEFAULT.toml, or DEFAULT_LAW.toml for another law.
+
+        A joint of another package has its files in the folder models/ of that package.
+        """
         stem = self.default if law in (None, next(iter(self.laws))) else f"{self.default}_{law}"
         folder = files("jointfmu_models") / self.name if self.own else files(self.package) / "models"
         return Path(str(folder / f"{stem}.toml"))

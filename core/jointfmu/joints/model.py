@@ -1,6 +1,6 @@
-"""What a joint is exported as: inputs and outputs with unit and meaning, and what is computed.
+"""Models that are exported as FMUs: inputs, outputs, evaluation, validity limits and default experiments.
 
-Parameters are those of the joint's parameter set, whose units, intervals and meanings are declared there.
+The parameter set of the joint declares the parameters with their units, intervals and meanings.
 """
 
 import math
@@ -19,34 +19,36 @@ Memory = NDArray[np.float64]
 
 
 class Tabulated(Protocol):
-    """A force law over a displacement, with an end."""
+    """Tabulated law, load over displacement, that ends at a largest displacement."""
 
     @property
     def end(self) -> tuple[float, float]:
-        """Displacement and load at the end of the table."""
+        """Largest displacement and load of the table."""
 
 
 class Spring(Protocol):
-    """What a joint gives the builders: a parameter set, tabulated once.
+    """Tabulated joint: a parameter set with the table computed from it.
 
-    The functions of its `Model` take it, and C is generated of the parameter set. Of a joint of equations the
-    parameter set itself may stand for it; then nothing is outside a table.
+    The functions of `Model` take it as their argument; C code is generated from its parameter set. A joint
+    that needs no table may use the parameter set itself; its model then has no validity limits.
     """
 
     @property
     def joint(self) -> object:
-        """The parameter set, a frozen dataclass of quantities."""
+        """Parameter set, a frozen dataclass of quantities."""
 
     @property
     def curve(self) -> Tabulated:
-        """The curve that its outputs are read from."""
+        """Table from which the outputs are interpolated."""
 
 
 @dataclass(frozen=True, slots=True)
 class Variable:
-    """An input or output.
+    """Input or output of a model.
 
-    start : of an input that no parameter file gives
+    nominal : typical size, in the unit
+    minimum : smallest allowed value of an input
+    start   : start value of an input that the parameter file does not state
     """
 
     name: str
@@ -58,18 +60,19 @@ class Variable:
 
     @property
     def interval(self) -> Interval:
-        """What an input may be: finite, and not below its least value."""
+        """Allowed values of an input: finite, and at least `minimum`."""
         return Interval.of(ge=self.low)
 
 
 @dataclass(frozen=True, slots=True)
 class Ramp:
-    """Load ramp: the default experiment, one step per interval [s].
+    """Load ramp of one input, the default experiment: the input grows by `step` every `interval` [s].
 
-    end, step : of the main job's
-    reach     : (spring, start values) -> begin and end that show what a parameter set does; None: as above
-    begin     : where the load begins
-    settings  : of parameters with which a course over time shows in experiments
+    end, step  : largest value and increment of the input for the default parameters
+    settings   : {parameter: value} for experiments that show a change over time
+    find_range : function (tabulated joint, start values) -> `onset` and `end` suited to its parameters;
+        None: `onset` and `end` hold for all parameters
+    onset      : value of the input at which the load starts to act
     """
 
     input: str
@@ -81,7 +84,7 @@ class Ramp:
     begin: float = 0.0
 
     def points(self, count: int) -> NDArray[np.float64]:
-        """Inputs (count) from 0 to the end, dense where the load begins and curves bend."""
+        """Values (count) of the input: 0, then from `onset` to `end`, dense near `onset`."""
         points = self.begin + (self.end - self.begin) * np.linspace(0.0, 1.0, count) ** 2
         points[0] = 0.0
         return points
@@ -89,9 +92,9 @@ class Ramp:
 
 @dataclass(frozen=True, slots=True)
 class Loop:
-    """A loop that shows a joint's memory: an input to and fro about its start value, from rest.
+    """Load cycle that shows hysteresis: the input oscillates about its start value, from the virgin state.
 
-    settings : of parameters and inputs with which it has an area
+    settings : {parameter or input: value} for which the loop encloses an area
     """
 
     input: str
@@ -101,10 +104,12 @@ class Loop:
 
 @dataclass(frozen=True, slots=True)
 class Outside:
-    """A way to leave the tables, worth a warning: a variable outside its interval.
+    """Validity limit: a warning if a variable leaves an interval, for example the end of the table.
 
-    interval : (joint, (x, y) at the end of the curve, inputs) -> (low, high); numbers or symbols
-    doc      : what happens there
+    variable : name of the input or output
+    interval : function (parameter set, (displacement, load) at the end of the table, inputs) -> lower and
+        upper end of the interval; numbers or symbols
+    doc      : text of the warning: what happens outside
     """
 
     variable: str
@@ -114,27 +119,33 @@ class Outside:
 
 @dataclass(frozen=True, slots=True)
 class Model:
-    """One exported model of a joint, later an FMU.
+    """Model of a joint, exported as one FMU.
 
-    joint    : kind of the parameter file
-    parameters : its parameter set with the joint's default law
-    spring   : makes the tabulated joint of a parameter set
-    evaluate : (spring, inputs) -> outputs; of a joint with memory from rest
-    outside  : warnings about a state outside the tables
-    dependencies : inputs that an output depends on, where not on all
-    linear   : {output: {input: what the factor depends on}} where an output is linear in an input with a
-        factor of parameters only ("parameters") or of none ("constant")
-    hidden   : prefixes of parameters that no tool may change
-    states   : continuous states, the first outputs: positions of bodies, then their speeds; after them the
-        accelerations, so that the rate of each is the output as many places on as there are bodies
-    moves    : outputs change with time, while inputs rest
-    events   : (spring) -> times [s] at which their course has a corner, numbers or symbols; None: at none
-    rest     : (spring) -> memory (n) of a joint that has not moved yet, all zero; None: it has no memory
-    evolve   : (spring, inputs, memory) -> outputs and memory after the straight path to the inputs; the
-        memory given stays as it is
-    loop     : that shows its memory
-    variant  : (model, parameter set) -> the model where a parameter set gives it further outputs
-    alias    : the name that a user gave it; "" for its own
+    name     : name of the FMU
+    joint    : kind of the joint, `joint = NAME` in parameter files
+    parameters : class of the parameter set with the joint's default law
+    tabulate : function, parameter set -> tabulated joint
+    evaluate : function (tabulated joint, inputs) -> outputs; a model with history starts in the virgin state
+    validity_limits : a warning for each variable that leaves its interval
+    ramp     : default experiment
+    dependencies : {output: inputs that it depends on}; outputs that are not listed depend on all inputs
+    linear_factors : {output: {input: kind of the factor}} for outputs that are linear in an input. The
+        factor is "constant", or a function of the parameters alone ("parameters").
+    fixed_parameters : parameters, or prefixes of their names, that the FMU does not expose
+    state_count : number of continuous states, which are the first outputs: positions of bodies, then their
+        speeds; then follow the accelerations. So the rate of output i is output i + number of bodies.
+    is_time_dependent : whether outputs change with time at constant inputs
+    find_event_times : function, tabulated joint -> times [s] at which outputs have a kink, numbers or
+        symbols; None: there are none
+    initial_history : function, tabulated joint -> history variables (n) of the virgin state, all zero; None:
+        the model has no history
+    advance  : function (tabulated joint, inputs, history variables) -> outputs and new history variables
+        after a straight path to the inputs; the history variables passed in are not modified
+    loop     : load cycle that shows the hysteresis
+    make_variant : function (model, parameter set) -> model with additional outputs for this parameter set
+    alias    : name that the user gave to the FMU; "": `name`
+
+    Raises ValueError if only one of `initial_history` and `advance` is given, or a loop without them.
     """
 
     name: str
@@ -167,16 +178,16 @@ class Model:
 
     @property
     def title(self) -> str:
-        """What it is called where it is used."""
+        """Displayed name: the alias, if there is one, else the name."""
         return self.alias or self.name
 
     def rate(self, output: int) -> bool:
-        """Whether an output is the rate of a state."""
+        """Whether the output with this index is the time derivative of a state."""
         bodies = self.states // 2
         return bodies <= output < self.states + bodies
 
     def parameter_fields(self) -> dict[str, Any]:
-        """Structured names and fields of the parameters that the FMU exposes."""
+        """{structured name: field} of the numbers and booleans that the FMU exposes as parameters."""
         return {
             name: item
             for name, item in flat_fields(self.parameters)
@@ -185,30 +196,30 @@ class Model:
         }
 
     def of(self, joint: str, parameters: object) -> "Model":
-        """The model with the parameters and outputs of a parameter file, whose interface law may be another.
+        """Model for a parameter set, which may have another law, and additional outputs.
 
-        Raises ValueError if the file is of another joint than this FMU's.
+        joint : kind of the joint that the parameter set belongs to; raises ValueError if it is another one
         """
         if joint != self.joint:
             raise ValueError(f"{self.name}: the parameter file is of a {joint!r}, expected a {self.joint!r}")
-        own = replace(self, parameters=type(parameters))
-        return self.variant(own, parameters) if self.variant else own
+        model = replace(self, parameters=type(parameters))
+        return self.variant(model, parameters) if self.variant else model
 
     def loaded(self, spring: Spring, start: Values) -> "Model":
-        """The model with its ramp, and a loop over the same input, as far as they reach with these."""
+        """Model whose load ramp, and load cycle of the same input, are scaled to a joint and start values."""
         ramp, loop = self.ramp, self.loop
         if ramp.reach is None:
             return self
-        begin, end = (float(x) for x in ramp.reach(spring, start))
+        onset, end = (float(x) for x in ramp.reach(spring, start))
         end = max(end, start[ramp.input])
-        stretch = end / ramp.end
+        scale = end / ramp.end
         if loop and loop.input == ramp.input:
-            loop = replace(loop, amplitude=stretch * loop.amplitude)
-        ramp = replace(ramp, begin=max(begin, 0.0), end=end, step=stretch * ramp.step)
+            loop = replace(loop, amplitude=scale * loop.amplitude)
+        ramp = replace(ramp, begin=max(onset, 0.0), end=end, step=scale * ramp.step)
         return replace(self, ramp=ramp, loop=loop)
 
     def warnings(self, spring: Spring, values: Values) -> dict[int, str]:
-        """Warnings about a state of inputs and outputs outside the tables, by number."""
+        """{index of the validity limit: warning} for values of inputs and outputs outside their intervals."""
         units = {v.name: "" if v.unit == "1" else f" {v.unit}" for v in (*self.inputs, *self.outputs)}
         messages = {}
         for i, o in enumerate(self.outside):
@@ -220,9 +231,9 @@ class Model:
         return messages
 
     def depends(self, output: str) -> Sequence[str]:
-        """Inputs and states on which an output depends."""
+        """Names of the inputs and states on which an output depends."""
         return self.dependencies.get(output, [v.name for v in self.inputs])
 
 
 BEYOND = "beyond the tabulated law the last tangent is continued"
-"""What happens outside a table."""
+"""Text of the warning for a state beyond the end of the table."""

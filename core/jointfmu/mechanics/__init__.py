@@ -1,1 +1,1 @@
-"""What carries an interface law into a joint: curve, friction, and the pressure over its area."""
+"""Mechanics between interface law and joint: tabulated curves, friction with history, contact pressure."""

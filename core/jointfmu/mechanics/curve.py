@@ -1,8 +1,7 @@
-"""Monotone force laws as tables: load over displacement with its exact stiffness.
+"""Tabulated monotone force laws: load over displacement, with exact stiffness and energy.
 
-A table is a quintic Hermite spline through load, stiffness and the stiffness' derivative at the
-nodes. The load is twice continuously differentiable, the stiffness is its exact derivative, and
-the energy its exact integral.
+A table is a quintic Hermite spline through load, stiffness and derivative of the stiffness at the nodes. The
+load is twice continuously differentiable. Stiffness and energy are its exact derivative and integral.
 """
 
 from collections.abc import Callable
@@ -18,15 +17,15 @@ from ..contact.powerlaw import Spots
 from ..quantity import Array, Number
 
 MAX_ERROR = 1e-8
-"""Largest relative interpolation error of load and stiffness [1] that a table may have."""
+"""Largest allowed relative interpolation error of load and stiffness in a table [1]."""
 MOST_NODES = 2600
-"""Most nodes of a table: what fits the memory of an FMU's instance."""
+"""Largest number of nodes of a table [1], limited by the memory of an FMU instance."""
 FINEST = 16
-"""Most times that the steps of a table are doubled, as their factor: 1, 2, 4, ... [1]."""
+"""Largest refinement factor of the number of steps of a table [1]; factors are 1, 2, 4, ..."""
 STEPS = 12
-"""Steps of the approach curve per unit of log-area [1], doubled until it is accurate enough."""
+"""Initial number of steps of the approach curve per unit of log-area [1], doubled until it is accurate."""
 CLOSING_STEPS = 48
-"""Steps of the closing of the contact."""
+"""Steps of the table over the closing of the contact [1]."""
 GAUSS = np.polynomial.legendre.leggauss(5)
 _TO_POLYNOMIAL = np.array(  # (y0, s0, c0, y1, s1, c1) on [0, 1] -> coefficients of 1, t, ... t^5
     [
@@ -44,11 +43,11 @@ _MEANS = 1.0 / np.arange(1.0, 7.0)
 
 @dataclass(frozen=True, slots=True)
 class Curve:
-    """Load over displacement, monotone; beyond its ends it continues with the last tangent.
+    """Tabulated monotone load over displacement; linear extrapolation with the end tangents.
 
-    displacement, load, stiffness : (n)
-    bend_start, bend_end : (n - 1) derivative of the stiffness at the two ends of each segment
-    error : [1] largest relative interpolation error of load and stiffness, measured when built
+    displacement, load, stiffness : (n) values at the nodes, in any consistent units
+    slope_start, slope_end : (n - 1) derivative of the stiffness at the start and end of each segment
+    error : [1] largest relative interpolation error of load and stiffness, measured when the table was built
     """
 
     displacement: Array
@@ -65,12 +64,12 @@ class Curve:
         y, s = self.load, self.stiffness
         data = np.stack([y[:-1], s[:-1] * h, self.bend_start * h**2, y[1:], s[1:] * h, self.bend_end * h**2])
         object.__setattr__(self, "_coefficients", _TO_POLYNOMIAL @ data)
-        whole = h * (_MEANS @ self._coefficients)
-        object.__setattr__(self, "_energies", np.concatenate([[0.0], np.cumsum(whole)]))
+        areas = h * (_MEANS @ self._coefficients)
+        object.__setattr__(self, "_energies", np.concatenate([[0.0], np.cumsum(areas)]))
 
     @property
     def closed(self) -> float:
-        """Load at zero displacement: where the closing of the contact ends."""
+        """Load at zero displacement, which is the end of the closing of the contact."""
         return float(self.load[np.searchsorted(self.displacement, 0.0)])
 
     @property
@@ -79,7 +78,7 @@ class Curve:
         return float(self.displacement[-1]), float(self.load[-1])
 
     def derivatives(self, x: ArrayLike, order: int = 1) -> list[Array]:
-        """Load and its first `order` derivatives at displacements x (...)."""
+        """Load and its derivatives up to `order` at displacements x (...): order + 1 arrays (...)."""
         x = np.asarray(x, dtype=np.float64)
         nodes = self.displacement
         i = _segment(nodes, x)
@@ -89,17 +88,17 @@ class Curve:
         t = (inside - first) / h
         top, *rest = self._coefficients[::-1]
         out = [top[i], *(np.zeros(x.shape) for _ in range(order))]
-        for coefficient in rest:  # Horner's scheme for the value and its derivatives over their factorials
+        for coefficient in rest:  # Horner's scheme for the load and its derivatives divided by factorials
             for n in range(order, 0, -1):
                 out[n] = out[n] * t + out[n - 1]
             out[0] = out[0] * t + coefficient[i]
         out = [value * (factorial(n) / h**n) for n, value in enumerate(out)]
-        beyond = x != inside
-        if not np.any(beyond):
+        is_outside = x != inside
+        if not np.any(is_outside):
             return out
         slope = out[1] if order else self.derivatives(inside, 1)[1]
         out[0] = out[0] + (x - inside) * slope
-        return out[:2] + [np.where(beyond, 0.0, value) for value in out[2:]]
+        return out[:2] + [np.where(is_outside, 0.0, value) for value in out[2:]]
 
     def energy(self, x: ArrayLike) -> Array:
         """Integral (...) of the load from the first node to displacements x (...)."""
@@ -110,30 +109,31 @@ class Curve:
         step = inside - nodes[i]
         t = step / (nodes[i + 1] - nodes[i])
         mean = np.zeros_like(t)
-        for part, coefficient in zip(_MEANS[::-1], self._coefficients[::-1, i], strict=True):
-            mean = mean * t + part * coefficient
+        for monomial_mean, coefficient in zip(_MEANS[::-1], self._coefficients[::-1, i], strict=True):
+            mean = mean * t + monomial_mean * coefficient
         energy = np.asarray(self._energies[i] + step * mean)
-        beyond = x - inside
-        if not np.any(beyond):
+        excess = x - inside
+        if not np.any(excess):
             return energy
         load, stiffness = self.derivatives(inside, 1)
-        return np.asarray(energy + beyond * (load + 0.5 * beyond * stiffness))
+        return np.asarray(energy + excess * (load + 0.5 * excess * stiffness))
 
     def odd_inverse(self, load: ArrayLike) -> Array:
-        """`inverse` (...) of a curve from zero on that is odd, at loads (...) of either sign."""
+        """Displacement (...) at loads (...) of either sign, for an odd curve tabulated from zero on."""
         y = np.asarray(load, dtype=np.float64)
         return np.asarray(np.copysign(self.inverse(np.abs(y)), y))
 
     def inverse(self, load: ArrayLike) -> Array:
-        """Displacement (...) at which the table carries a load (...), to round-off.
+        """Displacement (...) at loads (...), accurate to round-off.
 
-        Safeguarded Newton inside the segment; on a flat beginning (zero stiffness) the first node.
+        Safeguarded Newton iteration inside the segment. Loads at or below the first node give the first node,
+        if the stiffness there is zero.
         """
         y = np.asarray(load, dtype=np.float64)
-        nodes, places = self.load, self.displacement
+        nodes, displacements = self.load, self.displacement
         i = _segment(nodes, y)
         inside = np.minimum(np.maximum(y, nodes[0]), nodes[-1])
-        first, h = places[i], places[i + 1] - places[i]
+        first, h = displacements[i], displacements[i + 1] - displacements[i]
         low, high = np.zeros(y.shape), np.ones(y.shape)
         t = (inside - nodes[i]) / (nodes[i + 1] - nodes[i])
         top, *rest = self._coefficients[::-1, i]
@@ -143,15 +143,15 @@ class Curve:
                 slope = slope * t + value
                 value = value * t + coefficient
             residual = inside - value
-            rises = residual > 0.0
-            low, high = np.where(rises, t, low), np.where(rises, high, t)
+            is_below = residual > 0.0
+            low, high = np.where(is_below, t, low), np.where(is_below, high, t)
             with np.errstate(divide="ignore", invalid="ignore"):
                 step = t + residual / slope
             newton = (step >= low) & (step <= high)
             new = np.where(newton, step, 0.5 * (low + high))
-            done = np.all(np.abs(new - t) <= np.where(newton, CLOSE, 4e-16) * t)
+            is_converged = np.all(np.abs(new - t) <= np.where(newton, CLOSE, 4e-16) * t)
             t = new
-            if done:
+            if is_converged:
                 break
         x = first + t * h
         edge = np.where(y > nodes[-1], self.stiffness[-1], self.stiffness[0])
@@ -161,32 +161,38 @@ class Curve:
 
 
 def _segment(nodes: Array, x: Array) -> NDArray[np.intp]:
-    """Number (...) of the segment between nodes (n) that x (...) lies in, or next to."""
+    """Index (...) of the segment of the nodes (n) that contains x (...), or of the nearest segment."""
     return np.minimum(np.maximum(np.searchsorted(nodes, x, side="right") - 1, 0), nodes.size - 2)
 
 
 def assemble(pieces: list[tuple[Array, Array, Array, Array]], error: float = 0.0) -> Curve:
-    """Join pieces (displacement, load, stiffness, bend), each sharing its last node with the next.
+    """Join pieces of a curve; estimate the interpolation error.
 
-    The stiffness is continuous over the joints, its derivative need not be. The error is measured
-    against the curve through every second node, at the quarter points of the segments (midway the
-    spline is more accurate than elsewhere), and halved: the order falls to one at a kink.
-    `error` is that of the data themselves.
+    pieces : (displacement, load, stiffness, derivative of the stiffness), arrays of an odd number of nodes.
+        The last node of a piece is the first of the next. The derivative may jump from piece to piece.
+    error  : [1] relative error of the data themselves
+
+    The error is half the largest relative deviation from the curve through every second node: the order of
+    convergence is at least one, also at a kink. It is measured at the quarter points of the segments, because
+    the spline is more accurate at their middle.
     """
     fine, coarse = _join(pieces), _join([tuple(column[::2] for column in piece) for piece in pieces])  # type: ignore[misc]
     nodes = fine.displacement
-    points = np.concatenate([nodes[:-1] + part * np.diff(nodes) for part in (0.25, 0.5, 0.75)])
+    points = np.concatenate([nodes[:-1] + fraction * np.diff(nodes) for fraction in (0.25, 0.5, 0.75)])
     worst = error
-    for value, rough in zip(fine.derivatives(points), coarse.derivatives(points), strict=True):
+    for value, coarse_value in zip(fine.derivatives(points), coarse.derivatives(points), strict=True):
         loaded = value > 0.0
-        worst = max(worst, float(np.max(np.abs(rough - value)[loaded] / value[loaded])) / 2.0)
+        worst = max(worst, float(np.max(np.abs(coarse_value - value)[loaded] / value[loaded])) / 2.0)
     return Curve(nodes, fine.load, fine.stiffness, fine.bend_start, fine.bend_end, worst)
 
 
 def refined(tabulate: Callable[[int], Curve], steps: int) -> Curve:
-    """The table with the fewest steps, doubled up to FINEST times as many, whose error is within MAX_ERROR.
+    """Refine a table until its error is at most MAX_ERROR.
 
-    Raises RuntimeError if there is none.
+    tabulate : function, number of steps -> table
+    steps    : initial number of steps, doubled up to MAX_REFINEMENT times as many
+
+    Raises RuntimeError if the table then is still inaccurate, or has more than MAX_NODES nodes.
     """
     factor = 1
     while factor <= FINEST:
@@ -213,19 +219,22 @@ def _join(pieces: list[tuple[Array, Array, Array, Array]]) -> Curve:
 
 
 CLOSING_RATIO = 20.0
-"""Where the closing of the contact ends [1]: largest spot over the largest plastic spot."""
+"""Area of the largest spot over that of the largest plastic spot [1] at the end of the closing."""
 
 
 def closing(p: Number, k: Number, bend: Number, z: Number) -> tuple[Number, Number, Number, Number]:
-    """How the contact closes: from separation (p = 0, k = 0) to the point (p, k, dk/d delta).
+    """Closing of the contact: pressure from first contact (p = 0, k = 0) up to a point (p, k, dk/d delta).
 
-    While nearly all spots are plastic the laws give a stiffness that vanishes at a finite pressure,
-    so that the approach, the integral of dp/k, would start at minus infinity. Below the point where
-    the largest spot is CLOSING_RATIO times the largest plastic one the pressure is therefore
-    continued to zero by `p z^3 (a + b z + c z^2)` over a length n p/k, twice continuously
-    differentiable at both ends. n is 4 unless k grows with less than the power 0.75 of p, where so long a
-    closing would begin with a negative load: then the longest that does not. Returned are displacement from
-    that point, load, stiffness and its derivative at z from 0 to 1.
+    p, k, d2p : pressure [Pa], stiffness [N/m3] and its derivative [N/m4] at the end of the closing
+    z         : (...) [1] displacement from first contact over the length of the closing, 0 to 1
+
+    Returns displacement from the end of the closing [m], pressure, stiffness and its derivative at z.
+
+    Interface laws have zero stiffness while all spots are plastic, at a finite pressure. The approach, the
+    integral of dp/k, would start at minus infinity. So the law is used only above the point where the largest
+    spot is CLOSING_RATIO times the largest plastic spot. Below, the pressure is `p z^3 (a + b z + c z^2)`
+    over a length n p/k, twice continuously differentiable at both ends. n is 4. If k grows with a power of p
+    below 0.75, this length would make the pressure negative; n is then the largest value that does not.
     """
     reach = closing_reach(p, k, bend)
     length = reach * p / k
@@ -238,20 +247,22 @@ def closing(p: Number, k: Number, bend: Number, z: Number) -> tuple[Number, Numb
 
 
 def closing_reach(p: Number, k: Number, bend: Number) -> Number:
-    """Length of the closing over p/k [1], see `closing`."""
+    """Length n of the closing over p/k [1], see `closing_pressure`."""
     return 40.0 / (8.0 + np.sqrt(np.maximum(64.0 - 80.0 * bend * p / k**2, 4.0)))
 
 
 def approach_curve(law: InterfaceLaw) -> Curve:
-    """Pressure [Pa] over approach [m] of an interface: the integral of dp/k from separation.
+    """Table of the pressure [Pa] over the approach [m] of an interface; the approach is the integral of dp/k.
 
-    The table runs over the log-area u of the largest spot, in which load and stiffness are explicit,
-    from the end of the closing to a nominal pressure equal to the hardness; the approach is
-    integrated by five Gauss-Legendre nodes per step. Zero approach is the end of the closing.
+    Zero approach is the end of the closing of the contact; the closing has negative approaches. Beyond, the
+    nodes are spaced in the log-area u of the largest spot, because load and stiffness are explicit in u. The
+    last node is at a nominal pressure equal to the hardness. Each step is integrated with five Gauss-Legendre
+    nodes.
 
     Raises
     ------
-    ValueError : at every pressure up to the hardness all spots are plastic (no stiffness)
+    ValueError   : all spots are plastic (no stiffness) at every pressure up to the hardness
+    RuntimeError : the table does not reach the accuracy, see `refine_curve`
     """
     spots, area = checked_spots(law), law.A_0
     first = float(spots.stiff_onset + np.log(CLOSING_RATIO))
@@ -266,18 +277,18 @@ def approach_curve(law: InterfaceLaw) -> Curve:
 
 
 def _approach(spots: Spots, area: float, first: float, last: float, steps: int) -> Curve:
-    """The table between two log-areas with `steps` per unit of log-area."""
+    """Table with the closing, and `steps` per unit of log-area from `first` to `end_log_area`."""
     ends = [first, *(b for b in spots.breaks if first < b < last), last]
     pieces, offset = [], 0.0
-    for left, right in pairwise(ends):
-        n = max(2 * int(np.ceil(0.5 * steps * (right - left))), 2)
-        u = np.linspace(left, right, n + 1)
+    for start, end in pairwise(ends):
+        n = max(2 * int(np.ceil(0.5 * steps * (end - start))), 2)
+        u = np.linspace(start, end, n + 1)
         half = 0.5 * (u[1] - u[0])
         inner = u[:-1, None] + half * (1.0 + GAUSS[0])
-        rise = half * (spots.slope("load", inner) / spots.total("normal", inner)) @ GAUSS[1]
-        x = offset + np.concatenate([[0.0], np.cumsum(rise)])
+        increments = half * (spots.slope("load", inner) / spots.total("normal", inner)) @ GAUSS[1]
+        x = offset + np.concatenate([[0.0], np.cumsum(increments)])
         offset = x[-1]
-        side = np.clip(u, left + SIDE, right - SIDE)  # one-sided derivative where a regime ends
+        side = np.clip(u, start + SIDE, end - SIDE)  # one-sided derivative where a regime ends
         k = spots.total("normal", u) / area
         bend = k * spots.slope("normal", side) / spots.slope("load", side)
         pieces.append((x, spots.total("load", u) / area, k, bend))

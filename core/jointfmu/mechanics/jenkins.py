@@ -1,8 +1,8 @@
-"""Jenkins sliders: a spring and a dry friction in series each, whose limit may follow a load.
+"""Jenkins sliders: a spring in series with dry friction, whose limit may depend on a normal load.
 
-What a straight path does to one slider is written once, in `trial` and `slide`: with arrays for many sliders,
-with symbols for the C in the FMUs and its derivatives. Paths are along one direction or in a plane: vectors
-have one component or two.
+`elastic_predictor` and `return_map` update one slider for a displacement increment. They accept arrays for
+many sliders, and symbols, from which the C code of the FMUs and its derivatives are generated. Displacements
+are along one direction or in a plane: vectors have one component or two.
 """
 
 from collections.abc import Sequence
@@ -15,49 +15,61 @@ from ..quantity import Array, Number, where
 
 Vector = Sequence[Number]
 ROUND_OFF = 1e-14
-"""By which a force that came back to its limit may be beyond it [1]: it sticks where nothing moves."""
+"""Relative excess over the limit [1] at which a slider still sticks: round-off of a return mapping."""
 AT_LIMIT = 1e-12
-"""By which a force may be below its limit and count as at it [1]."""
+"""Relative distance below the limit [1] at which a force counts as at the limit."""
 NOTHING = 1e-200
-"""What divides in place of 0: powers of forces, the square of a shift."""
+"""Smallest denominator: replaces 0 in divisions by powers of forces and squared displacements."""
 TWELFTH = 1.0 / 12.0
 LARGEST = 1e30
-"""Of 1/limit, where there is hardly any."""
+"""Largest value of 1/limit, for limits near zero."""
 
 
 def trial(force: Vector, keeps: Number, carries: Number, shift: Vector) -> Vector:
-    """Force of a slider that sticks: it keeps a part of what it had and carries so much of the shift."""
+    """Elastic predictor of the friction force, for a slider that sticks: retention q + secant_stiffness u.
+
+    force            : q, one or two components, at the start of the increment
+    retention        : fraction [1] of q that remains while the normal load changes
+    secant_stiffness : stiffness for the increment
+    displacement     : u, displacement increment, as many components as q
+    """
     return [keeps * q + carries * u for q, u in zip(force, shift, strict=True)]
 
 
 def beyond(force: Vector, limit: Number) -> Number:
-    """Positive for a trial force beyond the limit, in a plane by more than round-off: squared there."""
+    """Yield function: positive if the force exceeds the limit.
+
+    |q| - limit along one direction; |q|^2 - (1 + ROUND_OFF_TOLERANCE) limit^2 in a plane.
+    """
     if len(force) == 1:
         return np.abs(force[0]) - limit
     return force[0] * force[0] + force[1] * force[1] - (1.0 + ROUND_OFF) * (limit * limit)
 
 
 def reaches(force: Vector, limit: Number) -> Number:
-    """Positive for a trial force at its limit or beyond: it slips, or would in a motion along it."""
-    least = (1.0 - AT_LIMIT) * limit
+    """Positive if the force is at its limit or above; a further motion in its direction causes slip.
+
+    |q| - limit along one direction; |q|^2 - limit^2 in a plane, with the limit reduced by AT_LIMIT_TOLERANCE.
+    """
+    reduced_limit = (1.0 - AT_LIMIT) * limit
     if len(force) == 1:
-        return np.abs(force[0]) - least
-    return force[0] * force[0] + force[1] * force[1] - least * least
+        return np.abs(force[0]) - reduced_limit
+    return force[0] * force[0] + force[1] * force[1] - reduced_limit * reduced_limit
 
 
 _Returned = tuple[Vector, Vector, Number, Number]
-"""Forces, tangent, slip, mean of the limit meanwhile."""
+"""Result of a return mapping: forces, tangent stiffness, slip force, mean limit during the slip."""
 
 
 @dataclass(frozen=True, slots=True)
 class Slid:
-    """One slider, or many, after a straight path.
+    """Update of one slider, or many, for a displacement increment.
 
-    force   : along the path's directions
-    tangent : of a further motion: along and across a single direction; xx, xy, yy in a plane, where a slider
-              at its limit slips on along its force n, K (1 - n n), by whatever step it came there
-    loss    : turned into heat on the way
-    slip    : trial force beyond the limit, 0 of a slider that sticks
+    force   : friction force, one or two components
+    tangent : tangent stiffness for a further increment. One direction: along and across it. Plane: components
+              xx, xy, yy of K (1 - n n) for a slider at its limit, n the direction of its force; else K.
+    loss    : energy dissipated in the increment
+    slip    : excess of the elastic predictor over the limit; 0 if the slider sticks
     """
 
     force: Vector
@@ -76,89 +88,104 @@ def slide(
     stiffness: Number,
     compliance: Number,
 ) -> Slid:
-    """A slider after a straight path, see `trial`; its limit goes from `before` to `after`.
+    """Return mapping of a slider for one displacement increment.
 
-    Along one direction the force returns to its limit, and the heat is the mean of the limit while it slips
-    times the slip: exact for a stiffness that stays. In a plane it turns towards the shift while it slips,
-    tan(angle/2) between both falling as exp(-K way/limit) under constant load (Krieg and Krieg 1977): met to
-    the third order of the way, with its heat, and exactly where nothing turns.
+    force                  : friction force at the start
+    retention, secant_stiffness, displacement : see `elastic_predictor`
+    limit_start, limit_end : friction limit at the start and at the end of the increment
+    stiffness              : K at the end
+    compliance             : 1/K, 0 without springs
 
-    compliance : 1/stiffness, 0 without springs
+    One direction: the force is limited to the limit. The loss is the mean limit during slip times the slip
+    distance, exact for constant K. Plane: while the slider slips, its force turns towards the displacement.
+    Under constant load tan(angle/2) between both decreases as exp(-K distance/limit) (Krieg and Krieg 1977).
+    Angle and loss are accurate to third order in the distance, and exact if the force does not turn.
     """
-    tried = trial(force, keeps, carries, shift)
-    if len(tried) == 1:
-        moved, tangent, slip, mean = _along(force, tried, before, after, stiffness)
+    predictor = trial(force, keeps, carries, shift)
+    if len(predictor) == 1:
+        new_force, tangent, slip, mean = _along(force, predictor, before, after, stiffness)
     else:
-        moved, tangent, slip, mean = _in_a_plane(force, tried, shift, carries, (before, after), stiffness)
-    return Slid(moved, tangent, mean * (slip * compliance), slip)
+        new_force, tangent, slip, mean = _in_a_plane(
+            force, predictor, shift, carries, (before, after), stiffness
+        )
+    return Slid(new_force, tangent, mean * (slip * compliance), slip)
 
 
 def returned(force: Number, limit: Number) -> Number:
-    """A trial force along one direction, which returns to its limit."""
+    """Clip a force along one direction to the range from -limit to limit."""
     return np.minimum(np.maximum(force, -limit), limit)
 
 
 def _along(force: Vector, tried: Vector, before: Number, limit: Number, stiffness: Number) -> _Returned:
-    moved = returned(tried[0], limit)
-    slip = np.abs(tried[0] - moved)
+    new_force = returned(tried[0], limit)
+    slip = np.abs(tried[0] - new_force)
     slips = slip > 0.0
     margin = np.maximum(before - where(tried[0] < 0.0, -force[0], force[0]), 0.0)
     onset = margin / np.maximum(margin + slip, NOTHING)
     mean = 0.5 * (limit + before + onset * (limit - before))
-    return [moved], [where(slips, 0.0, stiffness), stiffness], slip, mean
+    return [new_force], [where(slips, 0.0, stiffness), stiffness], slip, mean
 
 
 def _in_a_plane(
     force: Vector, tried: Vector, shift: Vector, carries: Number, limits: Vector, stiffness: Number
 ) -> _Returned:
-    """The trial force, and half of K way times slip over limit more along the shift, returns to the centre.
+    """Return mapping in a plane: radial return of the predictor, corrected for the rotation of the force.
 
-    A turn by g = K way/limit so ends within g^3 of where a slipping force does, whatever the limit does on
-    the way; a limit that falls far turns it by no more than its size, so that a force against the shift does
-    not jump to the other side. The slip is |trial| - limit, and limit g^2 (sin^2 before - sin^2 after)/12 by
-    Hermite's rule, of the angle between force and shift.
+    Before the radial return, half of K distance slip/limit is added to the predictor in the direction of the
+    displacement. With g = K distance/limit the direction of the force is then accurate to g^3, also if the
+    limit changes during the increment. If the limit decreases strongly, the correction is bounded, so that a
+    force against the displacement does not change its side. The slip is |predictor| - limit, plus
+    limit g^2 (sin^2 start - sin^2 end)/12 by Hermite's rule, of the angle between force and displacement.
     """
-    before, limit = limits
-    way = np.sqrt(np.maximum(shift[0] * shift[0] + shift[1] * shift[1], NOTHING))
-    e_x, e_y = shift[0] / way, shift[1] / way
+    limit_start, limit = limits
+    distance = np.sqrt(np.maximum(shift[0] * shift[0] + shift[1] * shift[1], NOTHING))
+    e_x, e_y = shift[0] / distance, shift[1] / distance
     square, squared = tried[0] * tried[0] + tried[1] * tried[1], limit * limit
     largest = np.maximum(np.maximum(squared, square), NOTHING)
     size = np.sqrt(largest)
     slips, out = beyond(tried, limit) > 0.0, size - limit
-    margin = np.maximum(before * size - (force[0] * tried[0] + force[1] * tried[1]), 0.0)
+    margin = np.maximum(limit_start * size - (force[0] * tried[0] + force[1] * tried[1]), 0.0)
     sum_ = margin + out * size
     inverse = 1.0 / np.maximum(limit * sum_, NOTHING)
     per_limit, share = np.minimum(inverse * sum_, LARGEST), inverse * (limit * (out * size))
-    left = share * (carries * way)
-    held = np.minimum(np.maximum(before * before, squared), largest)
-    lost = held - squared  # by a limit that shrinks, from where it slips on
-    shrinks = squared * squared + lost * lost / 16.0
-    per_shrinks = 1.0 / np.maximum(shrinks * held, NOTHING)
-    turns = 0.25 * (lost * squared * held + (largest - held) * shrinks) * per_shrinks
-    more_by = turns - TWELFTH * shrinks * per_shrinks * (left * left)
-    more = where(slips, left * more_by, 0.0)
-    ahead = [q + more * e for q, e in zip(tried, (e_x, e_y), strict=True)]
-    size2 = np.maximum(ahead[0] * ahead[0] + ahead[1] * ahead[1], NOTHING)
+    slip_angle = share * (carries * distance)
+    start_square = np.minimum(np.maximum(limit_start * limit_start, squared), largest)
+    decrease = start_square - squared  # the limit decreased: slip starts from the reduced limit
+    shrinks = squared * squared + decrease * decrease / 16.0
+    per_shrinks = 1.0 / np.maximum(shrinks * start_square, NOTHING)
+    turn_factor = (
+        0.25 * (decrease * squared * start_square + (largest - start_square) * shrinks) * per_shrinks
+    )
+    correction_factor = turn_factor - TWELFTH * shrinks * per_shrinks * (slip_angle * slip_angle)
+    correction = where(slips, slip_angle * correction_factor, 0.0)
+    corrected = [q + correction * e for q, e in zip(tried, (e_x, e_y), strict=True)]
+    size2 = np.maximum(corrected[0] * corrected[0] + corrected[1] * corrected[1], NOTHING)
     per_size = np.sqrt(size2) / size2
-    n = [per_size * q for q in ahead]
+    n = [per_size * q for q in corrected]
     across = n[0] * e_y - n[1] * e_x
-    turned = left * across
-    hermite = turned * turned * np.maximum(1.0 - squared * (per_size * per_size), 0.0) * (TWELFTH * per_limit)
-    spent = where(reaches(tried, limit) > 0.0, stiffness, 0.0)
-    tangent = [stiffness - spent * n[0] * n[0], -spent * n[0] * n[1], stiffness - spent * n[1] * n[1]]
-    moved = [where(slips, limit * m, q) for m, q in zip(n, tried, strict=True)]
-    mean = 0.5 * (before + limit + (1.0 - share) * (limit - before))
-    return moved, tangent, where(slips, out + hermite, 0.0), mean
+    rotation = slip_angle * across
+    hermite = (
+        rotation * rotation * np.maximum(1.0 - squared * (per_size * per_size), 0.0) * (TWELFTH * per_limit)
+    )
+    slip_stiffness = where(reaches(tried, limit) > 0.0, stiffness, 0.0)
+    tangent = [
+        stiffness - slip_stiffness * n[0] * n[0],
+        -slip_stiffness * n[0] * n[1],
+        stiffness - slip_stiffness * n[1] * n[1],
+    ]
+    new_force = [where(slips, limit * m, q) for m, q in zip(n, tried, strict=True)]
+    mean = 0.5 * (limit_start + limit + (1.0 - share) * (limit - limit_start))
+    return new_force, tangent, where(slips, out + hermite, 0.0), mean
 
 
 @dataclass(frozen=True, slots=True)
 class Moved:
-    """Sliders side by side after a straight path; of forces and stiffnesses of any unit, per area or whole.
+    """Update of parallel sliders for a displacement increment, in any consistent units (also per area).
 
-    force   : (..., n) of each along a single direction, (..., 2, n) in a plane
-    loss    : (...) turned into heat on the way
-    tangent : (...) of a further motion, see `Slid`; (..., 6) of a foundation in a plane: xx, xy, yy, xt, yt,
-              tt, t the way around the centre of its patch
+    force   : (..., n) friction force of each slider along one direction, (..., 2, n) in a plane
+    loss    : (...) energy dissipated in the increment
+    tangent : (...) tangent stiffness of their sum, see `ReturnMapping`; for a foundation (..., 6): xx, xy,
+              yy, xt, yt, tt, with t the displacement around the centre of the patch
     """
 
     force: Array
@@ -167,43 +194,53 @@ class Moved:
 
     @property
     def traction(self) -> Array:
-        """Sum of the forces (...) or (..., 2)."""
+        """Sum of the friction forces of all sliders, (...) or (..., 2)."""
         return np.asarray(np.sum(self.force, axis=-1))
 
 
 @dataclass(frozen=True, slots=True)
 class Sliders:
-    """Sliders side by side; `stiffness` (..., n) of their springs."""
+    """Parallel Jenkins sliders; `stiffness` (..., n) of their springs."""
 
     stiffness: Array
 
     @property
     def acts(self) -> bool:
-        """Whether there is any."""
+        """Whether any slider has stiffness."""
         return bool(np.any(self.stiffness > 0.0))
 
     @property
     def compliance(self) -> Array:
-        """Of the springs (..., n), 0 without."""
+        """Compliance (..., n) of the springs; 0 for a slider without stiffness."""
         return np.asarray(compliance(self.stiffness))
 
     def along(self, force: Array, shift: ArrayLike, before: Array, after: Array) -> Moved:
-        """After shifts (...) along a single direction with forces (..., n) and limits (..., n)."""
-        moved = [np.asarray(shift)[..., None]]
-        slid = slide([force], 1.0, self.stiffness, moved, before, after, self.stiffness, self.compliance)
-        return Moved(np.asarray(slid.force[0]), np.sum(slid.loss, axis=-1), np.sum(slid.tangent[0], axis=-1))
+        """Update the sliders for displacements (...) along one direction.
+
+        force                  : (..., n) at the start
+        limit_start, limit_end : (..., n) friction limits
+        """
+        increment = [np.asarray(shift)[..., None]]
+        mapping = slide(
+            [force], 1.0, self.stiffness, increment, before, after, self.stiffness, self.compliance
+        )
+        return Moved(
+            np.asarray(mapping.force[0]), np.sum(mapping.loss, axis=-1), np.sum(mapping.tangent[0], axis=-1)
+        )
 
     def path(self, ways: Array, limit: Array) -> Array:
-        """Sums (m) of the forces after each of the ways (m) along a single direction, from rest, under limits
-        (n) that stay."""
-        force, found = np.zeros_like(limit), np.empty(ways.size)
-        for n, way in enumerate(ways):
-            force = returned(trial([force], 1.0, self.stiffness, [way])[0], limit)
-            found[n] = np.add.reduce(force)
-        return found
+        """Total force (m) after each of m displacement increments along one direction, from the virgin state.
+
+        limit : (n) constant friction limits
+        """
+        force, totals = np.zeros_like(limit), np.empty(ways.size)
+        for n, increment in enumerate(ways):
+            force = returned(trial([force], 1.0, self.stiffness, [increment])[0], limit)
+            totals[n] = np.add.reduce(force)
+        return totals
 
 
 def compliance(stiffness: Number) -> Number:
-    """1/stiffness, 0 without springs."""
-    some = stiffness > 0.0
-    return where(some, 1.0 / where(some, stiffness, 1.0), 0.0)
+    """Compliance 1/stiffness; 0 where the stiffness is zero."""
+    has_spring = stiffness > 0.0
+    return where(has_spring, 1.0 / where(has_spring, stiffness, 1.0), 0.0)

@@ -1,4 +1,4 @@
-"""What a joint with memory remembers, declared once for Python and C: named parts of one array."""
+"""Layout of history variables in one array, declared once for Python and C."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -13,9 +13,9 @@ from ..quantity import Array
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """Parts of a memory, one after the other.
+    """Order and shapes of history variables that are stored one after the other in an array.
 
-    shapes : {name: shape}, () of a single number
+    shapes : {name: shape}; the shape of a single number is ()
     """
 
     shapes: Mapping[str, tuple[int, ...]]
@@ -25,28 +25,28 @@ class Layout:
 
     @property
     def size(self) -> int:
-        """How many numbers."""
+        """Total number of values [1]."""
         return sum(map(prod, self.shapes.values()))
 
     @property
     def places(self) -> dict[str, int]:
-        """{name: place of its first number}."""
+        """{name: index of its first value in the array}."""
         return dict(zip(self.shapes, accumulate(map(prod, self.shapes.values()), initial=0), strict=False))
 
     def rest(self) -> Array:
-        """The memory (n) of a joint that has not moved."""
+        """Array (n) of history variables in the virgin state: zeros."""
         return np.zeros(self.size)
 
     def split(self, memory: Array) -> dict[str, Array]:
-        """{name: part (..., *shape)} of memories (..., n)."""
+        """Views {name: variable (..., *shape)} into arrays of history variables (..., n)."""
         return {
-            name: memory[..., at : at + prod(shape)].reshape(memory.shape[:-1] + shape)
-            for (name, shape), at in zip(self.shapes.items(), self.places.values(), strict=True)
+            name: memory[..., start : start + prod(shape)].reshape(memory.shape[:-1] + shape)
+            for (name, shape), start in zip(self.shapes.items(), self.places.values(), strict=True)
         }
 
     def joined(self, parts: Mapping[str, ArrayLike], *shape: int) -> Array:
-        """Memories (*shape, n) of parts (..., *own shape)."""
+        """Array (*shape, n) of history variables from {name: variable (..., *its shape)}."""
         memory = np.empty((*shape, self.size))
-        for name, place in self.split(memory).items():
-            place[...] = parts[name]
+        for name, view in self.split(memory).items():
+            view[...] = parts[name]
         return memory

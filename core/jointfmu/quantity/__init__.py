@@ -1,4 +1,4 @@
-"""The one place where a physical field declares its SI unit, open or closed interval and meaning."""
+"""Declared quantities: SI unit, interval and meaning of every physical parameter, and their checks."""
 
 from .declaration import Checked, check, choice, group, problem, problems, quantity, series, span
 from .interval import Array, Interval, Number, erf, where

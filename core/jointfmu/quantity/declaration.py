@@ -1,4 +1,4 @@
-"""A physical field declares its SI unit, open or closed interval and meaning, and is checked against them."""
+"""Declarations of dataclass fields: SI unit, interval and meaning; values are checked against them."""
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import MISSING, Field, field, fields
@@ -18,9 +18,14 @@ def quantity(
     default: float | None = None,
     **ends: float,
 ) -> Any:
-    """Declare a number [unit] inside an interval with the ends gt, ge, lt, le of `Interval.of`.
+    """Dataclass field for a number.
 
-    `calibration` marks a value that was fitted, `whole` one that counts; without `default` it must be given.
+    unit        : SI unit
+    doc         : meaning, one line
+    calibration : the value was fitted to published points
+    is_integer  : the value is a whole number
+    default     : value of a parameter set that does not state one; None: the value is required
+    ends        : gt, ge, lt, le, see `Interval.of`
     """
     meta = {"unit": unit, "doc": doc, "interval": Interval.of(**ends)}
     meta |= {"calibration": calibration, "whole": whole}
@@ -28,9 +33,9 @@ def quantity(
 
 
 def series(unit: str, doc: str, *, optional: bool = False, **ends: float) -> Any:
-    """Declare a tuple of numbers [unit], every one inside an interval, see `quantity`.
+    """Dataclass field for a tuple of numbers, all inside the interval; arguments as in `quantity_field`.
 
-    optional : without any it is not stated
+    optional : the tuple may be empty, which is the default
     """
     meta = {"unit": unit, "doc": doc, "interval": Interval.of(**ends)}
     default: Any = () if optional else MISSING
@@ -38,20 +43,21 @@ def series(unit: str, doc: str, *, optional: bool = False, **ends: float) -> Any
 
 
 def span(values: Sequence[float]) -> str:
-    """How many numbers a series has, and from where to where they go, in words."""
+    """Text with the count, the smallest and the largest of some numbers: "3 numbers from 1 to 5"."""
     return f"{len(values)} numbers from {min(values):.6g} to {max(values):.6g}" if len(values) else "none"
 
 
 def choice(*allowed: str | bool, doc: str) -> Any:
-    """Declare a named choice; the first is the default."""
+    """Dataclass field for one of some allowed names or booleans; the first is the default."""
     return field(default=allowed[0], metadata={"allowed": allowed, "doc": doc})
 
 
 def group(doc: str, **alternatives: type[Any]) -> Any:
-    """Declare a nested group of quantities (`surface`, `side1`, ...).
+    """Dataclass field for a nested group of quantities (`surface`, `side1`, ...).
 
-    alternatives : names and classes of which a parameter set has one, instead of the field's own; the first
-        is the default if it has no fields
+    alternatives : {section name: class}; a parameter set has exactly one of these sections. Without
+        alternatives the section has the name and the class of the field. The first alternative is the default
+        if it has no fields.
     """
     first = next(iter(alternatives.values()), None)
     metadata = {"group": True, "doc": doc, "alternatives": alternatives}
@@ -61,12 +67,12 @@ def group(doc: str, **alternatives: type[Any]) -> Any:
 
 
 def label(item: Field[Any]) -> str:
-    """Public name of a field (`lambda_` is `lambda`, a Python keyword)."""
+    """Name of a field in parameter files: without the underscore that avoids a Python keyword (`lambda_`)."""
     return item.name.rstrip("_")
 
 
 def problem(name: str, value: object, item: Field[object]) -> str | None:
-    """One line that names the thing, the value with its unit, and what is allowed; None if fine."""
+    """Error message, one line with name, value, unit and allowed values; None if the value is valid."""
     meta = item.metadata
     if is_symbol(value):
         return None
@@ -88,26 +94,26 @@ def problem(name: str, value: object, item: Field[object]) -> str | None:
     if not np.all(inside):
         first = array[~inside].flat[0]
         return f"{name} = {first:.10g}{unit} is outside {meta['interval']}: {meta['doc']}"
-    if meta["whole"] and np.any(broken := array % 1.0 != 0.0):
-        return f"{name} = {array[broken].flat[0]:g} is no whole number, allowed are 1, 2, 3, ..."
+    if meta["whole"] and np.any(is_fractional := array % 1.0 != 0.0):
+        return f"{name} = {array[is_fractional].flat[0]:g} is no whole number, allowed are 1, 2, 3, ..."
     return None
 
 
 def problems(
     values: Mapping[str, object], declared: Mapping[str, Field[Any]], missing: Collection[str] = ()
 ) -> list[str]:
-    """Texts of all that is wrong with {name: value}: unknown names, missing ones, and what `problem` says."""
+    """Error messages for {name: value}: unknown names, missing names, and those of `find_problem`."""
     texts = [f"unknown name {name!r}" for name in values if name not in declared]
     if texts:
         texts.append(f"allowed are {', '.join(declared)}")
     if missing:
         texts.append(f"missing {', '.join(missing)}")
-    known = (problem(name, value, declared[name]) for name, value in values.items() if name in declared)
-    return texts + [text for text in known if text]
+    messages = (problem(name, value, declared[name]) for name, value in values.items() if name in declared)
+    return texts + [text for text in messages if text]
 
 
 def _series_problem(name: str, values: object, item: Field[object]) -> str | None:
-    """As `problem`, of the first of some numbers that is wrong."""
+    """Error message for the first invalid number of a series, see `find_problem`; None if all are valid."""
     if values == () and item.default == ():
         return None
     if not isinstance(values, list | tuple) or not values:
@@ -122,19 +128,19 @@ def _series_problem(name: str, values: object, item: Field[object]) -> str | Non
 
 
 def _shown(value: object) -> str:
-    """A value of any type on one short line."""
+    """`repr` of a value on one line, cut to 80 characters, for error messages."""
     return " ".join(repr(value).split())[:80]
 
 
 def check(obj: Any) -> None:
-    """Raise ValueError naming every field of `obj` outside its interval (NaN and infinity included)."""
-    own = {label(item): item for item in fields(obj) if "group" not in item.metadata}
-    if texts := problems({name: getattr(obj, item.name) for name, item in own.items()}, own):
+    """Raise ValueError that names every field of `obj` outside its interval; NaN and infinity are outside."""
+    declared = {label(item): item for item in fields(obj) if "group" not in item.metadata}
+    if texts := problems({name: getattr(obj, item.name) for name, item in declared.items()}, declared):
         raise ValueError("; ".join(texts))
 
 
 class Checked:
-    """A parameter set, or a group of one, whose numbers are checked when it is made."""
+    """Base class of a parameter set or a group of it: checks all values on construction."""
 
     __slots__ = ()
 

@@ -1,4 +1,4 @@
-"""Intervals of numbers with open and closed ends, and what lets floats, arrays and symbols pass alike."""
+"""Intervals with open and closed ends; functions that take floats, arrays and CasADi symbols alike."""
 
 import math
 import sys
@@ -16,9 +16,10 @@ Number: TypeAlias = Any
 
 @dataclass(frozen=True, slots=True)
 class Interval:
-    """Numbers between two ends, each of which is open (outside itself) or closed.
+    """Interval of real numbers. An open end does not belong to the interval, a closed end does.
 
-    low, high : floats, arrays of them or symbols; an infinite float is an open end
+    low, high           : floats, arrays or symbols; a float end at infinity is always open
+    low_open, high_open : whether the end is open
     """
 
     low: Number = -inf
@@ -41,7 +42,7 @@ class Interval:
         lt: Number | None = None,
         le: Number | None = None,
     ) -> "Interval":
-        """Numbers greater than `gt` or at least `ge`, less than `lt` or at most `le`.
+        """Interval from `gt` (open) or `ge` (closed) to `lt` (open) or `le` (closed); None: no end.
 
         Raises ValueError if an end is given twice.
         """
@@ -53,7 +54,7 @@ class Interval:
         return cls(-inf if low is None else low, inf if high is None else high, ge is None, le is None)
 
     def contains(self, value: Number) -> Any:
-        """Whether values lie inside, elementwise; NaN and infinity do not.
+        """Whether values lie inside, elementwise; False for NaN and infinity.
 
         True if a value or an end is a symbol: it has no value yet.
         """
@@ -65,22 +66,25 @@ class Interval:
 
     @property
     def empty(self) -> bool:
-        """Whether its ends are NaN, crossed, or differ by less than the six digits that a message shows."""
+        """Whether the interval contains no number that a message with six digits can show.
+
+        True also if an end is NaN, or the lower end is above the upper one.
+        """
         if self.low == self.high:
             return self.low_open or self.high_open
-        shown = 1e-5 * min(abs(self.low), abs(self.high))
-        return not self.low < self.high or bool(self.high - self.low <= shown < inf)
+        resolution = 1e-5 * min(abs(self.low), abs(self.high))
+        return not self.low < self.high or bool(self.high - self.low <= resolution < inf)
 
     def intersection(self, other: "Interval") -> "Interval":
-        """Numbers inside both; an end that both share is open if one of them is."""
+        """Intersection of two intervals; a common end is open if it is open in one of them."""
         low, low_open = max((self.low, self.low_open), (other.low, other.low_open))
         high, high_closed = min((self.high, not self.high_open), (other.high, not other.high_open))
         return Interval(low, high, low_open, not high_closed)
 
     def closed_bounds(self) -> tuple[float, float]:
-        """Least and greatest float inside, infinite where there is no end, as FMI's min and max want them.
+        """Smallest and largest float inside, for the attributes min and max of FMI; infinite without an end.
 
-        Beside an open end at zero it is a normal number: not every reader takes a denormal one.
+        Next to an open end at zero this is the smallest normal float: some FMI tools reject denormal numbers.
         """
         low, high = float(self.low), float(self.high)
         return (
@@ -94,7 +98,7 @@ class Interval:
 
 
 def _beside(end: float, towards: float) -> float:
-    """The next float from an end; a normal one beside zero."""
+    """Next float after `start` in the direction of `towards`; next to zero the smallest normal float."""
     if end == 0.0:
         return sys.float_info.min if towards > 0.0 else -sys.float_info.min
     return nextafter(end, towards)
@@ -113,7 +117,7 @@ def erf(x: Number) -> Number:
 
 
 def where(condition: Any, value: Number, otherwise: Number) -> Number:
-    """`value` where the condition holds, else `otherwise`; plain values stay as they are."""
+    """`value` where the condition holds, else `otherwise`, elementwise; types stay for a scalar condition."""
     if isinstance(condition, bool | np.bool_):
         return value if condition else otherwise
     return np.where(condition, value, otherwise)

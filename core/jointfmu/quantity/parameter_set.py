@@ -1,4 +1,7 @@
-"""Parameter sets: dataclasses of declared quantities and groups of them <-> {structured name: value}."""
+"""Conversion of parameter sets (nested dataclasses) from and to {structured name: value}.
+
+A structured name joins the names of groups and field with dots: `surface.D`.
+"""
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import MISSING, Field, dataclass, fields, is_dataclass
@@ -13,20 +16,20 @@ T = TypeVar("T")
 
 @cache
 def _hints(cls: object) -> dict[str, object]:
-    """Types of the fields of a class."""
+    """Type hints of the fields of a class, cached."""
     return get_type_hints(cls)
 
 
 @dataclass(frozen=True, slots=True)
 class Limit:
-    """An interval of a parameter that other parameters decide; `doc` says why."""
+    """Allowed interval of one parameter that depends on other parameters; `doc` is the reason."""
 
     name: str
     interval: Interval
     doc: str
 
     def problem(self, value: Number, unit: str) -> str | None:
-        """One line as from `declaration.problem`; None if the value is inside, or a symbol."""
+        """Error message, one line; None if the value lies inside the interval or is a symbol."""
         if self.interval.contains(value):
             return None
         unit = "" if unit == "1" else f" {unit}"
@@ -36,7 +39,7 @@ class Limit:
 
 
 def check_limits(obj: object, limits: Iterable[Limit]) -> None:
-    """Raise ValueError for the first parameter of `obj` outside an interval that others decide."""
+    """Raise ValueError for the first parameter of `obj` that lies outside one of the limits."""
     units = {name: item.metadata["unit"] for name, item in flat_fields(type(obj)) if "unit" in item.metadata}
     values = flatten(obj)
     for limit in limits:
@@ -47,9 +50,9 @@ def check_limits(obj: object, limits: Iterable[Limit]) -> None:
 def flat_fields(
     cls: type[Any], prefix: str = "", names: Collection[str] | None = None
 ) -> Iterator[tuple[str, Field[Any]]]:
-    """Structured names and fields of every number and choice of `cls`, groups opened.
+    """Structured names and fields of all numbers and choices of a parameter set class, groups included.
 
-    names : of a parameter set that has one of a group's alternatives; without them all are opened
+    names : parameter names that select one alternative of each group; None: all alternatives
     """
     if names is None:
         yield from ((prefix + name, item) for name, item in _every_field(cls))  # type: ignore[arg-type]
@@ -66,19 +69,19 @@ def flat_fields(
 
 @cache
 def _every_field(cls: Any) -> tuple[tuple[str, Field[object]], ...]:
-    """`flat_fields` with all alternatives."""
-    hints, found = _hints(cls), list[tuple[str, Field[Any]]]()
+    """Result of `flat_fields` with all alternatives of each group, cached."""
+    hints, found_fields = _hints(cls), list[tuple[str, Field[Any]]]()
     for item in fields(cls):
         if "group" in item.metadata:
             for name, inner in _sections(item, hints[item.name]).items():
-                found += flat_fields(inner, f"{name}.")
+                found_fields += flat_fields(inner, f"{name}.")
         elif item.metadata:
-            found.append((label(item), item))
-    return tuple(found)
+            found_fields.append((label(item), item))
+    return tuple(found_fields)
 
 
 def flatten(obj: Any) -> dict[str, Any]:
-    """{structured name: value} of a parameter set."""
+    """Convert a parameter set to {structured name: value}."""
     values: dict[str, Any] = {}
     for item in fields(obj):
         value = getattr(obj, item.name)
@@ -90,28 +93,28 @@ def flatten(obj: Any) -> dict[str, Any]:
 
 
 def build(cls: type[T], values: Mapping[str, object]) -> T:
-    """Make the parameter set `cls` from {structured name: value}.
+    """Build and check the parameter set `cls` from {structured name: value}.
 
-    Raises ValueError, one line, naming every unknown or missing name and every value that is no
-    number or lies outside its interval; or the names of two alternatives of a group.
+    Raises ValueError, one line, that names every unknown or missing name and every value that is no number
+    or lies outside its interval; also if names belong to two alternatives of a group.
     """
-    known = dict(flat_fields(cls, names=values))
-    required = {name for name, item in known.items() if item.default is MISSING}
-    if texts := problems(values, known, sorted(required - values.keys())):
+    declared = dict(flat_fields(cls, names=values))
+    required = {name for name, item in declared.items() if item.default is MISSING}
+    if texts := problems(values, declared, sorted(required - values.keys())):
         raise ValueError("; ".join(texts))
     plain = {name: _plain(value) for name, value in values.items()}
     return assemble(cls, plain, lambda part, arguments: part(**arguments))
 
 
 def changed(obj: T, changes: Mapping[str, object]) -> T:
-    """A parameter set with some values changed, by structured name.
+    """Copy of a parameter set with some values replaced, by structured name.
 
-    Raises ValueError as `build`, and for names of an alternative that `obj` does not have.
+    Raises ValueError as `build_parameter_set` does, and for names of an alternative that `obj` does not have.
     """
     values = flatten(obj)
-    everything = {name for name, _ in flat_fields(type(obj))}
-    if beside := [name for name in changes if name in everything and name not in values]:
-        texts = [f"{name} is no parameter of a set that has [{_instead(obj, name)}]" for name in beside]
+    all_names = {name for name, _ in flat_fields(type(obj))}
+    if foreign := [name for name in changes if name in all_names and name not in values]:
+        texts = [f"{name} is no parameter of a set that has [{_instead(obj, name)}]" for name in foreign]
         raise ValueError("; ".join([*texts, f"allowed are {', '.join(values)}"]))
     return build(type(obj), values | dict(changes))
 
@@ -122,9 +125,9 @@ def assemble(
     make: Callable[[type[Any], dict[str, Any]], Any],
     prefix: str = "",
 ) -> T:
-    """The parameter set `cls` of {structured name: value}, unchecked.
+    """Build the parameter set `cls` from {structured name: value} without checks.
 
-    make : (class, {name of a field: value}) -> instance
+    make : (class, {field name: value}) -> instance
     """
     hints = _hints(cls)  # type: ignore[arg-type]
     arguments: dict[str, Any] = {}
@@ -141,33 +144,35 @@ def assemble(
 
 
 def _sections(item: Field[object], own: object) -> dict[str, type[object]]:
-    """Names and classes that a group may have; `own` is the field's type."""
+    """{section name: class} that a group may have; `default_type` is the declared type of the field."""
     return item.metadata["alternatives"] or {label(item): own}
 
 
 def _section(sections: Iterable[str], prefix: str, names: Collection[str]) -> str:
-    """The one of a group's alternatives that parameter names speak of; the first if there are none.
+    """Alternative of a group that the parameter names belong to; the first one if no name belongs to any.
 
-    Raises ValueError naming them if they speak of two.
+    Raises ValueError, which lists the names, if they belong to two alternatives.
     """
-    spoken = {
+    names_by_section = {
         section: [name for name in names if name.startswith(f"{prefix}{section}.")] for section in sections
     }
-    present = [section for section, own in spoken.items() if own]
+    present = [section for section, section_names in names_by_section.items() if section_names]
     if len(present) > 1:
-        beside = " beside ".join(", ".join(spoken[section]) for section in present)
-        raise ValueError(f"{beside}: allowed is one of {', '.join(f'[{prefix}{name}]' for name in spoken)}")
-    return (present or list(spoken))[0]
+        beside = " beside ".join(", ".join(names_by_section[section]) for section in present)
+        raise ValueError(
+            f"{beside}: allowed is one of {', '.join(f'[{prefix}{name}]' for name in names_by_section)}"
+        )
+    return (present or list(names_by_section))[0]
 
 
 def _present(item: Field[object], value: object) -> str:
-    """Name of a group that is there."""
+    """Section name of a group: that of the alternative whose class the value has."""
     alternatives = item.metadata["alternatives"].items()
     return next((name for name, cls in alternatives if isinstance(value, cls)), label(item))
 
 
 def _instead(obj: Any, name: str) -> str:
-    """The section that a parameter set has in place of that of a name."""
+    """Section that a parameter set has instead of the alternative that a name belongs to."""
     head, _, rest = name.partition(".")
     groups = [item for item in fields(obj) if "group" in item.metadata]
     sections = {_present(item, getattr(obj, item.name)): item for item in groups}

@@ -1,8 +1,8 @@
-"""A refusal that another setting would lift: the message names the thing, a command adds its option."""
+"""ValueError that names the setting that would resolve it; a command adds the option to the message."""
 
 
 class Refusal(ValueError):
-    """Bad input; `setting` is the name of the argument that would help (`rated_torque`, `error`, `unit`)."""
+    """Invalid input; `setting` is the argument that would resolve it (`rated_torque`, `error`, `unit`)."""
 
     def __init__(self, message: str, setting: str) -> None:
         super().__init__(message)

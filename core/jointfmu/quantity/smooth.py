@@ -1,11 +1,11 @@
-"""The smooth step of loads, tooth pairs and dampers: one polynomial for Python, C and Modelica."""
+"""Smooth step from 0 to 1, a polynomial of fifth degree, used in Python, C and Modelica."""
 
 import numpy as np
 
 from .interval import Number
 
 STEP = (10.0, -15.0, 6.0)
-"""Of r^3, r^4 and r^5 in it."""
+"""Coefficients of r^3, r^4 and r^5 [1] in the smooth step."""
 
 
 def _inside(x: Number) -> Number:
@@ -13,7 +13,7 @@ def _inside(x: Number) -> Number:
 
 
 def smooth_step(x: Number) -> Number:
-    """From 0 at x <= 0 to 1 at x >= 1 with continuous first and second derivative."""
+    """Smooth step: 0 at x <= 0, 1 at x >= 1, with continuous first and second derivative."""
     r, (a, b, c) = _inside(x), STEP
     return r * r * r * (a + r * (c * r + b))
 
@@ -26,6 +26,6 @@ def smooth_step_slopes(x: Number) -> tuple[Number, Number]:
 
 
 def smooth_step_integral(x: Number) -> Number:
-    """Of `smooth_step` from 0 to x."""
+    """Integral of `smooth_step` from 0 to x."""
     r, (a, b, c) = _inside(x), STEP
     return r * r * r * r * (a / 4.0 + r * (c / 6.0 * r + b / 5.0)) + np.maximum(x - 1.0, 0.0)

@@ -1,9 +1,9 @@
-"""The one table of units: what each measures, how large it is, and in which unit people read it.
+"""Table of units: quantity, size in SI units and display units; parser for units in input files.
 
-A unit is written as FMI and Modelica write it: symbols with exponents, joined by dots, after a slash what
-divides, `N.m.s/rad`. What is read may be written as people do: `Nm`, `N*m`, `N·m`, `mm²`, `N/mm^2`, `°`,
-and with a power of ten before it, as columns of catalogues have: `1e4 N.m/rad`, `x10^4 Nm/rad`.
-Sizes are exact fractions of the symbols' and rounded once.
+Units are written as in FMI and Modelica: symbols with exponents, joined by dots, the divisors after a slash,
+`N.m.s/rad`. The parser also reads common spellings, `Nm`, `N*m`, `N·m`, `mm²`, `N/mm^2`, `°`, and a power of
+ten before the unit, as in columns of catalogues: `1e4 N.m/rad`, `x10^4 Nm/rad`.
+Sizes are computed as exact fractions and rounded once.
 """
 
 import re
@@ -14,7 +14,7 @@ from math import degrees, log10, tau
 from typing import NamedTuple, TypeAlias
 
 Sizes: TypeAlias = Mapping[str, float]
-"""{unit: its size in the SI unit}, the SI unit first."""
+"""{unit: size in SI units}; the first key is the SI unit."""
 
 _FORCE = {"kg": 1, "m": 1, "s": -2}
 _DEGREE = 1 / Fraction(degrees(1.0))
@@ -37,17 +37,17 @@ _SYMBOLS: dict[str, tuple[Fraction | int, dict[str, int]]] = {
     "arcsec": (_DEGREE / 3600, {"rad": 1}),
     "rev": (Fraction(tau), {"rad": 1}),
 }
-"""Sizes in SI and exponents of the SI base units; the radian counts as one."""
+"""{symbol: (size in SI units, exponents of the SI base units)}; the radian counts as a base unit."""
 _PREFIXES = {"G": 9, "M": 6, "k": 3, "c": -2, "m": -3, "u": -6, "µ": -6, "μ": -6, "n": -9}
-"""Powers of ten, before _PREFIXED; both Unicode signs for micro."""
+"""{prefix: power of ten}, for the symbols in _PREFIXED_SYMBOLS; both Unicode signs for micro."""
 _PREFIXED = ("m", "s", "rad", "Hz", "N", "Pa", "J")
 _FACTOR = re.compile(r"([^\W\d_]+|1(?!\d))(\d*)")
 _POWER_OF_TEN = re.compile(
     r"[x\u00d7]?\s*(?:1e|10\s?\^\s?|10(?=[⁰¹²³⁴⁵⁶⁷⁸⁹⁻]))([+-]?\d+|[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)\s*[.*·⋅]?\s*(?=\D)"
 )
-"""Before a unit."""
+"""Pattern of a power of ten before a unit: `1e4`, `x10^4`, `10⁴`."""
 MOST_POWER = 12
-"""Largest power of ten before a unit, either way [1]."""
+"""Largest absolute exponent of a power of ten before a unit [1]."""
 _RAISED = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")
 
 _WRITTEN = (
@@ -60,12 +60,15 @@ _WRITTEN = (
     (re.compile("\u2033"), "arcsec"),
     (re.compile(r"(?<![^\W_])([kmuµμ]?N|kgf)(?=[mcuµμ]?m(?![^\W_]))"), r"\1."),
 )
-"""Other ways of writing, and ours; the last one is a force and a length without a dot."""
+"""(pattern of another spelling, replacement in FMI notation); the last: force times length without a dot."""
 
 
 class Unit(NamedTuple):
-    """An SI unit: name of the quantity, as in the Modelica Standard Library where it has one, exponents of
-    the SI base units, and display units as {name: factor}: display = value * factor.
+    """An SI unit.
+
+    quantity : name of the quantity, that of the Modelica Standard Library if it has one
+    base     : exponents of the SI base units
+    display  : {display unit: factor}, displayed value = SI value * factor
     """
 
     quantity: str
@@ -74,78 +77,85 @@ class Unit(NamedTuple):
 
 
 def size(unit: str) -> float:
-    """How many SI units one unit is; ValueError if the unit is unknown."""
+    """Size of a unit in SI units. Raises ValueError if the unit is unknown."""
     return float(_parsed(unit)[0])
 
 
 def base(unit: str) -> dict[str, int]:
-    """Exponents of the SI base units, without zeros; ValueError if the unit is unknown."""
+    """Exponents of the SI base units of a unit, without zeros. Raises ValueError if the unit is unknown."""
     return dict(_parsed(unit)[1])
 
 
 def factor(unit: str, to: str) -> float:
-    """What turns a number in one unit into another unit; ValueError if they measure different things."""
-    source, target = _parsed(unit), _parsed(to)
-    if source[1] != target[1]:
+    """Conversion factor from `unit` to `target`. Raises ValueError if they measure different quantities."""
+    (size, exponents), (target_size, target_exponents) = _parsed(unit), _parsed(to)
+    if exponents != target_exponents:
         raise ValueError(f"unit {to!r} does not measure what {unit!r} does")
-    return float(source[0] / target[0])
+    return float(size / target_size)
 
 
 def sizes(unit: str, *others: str) -> Sizes:
-    """The units that a border takes, the SI unit first; ValueError if they measure different things."""
+    """{unit: size in the first unit}: units that an input accepts, the SI unit first.
+
+    Raises ValueError if the units measure different quantities.
+    """
     return {name: factor(name, unit) for name in (unit, *others)}
 
 
 def measured(unit: str, allowed: Sizes) -> float:
-    """The size of a unit in the first of `allowed`, whichever unit of the same quantity it is.
+    """Size of a unit, in the first unit of `sizes`; any unit of the same quantity is accepted.
 
-    Raises ValueError if the unit is unknown or measures something else.
+    Raises ValueError if the unit is unknown or measures another quantity.
     """
     return allowed[unit] if unit in allowed else factor(unit, next(iter(allowed)))
 
 
 def rewritten(unit: str, symbols: Mapping[str, str]) -> str:
-    """A unit with other symbols in the place of some: `N/m3` with m as mm is `N/mm3`."""
+    """Replace symbols in a unit: `N/m3` with {"m": "mm"} becomes `N/mm3`."""
     return _FACTOR.sub(lambda match: symbols.get(match[1], match[1]) + match[2], unit)
 
 
 @cache
 def _parsed(unit: str) -> tuple[Fraction, dict[str, int]]:
-    """Size and exponents of a unit."""
-    whole, exponents = Fraction(1), dict[str, int]()
-    plain = unit
-    if ten := _POWER_OF_TEN.match(plain):
+    """Size in SI units and exponents of the base units. Raises ValueError if the unit is unknown."""
+    total, exponents = Fraction(1), dict[str, int]()
+    notation_text = unit
+    if ten := _POWER_OF_TEN.match(notation_text):
         power = int(ten[1].translate(_RAISED))
         if abs(power) <= MOST_POWER:
-            whole, plain = whole * Fraction(10) ** power, plain[ten.end() :]
-    for other, ours in _WRITTEN:
-        plain = other.sub(ours, plain)
-    above, slash, below = plain.partition("/")
-    for sign, part in ((1, above), (-1, below if slash else "1")):
-        for text in part.split("."):
+            total, notation_text = total * Fraction(10) ** power, notation_text[ten.end() :]
+    for spelling, notation in _WRITTEN:
+        notation_text = spelling.sub(notation, notation_text)
+    numerator, slash, denominator = notation_text.partition("/")
+    for sign, product in ((1, numerator), (-1, denominator if slash else "1")):
+        for text in product.split("."):
             if not (match := _FACTOR.fullmatch(text)):
                 raise ValueError(f"unit {unit!r} is none; expected symbols as in N.m.s/rad")
             power = sign * int(match[2] or 1)
-            own, its = _symbol(match[1], unit)
-            whole *= own**power
-            for name, exponent in its.items():
+            symbol_size, symbol_exponents = _symbol(match[1], unit)
+            total *= symbol_size**power
+            for name, exponent in symbol_exponents.items():
                 exponents[name] = exponents.get(name, 0) + power * exponent
-    return whole, {name: exponent for name, exponent in exponents.items() if exponent}
+    return total, {name: exponent for name, exponent in exponents.items() if exponent}
 
 
 def _symbol(symbol: str, unit: str) -> tuple[Fraction, dict[str, int]]:
-    """Size and exponents of a symbol, with or without a prefix."""
+    """Size and exponents of one symbol, with or without a prefix; `unit` is named in the error."""
     if symbol in _SYMBOLS:
-        own, its = _SYMBOLS[symbol]
-        return Fraction(own), its
-    ten, rest = _PREFIXES.get(symbol[0]), symbol[1:]
-    if ten is None or rest not in _PREFIXED:
+        symbol_size, symbol_exponents = _SYMBOLS[symbol]
+        return Fraction(symbol_size), symbol_exponents
+    exponent, rest = _PREFIXES.get(symbol[0]), symbol[1:]
+    if exponent is None or rest not in _PREFIXED:
         raise ValueError(f"unit {unit!r}: symbol {symbol!r} is unknown, allowed are {', '.join(_SYMBOLS)}")
-    return Fraction(10) ** ten, _SYMBOLS[rest][1]
+    return Fraction(10) ** exponent, _SYMBOLS[rest][1]
 
 
 def _unit(name: str, quantity: str, *display: str) -> Unit:
-    return Unit(quantity, base(name), {shown: factor(name, shown) for shown in display or (name,)})
+    return Unit(
+        quantity,
+        base(name),
+        {display_name: factor(name, display_name) for display_name in display or (name,)},
+    )
 
 
 UNITS: Mapping[str, Unit] = {
@@ -179,17 +189,17 @@ UNITS: Mapping[str, Unit] = {
         "kg/m3": ("Density",),
     }.items()
 }
-"""The SI units of all variables, parameters and files: {unit: (quantity, display units)}."""
+"""{SI unit: quantity, base units, display units} for all variables, parameters and files."""
 
 CELSIUS = "degC"
 KELVIN_AT_ZERO = 273.15
-"""The display unit of temperatures in FMUs, and its zero in K; files and pages have the SI unit."""
+"""Display unit of temperatures in FMUs, and its zero point [K]; files and pages use kelvin."""
 LUBRICANTS = 193.15, 473.15
-"""Temperatures [K], -80 to 200 degrees C, between which a lubricant is one."""
+"""Temperature range [K] in which lubricants work: -80 to 200 degrees C."""
 
 
 def display_unit(unit: str, typical: float) -> str:
-    """The display unit in which a typical value reads best: nearest to 30, the first if it is zero."""
+    """Display unit in which a typical value is nearest to 30; the first display unit if the value is zero."""
     names = UNITS[unit].display
     if typical == 0.0:
         return next(iter(names))

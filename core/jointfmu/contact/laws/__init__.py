@@ -1,4 +1,4 @@
-"""Interface laws, a file each; LAWS is the only list of them."""
+"""Interface laws, one module each. LAWS lists them all."""
 
 from .hu2023 import Hu2023
 from .roughness import Roughness
@@ -6,6 +6,6 @@ from .yu2022 import Yu2022
 from .zhao2018 import Zhao2018
 
 ROUGHNESS_LAW = "roughness"
-"""Name of the law whose parameters are the roughness itself, without D and G."""
+"""Name of the law with roughness parameters (h, slope, ...) instead of the fractal parameters D and G."""
 LAWS = {"zhao2018": Zhao2018, "hu2023": Hu2023, "yu2022": Yu2022, ROUGHNESS_LAW: Roughness}
-"""{author and year, or what it starts from: parameters of the law}."""
+"""{name of the law: its parameter set class}; names are author and year of the paper, or `roughness`."""

@@ -1,12 +1,12 @@
-"""Hu et al. 2023 (doi:10.3389/fmats.2023.1211019): asperities of one base radius, four regimes.
+"""Interface law of Hu et al. 2023 (doi:10.3389/fmats.2023.1211019): one base radius, four spot regimes.
 
-Equation numbers are the paper's; where the print is wrong the corrected form is implemented
-(docs/errata.md). D is the dimension of the surface (2 < D < 3); areas are real contact areas. The choice
-`reading` tells which pressure Eq. 28 means, and with it which law follows:
+Equation numbers are those of the paper; misprints are corrected (docs/errata.md). D is the dimension of the
+surface (2 < D < 3); areas are real contact areas. The choice `reading` is the meaning of the pressure in
+Eq. 28:
 
-corrected : load over nominal area, F_r/A_0; four regimes, stiffness of spots above s_min
-printed   : load over real area, F_r/S_r; all spots elastic, stiffness of one set of spots as Eq. 30 has it
-    but for its sign, in proportion to the pressure. It holds up to `elastic_pressure`.
+corrected : load over nominal area, F_r/A_0; four regimes, stiffness of the spots above s_min
+printed   : load over real area, F_r/S_r; all spots are elastic, and the stiffness of one set of spots is the
+    magnitude of Eq. 30, proportional to the pressure. Valid up to `elastic_pressure`.
 """
 
 from dataclasses import dataclass, replace
@@ -38,7 +38,9 @@ class Hu2023(Checked):
     mu: float = quantity("1", "coefficient of static friction", gt=0.0)
     traction_ratio: float = quantity("1", "shear over friction limit, x = T/(mu P)", ge=0.0, lt=1.0)
     A_0: float = quantity("m2", "nominal contact area", gt=0.0)
-    shear_traction: float = quantity("Pa", "shear traction on the real area, if traction is so", gt=0.0)
+    shear_traction: float = quantity(
+        "Pa", "shear traction on the real area, used if traction is real_area", gt=0.0
+    )
     traction: str = choice(
         "ratio", "real_area", doc="shear of a spot: the node's traction ratio, or a traction on the real area"
     )
@@ -49,57 +51,66 @@ class Hu2023(Checked):
 
     @property
     def hardness(self) -> Number:
-        """H = 2.8 sigma_s [Pa], below Eq. 7."""
+        """Hardness H = 2.8 sigma_y [Pa], below Eq. 7 (sigma_s there)."""
         return 2.8 * self.sigma_y
 
     def spots(self) -> Spots:
-        """Regimes of one spot over the size distribution of Eq. 17, reference area s_min."""
+        """Regimes of a spot and size distribution (Eq. 17) of the chosen reading; reference area s_min."""
         return spots(self) if self.reading == "corrected" else printed_spots(self)
 
     def state(self, u: Number) -> dict[str, Number]:
-        """F [N] Eq. 27, P A_0 as printed; K_N [N/m] Eq. 35; K_T [N/m] Eq. 44; A_r [m2] Eq. 22."""
+        """Contact quantities at the log-area u [1] of the largest spot.
+
+        F [N] Eq. 27, or P A_0 as printed; K_N [N/m] Eq. 35; K_T [N/m] Eq. 44; A_r [m2] Eq. 22.
+        """
         s = self.spots()
         names = {"F": "load", "K_N": "normal", "K_T": "tangential", "A_r": "area"}
         return {symbol: s.total(name, u) for symbol, name in names.items()}
 
 
 def curvature_radius(law: Hu2023) -> Number:
-    """R [m] at the peak of an asperity, Eq. 5."""
+    """Radius of curvature R [m] at the peak of an asperity, Eq. 5."""
     s = law.surface
     root = np.sqrt(np.log(s.gamma))
     return s.r_m ** (s.D - 1.0) / (2.0 ** (3.0 - s.D) * np.pi**2 * s.G ** (s.D - 2.0) * root)
 
 
 def critical_deformation(law: Hu2023) -> Number:
-    """epsilon_ec [m], end of the elastic regime, Eq. 7."""
+    """Critical deformation epsilon_ec [m] at the end of the elastic regime, Eq. 7."""
     modulus = contact_modulus(law.side1, law.side2)
     onset = 0.5 * np.pi * hardness_coefficient(law.side1.nu) * law.hardness / modulus
     return onset**2 * curvature_radius(law)
 
 
 def critical_area(law: Hu2023) -> Number:
-    """s_ec [m2], Eq. 10; the stages end at 7.1197 s_ec and 205.38 s_ec (Eqs. 13-14)."""
+    """Critical spot area s_ec [m2] at the end of the elastic regime, Eq. 10.
+
+    The two elastic-plastic stages end at 7.1197 s_ec and 205.38 s_ec (Eqs. 13-14).
+    """
     return np.pi * curvature_radius(law) * critical_deformation(law)
 
 
 def critical_load(law: Hu2023) -> Number:
-    """f_ec = (2/3) k H s_ec [N], Eq. 9 at s_ec."""
+    """Critical spot load f_ec = (2/3) k H s_ec [N], Eq. 9 at s_ec."""
     return 2.0 / 3.0 * hardness_coefficient(law.side1.nu) * law.hardness * critical_area(law)
 
 
 def elastic_pressure(law: Hu2023) -> Number:
-    """F_r/S_r [Pa] of elastic spots, the largest of area s_ec: Eqs. 9, 18, 23; below it no spot yields."""
+    """Largest pressure F_r/S_r [Pa] without yielding spots: the largest spot has the area s_ec.
+
+    Eqs. 9, 18, 23.
+    """
     D = law.surface.D
     return 2.0 / 3.0 * hardness_coefficient(law.side1.nu) * law.hardness * (3.0 - D) / (4.0 - D)
 
 
 def printed_spots(law: Hu2023) -> Spots:
-    r"""The law as printed, all spots elastic. With s_l the largest spot
+    r"""Spots of the law as printed, all of them elastic. With the area s_l of the largest spot
 
         P = F_r/S_r = \frac{4 E (3 - D)}{3 pi^{3/2} R (4 - D)} s_l^{1/2}    (Eqs. 9, 18, 23, 28)
 
-    and the magnitude of Eq. 30 with s_l as its upper limit, also ~ s_l^(1/2). So K is in proportion to P,
-    and E cancels. The stiffness is that of one set of spots, whatever the area.
+    and K is the magnitude of Eq. 30 with s_l as the upper limit, also ~ s_l^(1/2). So K is proportional to P,
+    and E cancels. K is the stiffness of one set of spots, independent of the nominal area.
 
     Quantities: load [N], P A_0; normal, tangential [N/m]; area, elastic_area [m2].
     """
@@ -124,16 +135,16 @@ def printed_spots(law: Hu2023) -> Spots:
 
 
 def _elastic_load(law: Hu2023) -> Number:
-    """f_e [N] of a spot of area s_min, Eq. 9."""
+    """Elastic load f_e [N] of a spot of area s_min, Eq. 9."""
     s_min, E = law.surface.s_min, contact_modulus(law.side1, law.side2)
     return 4.0 / 3.0 * E * (s_min / np.pi) ** 1.5 / curvature_radius(law)
 
 
 def spots(law: Hu2023) -> Spots:
-    """Size distribution (Eq. 17) and regimes up to the largest spot.
+    """Spots of the corrected law: size distribution (Eq. 17) and four regimes.
 
-    Load and area count all spots (Eqs. 18-27), the stiffness those above s_min, without which its
-    integrals diverge or are undefined (Eqs. 30, 41, corrected).
+    Load and area are sums over all spots (Eqs. 18-27). The stiffness is the sum over the spots above s_min;
+    without this limit its integrals diverge or are undefined (Eqs. 30, 41, corrected).
 
     Quantities: load [N]; normal, tangential [N/m]; area, elastic_area [m2].
     """
@@ -146,7 +157,7 @@ def spots(law: Hu2023) -> Spots:
     stages = [by_area(FIRST), by_area(SECOND)]
 
     def regime(c: Number, p: float, i: int, smallest: Number = None) -> Power:
-        """`c (s/s_ec)^p` in regime i, referred to s_min; the first begins at `smallest`."""
+        """Power law `c (s/s_ec)^p` of regime i, relative to s_min; the first regime begins at `smallest`."""
         lower = bounds[i] if i else smallest
         upper = bounds[i + 1] if i < 3 else None
         return Power(c * np.exp(-p * edge), p, lower, upper)
@@ -168,10 +179,12 @@ def spots(law: Hu2023) -> Spots:
 
 
 def _tangential(law: Hu2023, load: list[Power], bounds: list[Number]) -> tuple[Term, ...]:
-    """k_t = 8 G' r (1 - t/(mu f))^(1/3) in the three regimes that are not plastic, Eqs. 39, 41-43.
+    """Tangential stiffness k_t = 8 G' r (1 - t/(mu f))^(1/3) of the three regimes that are not fully plastic.
 
-    ratio     : every spot has the traction ratio x of the node
-    real_area : the real area carries the shear traction, t = tau s; x = tau s/(mu f(s)) differs from
+    Eqs. 39, 41-43. The shear force t of a spot depends on the choice `traction`:
+
+    ratio     : every spot has the traction ratio x = t/(mu f) of the node
+    real_area : constant shear traction tau on the real area, t = tau s; x = tau s/(mu f(s)) differs from
         spot to spot and is clipped to full slip
     """
     full_stick = 8.0 * contact_shear_modulus(law.side1, law.side2) * np.sqrt(law.surface.s_min / np.pi)

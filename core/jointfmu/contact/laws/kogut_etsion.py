@@ -1,6 +1,6 @@
-"""Elastic-plastic spot of Kogut and Etsion (2002): fits in w/w_c between onset and full plasticity.
+"""Elastic-plastic contact spot of Kogut and Etsion (2002): power-law fits from first to full yield.
 
-area/a_c = m (w/w_c)^n, load/f_c = c (w/w_c)^d.
+area/a_c = m (w/w_c)^n, load/f_c = c (w/w_c)^d, with the deformation w; index c: values at first yield.
 """
 
 from dataclasses import dataclass
@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 
 class Stage(NamedTuple):
-    """One stage of the fit: area factor and exponent, load factor and exponent [1]."""
+    """One stage of the fit: area factor m and exponent n, load factor c and exponent d [1]."""
 
     m: float
     n: float
@@ -19,14 +19,14 @@ class Stage(NamedTuple):
 FIRST = Stage(m=0.93, n=1.136, c=1.03, d=1.425)
 SECOND = Stage(m=0.94, n=1.146, c=1.40, d=1.263)
 SECOND_ONSET = 6.0
-"""w/w_c [1] where the second stage begins."""
+"""Deformation w/w_c [1] at the start of the second stage."""
 PLASTIC_ONSET = 110.0
-"""w/w_c [1] where the spot is fully plastic."""
+"""Deformation w/w_c [1] from which on the spot is fully plastic."""
 
 
 @dataclass(frozen=True, slots=True)
 class ByArea:
-    """One stage with w/w_c eliminated: `load = f_c A (a/a_c)^p`, `stiffness = (f_c/w_c) B (a/a_c)^q`."""
+    """One stage over the spot area a: `load = f_c A (a/a_c)^p`, `stiffness = (f_c/w_c) B (a/a_c)^q`."""
 
     A: float
     p: float
@@ -35,12 +35,12 @@ class ByArea:
 
 
 def by_area(stage: Stage) -> ByArea:
-    """Powers of the area, from area/a_c = m (w/w_c)^n: p = d/n, q = (d - 1)/n [1]."""
+    """Convert a stage to powers of the area: p = d/n, q = (d - 1)/n [1], from area/a_c = m (w/w_c)^n."""
     p, q = stage.d / stage.n, (stage.d - 1.0) / stage.n
     return ByArea(stage.c * stage.m**-p, p, stage.c * stage.d * stage.m**-q, q)
 
 
 SECOND_AREA = FIRST.m * SECOND_ONSET**FIRST.n
-"""a/a_c = 7.1197 [1] where the second stage begins."""
+"""Area a/a_c = 7.1197 [1] at the start of the second stage."""
 PLASTIC_AREA = SECOND.m * PLASTIC_ONSET**SECOND.n
-"""a/a_c = 205.38 [1] where the spot is fully plastic."""
+"""Area a/a_c = 205.38 [1] from which on the spot is fully plastic."""

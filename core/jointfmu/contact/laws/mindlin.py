@@ -1,7 +1,7 @@
-"""Partial slip of one spot under a shear force, after Mindlin and Deresiewicz. `x = T/(mu P)` [1].
+"""Partial slip of a single contact spot under a shear force (Mindlin and Deresiewicz). `x = T/(mu P)` [1].
 
-Zhao 2018 writes the loop with v = (1 - x)^(1/3) in powers that cancel for small x. Factored by
-`(1 - v)`, as here, they keep full precision down to x = 0 (derivation in docs/errata.md).
+The loop energies of Zhao 2018 are differences of powers of v = (1 - x)^(1/3) that cancel for small x. In the
+form factored by `(1 - v)` used here they keep full precision down to x = 0 (derivation in docs/errata.md).
 """
 
 import numpy as np
@@ -10,36 +10,45 @@ from ...quantity import Number
 
 
 def stick_root(x: Number) -> tuple[Number, Number]:
-    """v = (1 - x)^(1/3) [1] and 1 - v [1], the latter without cancellation; 0 <= x < 1."""
+    """Stick radius ratio v = (1 - x)^(1/3) [1] and 1 - v [1], without cancellation; 0 <= x < 1."""
     log = np.log1p(-x) / 3.0
     return np.exp(log), -np.expm1(log)
 
 
 def loop(x: Number) -> Number:
-    """H1 [1] of Zhao 2018, Eq. 23: 1 - v^5 - (5x/6)(1 + v^2) = (1 - v)^3 (1 + 3v + v^2)/6."""
+    """Function H1 [1] of the dissipated energy, Zhao 2018, Eq. 23.
+
+    H1 = 1 - v^5 - (5x/6)(1 + v^2) = (1 - v)^3 (1 + 3v + v^2)/6.
+    """
     v, slip = stick_root(x)
     return slip**3 * (1.0 + 3.0 * v + v**2) / 6.0
 
 
 def storage(x: Number) -> Number:
-    """H2 [1] of Zhao 2018, Eq. 25: 3/5 + (2/5) v^5 - v^2 = (1 - v)^2 (3 + 6v + 4v^2 + 2v^3)/5."""
+    """Function H2 [1] of the stored energy, Zhao 2018, Eq. 25.
+
+    H2 = 3/5 + (2/5) v^5 - v^2 = (1 - v)^2 (3 + 6v + 4v^2 + 2v^3)/5.
+    """
     v, slip = stick_root(x)
     return slip**2 * (3.0 + 6.0 * v + 4.0 * v**2 + 2.0 * v**3) / 5.0
 
 
 def loss_ratio(x: Number) -> Number:
-    """W_d/W [1]: dissipated energy of a cycle over 2 pi times the stored energy, 12 H1/(5 pi H2)."""
+    """Ratio W_d/W [1]: dissipated energy of a cycle over 2 pi times the stored energy, 12 H1/(5 pi H2)."""
     v, slip = stick_root(x)
     return 2.0 / np.pi * slip * (1.0 + 3.0 * v + v**2) / (3.0 + 6.0 * v + 4.0 * v**2 + 2.0 * v**3)
 
 
 def loss_factor(x: Number) -> Number:
-    """eta_t = W_d/(W - W_d) [1], Zhao 2018, Eqs. 27-29 with 5 pi/12 for the printed 5 pi/24."""
+    """Loss factor eta_t = W_d/(W - W_d) [1], Zhao 2018, Eqs. 27-29 with 5 pi/12 for the printed 5 pi/24."""
     ratio = loss_ratio(x)
     return ratio / (1.0 - ratio)
 
 
 def viscous_equivalent(loss_factor: Number, mass: Number, stiffness: Number) -> Number:
-    """C = eta sqrt(m K) [N.s/m]: the dashpot that dissipates as a loss factor [1] does, for a mass [kg] that
-    rings on a stiffness [N/m] (Zhao 2018, Eqs. 20, 29)."""
+    """Equivalent viscous damping C = eta sqrt(m K) [N.s/m] (Zhao 2018, Eqs. 20, 29).
+
+    It dissipates as much as the loss factor eta [1] if a mass m [kg] vibrates at resonance on the stiffness
+    K [N/m].
+    """
     return loss_factor * np.sqrt(mass * stiffness)

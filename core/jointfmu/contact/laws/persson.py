@@ -1,8 +1,8 @@
-"""Persson's real area of contact with a hardness, and the bearing curve of a Gaussian surface.
+"""Real contact area by Persson's theory with a hardness, and the bearing curve of a Gaussian surface.
 
-With growing magnification the pressure at a point spreads like a diffusing particle (Persson 2001): it
-starts at the nominal pressure, is lost at zero (no contact) and stops at the hardness (plastic). Its
-variance over all waves is (E* slope/2)^2.
+With growing magnification the distribution of the local pressure spreads by diffusion (Persson 2001). It
+starts at the nominal pressure and is absorbed at zero (no contact) and at the hardness (plastic contact). The
+variance over all wavelengths is (E* slope/2)^2.
 """
 
 from statistics import NormalDist
@@ -12,26 +12,31 @@ import numpy as np
 from ...quantity import Number, erf, where
 
 _SHORT = 0.2
-"""Variance over the square of the hardness [1] up to which images converge faster than waves."""
+"""Variance over squared hardness [1] up to which the series of images converges faster than that of modes."""
 
 
 def contact_shares(pressure: Number, hardness: Number, spread: Number) -> tuple[Number, Number]:
     """Shares [1] of the nominal area in elastic and in plastic contact at pressures (...) [Pa].
 
-    hardness : [Pa], above the pressure
-    spread   : E* slope/2 [Pa], the pressure's standard deviation over all waves
+    hardness  : [Pa], above the pressure
+    deviation : E* slope/2 [Pa], standard deviation of the local pressure over all wavelengths
 
-    Elastic alone it is erf(p/(sqrt(2) spread)). The plastic share carries what the elastic one does not.
+    Without plastic contact the elastic share is erf(p/(sqrt(2) deviation)). The plastic share carries the
+    load that the elastic one does not.
     """
     x = np.minimum(pressure / hardness, 1.0)
     t = (spread / hardness) ** 2
-    early, late = _images(x, np.minimum(t, _SHORT)), _waves(x, np.maximum(t, _SHORT))
-    elastic, load = (where(t < _SHORT, a, b) for a, b in zip(early, late, strict=True))
+    image_series, mode_series = _images(x, np.minimum(t, _SHORT)), _waves(x, np.maximum(t, _SHORT))
+    elastic, load = (where(t < _SHORT, a, b) for a, b in zip(image_series, mode_series, strict=True))
     return elastic, np.maximum(x - load, 0.0)
 
 
 def _waves(x: Number, t: Number) -> tuple[Number, Number]:
-    """Elastic share and its load over the hardness [1], by the modes between the two walls."""
+    """Elastic share and its load over the hardness [1]: series of diffusion modes between both boundaries.
+
+    x : pressure over hardness [1]
+    t : variance over squared hardness [1]
+    """
     share: Number = 0.0
     load: Number = 0.0
     for n in range(1, 7):
@@ -42,24 +47,26 @@ def _waves(x: Number, t: Number) -> tuple[Number, Number]:
 
 
 def _images(x: Number, t: Number) -> tuple[Number, Number]:
-    """The same by images of the start in the two walls."""
+    """Elastic share and its load over the hardness [1]: series of images, see `_mode_series`."""
     spread = np.sqrt(2.0 * t)
     share: Number = 0.0
     load: Number = 0.0
     for k in range(-2, 3):
         for sign in (1.0, -1.0):
             start = 2.0 * k + sign * x
-            near, far = (0.0 - start) / spread, (1.0 - start) / spread
-            part = 0.5 * (erf(far) - erf(near))
-            tails = spread / (2.0 * np.sqrt(np.pi)) * (np.exp(-(near**2)) - np.exp(-(far**2)))
-            share = share + sign * part
-            load = load + sign * (start * part + tails)
+            to_zero, to_hardness = (0.0 - start) / spread, (1.0 - start) / spread
+            weight = 0.5 * (erf(to_hardness) - erf(to_zero))
+            tails = spread / (2.0 * np.sqrt(np.pi)) * (np.exp(-(to_zero**2)) - np.exp(-(to_hardness**2)))
+            share = share + sign * weight
+            load = load + sign * (start * weight + tails)
     return share, load
 
 
 def bearing_curve(share: Number) -> Number:
-    """Slope [1] of ln(share) over the approach in rms heights, of the plane that cuts this share off a
-    Gaussian surface (Abbott and Firestone 1933): phi(z)/Phi(-z); a perfectly plastic surface follows it.
+    """Derivative [1] of ln(share) with respect to the approach over the rms height, for a Gaussian surface.
+
+    share : [1] part of the surface above a cutting plane (bearing curve, Abbott and Firestone 1933). The
+        derivative is phi(z)/Phi(-z). The contact area of a perfectly plastic surface follows this curve.
     """
     inside = np.minimum(np.maximum(share, 1e-300), 1.0 - 1e-12)
     z = -np.vectorize(NormalDist().inv_cdf, otypes=[float])(inside)

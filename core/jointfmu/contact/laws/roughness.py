@@ -1,9 +1,9 @@
-"""Stiffness from a roughness: elastic contact in many spots, with a crossover to few.
+"""Interface law `roughness`: elastic contact of many spots, with a transition to few spots at small load.
 
-No sum over single spots: the rms height h of both surfaces together carries the level. In many spots
-p ~ exp(approach/(gamma h)) (Persson 2007; Akarapu, Sharp, Robbins 2011), so the stiffness per area is
-p/(gamma h), whatever the modulus. Under a small load few hills of the longest wave carry, and the contact
-is stiffer than that (finite size; Pastewka and others 2013). docs/validity.md says how far it holds.
+The law has no sum over single spots: the combined rms height h of both surfaces determines the stiffness. For
+many spots p ~ exp(approach/(gamma h)) (Persson 2007; Akarapu, Sharp, Robbins 2011), so the stiffness per area
+is p/(gamma h), independent of the modulus. At small load only a few hills of the longest wave are in contact,
+and the stiffness is larger (finite size; Pastewka and others 2013). Range of validity: docs/validity.md.
 """
 
 from dataclasses import dataclass
@@ -17,28 +17,30 @@ from ..surface import Elastic, contact_modulus, contact_shear_modulus
 from .persson import bearing_curve, contact_shares
 
 FEW_SPOTS = 0.3
-"""C [1] of the stiffness in `Roughness.spots`: from boundary elements (benchmarks/roughness_law.py)."""
+"""Factor C [1] of the stiffness at small load, see `Roughness.spots`; fitted to boundary elements
+(benchmarks/roughness_law.py)."""
 FIRST_TOUCH = 1e-6
-"""Load [1] over E* h longest_wave where the stiffness begins: far less than one hill carries."""
+"""Load over E* h longest_wave [1] at which the stiffness begins: far below the load of a single hill."""
 FEWEST = 0.3
-"""Load x [1] over E* h longest_wave from which the law was compared with boundary elements: below, one hill
-carries (docs/validity.md).
+"""Smallest load over E* h longest_wave [1] at which the law was compared with boundary elements: below, a
+single hill is in contact (docs/validity.md).
 """
 FLATTEST = 1.5
-"""Pressure y [1] over E* h/longest_wave up to which it was: above, the longest wave is pressed flat."""
+"""Largest pressure over E* h/longest_wave [1] at which the law was compared with boundary elements: above,
+the longest wave is flattened."""
 _SIZE = 0.25
-"""Exponent m [1] of the sums, below that of every quantity; it cancels."""
+"""Exponent m [1] of the formal size distribution, smaller than the exponent of any quantity; m cancels."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class RoughSurfaces:
-    """What the law `roughness` knows of the two surfaces."""
+    """Surface parameters of the law `roughness`."""
 
     h: float = quantity(
         "m",
         "rms height of both surfaces together, of all waves up to longest_wave",
         gt=0.0,
-        le=1e3 * ROUGHEST,  # the law holds at any scale, a height of a metre is none
+        le=1e3 * ROUGHEST,  # the law holds at any scale; this rejects wrong units
     )
     gamma: float = quantity("1", "approach over h by which the pressure grows e-fold", gt=0.0)
     longest_wave: float = quantity("m", "longest wave of the roughness", gt=0.0)
@@ -59,21 +61,21 @@ class Roughness(RoughSurfaces, Checked):
 
     @property
     def hardness(self) -> Number:
-        """H [Pa] of the softer body."""
+        """Hardness H [Pa] of the softer body."""
         return self.H
 
     def spots(self) -> Spots:
-        """Quantities of the area A_0 as sums of powers of the pressure, exp(u) = p/p_1.
+        """Quantities of the nominal area A_0 as sums of powers of the pressure p; exp(u) = p/p_1.
 
         load       : [N] p A_0
         normal     : [N/m] p A_0/h (1/gamma + C x^(-hurst/(1 + hurst))), x = p A_0/(E* h longest_wave)
         tangential : [N/m] rho times normal
         elastic_work : [J] gamma h p A_0, the energy of p ~ exp(approach/(gamma h))
-        plastic_work : [J] none: the load has been there before
+        plastic_work : [J] 0: the surfaces have carried the load before
         """
         p, A, rho = first_pressure(self), self.A_0, self.shear_ratio()
-        many = p * A / (self.gamma * self.h)
-        few = FEW_SPOTS * p * A / self.h * FIRST_TOUCH ** (-self.hurst / (1.0 + self.hurst))
+        many_spots = p * A / (self.gamma * self.h)
+        few_spots = FEW_SPOTS * p * A / self.h * FIRST_TOUCH ** (-self.hurst / (1.0 + self.hurst))
         power = 1.0 / (1.0 + self.hurst)
         return Spots(
             reference=A,
@@ -81,8 +83,8 @@ class Roughness(RoughSurfaces, Checked):
             weight=1.0 / _SIZE,
             terms={
                 "load": (_grown(p * A, 1.0),),
-                "normal": (_grown(many, 1.0), _grown(few, power)),
-                "tangential": (_grown(rho * many, 1.0), _grown(rho * few, power)),
+                "normal": (_grown(many_spots, 1.0), _grown(few_spots, power)),
+                "tangential": (_grown(rho * many_spots, 1.0), _grown(rho * few_spots, power)),
                 "elastic_work": (_grown(self.gamma * self.h * p * A, 1.0),),
                 "plastic_work": (_grown(0.0, 1.0),),
             },
@@ -91,46 +93,52 @@ class Roughness(RoughSurfaces, Checked):
         )
 
     def areas(self, pressure: Number) -> tuple[Number, Number]:
-        """Real area [m2] and its elastic part [1] at pressures (...) [Pa] (Persson 2001)."""
-        spread = 0.5 * contact_modulus(self.side1, self.side2) * self.slope
-        elastic, plastic = contact_shares(pressure, self.H, spread)
+        """Real area (...) [m2] and its elastic fraction [1] at pressures (...) [Pa] (Persson 2001)."""
+        deviation = 0.5 * contact_modulus(self.side1, self.side2) * self.slope
+        elastic, plastic = contact_shares(pressure, self.H, deviation)
         return self.A_0 * (elastic + plastic), elastic / (elastic + plastic)
 
     def unproven(self, least: float, most: float) -> list[str]:
-        """As `interface.Bounded.unproven`."""
+        """Messages if pressures from `lowest` to `highest` [Pa] leave the validated range, one line each."""
         scale = contact_modulus(self.side1, self.side2) * self.h
-        few, flat = FEWEST * scale * self.longest_wave / self.A_0, FLATTEST * scale / self.longest_wave
-        found = []
-        if least < few:
-            found.append(
-                f"a pressure of {least:.4g} Pa is below {few:.3g} Pa, from where the law roughness is "
-                "proven: one hill carries, and surfaces of the same roughness differ by half and more "
+        min_pressure, max_pressure = (
+            FEWEST * scale * self.longest_wave / self.A_0,
+            FLATTEST * scale / self.longest_wave,
+        )
+        messages = []
+        if least < min_pressure:
+            messages.append(
+                f"a pressure of {least:.4g} Pa is below {min_pressure:.3g} Pa, from where the law roughness "
+                "is proven: one hill carries, and surfaces of the same roughness differ by half and more "
                 "(docs/validity.md)"
             )
-        if most > flat:
-            found.append(
-                f"a pressure of {most:.4g} Pa is above {flat:.3g} Pa, up to which the law roughness is "
-                "proven: the longest wave is pressed flat, the rest to its end is an extrapolation "
+        if most > max_pressure:
+            messages.append(
+                f"a pressure of {most:.4g} Pa is above {max_pressure:.3g} Pa, up to which the law roughness "
+                "is proven: the longest wave is pressed flat, the rest to its end is an extrapolation "
                 "(docs/validity.md)"
             )
-        return found
+        return messages
 
     def shear_ratio(self) -> Number:
-        """rho = K_T/K_N = 4 G'/E* [1] without slip; 2 (1 - nu)/(2 - nu) for equal bodies (Mindlin 1949)."""
+        """Stiffness ratio rho = K_T/K_N = 4 G'/E* [1] without slip.
+
+        For equal materials it is 2 (1 - nu)/(2 - nu) (Mindlin 1949).
+        """
         return 4.0 * contact_shear_modulus(self.side1, self.side2) / contact_modulus(self.side1, self.side2)
 
     def loss_factor(self) -> Number:
-        """eta_t [1] at the traction ratio."""
+        """Loss factor eta_t [1] of tangential motion at the traction ratio."""
         return loss_factor(self.traction_ratio)
 
     def state(self, u: Number) -> dict[str, Number]:
-        """Interface quantities (whole area A_0) at the log-pressure u; p = p_1 exp(u).
+        """Contact quantities of the nominal area A_0 at the log-pressure u [1]; p = p_1 exp(u).
 
-        F [N], approach [m]; K_N, K_T [N/m] of small motions, and of a plastic contact on unloading;
-        K_loading [N/m] while the load grows for the first time and spots flow: the elastic approach and that
-        of a bearing curve, by the part of the load that plastic spots carry; A_r [m2], elastic_fraction [1];
-        eta_n [1], none; eta_t [1]; friction_limit [N] = mu F, slip_length [m] s_0 = mu gamma h/rho of many
-        spots.
+        F [N] load, approach [m]; K_N, K_T [N/m] stiffness for small motions, also on unloading of a plastic
+        contact; K_loading [N/m] stiffness at first loading, when spots yield: elastic compliance plus that of
+        the bearing curve, weighted by the share of the load on plastic spots; A_r [m2] real area;
+        elastic_fraction [1]; eta_n = 0 and eta_t [1] loss factors; friction_limit = mu F [N]; slip_length
+        s_0 = mu gamma h/rho [m] of the contact of many spots.
         """
         s, p = self.spots(), first_pressure(self) * np.exp(u)
         F, K_N = s.total("load", u), s.total("normal", u)
@@ -153,31 +161,32 @@ class Roughness(RoughSurfaces, Checked):
 
 
 def first_pressure(law: Roughness) -> Number:
-    """p_1 [Pa], the pressure of u = 0: FIRST_TOUCH of E* h longest_wave over A_0."""
+    """Pressure p_1 [Pa] at u = 0: ONSET_LOAD_RATIO E* h longest_wave/A_0."""
     return FIRST_TOUCH * contact_modulus(law.side1, law.side2) * law.h * law.longest_wave / law.A_0
 
 
 def _grown(c: Number, power: Number) -> Power:
-    """The term whose sum is c exp(power u)."""
+    """Term of a spot law whose sum over all spots is c exp(power u)."""
     return Power(c * (power - _SIZE), power)
 
 
 def loss_factor(x: Number) -> Number:
-    """eta_t [1] of a shear cycle of amplitude T = x mu F: W/(2 pi U), U = T s/2 at its ends.
+    """Loss factor eta_t [1] of a shear cycle with the force amplitude T = x mu F: W/(2 pi U), U = T s/2.
 
-    The spots slip one by one where p ~ exp(approach/(gamma h)): T = mu F (1 - exp(-s/s_0)), so
-    W = -4 mu F s_0 ((2 - x) ln(1 - x) + 2x) by Masing's rule, and eta_t = (4/pi) (2/x - 1 + 2/ln(1 - x));
-    2x/(3 pi) for small x, of which the next terms are taken below x = 0.01, where the closed form cancels.
+    W is the loss of a cycle and U the energy at its ends. With p ~ exp(approach/(gamma h)) the spots slip one
+    after the other: T = mu F (1 - exp(-s/s_0)). By Masing's rule W = -4 mu F s_0 ((2 - x) ln(1 - x) + 2x), so
+    eta_t = (4/pi) (2/x - 1 + 2/ln(1 - x)). Below x = 0.01, where this form cancels, its power series
+    2x/(3 pi) + ... is used.
     """
     series = x * (1.0 / 6.0 + x * (1.0 / 12.0 + x * (19.0 / 360.0 + x * (3.0 / 80.0 + x * 863.0 / 30240.0))))
     small = x < 0.01
     safe = np.where(small, 0.01, x)
-    closed = 2.0 / safe - 1.0 + 2.0 / np.log1p(-safe)
-    return 4.0 / np.pi * np.where(small, series, closed)
+    closed_form = 2.0 / safe - 1.0 + 2.0 / np.log1p(-safe)
+    return 4.0 / np.pi * np.where(small, series, closed_form)
 
 
 def approach(law: Roughness, p: Number) -> Number:
-    """Approach [m] of the two sides from no pressure to p [Pa]: the integral of dp/k."""
+    """Approach [m] of the two bodies from zero pressure to p [Pa]: integral of dp/k."""
     x = p * law.A_0 / (contact_modulus(law.side1, law.side2) * law.h * law.longest_wave)
     bend = law.hurst / (1.0 + law.hurst)
     return law.gamma * law.h / bend * np.log1p(x**bend / (law.gamma * FEW_SPOTS))

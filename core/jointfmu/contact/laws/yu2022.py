@@ -1,8 +1,8 @@
-"""Yu et al. 2022 (doi:10.3390/app12084071): elliptical asperities, four regimes, curved flanks.
+"""Interface law of Yu et al. 2022 (doi:10.3390/app12084071): elliptical asperities, curved tooth flanks.
 
-Equation numbers are the paper's; where the print is wrong the corrected form is implemented
-(docs/errata.md). Areas are real contact areas throughout. Small spots are plastic: going up in
-area a spot is plastic, then in the second and the first elastic-plastic stage, then elastic.
+Equation numbers are those of the paper; misprints are corrected (docs/errata.md). Areas are real contact
+areas. Small spots are plastic. With growing area a spot has four regimes: plastic, second elastic-plastic
+stage, first elastic-plastic stage, elastic.
 """
 
 from dataclasses import dataclass
@@ -29,7 +29,7 @@ class Yu2022(Checked):
 
     surface1: FlankSurface = group("fractal parameters along the major axis")
     surface2: FlankSurface = group("fractal parameters along the minor axis")
-    surface: Spectrum = group("what both directions share")
+    surface: Spectrum = group("frequency ratio of both directions")
     e: float = quantity("1", "eccentricity of the contact ellipses", ge=0.0, lt=1.0)
     lambda_: float = quantity("1", "contact coefficient of the curved flanks", gt=0.0, le=1.0)
     side1: Elastic = group("first body")
@@ -51,16 +51,16 @@ class Yu2022(Checked):
 
     @property
     def hardness(self) -> Number:
-        """H = 2.8 sigma_y [Pa], Eq. 25."""
+        """Hardness H = 2.8 sigma_y [Pa], Eq. 25."""
         return 2.8 * self.sigma_y
 
     def spots(self) -> Spots:
-        """Regimes of one spot over the size distribution of Eqs. 44 and 46, reference area a_nec."""
+        """Regimes of a spot and size distribution (Eqs. 44, 46); reference area a_nec, the onset of yield."""
         return self._spots
 
     @cached_property
     def _spots(self) -> Spots:
-        """Size distribution (lambda times Eq. 44) and the four regimes of one spot.
+        """Size distribution (lambda times Eq. 44) and four regimes of a spot, cached.
 
         Quantities: load [N], Eqs. 38, 36, 34, 64; normal [N/m], Eqs. 72-75; area, elastic_area [m2].
         """
@@ -76,7 +76,7 @@ class Yu2022(Checked):
         hertz = 2.0 * f2 * E * np.sqrt(a / (np.pi * f1))
 
         def sharpness(t: Number) -> Number:
-            """(1/R_x + 1/R_y) over its value at a_nec [1]."""
+            """Sum of curvatures 1/R_x + 1/R_y over its value at a_nec [1], at the log-area t."""
             return (c1 * np.exp(-p1 * t) + c2 * np.exp(-p2 * t)) / (c1 + c2)
 
         def stage_load(stage: Stage, lower: Number, upper: Number) -> Smooth:
@@ -121,7 +121,10 @@ class Yu2022(Checked):
         )
 
     def state(self, u: Number) -> dict[str, Number]:
-        """F [N] Eq. 60; K_N [N/m] Eq. 76; A_r [m2] Eq. 54; elastic_fraction [1]."""
+        """Contact quantities at the log-area u [1] of the largest spot.
+
+        F [N] Eq. 60; K_N [N/m] Eq. 76; A_r [m2] Eq. 54; elastic_fraction [1].
+        """
         s = self.spots()
         area, elastic = areas(s, u)
         return {
@@ -133,19 +136,19 @@ class Yu2022(Checked):
 
 
 def areas(spots: Spots, u: Number) -> tuple[Number, Number]:
-    """Real area [m2], Eq. 54, and its elastic part [1]."""
+    """Real area [m2], Eq. 54, and its elastic fraction [1]."""
     area = spots.total("area", u)
     return area, spots.total("elastic_area", u) / area
 
 
 def modulus(law: Yu2022) -> Number:
-    """E' [Pa], Eq. 21; with a rigid flat only the first body deforms."""
-    alone = law.side1.E / (1.0 - law.side1.nu**2)
-    return where(law.rigid_flat, alone, contact_modulus(law.side1, law.side2))
+    """Contact modulus E' [Pa], Eq. 21; with a rigid flat only the first body deforms."""
+    single_body = law.side1.E / (1.0 - law.side1.nu**2)
+    return where(law.rigid_flat, single_body, contact_modulus(law.side1, law.side2))
 
 
 def shape_factors(e: Number) -> tuple[Number, Number]:
-    """f1, f2 [1] of the elastic ellipse, Eqs. 22-23; both are 1 at e = 0."""
+    """Factors f1, f2 [1] of an elliptical elastic contact, Eqs. 22-23; both are 1 at e = 0."""
     K, E = complete_elliptic(e)
     slender = np.sqrt((1.0 - e) * (1.0 + e))
     f1 = E / (K * slender)
@@ -153,13 +156,16 @@ def shape_factors(e: Number) -> tuple[Number, Number]:
 
 
 def size_exponent(law: Yu2022) -> Number:
-    """zeta (D1 + D2)/2 [1] with zeta = sqrt(1 - e^2)/2, Eqs. 42-43."""
+    """Exponent m of the size distribution: zeta (D1 + D2)/2 [1], zeta = sqrt(1 - e^2)/2, Eqs. 42-43."""
     zeta = 0.5 * np.sqrt((1.0 - law.e) * (1.0 + law.e))
     return 0.5 * zeta * (law.surface1.D + law.surface2.D)
 
 
 def curvature_terms(law: Yu2022) -> tuple[tuple[Number, Number], tuple[Number, Number]]:
-    """((b, p), (b, p)) with 1/R_x = b1 a^-p1, 1/R_y = b2 a^-p2 [1/m], Eqs. 12-13."""
+    """Factors and exponents ((b1, p1), (b2, p2)) of the curvatures of a spot of area a, Eqs. 12-13.
+
+    1/R_x = b1 a^-p1 and 1/R_y = b2 a^-p2 [1/m].
+    """
     root = np.sqrt(np.log(law.surface.gamma))
     log_axes = 0.25 * np.log1p(-(law.e**2))
 
@@ -171,7 +177,7 @@ def curvature_terms(law: Yu2022) -> tuple[tuple[Number, Number], tuple[Number, N
 
 
 def yield_scale(law: Yu2022) -> Number:
-    """4 pi f1 K(e) E(e) (K H/E')^2 [1]: a (1/R_x + 1/R_y)^2 at the onset of yield, Eq. 28."""
+    """Value of a (1/R_x + 1/R_y)^2 [1] at the onset of yield: 4 pi f1 K(e) E(e) (K H/E')^2, Eq. 28."""
     K, E = complete_elliptic(law.e)
     f1, _ = shape_factors(law.e)
     strain = hardness_coefficient(law.side1.nu) * law.hardness / modulus(law)
@@ -179,10 +185,10 @@ def yield_scale(law: Yu2022) -> Number:
 
 
 def critical_log_area(law: Yu2022, multiple: float) -> Number:
-    """ln a [ln m2] of the spot whose a (1/R_x + 1/R_y)^2 is `multiple` of the onset, Eqs. 28, 31, 32.
+    """Log-area ln a [ln m2] of the spot with a (1/R_x + 1/R_y)^2 = onset_ratio yield_scale, Eqs. 28, 31, 32.
 
-    Newton in ln a; the function falls with a slope between 1 - max(D) and 1 - min(D) and is convex,
-    so twelve steps reach round-off.
+    Newton's method in ln a. The function is convex and decreases with a slope between 1 - max(D) and
+    1 - min(D), so twelve steps reach round-off.
     """
     (b1, p1), (b2, p2) = curvature_terms(law)
     target = np.log(multiple * yield_scale(law))
@@ -196,10 +202,12 @@ def critical_log_area(law: Yu2022, multiple: float) -> Number:
 
 
 def _stages(law: Yu2022) -> tuple[tuple[Stage, Stage], tuple[float, float]]:
-    """The two elastic-plastic stages and where they begin, as multiples of a_nec(R_m).
+    """Two elastic-plastic stages, and the limits of plastic and second stage as areas over a_nec(R_m) [1].
 
-    geometric    : the spot keeps the elastic relation a = f1 pi R_m w, so w/w_nec = a/a_nec(R_m),
-                   which is (a/a_nec)^-(D - 1) for D1 = D2, with the limits 6 and 110 of Eqs. 31-32
+    They depend on the choice `plastic_area`, the relation between area a and deformation w of a spot:
+
+    geometric    : elastic relation a = f1 pi R_m w, so w/w_nec = a/a_nec(R_m), which is (a/a_nec)^-(D - 1)
+                   for D1 = D2; limits 6 and 110 of Eqs. 31-32
     kogut_etsion : a = a_nec(R_m) m (w/w_nec)^n as in Eqs. 33 and 35; limits 7.1197 and 205.38
     """
     if law.plastic_area == "kogut_etsion":

@@ -1,7 +1,7 @@
-"""Zhao et al. 2018: elastic and plastic spots, stiffness and damping.
+"""Interface law of Zhao et al. 2018: elastic and plastic spots, stiffness and damping.
 
-Areas are truncated areas a' = 2a, as in the paper. Equation numbers are the paper's; where the
-print is wrong the corrected form is implemented (docs/errata.md).
+Areas are truncated areas a' = 2a, as in the paper. Equation numbers are those of the paper; misprints are
+corrected (docs/errata.md).
 """
 
 from dataclasses import dataclass
@@ -32,7 +32,9 @@ class Zhao2018(Checked):
     mu: float = quantity("1", "coefficient of static friction", gt=0.0)
     traction_ratio: float = quantity("1", "shear over friction limit, x = T/(mu P)", ge=0.0, lt=1.0)
     A_0: float = quantity("m2", "nominal contact area", gt=0.0)
-    mass: float = quantity("kg", "mass of the structure, for the viscous equivalent", gt=0.0)
+    mass: float = quantity(
+        "kg", "mass of the structure, used for the equivalent viscous damping C_N, C_T", gt=0.0
+    )
     critical_area: str = choice(
         "continuity", "printed", "yield", doc="area below which a spot is plastic (Eq. 4)"
     )
@@ -42,11 +44,11 @@ class Zhao2018(Checked):
 
     @property
     def hardness(self) -> Number:
-        """H [Pa] of the softer body."""
+        """Hardness H [Pa] of the softer body."""
         return self.H
 
     def spots(self) -> Spots:
-        """Size distribution (Eq. 2) and regimes; `elastic` spots have t > 0, `plastic` ones t <= 0.
+        """Size distribution (Eq. 2) and regimes of a spot: elastic for t > 0, plastic for t <= 0.
 
         Quantities: load [N]; normal, tangential [N/m]; area [m2] real; plastic_work [J] (Eq. 15);
         elastic_work [J] (Eq. 17); loop_area [m3], the sum of a'^(3/2) that Eqs. 24 and 26 need.
@@ -69,15 +71,15 @@ class Zhao2018(Checked):
         return Spots(reference=a, m=0.5 * D, weight=weight, terms=terms)
 
     def shear_ratio(self) -> Number:
-        """K_T/K_N [1], the same at every pressure: both sum the square root of the area of elastic spots."""
+        """Stiffness ratio K_T/K_N [1], independent of pressure: both sum sqrt(a') over elastic spots."""
         return tangential_stiffness(self, 1.0) / normal_stiffness(self, 1.0)
 
     def loss_factor(self) -> Number:
-        """eta_t [1] at the traction ratio, Eqs. 27-29."""
+        """Loss factor eta_t [1] of tangential motion at the traction ratio, Eqs. 27-29."""
         return mindlin.loss_factor(self.traction_ratio)
 
     def state(self, u: Number) -> dict[str, Number]:
-        """Interface quantities (whole area A_0) for a largest spot of log-area `u` relative to a'_c.
+        """Contact quantities of the nominal area A_0 for a largest spot of log-area u [1], relative to a'_c.
 
         F [N] Eqs. 9-10; K_N [N/m] Eq. 14; K_T [N/m] Eq. 22; A_r [m2] Eq. 11; W_NP, W_NE [J] Eqs. 16, 18;
         eta_n [1] Eq. 19; C_N [N.s/m] Eq. 20; W_d, W, W_e [J] Eqs. 24, 26, 27; eta_t [1] Eq. 28;
@@ -110,10 +112,12 @@ class Zhao2018(Checked):
 
 
 def critical_area(law: Zhao2018) -> Number:
-    """a'_c [m2] between plastic (below) and elastic spots, Eq. 4.
+    """Critical area a'_c [m2]: smaller spots are plastic, larger ones elastic, Eq. 4.
 
-    continuity : f_e = H a' (default: the only one without a jump of the force)
-    printed    : as printed
+    It depends on the choice `critical_area`:
+
+    continuity : f_e = H a' (default: the only choice without a jump of the force)
+    printed    : Eq. 4 as printed
     yield      : onset of yield at a Hertz pressure k H, delta = (pi k H/2E*)^2 R
     """
     D, G, log_gamma = law.surface.D, law.surface.G, np.log(law.surface.gamma)
@@ -129,7 +133,7 @@ def critical_area(law: Zhao2018) -> Number:
 
 
 def deformation(law: Zhao2018, a: Number) -> Number:
-    """delta [m] of a spot of truncated area a' [m2], Eq. 5."""
+    """Deformation delta [m] of a spot of truncated area a' [m2], Eq. 5."""
     D, G = law.surface.D, law.surface.G
     root = np.sqrt(np.log(law.surface.gamma))
     factor = 2.0 ** (3.0 - D) * G ** (D - 1.0) * root * np.pi ** (0.5 * D - 1.0)
@@ -137,23 +141,23 @@ def deformation(law: Zhao2018, a: Number) -> Number:
 
 
 def curvature_radius(law: Zhao2018, a: Number) -> Number:
-    """R [m] of a spot of truncated area a' [m2], Eq. 6."""
+    """Radius of curvature R [m] of a spot of truncated area a' [m2], Eq. 6."""
     D, G = law.surface.D, law.surface.G
     root = np.sqrt(np.log(law.surface.gamma))
     return a ** (0.5 * D) / (2.0 ** (4.0 - D) * np.pi ** (0.5 * D) * G ** (D - 1.0) * root)
 
 
 def elastic_load(law: Zhao2018, a: Number) -> Number:
-    """f_e [N] of a spot of truncated area a' [m2], Eq. 7."""
+    """Load f_e [N] of an elastic spot of truncated area a' [m2], Eq. 7."""
     modulus = contact_modulus(law.side1, law.side2)
     return 4.0 / 3.0 * modulus * np.sqrt(curvature_radius(law, a)) * deformation(law, a) ** 1.5
 
 
 def normal_stiffness(law: Zhao2018, a: Number) -> Number:
-    """k_n [N/m] of an elastic spot of truncated area a' [m2].
+    """Normal stiffness k_n [N/m] of an elastic spot of truncated area a' [m2].
 
     family : (df/da')/(d delta/da'), Eq. 13
-    hertz  : 2 E* r at fixed R; the family form is 2(3-D)/(3(2-D)) times this
+    hertz  : 2 E* r at fixed R; `family` is 2(3-D)/(3(2-D)) times this
     """
     hertz = 2.0 * contact_modulus(law.side1, law.side2) * np.sqrt(a / (2.0 * np.pi))
     if law.spot_stiffness == "hertz":
@@ -162,14 +166,17 @@ def normal_stiffness(law: Zhao2018, a: Number) -> Number:
 
 
 def tangential_stiffness(law: Zhao2018, a: Number) -> Number:
-    """k_t [N/m] = 8 G' r (1 - x)^(1/3) of an elastic spot of truncated area a' [m2], Eqs. 21-22."""
+    """Tangential stiffness k_t = 8 G' r (1 - x)^(1/3) [N/m] of an elastic spot of area a', Eqs. 21-22."""
     modulus = contact_shear_modulus(law.side1, law.side2)
     stick, _ = mindlin.stick_root(law.traction_ratio)
     return 8.0 * modulus * np.sqrt(a / (2.0 * np.pi)) * stick
 
 
 def shear_energies(law: Zhao2018, F: Number, A_r: Number, loop_area: Number) -> tuple[Number, Number]:
-    """W_d and W [J] of a shear cycle, Eqs. 24 (9 sqrt(2 pi)/40) and 26, from the sum of a'^(3/2)."""
+    """Dissipated energy W_d and 2 pi times stored energy W [J] of a shear cycle, Eqs. 24 and 26.
+
+    loop_area : [m3] sum of a'^(3/2) over elastic spots; Eq. 24 has the factor 9 sqrt(2 pi)/40
+    """
     traction = law.mu * F / A_r
     common = traction**2 * np.sqrt(np.pi / 8.0) / contact_shear_modulus(law.side1, law.side2) * loop_area
     dissipated = 0.9 * common * mindlin.loop(law.traction_ratio)

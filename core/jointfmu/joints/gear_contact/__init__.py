@@ -7,7 +7,7 @@ from ..model import BEYOND, Model, Outside, Ramp, Variable
 from .spring import GearContact, GearContactSpring, RoughGearContact
 
 _PART = 0.05
-"""Mean pressure over the hardness [1] that the ramp reaches, and twice a stated load."""
+"""Mean pressure over the hardness [1] at the end of the load ramp, or beyond: at twice a stated load."""
 
 MODELS = (
     Model(
@@ -25,7 +25,7 @@ MODELS = (
         ),
         evaluate=lambda s, v: s.approach(v["f"]),
         outside=(
-            Outside("f", lambda j, end, v: (0.0, math.inf), "it pulls, the flanks are apart"),
+            Outside("f", lambda j, end, v: (0.0, math.inf), "the force is tensile, the flanks are separated"),
             Outside("f", lambda j, end, v: (-math.inf, j.A_0 * end[1]), BEYOND),
         ),
         ramp=Ramp(

@@ -20,23 +20,23 @@ class GearContact(Yu2022):
 
 @dataclass(frozen=True, kw_only=True)
 class RoughGearContact(Roughness):
-    """The same with the law `roughness`."""
+    """Parameters of the gear contact with the law `roughness`."""
 
 
 Contact: TypeAlias = GearContact | RoughGearContact
-"""A gear contact with any law."""
+"""Parameter set of a gear contact with either law."""
 
 
 @dataclass(frozen=True, slots=True)
 class GearContactSpring:
-    """The exported contact: force in, approach out."""
+    """Tabulated gear contact: normal force in, approach out."""
 
     joint: Contact
     curve: Curve
 
     @classmethod
     def of(cls, joint: Contact) -> "GearContactSpring":
-        """Tabulate a contact."""
+        """Tabulate a parameter set."""
         return cls(joint, approach_curve(joint))
 
     @property
@@ -45,15 +45,16 @@ class GearContactSpring:
         return self.joint.A_0 * self.curve.end[1]
 
     def approach(self, f: ArrayLike) -> dict[str, Array]:
-        """Approach [m] from first touch, stiffness [N/m], real area [m2] and its elastic part at f (...) [N].
+        """Outputs at normal forces f (...) [N].
 
-        A pulling force finds the flanks apart: everything is zero.
+        s_rel [m] approach from first contact, K_N [N/m], A_r [m2], elastic_fraction [1]. For a tensile force
+        the flanks are separated: all outputs are zero.
         """
         force = np.maximum(np.asarray(f, dtype=np.float64), 0.0)
         delta = self.curve.inverse(force / self.joint.A_0)
         stiffness = self.curve.derivatives(delta, 1)[1]
-        touching = np.where(force > 0.0, force, self.max_force)
-        state = at_pressure(self.joint, touching / self.joint.A_0)
+        contact_force = np.where(force > 0.0, force, self.max_force)  # any force that the law accepts
+        state = at_pressure(self.joint, contact_force / self.joint.A_0)
         first = self.curve.displacement[0]
         return contact(self.joint, force, delta - first, stiffness, state["A_r"], state["elastic_fraction"])
 
@@ -61,10 +62,12 @@ class GearContactSpring:
 def contact(
     joint: Contact, f: Number, approach: Number, stiffness: Number, area: Number, elastic: Number
 ) -> dict[str, Number]:
-    """What the contact exports at a load [N].
+    """Outputs of the gear contact at a normal force f [N].
 
-    Given are approach [m] and stiffness per area [N/m3] of the curve there, and real area [m2] and its
-    elastic part [1] of the law.
+    approach  : [m] from first contact
+    stiffness : [N/m3] per nominal area, of the curve
+    area      : [m2] real contact area of the law
+    elastic_fraction : [1] elastic fraction of the real area
     """
     return {
         "s_rel": approach,

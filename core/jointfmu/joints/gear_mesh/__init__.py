@@ -7,11 +7,11 @@ from .spring import GearMesh, GearMeshSpring, RoughGearMesh
 
 _ANGLES = ("phi1", "phi2")
 _PART = 0.3
-"""Of the deflection at the hardness [1], which the ramp reaches: gears are loaded less."""
+"""Deflection at the end of the load ramp over that at the end of the table [1]: gears are loaded less."""
 
 
 def _reach(spring: GearMeshSpring, v: Values) -> tuple[float, float]:
-    """phi1 [rad] at which the driving flanks touch, and at which they are loaded."""
+    """Angles phi1 [rad] at which the driving flanks touch, and at which the load ramp ends."""
     mesh = spring.joint
     touch = 0.5 * mesh.backlash - mesh.r_b2 * v["phi2"]
     return touch / mesh.r_b1, (touch + _PART * spring.curve.end[0]) / mesh.r_b1
@@ -33,10 +33,12 @@ MODELS = (
         outputs=(
             Variable("tau1", "N.m", "torque of the mesh on wheel 1", 100.0),
             Variable("tau2", "N.m", "torque of the mesh on wheel 2", 100.0),
-            Variable("s_rel", "m", "r_b1 phi1 + r_b2 phi2 beyond half the backlash, 0 inside", 1e-5),
+            Variable(
+                "s_rel", "m", "deflection r_b1 phi1 + r_b2 phi2 beyond half the backlash, 0 within it", 1e-5
+            ),
             Variable("f", "N", "normal force of the mesh, positive on the driving flanks", 1e3),
             Variable("K", "N/m", "stiffness df/ds_rel at the present phase of the mesh cycle", 1e8),
-            Variable("pairs", "1", "tooth pairs in contact at the present phase, once flanks touch"),
+            Variable("pairs", "1", "tooth pairs in contact at the present phase, if the flanks touch"),
             Variable("E", "J", "elastic energy of the mesh", 1e-2),
             *(Variable(name, "s", f"{doc}: with inertia1, inertia2, K, d", 1e-3) for name, doc in STEPS),
         ),

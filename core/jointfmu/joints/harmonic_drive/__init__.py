@@ -1,4 +1,4 @@
-"""Harmonic drive: the contact of flexspline and flexible bearing."""
+"""Harmonic drive: torsional stiffness, hysteresis, friction, lost motion and kinematic error."""
 
 from ..kind import Kind, RoughSurface
 from .given import CatalogueDrive, TableDrive

@@ -1,22 +1,23 @@
-r"""Friction at the wave generator of a harmonic drive: sliders between it and the housing.
+r"""Friction between the wave generator of a harmonic drive and the housing: Jenkins sliders and viscosity.
 
-Dry friction holds up to a limit that speed lowers and load raises,
+The limit of dry friction decreases with the speed w1 and grows with the torque tau,
 
     M = f_dry [friction_coulomb + friction_stribeck exp(-(w1/stribeck_speed)^2) + loss |tau/ratio|],
 
-where f_dry is `dry_factor`, of the temperature, and loss is load_loss if the friction, and so a slip, is
-against the load (the motor drives), and load_loss_back if it holds the load (the load drives the motor). So
-the limit has two sides, that of positive and that of negative friction, and a slider may not leave what lies
-between.
+where f_dry is `dry_friction_factor`, a function of the temperature. loss is load_loss for motion against the
+load torque (the motor drives), and load_loss_back for motion in the direction of the load torque (the load
+drives the motor, the friction holds it). So positive and negative friction have different limits.
 
-Friction builds up over the angle phi1: sliders in parallel, spring and friction each, of which every one
-takes its share of M. From rest it is M (1 - exp(-phi1/presliding)) (Dahl 1968) at a steady limit, as far as
-so few sliders follow it; after a reversal by Masing's rule. The springs stay while the limit changes. So a
-drive at rest holds any torque below M where it is, without a threshold of speed, and the work of every path
-is what the springs store and what is lost. Grease adds f_viscous friction_viscous w1.
+Friction builds up over the angle phi1 in Jenkins sliders in parallel, each a spring in series with dry
+friction that has a fixed share of M. At constant M the friction from the virgin state approximates
+M (1 - exp(-phi1/presliding)) (Dahl 1968); after a reversal it follows Masing's rule. The spring stiffness
+does not change with M. So a drive at rest holds any torque below M without motion and without a threshold of
+speed, and the work on every path equals stored energy plus loss. The lubricant adds the viscous torque
+f_viscous friction_viscous w1.
 
-The temperature acts by Reynolds' law of viscosity (1886), exp(-coefficient (temperature - REFERENCE)), with a
-coefficient for the viscous and one for the dry part.
+The temperature acts by Reynolds' law of viscosity (1886),
+exp(-coefficient (temperature - REFERENCE_TEMPERATURE)), with one coefficient for viscous and one for dry
+friction.
 """
 
 from collections.abc import Sequence
@@ -32,21 +33,21 @@ from .drive import WIDTH, Drive
 from .hysteresis import shares
 
 BRAKES = 8
-"""How many sliders: friction from rest within 1 % of M."""
+"""Number of sliders: friction from the virgin state is then within 1 % of M of Dahl's curve."""
 MEMORY = Layout({"brake": (BRAKES,), "angle": (), "limit": (2,), "begun": ()})
-"""What the drive remembers of it: forces [N.m], phi1 [rad], `limits` [N.m], 1 once it has begun."""
+"""History variables: slider torques [N.m], phi1 [rad], friction limits [N.m], 1 after the first step."""
 _LEFT = (*(np.linspace(1.0, 0.0, BRAKES, endpoint=False) ** 2).tolist(), 0.0)
 _SHARES = shares(1.0, _LEFT)
 SPRINGS, LIMITS = np.array(_SHARES[0]), np.array(_SHARES[1])
-"""Springs over M/presliding and friction over M of the sliders [1]."""
+"""Shares [1] of the sliders in the total spring stiffness M/presliding and in the total limit M."""
 REFERENCE = 293.15
-"""Temperature [K] at which the friction parameters hold: that of the catalogues, 20 degrees C."""
+"""Temperature [K] at which the friction parameters hold: 20 degrees C, as in the catalogues."""
 TURNED = 0.1
-"""Time [s] for which a drive that turns at initialization has turned before."""
+"""Time [s] for which a drive is assumed to have rotated at its initial speed before initialization."""
 
 
 def dry_factor(drive: Drive, temperature: Number) -> Number:
-    """Limit of dry friction (...) [1] at temperatures (...) [K], over that of the parameters."""
+    """Factor (...) [1] on the limit of dry friction at temperatures (...) [K]."""
     return drive.temperature_factor * _thinning(drive.dry_temperature_coefficient, temperature)
 
 
@@ -55,51 +56,60 @@ def _thinning(coefficient: Number, temperature: Number) -> Number:
 
 
 def limits(drive: Drive, w1: Number, tau: Number, temperature: Number = REFERENCE) -> tuple[Number, Number]:
-    """M (...) [N.m] of positive and of negative friction, at speeds (...) [rad/s] of the wave generator,
-    torques (...) [N.m] at the output and temperatures (...) [K].
+    """Friction limits M (...) [N.m] of positive and of negative friction.
 
-    |tau| is tau tanh(tau/t) with t WIDTH times the rated torque, and the load counts as driving the motor by
-    (1 + tanh)/2: smooth through zero. tau/ratio is what the load turns the wave generator with.
+    w1          : (...) [rad/s] speed of the wave generator
+    tau         : (...) [N.m] torque at the output; tau/ratio is its torque on the wave generator
+    temperature : (...) [K]
+
+    Both functions of the sign of tau are smooth, with t = PLAY_WIDTH_RATIO rated_torque: |tau| is
+    tau tanh(tau/t), and the weight of load_loss_back is (1 +- tanh(tau/t))/2.
     """
-    turned = np.tanh(tau / (WIDTH * drive.rated_torque))
-    size = tau * turned / np.abs(drive.ratio)
+    load_sign = np.tanh(tau / (WIDTH * drive.rated_torque))
+    size = tau * load_sign / np.abs(drive.ratio)
     stribeck = drive.friction_stribeck * np.exp(-((w1 / drive.stribeck_speed) ** 2))
-    more = drive.loss_back - drive.load_loss
-    back = 0.5 * (1.0 + turned * drive.ratio / np.abs(drive.ratio))
-    sides = (drive.load_loss + more * part for part in (back, 1.0 - back))
-    held = drive.friction_coulomb + stribeck
+    difference = drive.loss_back - drive.load_loss
+    back = 0.5 * (1.0 + load_sign * drive.ratio / np.abs(drive.ratio))
+    sides = (drive.load_loss + difference * weight for weight in (back, 1.0 - back))
+    constant = drive.friction_coulomb + stribeck
     factor = dry_factor(drive, temperature)
-    positive, negative = (factor * (held + loss * size) for loss in sides)
+    positive, negative = (factor * (constant + loss * size) for loss in sides)
     return positive, negative
 
 
 def viscous(drive: Drive, w1: Number, temperature: Number = REFERENCE) -> Number:
-    """Torque (...) [N.m] of the grease at speeds (...) [rad/s] of the wave generator and temperatures [K]."""
+    """Viscous friction torque (...) [N.m] at speeds w1 (...) [rad/s] and temperatures (...) [K]."""
     factor = drive.temperature_factor * _thinning(drive.viscous_temperature_coefficient, temperature)
     return factor * drive.friction_viscous * w1
 
 
 def stiffness(drive: Drive) -> Number:
-    """[N.m/rad] of the sliders while all stick: M at rest, rated torque and REFERENCE over presliding."""
+    """Total spring stiffness [N.m/rad] of the sliders: M/presliding.
+
+    M is the larger limit at zero speed, rated torque and REFERENCE_TEMPERATURE.
+    """
     return np.maximum(*limits(drive, 0.0, drive.rated_torque)) / drive.presliding
 
 
 @dataclass(frozen=True, slots=True)
 class Friction(Sliders):
-    """The sliders of a drive; `stiffness` (n) [N.m/rad] is all zero without dry friction."""
+    """Sliders of the dry friction of a drive; `stiffness` (n) [N.m/rad], all zero without dry friction."""
 
     @classmethod
     def of(cls, drive: Drive) -> "Friction":
-        """Of a drive."""
+        """Sliders for the parameters of a drive."""
         return cls(float(stiffness(drive)) * SPRINGS)
 
     def moved(self, memory: Array, phi1: ArrayLike, w1: ArrayLike, most: Sequence[ArrayLike]) -> Moved:
-        """The sliders on the straight path from a MEMORY (..., n) to angles (...) [rad] with `limits`.
+        """Advance the sliders on a straight path to phi1.
 
-        Each is held by the limit on the side of the force that it would have if it stuck.
+        history : (..., n) history variables at the start of the path, see HISTORY_LAYOUT
+        phi1    : (...) [rad] angle of the wave generator at the end
+        w1      : (...) [rad/s] speed there, used only in the first step
+        limits  : limits of positive and of negative friction (...) [N.m] there, see `friction_limits`
 
-        The first path of all leads to where the drive is, whatever the angle: it has turned before for as
-        long as TURNED at its speed w1, and lost nothing yet.
+        The sign of the elastic predictor of a slider selects the limit that holds for it. The first step
+        initializes the sliders: they advance by PRIOR_ROTATION_TIME w1, whatever phi1 is, without loss.
         """
         start, now = MEMORY.split(memory), np.stack(np.broadcast_arrays(*most), axis=-1)
         if not self.acts:
@@ -116,7 +126,7 @@ class Friction(Sliders):
         return replace(moved, loss=np.where(begun, moved.loss, 0.0))
 
     def after(self, braked: Moved, phi1: ArrayLike, most: Sequence[ArrayLike]) -> Array:
-        """The MEMORY (..., n) there; none where nothing acts."""
+        """New history variables (..., n) after the path; all zero without dry friction."""
         shape = braked.loss.shape
         if not self.acts:
             return np.zeros((*shape, MEMORY.size))

@@ -1,6 +1,6 @@
-"""Harmonic drives whose midline is given: the three lines of a catalogue, or a measured table.
+"""Harmonic drives with a prescribed midline: three lines of a catalogue, or a measured table.
 
-Neither knows of a contact pair. What they export of one is stated in `Given`.
+Their midline (torque over wind-up) is a spline through nodes, without a model of the contact pair.
 """
 
 from abc import abstractmethod
@@ -15,28 +15,31 @@ from ...quantity import Array, Interval, Limit, Number, check, group, quantity, 
 from .drive import WIDTH, Drive, play
 
 CORNER = 0.04
-"""Usual half-width of a corner over its wind-up [1]: at the corners of catalogue drives the angle then is
-within 0.4 % of the lines."""
+"""Default half-width of a smoothed corner over its wind-up [1]: for catalogue drives the angle at a corner is
+then within 0.4 % of the lines."""
 SHARPEST = 1e-6
-"""Half-width [1] that stands for none: the angle at a corner then is within 1e-7 of the lines."""
+"""Smallest half-width [1], used if `corner` is 0: the angle at a corner is within 1e-7 of the lines."""
 STIFFEST = 1e12
-"""Largest stiffness of a drive [N.m/rad]: more than a solid shaft of steel of its size has."""
+"""Largest stiffness of a drive [N.m/rad]: more than that of a solid steel shaft of its size."""
 MOST_POINTS = 1000
-"""Most points of a measured table."""
+"""Largest number of points of a measured table."""
 LEAST_SLOPE, LARGEST_SLOPE = 1.0 / 3.0, 3.0
-"""Stiffness at the last point over that from the point before [1]."""
+"""Bounds of the stiffness at the last point over the mean stiffness of the last segment [1]."""
 SOFTEST = 0.5
-"""Least stiffness [1] of a segment that bends as its neighbours do, over its mean or that at an end."""
+"""Smallest stiffness inside a segment, over its mean or its end stiffness [1], for which the derivative of
+the stiffness is made continuous at its points."""
 PLAY_NODES = 60
-"""Nodes of the play on a catalogue's first line: torque within 1e-8 of the rated one."""
+"""Nodes for the play on the first line of a catalogue drive: the torque error is below 1e-8 rated_torque."""
 SPENT = 8.0
-"""Torque over that of the play [1] where nothing is left of it: 2e-7."""
+"""Torque over T_p of the play [1] at which the play has ended: 2e-7 of lost_motion is missing."""
 _INNER = np.linspace(0.0, 1.0, 33)
 
 
 class Node(NamedTuple):
-    """A node of the midline's quintic spline: wind-up [rad], torque [N.m], stiffness [N.m/rad], and the
-    derivative of the stiffness [N.m/rad2] before and after it.
+    """Node of the quintic spline of the midline.
+
+    angle, torque, stiffness : wind-up [rad], torque [N.m] and stiffness [N.m/rad]
+    slope_before, slope_after : derivative of the stiffness [N.m/rad2] on the side of smaller and larger angle
     """
 
     angle: Number
@@ -48,40 +51,40 @@ class Node(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class Given(Drive):
-    """A drive whose midline is the quintic spline through nodes.
+    """Harmonic drive whose midline is a quintic spline through nodes.
 
-    Nothing tells the parts of its stiffness apart. K_FTS is twice the largest K_WTS, so that both parts are
-    equal where the drive is stiffest and K_TS is finite everywhere. There is no contact pressure: it is 0.
+    The parts K_FTS and K_TS of the stiffness are unknown. K_FTS is set to twice the largest K_WTS: so K_TS
+    equals K_FTS where the drive is stiffest, and is finite everywhere. There is no contact pressure: it is 0.
     """
 
     @abstractmethod
     def nodes(self) -> Sequence[Node]:
-        """Nodes of the midline, from wind-up zero on; the midline is odd."""
+        """Nodes of the midline from zero wind-up on; the midline is odd."""
 
     @property
     def law(self) -> None:
-        """None: it has no interface law."""
+        """None: the midline has no interface law."""
         return
 
     @property
     def ramp_torque(self) -> Number:
-        """reach: all that is given."""
+        """Torque [N.m] at the end of load ramps: the last torque of the table."""
         return self.reach
 
     def pressure(self, torque: Number) -> Number:
-        """0 [Pa]."""
+        """Contact pressure: 0 [Pa]."""
         return 0.0 * torque
 
 
 @dataclass(frozen=True, kw_only=True)
 class CatalogueDrive(Given):
-    """Parameters of a harmonic drive with the stiffness of its catalogue row.
+    """Parameters of a harmonic drive with the stiffnesses K1, K2, K3 of its catalogue.
 
-    The angle is theta(T) = T/K1 up to T1, then grows by 1/K2 and beyond T2 by 1/K3. Around its corner at
-    wind-up theta_i the stiffness goes from one line's to the next by the smooth step 3 t^2 - 2 t^3 over
-    theta_i (1 +- corner): outside of it torque and angle are exactly those of the lines, and the torque is
-    twice continuously differentiable everywhere. Without a corner (0) the printed angles are met everywhere
-    and the stiffness jumps at T1 and T2, within SHARPEST: a kink of the torque, of which no event tells.
+    The angle theta(T) has the slope 1/K1 up to the torque T1, 1/K2 up to T2, and 1/K3 beyond. Around the
+    corner at the wind-up theta_i, within theta_i (1 +- corner), the stiffness changes from one line to the
+    next by the smooth step 3 t^2 - 2 t^3. Outside this range torque and angle are exactly those of the lines.
+    The torque is twice continuously differentiable everywhere. With corner = 0 the angles are those of the
+    lines, and the stiffness jumps at T1 and T2 (within MIN_CORNER): a kink without an event.
     """
 
     K1: float = quantity("N.m/rad", "stiffness below T1", gt=0.0, le=STIFFEST)
@@ -118,50 +121,49 @@ class CatalogueDrive(Given):
 
     @property
     def corners(self) -> tuple[Number, Number]:
-        """Wind-up [rad] at T1 and T2 on the lines."""
+        """Wind-up [rad] of the lines at T1 and T2."""
         first = self.T1 / self.K1
         return first, first + (self.T2 - self.T1) / self.K2
 
     @property
     def half_width(self) -> Number:
-        """Of the corners over their wind-up [1]."""
+        """Half-width of the corners over their wind-up [1], at least MIN_CORNER."""
         return np.maximum(self.corner, SHARPEST)
 
     @property
     def reach(self) -> Number:
-        """max_torque, or twice as far beyond T2 as its corner reaches."""
+        """Torque [N.m] at the end of the table: max_torque, but at least T2 plus the width of its corner."""
         return np.maximum(self.max_torque, self.T2 + 2.0 * self.half_width * self.corners[1] * self.K3)
 
     @property
     def K_FTS(self) -> Number:
-        """Twice the largest of K1, K2 and K3."""
+        """Stiffness K_FTS [N.m/rad]: twice the largest of K1, K2 and K3."""
         return 2.0 * np.maximum(np.maximum(self.K1, self.K2), self.K3)
 
     @property
     def _straight(self) -> Number:
-        """Torque [N.m] at the end of the first line, where its corner begins."""
+        """Torque [N.m] at the end of the first line, where the first corner begins."""
         return self.T1 - self.K1 * self.half_width * self.corners[0]
 
     def nodes(self) -> list[Node]:
-        """Those of the play on the first line, then five: of the corners, where the stiffness does not bend,
-        and of the end."""
+        """Nodes of the first line with the play, then both ends of each corner, then the end of the table."""
         (first, second), (K1, K2, K3) = self.corners, (self.K1, self.K2, self.K3)
-        one, two, end = self.half_width * first, self.half_width * second, self.reach
-        far = play(self, self._straight)[0]
+        first_width, second_width, end = self.half_width * first, self.half_width * second, self.reach
+        play_angle = play(self, self._straight)[0]
         return [
             *self._with_play(),
-            Node(first - one + far, self._straight, K1),
-            Node(first + one + far, self.T1 + K2 * one, K2),
-            Node(second - two + far, self.T2 - K2 * two, K2),
-            Node(second + two + far, self.T2 + K3 * two, K3),
-            Node(second + (end - self.T2) / K3 + far, end, K3),
+            Node(first - first_width + play_angle, self._straight, K1),
+            Node(first + first_width + play_angle, self.T1 + K2 * first_width, K2),
+            Node(second - second_width + play_angle, self.T2 - K2 * second_width, K2),
+            Node(second + second_width + play_angle, self.T2 + K3 * second_width, K3),
+            Node(second + (end - self.T2) / K3 + play_angle, end, K3),
         ]
 
     def _with_play(self) -> list[Node]:
-        """On the first line, closer where the torque is small."""
-        most, nodes = np.minimum(SPENT * WIDTH * self.rated_torque, self._straight), []
-        for part in np.arange(PLAY_NODES) / PLAY_NODES:
-            torque = most * float(part) ** 2
+        """Nodes of the first line with the play in series, denser at small torque."""
+        end_torque, nodes = np.minimum(SPENT * WIDTH * self.rated_torque, self._straight), []
+        for position in np.arange(PLAY_NODES) / PLAY_NODES:
+            torque = end_torque * float(position) ** 2
             angle, compliance, change = play(self, torque)
             softer = 1.0 + self.K1 * compliance
             bend = -(self.K1**3) * change / softer**3
@@ -171,7 +173,11 @@ class CatalogueDrive(Given):
 
 @dataclass(frozen=True, kw_only=True)
 class TorqueAngle:
-    """Points of a measured midline beside the unloaded drive, both columns rising."""
+    """Points of a measured midline without the point at zero load; torque and angle increase.
+
+    Raises ValueError if both columns do not have the same number of points, 2 to MAX_POINTS, or do not
+    increase.
+    """
 
     torque: tuple[float, ...] = series("N.m", "torque of each point, rising", gt=0.0)
     angle: tuple[float, ...] = series("rad", "wind-up of each point, rising", gt=0.0)
@@ -194,23 +200,24 @@ class TorqueAngle:
 
 
 class Measured(Given):
-    """A drive whose midline was measured."""
+    """Harmonic drive with a measured midline, which already contains the lost motion."""
 
     def limits(self) -> list[Limit]:
         """Intervals that other parameters decide."""
-        none = Limit("lost_motion", Interval.of(ge=0.0, le=0.0), "a measured midline has it already")
-        return [*super().limits(), none]
+        no_play = Limit("lost_motion", Interval.of(ge=0.0, le=0.0), "a measured midline has it already")
+        return [*super().limits(), no_play]
 
 
 @dataclass(frozen=True, kw_only=True)
 class TableDrive(Measured):
-    """Parameters of a harmonic drive with a measured midline.
+    """Parameters of a harmonic drive with a measured midline, a table of torque and angle.
 
-    Between the points the torque follows a monotone spline: stiffnesses at the points by Fritsch and Butland
-    1984 (PCHIP), and the bends on both sides of a point made equal where the stiffness stays well above zero.
+    The torque between the points is a monotone spline with the stiffnesses of Fritsch and Butland 1984
+    (PCHIP) at the points. The derivative of the stiffness is made continuous at a point if the stiffness then
+    stays well above zero (MIN_STIFFNESS_RATIO).
     """
 
-    table: TorqueAngle = group("measured midline: the point without load is left out")
+    table: TorqueAngle = group("measured midline, without the point at zero load")
 
     @property
     def reach(self) -> float:
@@ -224,37 +231,49 @@ class TableDrive(Measured):
 
     @cached_property
     def K_FTS(self) -> float:
-        """Twice the largest stiffness of the table."""
+        """Stiffness K_FTS [N.m/rad]: twice the largest stiffness of the midline."""
         columns = np.array(self.nodes(), dtype=np.float64).T
-        x, y, s, before, after = columns
-        return 2.0 * float(np.max(_stiffness(np.diff(x), np.diff(y), s, after[:-1], before[1:])))
+        x, y, s, slope_before, slope_after = columns
+        return 2.0 * float(np.max(_stiffness(np.diff(x), np.diff(y), s, slope_after[:-1], slope_before[1:])))
 
     def nodes(self) -> list[Node]:
-        """One at zero and one at each point."""
+        """Nodes at zero and at each point of the table."""
         x, y = (np.array([0.0, *values]) for values in (self.table.angle, self.table.torque))
-        h, rise = np.diff(x), np.diff(y)
-        s = _slopes(h, rise / h)
-        after = (6.0 * rise / h - 4.0 * s[:-1] - 2.0 * s[1:]) / h  # of the cubic of each segment
-        before = (-6.0 * rise / h + 2.0 * s[:-1] + 4.0 * s[1:]) / h
-        mean = (h[1:] * before[:-1] + h[:-1] * after[1:]) / (h[:-1] + h[1:])
-        even = np.concatenate([[0.0], mean, before[-1:]])
-        least = np.min(_stiffness(h, rise, s, even[:-1], even[1:]), axis=0)
-        firm = least > SOFTEST * np.minimum(np.minimum(s[:-1], s[1:]), rise / h)
-        after, before = np.where(firm, even[:-1], after), np.where(firm, even[1:], before)
-        ends = np.concatenate([[0.0], before]), np.concatenate([after, [0.0]])
+        h, torque_steps = np.diff(x), np.diff(y)
+        s = _slopes(h, torque_steps / h)
+        slope_after = (
+            6.0 * torque_steps / h - 4.0 * s[:-1] - 2.0 * s[1:]
+        ) / h  # of the cubic Hermite segments
+        slope_before = (-6.0 * torque_steps / h + 2.0 * s[:-1] + 4.0 * s[1:]) / h
+        mean = (h[1:] * slope_before[:-1] + h[:-1] * slope_after[1:]) / (h[:-1] + h[1:])
+        common_slope = np.concatenate([[0.0], mean, slope_before[-1:]])
+        smallest = np.min(_stiffness(h, torque_steps, s, common_slope[:-1], common_slope[1:]), axis=0)
+        is_stiff = smallest > SOFTEST * np.minimum(np.minimum(s[:-1], s[1:]), torque_steps / h)
+        slope_after, slope_before = (
+            np.where(is_stiff, common_slope[:-1], slope_after),
+            np.where(is_stiff, common_slope[1:], slope_before),
+        )
+        ends = np.concatenate([[0.0], slope_before]), np.concatenate([slope_after, [0.0]])
         return [Node(*row) for row in np.column_stack([x, y, s, *ends]).tolist()]
 
 
 def _slopes(h: Array, d: Array) -> Array:
-    """Stiffness (n + 1) at the points of segments h, with secants d (n); the curve is odd."""
-    one, two = 2.0 * h[1:] + h[:-1], h[1:] + 2.0 * h[:-1]
-    inner = (one + two) / (one / d[:-1] + two / d[1:])
-    last = ((2.0 * h[-1] + h[-2]) * d[-1] - h[-1] * d[-2]) / (h[-1] + h[-2])
-    return np.concatenate([d[:1], inner, [np.clip(last, LEAST_SLOPE * d[-1], LARGEST_SLOPE * d[-1])]])
+    """Stiffness (n + 1) at the points, from widths h (n) and secant stiffnesses d (n); the curve is odd."""
+    weight_left, weight_right = 2.0 * h[1:] + h[:-1], h[1:] + 2.0 * h[:-1]
+    inner = (weight_left + weight_right) / (weight_left / d[:-1] + weight_right / d[1:])
+    end_stiffness = ((2.0 * h[-1] + h[-2]) * d[-1] - h[-1] * d[-2]) / (h[-1] + h[-2])
+    return np.concatenate(
+        [d[:1], inner, [np.clip(end_stiffness, LEAST_SLOPE * d[-1], LARGEST_SLOPE * d[-1])]]
+    )
 
 
 def _stiffness(h: Array, rise: Array, s: Array, after: Array, before: Array) -> Array:
-    """Stiffness (m, n) within the quintics of n segments."""
+    """Stiffness (m, n) at m sample points inside each of n quintic segments.
+
+    h, torque_steps           : (n) widths and torque increments of the segments
+    s                         : (n + 1) stiffness at the nodes
+    slope_after, slope_before : (n) derivative of the stiffness at the start and at the end of each segment
+    """
     t = _INNER[:, None]
     first, last = s[:-1], s[1:]
     a2, c0, c1 = rise / h, 0.5 * h * after, 0.5 * h * before

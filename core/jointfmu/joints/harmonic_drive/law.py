@@ -1,6 +1,4 @@
-"""Harmonic drive with a contact pair: its parameters, and the stiffness of flexspline and flexible bearing
-(Hu 2023).
-"""
+"""Harmonic drive with a midline from the contact pair of flexspline and flexible bearing (Hu 2023)."""
 
 from abc import abstractmethod
 from dataclasses import dataclass, replace
@@ -14,16 +12,16 @@ from ...quantity import Interval, Limit, Number, choice, group, quantity, where
 from .drive import Drive, play
 
 SETTLED = 2.0
-"""Torque over rated torque [1] at whose pressure the pair settles under any larger torque."""
+"""T_m over rated torque [1]: the contact pressure tends to its value at T_m for larger torques."""
 _SCANNED = 0.5e-3
-"""Length [m] that Hu 2023 scanned, section 2.3."""
+"""Scan length [m] of the profile in Hu 2023, section 2.3."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class PairDrive(Drive):
-    """Parameters of a harmonic drive with a contact pair but for the law of the pair.
+    """Parameters of a harmonic drive with a contact pair, except those of the pair's interface law.
 
-    What `calibration` marks was fitted to published points.
+    Fields with calibration=True were fitted to published points.
     """
 
     mu: float = quantity("1", "coefficient of static friction, if traction is real_area", gt=0.0)
@@ -45,41 +43,44 @@ class PairDrive(Drive):
     rated_pressure: float = quantity(
         "Pa", "peak contact pressure at rated torque, at the optimum deformation", gt=0.0, calibration=True
     )
-    torque_smoothing: float = quantity("N.m", "torque below which the pressure does not grow yet", gt=0.0)
+    torque_smoothing: float = quantity("N.m", "torque up to which the pressure hardly grows", gt=0.0)
     optimum_deformation: float = quantity("m", "radial deformation of the largest pressure", gt=0.0)
     deformation_loss: float = quantity(
-        "Pa/m2", "loss of peak pressure per square of the deformation's offset", ge=0.0, calibration=True
+        "Pa/m2",
+        "loss of peak pressure per squared offset of radial_deformation from its optimum",
+        ge=0.0,
+        calibration=True,
     )
     eccentricity_loss: float = quantity(
-        "Pa/m", "loss of peak pressure per eccentricity", ge=0.0, calibration=True
+        "Pa/m", "loss of peak pressure per unit of eccentricity", ge=0.0, calibration=True
     )
 
     @property
     @abstractmethod
     def pair_law(self) -> Hu2023 | Roughness:
-        """Interface law of the contact pair; its load is a power of its u."""
+        """Interface law of the contact pair, whose load is a power of exp(u)."""
 
     @property
     @abstractmethod
     def twist(self) -> Number:
-        """K_TS on the drive's scale over the tangential stiffness of the pair's law [m2]."""
+        """Factor [m2] from the tangential stiffness [N/m] of the pair's law to K_TS [N.m/rad]."""
 
     @property
     def reach(self) -> Number:
-        """max_torque."""
+        """Torque [N.m] at the end of the table: max_torque."""
         return self.max_torque
 
     @property
     def K_FTS(self) -> Number:
-        """K_FTS0."""
+        """Stiffness K_FTS [N.m/rad] of circular spline and flexspline: K_FTS0."""
         return self.K_FTS0
 
     def pressure(self, torque: Number) -> Number:
-        """As `peak_pressure`."""
+        """Peak contact pressure (...) [Pa] at torques (...) [N.m]."""
         return peak_pressure(self, torque)[0]
 
     def limits(self) -> list[Limit]:
-        """Intervals that other parameters decide."""
+        """Intervals of parameters that depend on other parameters."""
         no_contact = "beyond it the pair loses contact without torque"
         zero, loss, best = self.zero_torque_pressure, self.deformation_loss, self.optimum_deformation
         with np.errstate(over="ignore"):
@@ -98,7 +99,7 @@ class PairDrive(Drive):
 
     @property
     def pressure_loss(self) -> float:
-        """Loss of peak pressure [Pa] by deformation off its optimum and by eccentricity."""
+        """Reduction of the peak pressure [Pa] by non-optimal radial deformation and by eccentricity."""
         return self._deformation_loss + self.eccentricity_loss * self.eccentricity
 
 
@@ -109,7 +110,9 @@ class HarmonicDrive(PairDrive):
     surface: ArealSurface = group("equivalent rough surface of the contact pair")
     flexspline: ElasticPlastic = group("flexspline")
     bearing: ElasticPlastic = group("outer ring of the flexible bearing")
-    shear_traction: float = quantity("Pa", "shear traction on the real area, if traction is so", gt=0.0)
+    shear_traction: float = quantity(
+        "Pa", "shear traction on the real area, used if traction is real_area", gt=0.0
+    )
     node_area: float = quantity("m2", "nominal area with one set of spots: a mesh node of Eq. 45", gt=0.0)
     drive_scale: float = quantity("1", "K_TS in Eq. 46 over the published K_TS", gt=0.0)
     traction: str = choice(
@@ -118,7 +121,7 @@ class HarmonicDrive(PairDrive):
 
     @property
     def pair_law(self) -> Hu2023:
-        """Law of one node's set of spots, as printed; `side1` is the body with the lower yield strength."""
+        """Law of Hu 2023 as printed, for the spots of one mesh node; side1 has the lower yield strength."""
         cup, ring = self.flexspline, self.bearing
         swap = ring.sigma_y < cup.sigma_y
         E, nu = where(swap, ring.E, cup.E), where(swap, ring.nu, cup.nu)
@@ -137,38 +140,41 @@ class HarmonicDrive(PairDrive):
 
     @property
     def law(self) -> Hu2023:
-        """The corrected law of the whole pair, which the drive does not use.
+        """Corrected law of Hu 2023 for the whole contact pair. The midline does not use it.
 
-        Its base radius is half of the scanned length: with the paper's no spot would be stiff.
+        Its base radius r_m is half of the scan length: with r_m of the paper no spot would have stiffness.
         """
         surface = replace(self.surface, r_m=0.5 * _SCANNED)
         return replace(self.pair_law, surface=surface, A_0=self.A_0, reading="corrected")
 
     @property
     def twist(self) -> Number:
-        """drive_scale times the sum of Eq. 45 as printed over K_T of a node: nodes times the diameter.
+        """Factor from K_T of a node to K_TS: drive_scale, number of nodes and diameter, Eq. 45 as printed.
 
-        The sum is in newtons; the paper reads it as N.m/rad, and so does the drive.
+        The sum of Eq. 45 has the unit newton; the paper reads it as N.m/rad, and so does this class.
         """
         return self.drive_scale * 2.0 * self.radius * self.A_0 / self.node_area
 
     @property
     def pair_units(self) -> Number:
-        """drive_scale [1]."""
+        """Ratio [1] of K_TS of the drive to K_TS in the figures of the paper: drive_scale."""
         return self.drive_scale
 
     def table_limits(self) -> list[Limit]:
-        """Every spot stays elastic, as the reading has it."""
+        """Intervals for which all spots stay elastic up to max_torque, as the printed law assumes."""
         highest = peak_pressure(self, self.max_torque)[0]
         law = self.pair_law
-        least = highest * law.sigma_y / elastic_pressure(law)
+        min_yield_strength = highest * law.sigma_y / elastic_pressure(law)
         why = "spots of the contact pair would yield below max_torque"
-        return [Limit(f"{side}.sigma_y", Interval.of(gt=least), why) for side in ("flexspline", "bearing")]
+        return [
+            Limit(f"{side}.sigma_y", Interval.of(gt=min_yield_strength), why)
+            for side in ("flexspline", "bearing")
+        ]
 
 
 @dataclass(frozen=True, kw_only=True)
 class RoughHarmonicDrive(RoughSurfaces, PairDrive):
-    """Parameters of the harmonic drive with the law `roughness`: no scale, energy of a unit twist."""
+    """Parameters of the harmonic drive with the law `roughness`; K_TS has no fitted scale factor."""
 
     H: float = quantity("Pa", "hardness of the softer body", gt=0.0)
     flexspline: Elastic = group("flexspline")
@@ -176,7 +182,7 @@ class RoughHarmonicDrive(RoughSurfaces, PairDrive):
 
     @property
     def pair_law(self) -> Roughness:
-        """Law of the whole pair under its mean pressure."""
+        """Law `roughness` of the whole contact pair, evaluated at its mean pressure."""
         return Roughness(
             h=self.h,
             gamma=self.gamma,
@@ -195,70 +201,71 @@ class RoughHarmonicDrive(RoughSurfaces, PairDrive):
 
     @property
     def twist(self) -> Number:
-        """Square of the radius [m2]: the energy of a unit twist, of which the normal part is below 1e-3."""
+        """Factor from K_T to K_TS: radius squared [m2]; the normal stiffness adds less than 1e-3."""
         return self.radius**2
 
 
 def peak_pressure(drive: PairDrive, torque: Number) -> tuple[Number, Number]:
-    """Peak contact pressure (...) [Pa] at the major axis and opening, and its torque derivative [Pa/(N.m)].
+    """Peak contact pressure (...) [Pa] at torques (...) [N.m], and its derivative [Pa/(N.m)].
 
-    `sqrt(p_0^2 + (p_r^2 - p_0^2) g(t(T))/g(t(T_r))) - loss` with `g(t) = sqrt(t^2 + T_s^2) - T_s`: the peak
-    pressure of a line contact grows with the square root of its load, here a part without torque and
-    a part in proportion to |T|, even and smooth through T = 0. `t(T) = T/(1 + (T/T_m)^4)^(1/4)` tends to
-    T_m, SETTLED times the rated torque, where the stiffness of catalogue drives has become constant: an
-    extrapolation beyond rated torque.
+    Pressure at the major axis and the opening of the cup,
+    `sqrt(p_0^2 + (p_r^2 - p_0^2) g(t(T))/g(t(T_r))) - loss` with `g(t) = sqrt(t^2 + T_s^2) - T_s`.
+    The peak pressure of a line contact grows with the square root of its load. Here the load has a constant
+    part and a part proportional to |T|, which is smoothed around T = 0.
+    `t(T) = T/(1 + (T/T_m)^4)^(1/4)` tends to T_m = SATURATION_TORQUE_RATIO times the rated torque, because
+    the stiffness of catalogue drives becomes constant. Beyond rated torque this is an extrapolation.
     """
-    smoothing, most = drive.torque_smoothing, SETTLED * drive.rated_torque
+    smoothing, saturation = drive.torque_smoothing, SETTLED * drive.rated_torque
 
     def settled(T: Number) -> tuple[Number, Number]:
-        """t^2 and t dt/dT."""
-        x = np.minimum(np.maximum(T / most, -1e3), 1e3)
+        """Squared saturated torque t^2 [(N.m)^2], and t dt/dT [N.m]."""
+        x = np.minimum(np.maximum(T / saturation, -1e3), 1e3)
         bend = 1.0 + x**4
         root = np.sqrt(bend)
-        return (most * x) ** 2 / root, most * x / (bend * root)
+        return (saturation * x) ** 2 / root, saturation * x / (bend * root)
 
     def distance(square: Number) -> Number:
-        return np.maximum(np.sqrt(square + smoothing**2), smoothing)  # where its square is no number
+        return np.maximum(np.sqrt(square + smoothing**2), smoothing)  # if smoothing**2 underflows
 
     def growth(square: Number) -> Number:
         return square / (distance(square) + smoothing)
 
     zero, rated = drive.zero_torque_pressure, drive.rated_pressure
     factor = (rated**2 - zero**2) / growth(settled(drive.rated_torque)[0])
-    square, turn = settled(torque)
-    free = np.sqrt(zero**2 + factor * growth(square))
-    return free - drive.pressure_loss, 0.5 * factor * turn / distance(square) / free
+    square, square_slope = settled(torque)
+    unreduced = np.sqrt(zero**2 + factor * growth(square))
+    return unreduced - drive.pressure_loss, 0.5 * factor * square_slope / distance(square) / unreduced
 
 
 def pair_log_area(drive: PairDrive, torque: Number) -> Number:
-    """u (...) [1] of the pair's law at its mean pressure under a torque: the load is a power of exp(u)."""
+    """Argument u (...) [1] of the pair's law at the mean pressure under torques (...) [N.m]."""
     law = drive.pair_law
     start, power = law.spots().log_total("load", 0.0)
     return (np.log(drive.mean_over_peak * peak_pressure(drive, torque)[0] * law.A_0) - start) / power
 
 
 def pair_stiffness(drive: PairDrive, torque: Number) -> tuple[Number, Number]:
-    """K_TS (...) [N.m/rad] of the contact pair on the drive's scale, and dK_TS/dT [1/rad].
+    """Stiffness K_TS (...) [N.m/rad] of the contact pair at torques (...) [N.m], and dK_TS/dT [1/rad].
 
-    Every point of the pair has a tangential stiffness in proportion to its pressure, or nearly so; the
-    mean pressure stands for all of them.
+    Computed from the mean pressure: the tangential stiffness of a point is nearly proportional to its
+    pressure.
     """
-    peak, rise = peak_pressure(drive, torque)
+    peak, pressure_slope = peak_pressure(drive, torque)
     spots, u = drive.pair_law.spots(), pair_log_area(drive, torque)
     power = spots.log_total("load", 0.0)[1]
     slope = spots.slope("tangential", u) / (power * peak)
-    return drive.twist * spots.total("tangential", u), drive.twist * slope * rise
+    return drive.twist * spots.total("tangential", u), drive.twist * slope * pressure_slope
 
 
 def drive_stiffness(drive: PairDrive, torque: Number) -> tuple[Number, Number]:
-    """K_WTS (...) [N.m/rad] by Eq. 46, 1/K_WTS = 1/K_FTS + 1/K_TS, and dK_WTS/dT [1/rad]."""
+    """Stiffness K_WTS (...) [N.m/rad] by Eq. 46, 1/K_WTS = 1/K_FTS + 1/K_TS, and dK_WTS/dT [1/rad]."""
     pair, growth = pair_stiffness(drive, torque)
     total = 1.0 / (1.0 / drive.K_FTS0 + 1.0 / pair)
     return total, (total / pair) ** 2 * growth
 
 
 def stiffness_with_play(drive: PairDrive, torque: Number) -> tuple[Number, Number]:
-    """K_WTS (...) [N.m/rad] of law and play in series, and dK_WTS/dT [1/rad]."""
+    """Stiffness K_WTS (...) [N.m/rad] of the law and the lost motion in series, and dK_WTS/dT [1/rad]."""
     K, growth = drive_stiffness(drive, torque)
     _, compliance, change = play(drive, torque)
     softer = 1.0 + K * compliance

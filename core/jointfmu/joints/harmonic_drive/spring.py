@@ -1,4 +1,4 @@
-"""The exported harmonic drive: its table of torque over wind-up, and what it gives at a motion or torque."""
+"""Tabulated harmonic drive: midline (torque over wind-up), and outputs for a motion or a torque."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -17,33 +17,34 @@ from .hysteresis import Hysteresis
 from .law import PairDrive, stiffness_with_play
 
 STEPS = 160
-"""Steps of the torque curve, doubled until it is accurate enough."""
+"""Initial number of steps of the midline's table [1]; doubled until the table is accurate."""
 SOFTEST, STIFFEST = 1e-100, 1e-6
-"""Least K_WTS [N.m/rad], and least K_FTS0 over K_TS [1], that are told from none and from infinite."""
+"""Smallest K_WTS [N.m/rad], and smallest K_FTS0/K_TS [1], for which the table can be computed."""
 GAUSS = np.polynomial.legendre.leggauss(4)
 MEMORY = hysteresis.MEMORY | friction.MEMORY
-"""What the drive remembers."""
+"""History variables of the drive: hysteresis, then friction."""
 
 
 def torque_curve(drive: Drive) -> Curve:
-    """Torque [N.m] over wind-up [rad] for phi >= 0 (the law is odd): as given, or the integral of dT/K_WTS.
+    """Midline: torque [N.m] over wind-up phi >= 0 [rad]; it is odd.
 
-    Nodes of the integral are evenly spaced in asinh(T/T_s), dense where the stiffness bends; the wind-up is
-    integrated by four Gauss-Legendre nodes per step.
+    Prescribed by nodes, or computed: phi is the integral of dT/K_WTS. Nodes of the integral are evenly spaced
+    in asinh(T/T_s), so they are dense around zero torque, where the stiffness changes most. Each step is
+    integrated with four Gauss-Legendre nodes.
 
-    Raises ValueError if spots of a contact pair would yield within the table.
+    Raises ValueError if spots of a contact pair would yield within the table, or if K_WTS is out of range.
     """
     check_limits(drive, drive.table_limits())
     if isinstance(drive, PairDrive):
         return refined(lambda steps: _windup(drive, steps), STEPS)
     if isinstance(drive, Given):
-        x, y, s, before, after = np.array(drive.nodes(), dtype=np.float64).T
-        return Curve(x, y, s, after[:-1], before[1:])
+        x, y, s, slope_before, slope_after = np.array(drive.nodes(), dtype=np.float64).T
+        return Curve(x, y, s, slope_after[:-1], slope_before[1:])
     raise TypeError(f"{type(drive).__name__} is no PairDrive and not Given")
 
 
 def _windup(drive: PairDrive, steps: int) -> Curve:
-    """The table with a number of steps."""
+    """Table of the midline with `steps` steps, see `torque_curve`."""
     smoothing = drive.torque_smoothing
     xi = np.linspace(0.0, np.arcsinh(drive.max_torque / smoothing), steps + 1)
     T, half = smoothing * np.sinh(xi), 0.5 * xi[1]
@@ -62,7 +63,13 @@ def _windup(drive: PairDrive, steps: int) -> Curve:
 
 @dataclass(frozen=True, slots=True)
 class HarmonicDriveSpring:
-    """The exported spring: motion in, torque out; and torque in, motion out."""
+    """Tabulated harmonic drive: motion in, torque out; or torque in, motion out.
+
+    joint      : parameter set
+    curve      : midline, torque [N.m] over wind-up [rad] >= 0
+    hysteresis : friction torque added to the midline
+    friction   : friction at the wave generator
+    """
 
     joint: Drive
     curve: Curve
@@ -71,9 +78,9 @@ class HarmonicDriveSpring:
 
     @classmethod
     def of(cls, drive: Drive) -> "HarmonicDriveSpring":
-        """Tabulate a drive.
+        """Tabulate a parameter set.
 
-        Raises ValueError as `torque_curve` and `Hysteresis.of`.
+        Raises ValueError as `torque_curve` and `Hysteresis.for_drive` do.
         """
         curve = torque_curve(drive)
         return cls(drive, curve, Hysteresis.of(drive, curve), Friction.of(drive))
@@ -86,72 +93,81 @@ class HarmonicDriveSpring:
         w2: ArrayLike,
         temperature: ArrayLike = REFERENCE,
     ) -> dict[str, Array]:
-        """Torques and stiffnesses at flange angles [rad], speeds [rad/s] and temperatures [K] (...), on the
-        way from rest.
+        """Outputs at flange angles [rad], speeds [rad/s] and temperatures [K] (...), after a straight path
+        from the virgin state.
         """
         return self.driven((phi1, w1, phi2, w2), self.rest(), temperature)[0]
 
     def windup(self, tau: ArrayLike) -> dict[str, Array]:
-        """Wind-up and stiffnesses at torques (...) [N.m], wave generator locked, on the way from rest."""
+        """Outputs at torques (...) [N.m] after a path from the virgin state, wave generator locked."""
         return self.loaded(tau, self.rest())[0]
 
     def rest(self) -> Array:
-        """MEMORY (n) of a spring that has not moved."""
+        """History variables (n) of the virgin state."""
         return MEMORY.rest()
 
     def driven(
         self, motion: Sequence[ArrayLike], memory: Array, temperature: ArrayLike = REFERENCE
     ) -> tuple[dict[str, Array], Array]:
-        """What the spring exports at phi1, w1, phi2, w2 and temperatures [K] (...), from a memory (n) on, and
-        the new one.
+        """Outputs and new history variables after a straight path to a motion.
+
+        motion      : phi1, w1, phi2, w2 (...) [rad, rad/s]
+        history     : (n) history variables at the start of the path
+        temperature : (...) [K] of the lubricant
         """
         motion = tuple(np.asarray(x, dtype=np.float64) for x in motion)
-        warmth = np.asarray(temperature, dtype=np.float64)
-        wound, brakes = _parts(memory)
+        kelvin = np.asarray(temperature, dtype=np.float64)
+        hysteresis_history, friction_history = _parts(memory)
         error, slope, _ = kinematic_error(self.joint, motion[0])
         phi = wind_up(self.joint, motion, error)
         load, stiffness = self.curve.derivatives(np.abs(phi), 1)
-        slid = self.hysteresis.moved(wound, phi)
+        hysteresis_update = self.hysteresis.moved(hysteresis_history, phi)
         load = np.copysign(load, phi)
-        state = State(phi, load, stiffness, slid.traction, error, slope)
-        most = limits(self.joint, motion[1], transmitted(self.joint, motion, state), warmth)
-        braked = self.friction.moved(brakes, motion[0], motion[1], most)
-        loss = hysteresis.MEMORY.split(wound)["loss"] + slid.loss + braked.loss
-        out = exported(self.joint, motion, warmth, state, braked.traction) | {"E_loss": loss}
-        after = self.friction.after(braked, motion[0], most)
-        return out, np.concatenate([self.hysteresis.after(slid, phi, loss), after], axis=-1)
+        state = State(phi, load, stiffness, hysteresis_update.traction, error, slope)
+        friction_limits_ = limits(self.joint, motion[1], transmitted(self.joint, motion, state), kelvin)
+        friction_update = self.friction.moved(friction_history, motion[0], motion[1], friction_limits_)
+        loss = (
+            hysteresis.MEMORY.split(hysteresis_history)["loss"]
+            + hysteresis_update.loss
+            + friction_update.loss
+        )
+        out = exported(self.joint, motion, kelvin, state, friction_update.traction) | {"E_loss": loss}
+        new_friction = self.friction.after(friction_update, motion[0], friction_limits_)
+        return out, np.concatenate(
+            [self.hysteresis.after(hysteresis_update, phi, loss), new_friction], axis=-1
+        )
 
     def loaded(self, tau: ArrayLike, memory: Array) -> tuple[dict[str, Array], Array]:
-        """Wind-up and stiffnesses at torques (...), from a memory (n) on, and the new one."""
-        wound, brakes = _parts(memory)
+        """Outputs and new history variables after a path to torques tau (...) [N.m], phi1 locked."""
+        hysteresis_history, friction_history = _parts(memory)
         if self.hysteresis.acts:
-            phi = self.hysteresis.wind_up(self.curve, wound, tau)
+            phi = self.hysteresis.wind_up(self.curve, hysteresis_history, tau)
         else:
             phi = self.curve.odd_inverse(tau)
         load, stiffness = self.curve.derivatives(np.abs(phi), 1)
-        slid = self.hysteresis.moved(wound, phi)
-        loss = hysteresis.MEMORY.split(wound)["loss"] + slid.loss
-        new = self.hysteresis.after(slid, phi, loss)
-        locked = np.broadcast_to(brakes, (*new.shape[:-1], brakes.shape[-1]))
+        update = self.hysteresis.moved(hysteresis_history, phi)
+        loss = hysteresis.MEMORY.split(hysteresis_history)["loss"] + update.loss
+        new = self.hysteresis.after(update, phi, loss)
+        locked = np.broadcast_to(friction_history, (*new.shape[:-1], friction_history.shape[-1]))
         out = {"phi_rel": phi, **parts(self.joint, load, stiffness), "E_loss": loss}
         return out, np.concatenate([new, locked], axis=-1)
 
 
 def _parts(memory: Array) -> tuple[Array, Array]:
-    """MEMORY (..., n) of the hysteresis and of the friction."""
+    """History variables (..., n) of the hysteresis and of the friction."""
     return memory[..., : hysteresis.MEMORY.size], memory[..., hysteresis.MEMORY.size :]
 
 
 @dataclass(frozen=True, slots=True)
 class State:
-    """What a motion finds in the spring: numbers, arrays or symbols.
+    """State of the spring at a motion: numbers, arrays or symbols.
 
     phi_rel   : [rad] wind-up
-    load      : [N.m] torque of the curve
-    stiffness : [N.m/rad] of the curve
+    load      : [N.m] torque of the midline
+    stiffness : [N.m/rad] of the midline
     friction  : [N.m] torque of the hysteresis
     error     : [rad] kinematic error
-    slope     : [1] its derivative in phi1
+    slope     : [1] derivative of the kinematic error with respect to phi1
     """
 
     phi_rel: Number
@@ -163,7 +179,7 @@ class State:
 
 
 def wind_up(drive: Drive, motion: Sequence[Number], error: Number) -> Number:
-    """phi_rel [rad], the wind-up at the output, for phi1, w1, phi2, w2 and the kinematic error [rad]."""
+    """Wind-up phi_rel [rad] at the output, for (phi1, w1, phi2, w2) and the kinematic error [rad]."""
     phi1, _, phi2, _ = motion
     return phi2 - phi1 / drive.ratio - error
 
@@ -171,8 +187,11 @@ def wind_up(drive: Drive, motion: Sequence[Number], error: Number) -> Number:
 def exported(
     drive: Drive, motion: Sequence[Number], temperature: Number, state: State, dry: Number
 ) -> dict[str, Number]:
-    """What the spring exports at a motion phi1, w1, phi2, w2 and a temperature [K] with a dry friction [N.m],
-    but for the loss.
+    """Outputs of the spring except E_loss, at a motion (phi1, w1, phi2, w2).
+
+    temperature  : [K] of the lubricant
+    state        : state of the spring at this motion
+    dry_friction : [N.m] at the wave generator
     """
     tau, friction = transmitted(drive, motion, state), dry + viscous(drive, motion[1], temperature)
     w = mobility(drive.inertia1, 1.0 / drive.ratio) + mobility(drive.inertia2)
@@ -191,15 +210,15 @@ def exported(
 
 
 def transmitted(drive: Drive, motion: Sequence[Number], state: State) -> Number:
-    """tau [N.m] at the output: of the curve, of the hysteresis and of the damper."""
+    """Torque tau [N.m] at the output: sum of midline, hysteresis and damping."""
     _, w1, _, w2 = motion
     return state.load + state.friction + drive.d * (w2 - w1 / drive.ratio - state.slope * w1)
 
 
 def parts(drive: Drive, load: Number, stiffness: Number) -> dict[str, Number]:
-    """K_WTS and its parts at an elastic torque, and the peak contact pressure.
+    """Outputs K_WTS, K_TS, K_FTS, K_TS_pair [N.m/rad] and p_max [Pa] at a torque `load` of the midline.
 
-    K_TS has the lost motion along; K_TS_pair is K_TS on the scale of the paper's Fig. 11.
+    K_TS includes the lost motion; K_TS_pair is K_TS on the scale of Fig. 11 of Hu 2023.
     """
     K_TS = stiffness * drive.K_FTS / (drive.K_FTS - stiffness)
     return {

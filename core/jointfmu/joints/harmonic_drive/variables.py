@@ -1,4 +1,4 @@
-"""Inputs and outputs of the harmonic drive's models."""
+"""Models of the harmonic drive that are exported as FMUs, with their inputs and outputs."""
 
 from ...mechanics.steps import STEPS
 from ...quantity.units import LUBRICANTS
@@ -10,8 +10,8 @@ from .spring import HarmonicDriveSpring
 
 _CONTACT = (
     Variable("K_WTS", "N.m/rad", "tangent stiffness dT/dphi of the midline at the present wind-up", 5e3),
-    Variable("K_TS", "N.m/rad", "its part of the contact pair: 1/K_WTS = 1/K_FTS + 1/K_TS", 5e3),
-    Variable("K_FTS", "N.m/rad", "its part of circular spline and flexspline", 2e4),
+    Variable("K_TS", "N.m/rad", "stiffness of the contact pair: 1/K_WTS = 1/K_FTS + 1/K_TS", 5e3),
+    Variable("K_FTS", "N.m/rad", "stiffness of circular spline and flexspline", 2e4),
     Variable("K_TS_pair", "N.m/rad", "K_TS over drive_scale, if any: scale of Hu 2023, Fig. 11", 1e3),
     Variable("p_max", "Pa", "peak contact pressure, at the major axis and the cup's opening", 1e8),
     Variable(
@@ -23,7 +23,7 @@ _MOTION = ("phi1", "phi2")
 _DRIVEN = ("phi1", "w1", "phi2", "w2")
 _HIDDEN = ("max_torque", "shear_traction", "table")
 _LOSSY = {"hysteresis_loss": 3e-4, "hysteresis_stiffness": 8e3}
-"""One arcmin of hysteresis: the default drive has none."""
+"""Parameters of the load cycle: hysteresis of one arcmin; the default drive has no hysteresis."""
 _DAMPED = {"w2": "parameters"}
 _ERROR = tuple(f"error_{n}{what}" for n in HARMONICS for what in ("", "_phase"))
 _FRICTION = (
@@ -39,7 +39,7 @@ _SPRING_ONLY = (*_FRICTION, "presliding", *_WARM, *_ERROR, "inertia1", "inertia2
 
 
 def _driven(v: Values) -> tuple[float, ...]:
-    """The motion of both flanges."""
+    """Motion of both flanges: phi1, w1, phi2, w2."""
     return tuple(v[name] for name in _DRIVEN)
 
 
@@ -55,7 +55,7 @@ MODELS = (
             Variable("w1", "rad/s", "speed of the wave-generator (motor) flange"),
             Variable("phi2", "rad", "angle of the output flange"),
             Variable("w2", "rad/s", "speed of the output flange"),
-            Variable("temperature", "K", "of the lubricant", REFERENCE, low=0.0, start=REFERENCE),
+            Variable("temperature", "K", "temperature of the lubricant", REFERENCE, low=0.0, start=REFERENCE),
         ),
         outputs=(
             Variable(
@@ -68,7 +68,10 @@ MODELS = (
             ),
             *_CONTACT,
             Variable(
-                "tau_friction", "N.m", "friction of the wave generator, positive where it turns so", 0.01
+                "tau_friction",
+                "N.m",
+                "friction torque at the wave generator, positive against positive rotation",
+                0.01,
             ),
             Variable("phi_error", "rad", "kinematic error at the output, a function of phi1", 1e-4),
             *(Variable(name, "s", f"{doc}: with inertia1, inertia2, K_WTS, d", 1e-3) for name, doc in STEPS),
@@ -78,7 +81,11 @@ MODELS = (
         evolve=lambda s, v, memory: s.driven(_driven(v), memory, v["temperature"]),
         outside=(
             Outside("phi_rel", lambda j, end, v: (-end[0], end[0]), BEYOND),
-            Outside("temperature", lambda j, end, v: LUBRICANTS, "no lubricant's; it is in kelvin"),
+            Outside(
+                "temperature",
+                lambda j, end, v: LUBRICANTS,
+                "outside the range of lubricants; the unit is kelvin",
+            ),
         ),
         ramp=Ramp("phi2", 1.5e-3, 3e-6, reach=lambda s, v: (0.0, s.curve.inverse(s.joint.ramp_torque))),
         loop=Loop("phi2", 1e-3, _LOSSY),

@@ -1,1 +1,1 @@
-"""Pressure over the contact, and its integration into the stiffness of a joint."""
+"""Pressure distribution over the contact of a bolted joint, and its reduction to few points and patches."""

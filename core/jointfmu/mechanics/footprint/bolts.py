@@ -1,4 +1,4 @@
-"""Pressure of a bolted frame: every bolt spreads its force over the contact by one decay law."""
+"""Pressure of a bolted frame: the force of each bolt is distributed over the contact by a decay law."""
 
 from dataclasses import dataclass
 from functools import lru_cache
@@ -11,13 +11,13 @@ from .plate import EDGE, BoltedPlate
 from .shape import Means, NodalField, PressureShape, means
 
 CELLS_ACROSS = 7
-"""Cells across the flange: 1000 nodes for the default frame, as in Zhao's mesh of 1019."""
+"""Number of cells across the flange [1]: 1000 nodes for the default frame; Zhao's mesh has 1019."""
 _SUBCELLS = 8
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BoltPattern:
-    """Rectangular frame with eight bolts on its centre line: three in each row, one between per side.
+    """Rectangular frame with eight bolts on its centre line: two rows of three, and one between on each side.
 
     The rows lie at y = +-row_spacing/2 with bolts at x = -column_spacing/2, 0, +column_spacing/2.
     """
@@ -51,7 +51,7 @@ class BoltPattern:
 
     @property
     def rows(self) -> tuple[float, float]:
-        """Bolts [1] and distance [m] of the two rows that carry a moment."""
+        """Bolts per row N_b [1] and distance L_a [m] of the two rows that carry a moment."""
         return 3.0, self.row_spacing
 
     @property
@@ -60,11 +60,14 @@ class BoltPattern:
         return means(self.bolts)
 
     def decay(self, distance: Array) -> Array:
-        """Pressure of one bolt, up to its factor: (1 + (r/decay_length)^2)^-decay_exponent [1]."""
+        """Pressure of one bolt over its value at the axis [1]: (1 + (r/decay_length)^2)^-decay_exponent.
+
+        distance : r (...) [m] from the axis
+        """
         return np.asarray((1.0 + (distance / self.decay_length) ** 2) ** -self.decay_exponent)
 
     def shape(self) -> PressureShape:
-        """Shares, positions and pressures of the cells of the frame."""
+        """Pressure distribution at the cells of the frame."""
         areas, points = cells(self)
         unit = unit_pressures(self, areas, points, points) * areas.sum()
         centroid = np.average(points, axis=0, weights=areas)
@@ -77,7 +80,7 @@ class BoltPattern:
 
 
 def cells(pattern: BoltPattern) -> tuple[Array, Array]:
-    """Areas (n) [m2] and centroids (n, 2) [m] of square cells of the frame, holes cut out."""
+    """Areas (n) [m2] and centroids (n, 2) [m] of square cells of the frame, without the holes."""
     size = pattern.flange_width / CELLS_ACROSS
     half = 0.5 * np.array([pattern.column_spacing, pattern.row_spacing])
     outer, inner = half + 0.5 * pattern.flange_width, half - 0.5 * pattern.flange_width
@@ -100,7 +103,11 @@ def cells(pattern: BoltPattern) -> tuple[Array, Array]:
 
 
 def unit_pressures(pattern: BoltPattern, areas: Array, points: Array, at: Array) -> Array:
-    """Pressure (8, k) [Pa] at points `at` (k, 2) [m] of 1 N in each bolt; its sum over cells is 1 N."""
+    """Pressure (8, k) [Pa] by 1 N in each of the eight bolts.
+
+    areas, cell_points : (n) [m2], (n, 2) [m] of the cells; the pressure of each bolt sums to 1 N over them
+    evaluation_points  : (k, 2) [m] at which the pressure is computed
+    """
 
     def decay(where: Array) -> Array:
         offset = where[None, :, :] - pattern.bolts[:, None, :]
@@ -110,10 +117,10 @@ def unit_pressures(pattern: BoltPattern, areas: Array, points: Array, at: Array)
 
 
 PressureSource: TypeAlias = BoltPattern | BoltedPlate | NodalField
-"""What gives the pressure of a bolted joint."""
+"""Model of the pressure distribution of a bolted joint."""
 
 
 @lru_cache(maxsize=8)
 def pressure_shape(source: PressureSource) -> PressureShape:
-    """The baked-in table of the bolted joint: shares, positions and pressure shapes."""
+    """Pressure distribution of a source, cached."""
     return source.shape()

@@ -1,8 +1,9 @@
-"""Few of many weighted nodes that keep sums: Caratheodory's theorem, node by node.
+"""Reduction of weighted nodes to a subset with the same sums (Caratheodory's theorem).
 
-Of n nodes with weights >= 0 and d values each, some d with other weights >= 0 have the same d sums. The
-weight of a node goes over to d others that span the values, until one of these has none left and gives its
-place away: the steps of the simplex method. Its choices are the same on every processor (`reproducible`).
+For n nodes with weights >= 0 and d values each, there are d nodes with other weights >= 0 that have the same
+d weighted sums. The algorithm keeps a basis of d nodes and adds the other nodes one by one. The weight of a
+node is transferred to the basis. If a weight in the basis becomes zero, both nodes are exchanged, as in the
+simplex method. All decisions are the same on every processor (`reproducible`).
 """
 
 import numpy as np
@@ -14,52 +15,58 @@ from .reproducible import combined, length, over, product
 Nodes = NDArray[np.intp]
 
 LEAST = 1e-11
-"""Size over the largest one [1] below which a vector depends on others."""
+"""Norm over the largest norm [1] below which the remainder of a vector counts as linearly dependent."""
 DEPENDENT = 1e-7
-"""The same [1] for sums that are put right, far above what rounding leaves of a vector that depends."""
+"""Norm over the largest norm [1] for linear dependence in the correction of sums; far above round-off."""
 
 
 def eliminated(values: Array, weights: Array) -> Array:
-    """Weights (n), at most d above zero, with which values (n, d) have the sums of weights (n) >= 0."""
-    places, base = independent(values, values.shape[1])
-    rows = product(values, base)
-    inverse = _inverse(rows[places])
-    held, out = weights[places], np.zeros_like(weights)
-    for node in np.setdiff1d(np.arange(len(values)), places):
+    """New weights (n), at most d of them nonzero, with the same weighted sums of values (n, d).
+
+    weights : (n) >= 0
+    """
+    basis, orthonormal = independent(values, values.shape[1])
+    rows = product(values, orthonormal)
+    inverse = _inverse(rows[basis])
+    basis_weights, out = weights[basis], np.zeros_like(weights)
+    for node in np.setdiff1d(np.arange(len(values)), basis):
         share = combined(rows[node], inverse)
-        place, taken = _leaving(share, held, weights[node])
-        held = np.maximum(held + taken * share, 0.0)
-        if place is None:
+        leaving, transfer = _leaving(share, basis_weights, weights[node])
+        basis_weights = np.maximum(basis_weights + transfer * share, 0.0)
+        if leaving is None:
             continue
-        held[place], places[place] = weights[node] - taken, node
-        column = inverse[:, place] / share[place]
+        basis_weights[leaving], basis[leaving] = weights[node] - transfer, node
+        column = inverse[:, leaving] / share[leaving]
         inverse -= column[:, None] * share
-        inverse[:, place] = column
-    out[places] = held
+        inverse[:, leaving] = column
+    out[basis] = basis_weights
     return out
 
 
 def independent(vectors: Array, most: int, least: float = LEAST) -> tuple[Nodes, Array]:
-    """Which of vectors (n, d) say what others do not, the most telling first, and their orthonormal base.
+    """Select linearly independent vectors of (n, d) by pivoted Gram-Schmidt orthogonalisation, applied twice.
 
-    Gram and Schmidt's process with pivots, twice. The base is (r, d), r <= most.
+    max_count : largest number of vectors to select
+    tolerance : [1] norm of the remainder over the largest norm below which a vector is dependent
+
+    Returns their indices (r), in the order of the size of their remainder, and an orthonormal basis (r, d).
     """
-    rest, base, places = vectors.copy(), np.empty((0, vectors.shape[1])), np.empty(0, np.intp)
-    square = np.add.reduce(rest * rest, axis=1)
+    remainder, basis, indices = vectors.copy(), np.empty((0, vectors.shape[1])), np.empty(0, np.intp)
+    square = np.add.reduce(remainder * remainder, axis=1)
     end = least * least * np.max(square)
-    while places.size < most and np.max(square) > end:
-        place = int(np.argmax(square))
-        axis = rest[place] / np.sqrt(square[place])
-        axis -= combined(over(base, axis), base)
+    while indices.size < most and np.max(square) > end:
+        pivot = int(np.argmax(square))
+        axis = remainder[pivot] / np.sqrt(square[pivot])
+        axis -= combined(over(basis, axis), basis)
         axis /= length(axis)
-        rest -= over(rest, axis)[:, None] * axis
-        square = np.add.reduce(rest * rest, axis=1)
-        base, places = np.concatenate([base, axis[None]]), np.append(places, place)
-    return places, base
+        remainder -= over(remainder, axis)[:, None] * axis
+        square = np.add.reduce(remainder * remainder, axis=1)
+        basis, indices = np.concatenate([basis, axis[None]]), np.append(indices, pivot)
+    return indices, basis
 
 
 def solved(matrix: Array, right: Array) -> Array:
-    """Solution (n) of equations with a positive definite matrix (n, n), by Gauss's elimination."""
+    """Solve a linear system with a positive definite matrix (n, n) by Gaussian elimination; solution (n)."""
     rows, out = np.column_stack([matrix, right]), np.zeros_like(right)
     for k in range(len(out) - 1):
         rows[k + 1 :, k:] -= (rows[k + 1 :, k] / rows[k, k])[:, None] * rows[k, k:]
@@ -69,10 +76,9 @@ def solved(matrix: Array, right: Array) -> Array:
 
 
 def changes(weights: Array, functions: Array, missing: Array) -> Array:
-    """What weights (n) change by so that their sums of functions (m, n) change by `missing` (m).
+    """Changes (n) of weights (n) that change the weighted sums of functions (m, n) by `residual` (m).
 
-    Changes are in proportion to the weights, and the smallest over their roots. Functions that depend on
-    others have no say.
+    The sum of change^2/|weight| is minimal. Functions that depend linearly on others are ignored.
     """
     root = np.sqrt(np.abs(weights))
     rows = functions * root
@@ -92,17 +98,20 @@ def _inverse(triangle: Array) -> Array:
 
 
 def _leaving(share: Array, held: Array, weight: float) -> tuple[int | None, float]:
-    """Which place gets empty, and the weight [1] that the others take over until then (negative: give away).
+    """Ratio test: index of the node that leaves the basis, and weight transferred from the new node.
 
-    share  : what the places get of a weight of 1
-    held   : weights at the places
-    weight : of the node; None if the places take all of it
+    share         : change of the basis weights per unit of transferred weight [1]
+    basis_weights : weights of the basis nodes
+    weight        : weight of the new node
+
+    The index is None if the basis can take the whole weight. A negative transfer moves weight from the basis
+    to the new node.
     """
-    over = np.divide(held, np.abs(share), out=np.full_like(held, np.inf), where=share != 0.0)
-    first = int(np.argmin(np.where(share < 0.0, over, np.inf)))
-    if share[first] >= 0.0 or over[first] >= weight:
+    ratio = np.divide(held, np.abs(share), out=np.full_like(held, np.inf), where=share != 0.0)
+    decreasing = int(np.argmin(np.where(share < 0.0, ratio, np.inf)))
+    if share[decreasing] >= 0.0 or ratio[decreasing] >= weight:
         return None, weight
-    last = int(np.argmin(np.where(share > 0.0, over, np.inf)))
-    if share[last] > -share[first]:  # the steeper of the two: less rounding
-        return last, -float(over[last])
-    return first, float(over[first])
+    increasing = int(np.argmin(np.where(share > 0.0, ratio, np.inf)))
+    if share[increasing] > -share[decreasing]:  # larger pivot: less round-off
+        return increasing, -float(ratio[increasing])
+    return decreasing, float(ratio[decreasing])

@@ -1,15 +1,18 @@
-"""Few patches that carry the friction of a bolted contact as all its nodes do, whatever its law.
+"""Reduction of the friction of a bolted contact from all nodes to few patches, for any interface law.
 
-Under loads that stay, a node whose approach is delta carries p(delta) - p(delta - v) against a shift, v in
-units of mu/kappa (Jaeger 1995, Ciavarella 1998). A turn about the normal has the distance from its pole as a
-factor, which is no polynomial, and a tilt moves the pressure about: as many nodes with other shares as there
-is room for keep few of these sums. So each patch stands for the nodes around it, at the centre of their
-friction, with its sliders on a circle of nearly their radius of gyration: near the pole of a turn, where its
-parts pull all ways, a patch has little force and a torque. Its place, share and pressures are then fitted to
-the friction of rigid motions of the tilted contact under laws p ~ delta^N, and to gross slip about poles that
-are pressed. What `few_points` keeps to round-off patches keep, too. The fit is one of rounded numbers
-(`reproducible`), so that it ends in one place on every processor. benchmarks/patch_reduction.py prints how
-far friction is from that of all nodes.
+At constant load the traction of a node with the approach delta is p(delta) - p(delta - v), with the
+displacement v in units of mu/kappa, kappa = K_T/K_N (Jaeger 1995, Ciavarella 1998). Sums of such tractions
+over nodes cannot be kept by a few nodes with other shares: in a rotation about the normal the distance from
+the pole is no polynomial of the position, and a tilt changes the pressure.
+
+So each patch represents the nodes around it. Its position is the centre of their friction; its sliders lie on
+a circle with nearly their radius of gyration. Near the pole of a rotation, where its parts slide in different
+directions, a patch then has little force and a torque. Position, share and pressures of the patches are
+fitted: to the friction of rigid motions of the tilted contact for laws p ~ delta^N, and to gross slip about
+poles at loaded nodes. The sums that `reduce_points` keeps to round-off are kept here too.
+
+The fit uses rounded numbers (`reproducible`), so its result is the same on every processor.
+benchmarks/patch_reduction.py prints the deviation of the friction from that of all nodes.
 """
 
 from dataclasses import dataclass, replace
@@ -23,64 +26,68 @@ from .reproducible import cleared, length, over, powers, ranks, root, rounded, s
 from .shape import FrictionPatches, PressureShape
 
 POWERS = (4.0, 8.0, 8.0, 16.0)
-"""Powers N of p ~ delta^N [1], of two: 1.5 of Hertz, 7 of the default law, 12 of rough surfaces."""
+"""Exponents N of the laws p ~ delta^N [1], powers of 2; real laws: Hertz 1.5, default law 7, roughness 12."""
 CASES, POLES = 240, 200
-"""States of the joint and motions from rest whose friction is fitted, and more in gross slip about a pole."""
+"""Number of fitted cases [1]: partial slip from the virgin state, and gross slip about a pole."""
 UNTILTED = 0.4
-"""Part of the former without displacement and tilt [1]."""
+"""Share of the cases of partial slip without normal displacement and tilt [1]."""
 APART, TILTED = 0.1, 0.2
-"""Largest displacement and tilt at the edge [1], over the approach of the node that is pressed most."""
+"""Largest normal displacement, and largest opening by tilt at the edge, over the largest approach [1]."""
 MOST_MOMENT = 2.5
-"""Largest moment [1], over that at which nodes are open that carried a small part of the force."""
+"""Largest moment over that of `largest_moment` [1]."""
 LEAST_WAY, MOST_WAY = 0.05, 3.0
-"""Shortest and longest motion [1], over that at which a node at the radius of gyration carries all but the
-part STUCK of its friction."""
+"""Shortest and longest motion [1], over the motion at which a node at the radius of gyration has mobilised
+all but STUCK_SHARE of its friction."""
 STUCK = 2.0**-13
+"""Share of the friction that is not yet mobilised [1], for the scale of motions."""
 STEPS = 50
-"""Steps of Levenberg and Marquardt's method."""
+"""Iterations of the Levenberg-Marquardt method [1]."""
 FIRST_DAMPING, LEAST_DAMPING = 1e-2, 1e-6
-"""Damping over the diagonal of the equations [1]."""
+"""Initial and smallest damping, over the diagonal of the normal equations [1]."""
 LESS, MORE = 0.2, 5.0
-"""Factors of it after a step that is better and one that is not [1]."""
+"""Factors on the damping after a successful and after a rejected step [1]."""
 LARGEST_STEP = 0.5
-"""Most that a share, place or pressure changes in a step [1], over its size."""
+"""Largest relative change of a share, position or pressure in one step [1]."""
 LEAST_DIAGONAL = 1e-9
-"""Of the equations of the steps, over the largest [1]."""
+"""Smallest diagonal of the normal equations used for damping, over the largest [1]."""
 HOLDS = 400.0
-"""Weight of what is exact beside that of a case [1]."""
+"""Weight of an exact sum over the weight of a case [1]."""
 DIFFERENCE = 1e-6
-"""Change of a place or pressure over its size [1] by which derivatives are found."""
+"""Relative perturbation of a position or pressure for finite differences [1]."""
 AT_ONCE = 2000
-"""Nodes whose friction is summed up at once [1]."""
+"""Number of nodes whose friction is evaluated at once [1]."""
 BESIDE, FAR = 0.06, 1e3
-"""How far these poles are beside a pressed node, over the radius of gyration [1]; length of their motion."""
+"""Largest distance of a pole of gross slip from a loaded node, over the radius of gyration [1]; length of the
+motion in gross slip [1]."""
 TILTED_POLES = 8
-"""One of so many is that of a tilted contact, the others are of one without moment."""
+"""One of this number of cases of gross slip [1] has a tilted contact; the others have no moment."""
 POLE_WEIGHT, TORQUE_WEIGHT, SHIFT_WEIGHT = 12.0, 5.0, 4.0
-"""Weights of the forces about them, of the torques, and of shifts alone, beside those of other cases [1]."""
+"""Weights [1]: forces in gross slip; torques in gross slip; losses in gross slip and all values of
+translations and of rotations about the centre. All other values have the weight 1."""
 ON_CIRCLE = 4
-"""How many places on the circle of a patch stand for its sliders."""
+"""Number of points on the circle of a patch that represent its sliders in the fit [1]."""
 LESS_SPREAD = 0.9
-"""Radius of this circle over that of gyration of the friction that a patch stands for [1]: a disc pulls about
-a pole inside it as a smaller ring does."""
+"""Radius of the circle over the radius of gyration of the friction of a patch [1]: in a rotation about a pole
+inside it, a disc acts like a smaller ring."""
 AT_REST, ROUNDS = 0.1, 5
-"""Pressure over the mean one [1] that counts beside a node's own where nodes are divided among the patches,
-and how often they are."""
+"""Pressure over mean pressure [1] that is added to that of each node for the division among patches, and
+number of iterations of the division [1]."""
 TINY = float(np.finfo(float).tiny)
 _RATIOS = powers(1.0 / 1.0969815577985598, 7)
-"""An even sequence in seven dimensions: powers of the root of x^8 = x + 1."""
+"""Increments of a low-discrepancy sequence in seven dimensions [1]: powers of the root of x^8 = x + 1."""
 CIRCLE = to_digits(np.exp(2j * np.pi * (np.arange(ON_CIRCLE) + 0.25) / ON_CIRCLE).view(float)).reshape(-1, 2)
-"""These places on a circle of radius 1."""
+"""Points (CIRCLE_POINT_COUNT, 2) [1] on the unit circle that represent the sliders of a patch."""
 
 
 def friction_patches(shape: PressureShape, count: int, begin: PressureShape | None = None) -> FrictionPatches:
-    """Patches for the friction, at most `count`, or the shape itself where it has no more nodes.
+    """Reduce the friction of a contact to at most `count` patches; one per node if it has no more nodes.
 
-    begin : some points that stand for many nodes, of which the first patches are taken
+    start_points : distribution from which the initial patches are selected; None: `shape`
 
-    Kept to round-off: the sums of share, equal and tilt, their first moments, the second moments of share.
+    Kept to round-off: the sums and first moments of share, preload_shape and moment_shape (weighted by
+    share), and the second moments of share.
 
-    Raises ValueError if count is too small to keep the sums.
+    Raises ValueError if count is too small to keep these sums.
     """
     if shape.share.size <= count:
         return shape.as_patches()
@@ -102,15 +109,20 @@ def friction_patches(shape: PressureShape, count: int, begin: PressureShape | No
 
 
 def _opposite(force: Array) -> Array:
-    """1 or -1 (m): every second patch in the order of forces (m) has its circle turned by half, so that what
-    one's sliders miss, who slip at different shifts, another's make good."""
+    """Signs (m) [1] of the circle radii: negative for every second patch in descending order of forces (m).
+
+    Their circles are turned by 180 degrees, so that errors of stepwise slip cancel between patches.
+    """
     return np.where(ranks(force) % 2 == 0, 1.0, -1.0)
 
 
 def _divided(shape: PressureShape, places: Array) -> FrictionPatches:
-    """Nodes divided among patches that begin at places (m, 2), each to the nearest one.
+    """Divide the nodes among m patches by Lloyd's method.
 
-    A patch then takes the centre of their friction, again and again (Lloyd's method).
+    Each node belongs to the nearest patch. Each patch then moves to the centre of the friction of its nodes;
+    this is repeated DIVISION_ITERATIONS times.
+
+    centres : (m, 2) initial positions of the patches
     """
     share, (x, y) = shape.share, shape.position.T
     weight, count = share * (shape.equal + AT_REST), len(places)
@@ -126,7 +138,7 @@ def _divided(shape: PressureShape, places: Array) -> FrictionPatches:
     away = (x - places[nearest, 0]) ** 2 + (y - places[nearest, 1]) ** 2
     area = np.maximum(sums(share), TINY)
     xx, xy, yy = (float(np.add.reduce(share * each)) for each in (x * x, x * y, y * y))
-    thin = max(0.5 * (xx + yy - float(np.sqrt((xx - yy) ** 2 + 4.0 * xy * xy))), 0.0)  # 0 of nodes on a line
+    thin = max(0.5 * (xx + yy - float(np.sqrt((xx - yy) ** 2 + 4.0 * xy * xy))), 0.0)  # 0 for nodes on a line
     radius = np.minimum(LESS_SPREAD * np.sqrt(sums(weight * away) / whole), np.sqrt(thin))
     return FrictionPatches(
         area, places, sums(share * shape.equal) / area, sums(share * shape.tilt) / area, radius
@@ -135,14 +147,16 @@ def _divided(shape: PressureShape, places: Array) -> FrictionPatches:
 
 @dataclass(frozen=True, slots=True)
 class _Motions:
-    """Cases (m, 1) of a contact whose lengths are over its radius of gyration, pressures over the largest.
+    """Cases (m, 1) of normal loading and tangential motion whose friction is fitted.
 
-    power            : N of the law [1]
-    moment           : factor of tilt [1]
-    apart            : motion apart [1], over the largest approach
-    about_x, about_y : tilts [1] that move the edge by these parts of the largest approach
-    along            : (3, m, 1) unit vector of the shift along x and y and of the turn [1]
-    way              : its length [1], in mu/kappa times the largest approach
+    Lengths are divided by the radius of gyration of the contact, pressures by the largest one.
+
+    power            : exponent N [1] of the law p ~ delta^N
+    moment           : factor [1] on the pressure by a moment
+    opening          : normal displacement [1], over the largest approach
+    tilt_x, tilt_y   : tilts [1] about x and y, as opening per length, over the largest approach
+    direction        : (3, m, 1) unit vector of the motion: translation along x and y, rotation [1]
+    distance         : length of the motion [1], in units of mu/kappa times the largest approach
     """
 
     power: Array
@@ -155,8 +169,14 @@ class _Motions:
 
     @classmethod
     def of(cls, nodes: Array, largest_moment: float, reach: Array) -> "_Motions":
-        """Even over what a contact with nodes (6, n) up to |x|, |y| (2) can do: shifts, turns about its
-        centre, and twice as many about places where it is pressed; and gross slip about POLES more."""
+        """Sample the cases evenly (low-discrepancy sequence) for a contact with nodes (6, n).
+
+        Of the SLIP_CASES a quarter are translations, a quarter rotations about the centre, and
+        half rotations about loaded nodes. GROSS_SLIP_CASES more are gross slip about poles near loaded nodes.
+
+        largest_moment : [1] largest factor on the pressure by a moment
+        extent         : (2) [1] largest |x| and |y|
+        """
         number = np.arange(1, CASES + POLES + 1)
         unit = (0.5 + number[:, None] * _RATIOS) % 1.0
         moment, apart, about_x, about_y, place, angle = 2.0 * unit[:, :6].T - 1.0
@@ -164,7 +184,7 @@ class _Motions:
         moves = np.where(gross, number % TILTED_POLES == 0, number > UNTILTED * CASES)
         moment = np.where(gross & ~moves, 0.0, moment)
         kind = np.where(gross, 2, np.minimum(number % 4, 2))
-        along = 2.0 * np.abs(angle) - 1.0  # on a square that stands on its corner
+        along = 2.0 * np.abs(angle) - 1.0  # on the square |along| + |across| = 1
         across = np.sign(angle) * (1.0 - np.abs(along))
         force, nothing, one = np.add.accumulate(nodes[0] * nodes[3]), 0.0 * along, np.ones_like(along)
         _, x, y, *_ = nodes[:, np.searchsorted(force, 0.5 * (1.0 + place) * force[-1])]
@@ -186,8 +206,11 @@ class _Motions:
         return cls(*(each[..., None] for each in columns))
 
     def friction(self, points: Array) -> tuple[Array, Array]:
-        """Of points (6, n), per share: force along x and y, moment and loss of a loop (4 m, n), and the force
-        (m, n) in gross slip."""
+        """Friction per share of points (6, n) in all m cases.
+
+        Returns force along x and y, moment about z and loss of a cycle (4 m, n) [1], and the scale (m, n)
+        [1]: friction limit times displacement per length of the motion.
+        """
         _, x, y, equal, tilt, radius = points
         start = root(np.maximum(equal + self.moment * tilt, 0.0), self.power)
         now = np.maximum(start - (self.apart + self.about_x * y - self.about_y * x), 0.0)
@@ -211,13 +234,14 @@ class _Motions:
 
 @dataclass(frozen=True, slots=True)
 class _Aim:
-    """What the sums over points (6, n) of share, x, y, equal, tilt and radius should be.
+    """Target of the fit: sums over all nodes. Points (6, n) are share, x, y, both pressure shapes, radius.
 
-    reach : (2) largest |x| and |y| [1]
-    scale : (m) of the sums of friction [1]
-    hold  : (12) of the sums that are exact [1]
-    held  : (12) these
-    sums  : (m + 12) all of them, scaled
+    cases       : cases whose friction is fitted
+    extent      : (2) [1] largest |x| and |y|
+    scale       : (m) [1] weights of the sums of friction
+    exact_scale : (12) [1] weights of the sums that must be exact
+    exact_sums  : (12) [1] sums that must be exact
+    sums        : (m + 12) [1] all sums, weighted
     """
 
     motions: _Motions
@@ -229,7 +253,7 @@ class _Aim:
 
     @classmethod
     def of(cls, nodes: Array, largest_moment: float) -> "_Aim":
-        """Those over nodes (6, n)."""
+        """Compute the target sums of nodes (6, n)."""
         reach = np.maximum(np.max(np.abs(nodes[1:3]), axis=1), TINY)
         motions, share = _Motions.of(nodes, largest_moment, reach), nodes[0]
         friction, gross = np.zeros(4 * (CASES + POLES)), np.zeros(CASES + POLES)
@@ -245,23 +269,23 @@ class _Aim:
         scale *= weight.ravel()
         exact = _exact(nodes, reach)
         held, size = over(exact, share), over(np.abs(exact), share)
-        hold = np.divide(HOLDS, size, out=np.zeros_like(size), where=size > HOLDS * TINY)  # none of what is 0
+        hold = np.divide(HOLDS, size, out=np.zeros_like(size), where=size > HOLDS * TINY)  # 0 for sums of 0
         sums = np.concatenate([scale * friction, hold * held])
         return cls(motions, reach, scale, hold, held, sums)
 
     def values(self, points: Array) -> Array:
-        """(m + 12, n) whose sums with the shares should be `sums`."""
+        """Functions (m + 12, n) [1] of points (6, n); their sums, weighted by share, are to equal `sums`."""
         friction = self.motions.friction(points)[0] * self.scale[:, None]
         return np.concatenate([friction, _exact(points, self.reach) * self.hold[:, None]])
 
     def missed(self, points: Array) -> tuple[Array, Array]:
-        """These, and how far (m + 12) their sums are off."""
+        """Weighted functions (m + 12, n) of points (6, n), and the residual (m + 12) of their sums."""
         values = self.values(points)
         return values, over(values, points[0]) - self.sums
 
 
 def _balanced(points: Array, reach: Array, sums: Array) -> Array:
-    """Points (6, n) with the exact sums (12), by small changes of their shares, equal and tilt."""
+    """Correct shares and pressure shapes of points (6, n) slightly, so that they have the exact sums (12)."""
     share, x, y, equal, tilt, radius = points
     place = _exact(points, reach)[:6]
     share = share + changes(share, place, sums[:6] - over(place, share))
@@ -273,7 +297,7 @@ def _balanced(points: Array, reach: Array, sums: Array) -> Array:
 
 
 def _exact(points: Array, reach: Array) -> Array:
-    """(12, n) the functions of points (6, n) whose sums are exact."""
+    """Functions (12, n) of points (6, n) whose sums, weighted by share, must be exact."""
     _, x, y, equal, tilt, radius = points
     each = balanced(x / reach[0], y / reach[1], equal, tilt)
     for place, over_reach in zip((3, 5), radius / reach[:, None], strict=True):  # x^2 and y^2
@@ -283,12 +307,12 @@ def _exact(points: Array, reach: Array) -> Array:
 
 @dataclass(frozen=True, slots=True)
 class _Around:
-    """An aim, in linear terms of what points change by.
+    """Linearised least-squares problem: residual of the sums as a function of relative changes of the points.
 
-    miss     : (m) how far the sums are off
-    size     : (5, n) of which the changes are parts
-    square   : (5 n, 5 n) of the derivatives
-    gradient : (5 n) of half the sum of miss^2
+    residual : (m) residual of the sums [1]
+    scale    : (5, n) sizes [1] to which the changes are relative
+    normal_matrix : (5 n, 5 n) J^T J [1] of the Jacobian J
+    gradient : (5 n) gradient [1] of half the sum of squared residuals
     """
 
     miss: Array
@@ -298,7 +322,10 @@ class _Around:
 
     @classmethod
     def of(cls, points: Array, aim: _Aim, values: Array, miss: Array) -> "_Around":
-        """At points (6, n), whose radii stay, with their values and what these miss of the aim."""
+        """Linearise at points (6, n) with constant radii.
+
+        values, residual : result of `_TargetSums.residual` at these points
+        """
         share, *_, equal, _, _ = points
         one = np.ones_like(share)
         size = np.stack([share, *np.outer(aim.reach, one), equal, equal])
@@ -311,7 +338,7 @@ class _Around:
         return cls(miss, size, squared(slope), over(slope, miss))
 
     def step(self, damping: float) -> Array:
-        """Change (6, n) of the points."""
+        """Levenberg-Marquardt step: change (6, n) of the points for a damping [1]."""
         own = np.diag(self.square)
         diagonal = damping * (own + LEAST_DIAGONAL * np.max(own))
         parts = solved(self.square + np.diag(diagonal), -self.gradient)
@@ -320,7 +347,7 @@ class _Around:
 
 
 def _moved(points: Array, aim: _Aim) -> Array:
-    """Points (6, n) after STEPS steps of Levenberg and Marquardt's method."""
+    """Fit points (6, n) by the Levenberg-Marquardt method with MAX_ITERATIONS iterations."""
     here, damping = _Around.of(points, aim, *aim.missed(points)), FIRST_DAMPING
     for _ in range(STEPS):
         trial = _balanced(points + here.step(damping), aim.reach, aim.held)

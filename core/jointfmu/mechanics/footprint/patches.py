@@ -1,12 +1,13 @@
-"""Few points that stand for the nodes of a bolted contact, whatever law the interface has.
+"""Reduction of the nodes of a bolted contact to few points, for any interface law.
 
-Force and stiffness of a joint are sums over its nodes of share times a function of the node's approach, with
-its position as a factor. Whatever the law, these functions are near to powers of the node's pressure, which
-preload and moment make, opened or closed by a displacement and a tilt: the `_functions`. Most of their sums
-follow from few others, and as many nodes with other shares keep these (`elimination`). A contact that mirrors
-itself keeps doing so. Which nodes these are and how much each keeps of its share is found with rounded
-numbers (`reproducible`), the nodes are the contact's own. benchmarks/patch_reduction.py prints how far the
-sums of a law are from those of all nodes.
+Force and stiffness of a joint are sums over its nodes: share times position times a function of the approach
+of the node. For all laws these functions are close to powers of the pressure by preload and moment, changed
+by a normal displacement and a tilt (`_sample_functions`). Most sums of such functions depend on few others.
+So a subset of the nodes with other shares has nearly the same sums (`elimination`). A symmetric contact stays
+symmetric.
+
+The choice of nodes and their shares are computed with rounded numbers (`reproducible`); the result contains
+the unrounded nodes. benchmarks/patch_reduction.py prints the deviation from the sums over all nodes.
 """
 
 import numpy as np
@@ -17,173 +18,186 @@ from .reproducible import cleared, over, powers, product, root, rounded, to_powe
 from .shape import PressureShape
 
 POWERS = (4.0, 8.0, 16.0, 64.0)
-"""Powers N of p ~ delta^N [1], which make k ~ p^(1 - 1/N): 1.5 of Hertz, rough surfaces are near 10, the last
-is nearly an exponential."""
+"""Exponents N of the laws p ~ delta^N [1], with k ~ p^(1 - 1/N). Hertz has 1.5, rough surfaces about 10; the
+last one is nearly an exponential."""
 STATES = 80
-"""States of the joint at which sums are kept."""
+"""Number of sampled states of the joint [1]."""
 UNTILTED = 0.4
-"""Part of them without displacement and tilt [1]."""
+"""Share of the states without normal displacement and tilt [1]."""
 LESS = 0.02
-"""How much less accurate the others may be [1]."""
+"""Weight of the states with displacement and tilt, over that of the others [1]."""
 APART, TILTED = 0.1, 0.1
-"""Largest displacement and tilt [1], over the approach of the node that is pressed most."""
+"""Largest normal displacement, and largest opening by tilt at the edge, over the largest approach [1]."""
 OPENED = 1e-4
-"""Part of the force [1] whose nodes the largest moment opens."""
+"""Share of the force [1] that is lost by opening at the largest moment."""
 RESERVED = 0.1
-"""Part of its share [1] that a node of largest pressure keeps at least."""
+"""Smallest factor [1] on the share of a node with the largest pressure."""
 HOLDING = 96
-"""Fewest points [1] of which some are spent on the largest pressure."""
+"""Smallest number of points [1] for which the nodes with the largest pressure are kept."""
 LEAST_GROUPS = 10
-"""Fewest groups of points that mirror each other [1]; fewer say less than as many points without symmetry."""
+"""Smallest number of groups of mirrored points [1]; with fewer groups the symmetry is given up."""
 _RATIOS = powers(1.0 / 1.1673039782614187, 4)
-"""An even sequence in four dimensions: powers of the root of x^5 = x + 1."""
+"""Increments of a low-discrepancy sequence in four dimensions [1]: powers of the root of x^5 = x + 1."""
 
 
 def few_points(shape: PressureShape, count: int) -> PressureShape:
-    """Some of the nodes with other shares, at most `count`, or the shape itself where it has no more.
+    """Reduce a pressure distribution to at most `count` of its nodes with other shares.
 
-    Kept to round-off: the sums of share, equal and tilt, their first moments, the second moments of share.
-    Kept exactly: the largest pressure under any preload and moment, from HOLDING points on, and the symmetry
-    of the contact, from LEAST_GROUPS groups on.
+    Returns the distribution itself if it has no more nodes.
+    Kept to round-off: the sums and first moments of share, preload_shape and moment_shape (weighted by
+    share), and the second moments of share.
+    Kept exactly: the largest pressure at any preload and moment, if count is at least MIN_PEAK_COUNT, and the
+    symmetry of the contact, for at least MIN_SYMMETRY_GROUPS groups.
 
     Raises ValueError if count is too small to keep the sums.
     """
     if shape.share.size <= count:
         return shape
-    rough = rounded(shape)
-    group = _mirrored(rough)
+    rounded_shape = rounded(shape)
+    group = _mirrored(rounded_shape)
     if np.max(np.bincount(group)) * LEAST_GROUPS > count:
         group = np.arange(shape.share.size)
-    nodes, factor = _kept(rough, group, count)
-    before, exact = _sums(group, shape.share), _means(_exact(shape), shape, group)
-    after, some = np.zeros_like(before), exact[:, nodes]
-    after[nodes] = factor * before[nodes]
-    after[nodes] += changes(after[nodes], some, over(exact, before) - over(some, after[nodes]))
-    return cleared(_part(shape, group, after / before))
+    nodes, factor = _kept(rounded_shape, group, count)
+    old_shares, exact = _sums(group, shape.share), _means(_exact(shape), shape, group)
+    new_shares, exact_nodes = np.zeros_like(old_shares), exact[:, nodes]
+    new_shares[nodes] = factor * old_shares[nodes]
+    new_shares[nodes] += changes(
+        new_shares[nodes], exact_nodes, over(exact, old_shares) - over(exact_nodes, new_shares[nodes])
+    )
+    return cleared(_part(shape, group, new_shares / old_shares))
 
 
 def _kept(rough: PressureShape, group: Nodes, count: int) -> tuple[Nodes, Array]:
-    """Groups that keep the sums of all, at most `count` nodes, and the factors [1] of their shares."""
+    """Select groups with at most `count` nodes that keep the sums; return groups and factors of their shares.
+
+    group : (n) group of each node
+    """
     size, share = np.bincount(group), _sums(group, rough.share)
     factor = np.sqrt(share)
     exact = independent(factor * _means(_exact(rough), rough, group), share.size)[1]
     rest = factor * _means(_functions(rough), rough, group)
     rest -= product(product(rest, exact), exact.T)
-    kept = np.concatenate([exact, independent(rest, count)[1]]).T / factor[:, None]
-    held = _held(rough, group, share) if count >= HOLDING else np.zeros_like(share)
-    weights, number = share, kept.shape[1]
+    functions = np.concatenate([exact, independent(rest, count)[1]]).T / factor[:, None]
+    min_shares = _held(rough, group, share) if count >= HOLDING else np.zeros_like(share)
+    weights, number = share, functions.shape[1]
     while number >= len(exact):
-        free = np.flatnonzero(weights > held)
-        left = eliminated(kept[free, :number], (weights - held)[free])
-        weights = held.copy()
-        weights[free] += left
+        free_groups = np.flatnonzero(weights > min_shares)
+        reduced = eliminated(functions[free_groups, :number], (weights - min_shares)[free_groups])
+        weights = min_shares.copy()
+        weights[free_groups] += reduced
         excess = int(np.sum(size[weights > 0.0])) - count
         if excess <= 0:
             nodes = np.flatnonzero(weights > 0.0)
             return nodes, weights[nodes] / share[nodes]
-        number = min(number, int(np.sum(left > 0.0))) - max(excess // (2 * int(np.max(size))), 1)
+        number = min(number, int(np.sum(reduced > 0.0))) - max(excess // (2 * int(np.max(size))), 1)
     raise ValueError(f"{count} points are too few, expected at least {count + excess} for this contact")
 
 
 def _held(shape: PressureShape, group: Nodes, share: Array) -> Array:
-    """What groups keep of their shares [1] at least."""
-    held, most = np.zeros_like(share), np.unique(group[highest(shape)])
-    held[most] = RESERVED * share[most]
-    return held
+    """Smallest shares (groups) [1] that the groups must keep: nonzero for nodes with the largest pressure."""
+    min_shares, peak_groups = np.zeros_like(share), np.unique(group[highest(shape)])
+    min_shares[peak_groups] = RESERVED * share[peak_groups]
+    return min_shares
 
 
 def _part(shape: PressureShape, group: Nodes, factor: Array) -> PressureShape:
-    """Nodes with their shares times the factor of their group, without those that have none left."""
+    """Multiply shares by the factor (groups) [1] of their group; remove nodes with the factor zero."""
     nodes = np.flatnonzero(factor[group] > 0.0)
-    some = shape.part(nodes)
-    return PressureShape(some.share * factor[group[nodes]], some.position, some.equal, some.tilt)
+    selected = shape.part(nodes)
+    return PressureShape(
+        selected.share * factor[group[nodes]], selected.position, selected.equal, selected.tilt
+    )
 
 
 def _mirrored(shape: PressureShape) -> Nodes:
-    """Groups (n) of nodes that mirror each other at x = 0, at y = 0, where tilt changes its sign, or both."""
+    """Group (n) of each node: mirror images at x = 0, y = 0 or both are in one group, if all nodes have one.
+
+    At y = 0 moment_shape changes its sign.
+    """
     share, (x, y), equal, tilt = shape.share, shape.position.T, shape.equal, shape.tilt
 
     def keys(along: float, across: float) -> Array:
         return np.column_stack([along * x, across * y, share, equal, across * tilt]) + 0.0  # no -0.0
 
-    own, group = keys(1.0, 1.0), np.arange(shape.share.size)
-    order = np.lexsort(own.T)
+    own_keys, group = keys(1.0, 1.0), np.arange(shape.share.size)
+    order = np.lexsort(own_keys.T)
     for sides in ((-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)):
         image = keys(*sides)
-        there = np.lexsort(image.T)
-        if np.array_equal(own[order], image[there]):
+        image_order = np.lexsort(image.T)
+        if np.array_equal(own_keys[order], image[image_order]):
             partner = np.empty_like(group)
-            partner[order] = there
+            partner[order] = image_order
             group = np.minimum(group, group[partner])
     return np.unique(group, return_inverse=True)[1]
 
 
 def _means(functions: Array, shape: PressureShape, group: Nodes) -> Array:
-    """(m, groups) means of functions (m, n) over the nodes of each group."""
+    """Means (m, groups) of functions (m, n) over the nodes of each group, weighted by share."""
     sums = [_sums(group, shape.share * row) for row in functions]
     return np.array(sums) / _sums(group, shape.share)
 
 
 def _sums(group: Nodes, values: Array) -> Array:
-    """Sums of values (n) over the nodes of each group."""
+    """Sums (groups) of values (n) over the nodes of each group."""
     return np.asarray(np.bincount(group, values), dtype=np.float64)
 
 
 def _scaled(shape: PressureShape) -> tuple[Array, Array]:
-    """Positions over the largest ones [1]."""
+    """Coordinates x and y (n) of the nodes over their largest absolute values [1]."""
     x, y = (values / max(float(np.max(np.abs(values))), np.finfo(float).tiny) for values in shape.position.T)
     return x, y
 
 
 def balanced(x: Array, y: Array, equal: Array, tilt: Array) -> Array:
-    """(12, n) the functions of points (n) whose sums are exact."""
-    one = np.ones_like(x)
-    return np.stack([one, x, y, x * x, x * y, y * y, equal, equal * x, equal * y, tilt, tilt * x, tilt * y])
+    """Functions (12, n) of points (n) whose sums, weighted by share, are kept to round-off."""
+    ones = np.ones_like(x)
+    return np.stack([ones, x, y, x * x, x * y, y * y, equal, equal * x, equal * y, tilt, tilt * x, tilt * y])
 
 
 def _exact(shape: PressureShape) -> Array:
-    """(12, n) these, over their largest values."""
+    """Functions (12, n) of `exact_functions` for the nodes, scaled to the order of 1."""
     steep = max(float(np.max(np.abs(shape.tilt))), 1.0)
     return balanced(*_scaled(shape), shape.equal, shape.tilt / steep)
 
 
 def largest_moment(shape: PressureShape) -> float:
-    """Factor of tilt [1] at which nodes are open that carried the part OPENED of the force of equal."""
+    """Factor [1] on moment_shape at which opening removes the share MAX_LOST_FORCE of the preload force."""
     low, high = 0.0, 2.0 / float(np.max(np.abs(shape.share * shape.tilt)))
     for _ in range(50):
         middle = 0.5 * (low + high)
         open_to = np.stack([side * middle * shape.tilt - shape.equal for side in (-1.0, 1.0)])
-        lost = np.max(over(np.maximum(open_to, 0.0), shape.share))
-        low, high = (middle, high) if lost < OPENED else (low, middle)
+        lost_share = np.max(over(np.maximum(open_to, 0.0), shape.share))
+        low, high = (middle, high) if lost_share < OPENED else (low, middle)
     return low
 
 
 def _functions(shape: PressureShape) -> Array:
-    """(m, n) functions at states of the joint: pressure and stiffness of power laws, their moments.
+    """Functions (m, n) [1] of the nodes whose sums are approximated: pressure and stiffness in all states.
 
-    Those of the pressure are of the normal force and, with the distance from the centre, of the friction in
-    a turn about the normal; of the stiffness they are the first and second ones.
+    Each state has a power law, a moment, a normal displacement and a tilt. The pressure is multiplied by 1, x
+    and y (normal force, moments) and by the distance from the centre (friction moment in a rotation about the
+    normal); the stiffness by 1, x, y, x^2, x y and y^2.
     """
     (x, y), limit = _scaled(shape), largest_moment(shape)
     distance = np.sqrt(np.add.reduce(shape.position**2, axis=1))
     of_pressure = np.stack([np.ones_like(x), x, y, distance / np.max(distance)])
     of_stiffness = np.stack([*of_pressure[:3], x * x, x * y, y * y])
     number = np.arange(STATES)[:, None]
-    moment, apart, about_x, about_y = 2.0 * ((0.5 + (number + 1.0) * _RATIOS) % 1.0).T[..., None] - 1.0
-    power, moves = np.choose(number % len(POWERS), POWERS), number >= UNTILTED * STATES
-    away = moves * (APART * apart + TILTED * (about_x * y - about_y * x))
+    moment, opening, about_x, about_y = 2.0 * ((0.5 + (number + 1.0) * _RATIOS) % 1.0).T[..., None] - 1.0
+    power, is_moved = np.choose(number % len(POWERS), POWERS), number >= UNTILTED * STATES
+    normal_displacement = is_moved * (APART * opening + TILTED * (about_x * y - about_y * x))
     approach = root(np.maximum(shape.equal + limit * moment * shape.tilt, 0.0), power)
-    approach = np.maximum(approach - np.max(approach, axis=1, keepdims=True) * away, 0.0)
+    approach = np.maximum(approach - np.max(approach, axis=1, keepdims=True) * normal_displacement, 0.0)
     pressure = to_power(approach, power)
     stiffness = np.divide(pressure, approach, out=np.zeros_like(pressure), where=approach > 0.0)
     rows = np.concatenate([pressure[:, None] * of_pressure, stiffness[:, None] * of_stiffness], axis=1)
     sizes = np.add.reduce(np.abs(rows) * shape.share, axis=2, keepdims=True)
-    rows *= np.where(moves, LESS, 1.0)[:, None] / np.maximum(sizes, np.finfo(float).tiny)
+    rows *= np.where(is_moved, LESS, 1.0)[:, None] / np.maximum(sizes, np.finfo(float).tiny)
     return np.asarray(rows.reshape(-1, x.size))
 
 
 def highest(shape: PressureShape) -> Nodes:
-    """Nodes that have the largest pressure at some moment."""
+    """Indices of the nodes that have the largest pressure at any of several moments."""
     steep = 0.01 * powers(1.25, 36)
     moments = np.concatenate([-steep, [0.0], steep])
     return np.unique([int(np.argmax(shape.equal + m * shape.tilt)) for m in moments])

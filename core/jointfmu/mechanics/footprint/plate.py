@@ -1,4 +1,4 @@
-"""Pressure of a bolted plate: bolts anywhere, each pressing on the disc where its deformation cone ends."""
+"""Pressure of a bolted plate: each bolt, at any position, loads a disc given by its deformation cone."""
 
 from dataclasses import dataclass
 
@@ -8,35 +8,36 @@ from ...quantity import Array, check, quantity, series
 from .shape import Means, PressureShape, growing, means
 
 ACROSS = 5
-"""Cells from a bolt's axis to the edge of its pressure."""
+"""Smallest number of cells [1] from the axis of a bolt to the edge R of its pressure."""
 COARSE = 8
-"""Cells across the plate where nothing presses."""
+"""Number of cells [1] along the longer side of the plate where there is no pressure."""
 _PARTS = 8
-"""Parts of a cell's side in which the edge of a hole is seen."""
+"""Subdivisions of the side of a cell [1] for the area that a hole removes."""
 _ONE_ROW = 1e-6
-"""Bolts whose distances across the rows are below this part of the plate's size make one row [1]."""
+"""Extent of the bolts along y over the width of the plate [1] below which they count as one row."""
 EDGE = 1.0 + 1e-9
-"""Points nearer to an edge than this lie on it [1]: which side they are on does not hang on rounding."""
+"""Relative tolerance of comparisons with an edge: points on an edge then do not depend on round-off [1]."""
 _STEPS, _BALANCED = 50, 1e-13
-"""Most steps of Newton's method, and what remains of the moment of a bolt's pressure over its radius [1]."""
+"""Largest number of Newton iterations [1], and tolerance of the moment of a bolt's pressure over R [1]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BoltedPlate:
-    """Rectangular plate with bolts at any places; all of it but the holes may touch.
+    """Rectangular plate with bolts at any position; the contact is the plate without its holes.
 
-    A bolt presses on a disc around its axis. Its pressure falls as Fernlund's polynomial of fourth degree
-    (Trans. Chalmers Univ. Techn. 245, 1961): flat at the edge of the hole a, zero with two derivatives at R,
+    The pressure under each bolt is axisymmetric, Fernlund's fourth-degree polynomial (Trans. Chalmers Univ.
+    Techn. 245, 1961). It has zero slope at the edge a of the hole, and is zero with its first two derivatives
+    at the radius R,
 
         p(r) ~ (R - r)^3 (3 r + R - 4 a),   a <= r <= R.
 
-    R follows from the deformation cone under the head (VDI 2230, part 1): the pressure has the mean square of
-    the radius of an even one on the cone's section by the interface. benchmarks/plate_pressure.py compares it
-    with two elastic plates.
+    R follows from the deformation cone under the head (VDI 2230, part 1): the mean square radius of p equals
+    that of a uniform pressure on the section of the cone at the interface. benchmarks/plate_pressure.py
+    compares p with two elastic plates.
 
-    Where an edge of the plate or the hole of another bolt cuts a disc, the pressure is multiplied by an
-    exponential of the position, so that its resultant stays on the axis of its bolt.
-    Valid for flat plates of a thickness of about half a bolt diameter or more, which do not bend.
+    If an edge of the plate or another hole cuts the disc of a bolt, its pressure is multiplied by an
+    exponential function of the position, so that the resultant stays on the axis of the bolt.
+    Valid for flat plates that do not bend, with a thickness of at least about half a bolt diameter.
     """
 
     length: float = quantity("m", "length of the plate along x", gt=0.0)
@@ -64,10 +65,10 @@ class BoltedPlate:
 
     @property
     def reach(self) -> float:
-        """R [m], where the pressure of a bolt ends.
+        """Radius R [m] at which the pressure of a bolt ends.
 
-        The moments of the polynomial over s = R - a make the mean square of r a cubic equation of s with one
-        positive root, to which Newton's method falls from above.
+        The condition on the mean square radius is a cubic equation for s = R - a with one positive root.
+        Newton's method converges to it from above.
         """
         a, square = 0.5 * self.hole_diameter, 0.125 * (self.hole_diameter**2 + self.cone_diameter**2)
         first, second, third = 4 / 35 * a, 0.3 * a**2 - 0.1 * square, 0.4 * a * (a**2 - square)
@@ -83,7 +84,7 @@ class BoltedPlate:
 
     @property
     def centroid(self) -> Array:
-        """Of the contact (2) [m], from the middle of the plate."""
+        """Centroid (2) [m] of the contact, from the middle of the plate."""
         return np.asarray(-0.25 * np.pi * self.hole_diameter**2 / self.area * self.bolts.sum(axis=0))
 
     @property
@@ -93,9 +94,10 @@ class BoltedPlate:
 
     @property
     def rows(self) -> tuple[float, float]:
-        """N_b [1] and L_a [m] of two rows that would carry a moment as these bolts do, see `lever`.
+        """Bolts per row N_b [1] and distance L_a [m] of two rows that are equivalent for a moment about x.
 
-        Of one row: a force of N_b L_a of a bolt is the moment at which the contact opens at its edge.
+        See `equivalent_rows`. For bolts in one row N_b = 1, and N_b L_a times the force of a bolt is the
+        moment at which the contact starts to open at its edge.
         """
         if one_row(self):
             return 1.0, _lever_of_one_row(self, *unit_pressures(self))
@@ -103,29 +105,28 @@ class BoltedPlate:
 
     @property
     def coarse(self) -> Array:
-        """Cells along x and y (2) before any of them is halved both ways."""
+        """Number of cells (2) [1] along x and y before refinement."""
         plan = np.array([self.length, self.width])
         return np.asarray(np.maximum(np.ceil(COARSE * plan / np.max(plan)), 2.0))
 
     def shape(self) -> PressureShape:
-        """Shares, positions and pressures of the cells of the plate.
+        """Pressure distribution at the cells of the plate.
 
-        Under a moment M about x the force of bolt i changes by M y_i/sum(y_j^2), y from the centre of the
-        bolts: the plates stay plane, and of two equal rows each bolt gets M/(L_a N_b). Bolts of one row
-        cannot carry a moment by their forces: the pressure then grows in proportion to the distance from
-        their line.
+        A moment M about x changes the force of bolt i by M y_i/sum(y_j^2), y from the centre of the bolts
+        (the plates stay plane); for two equal rows this is M/(L_a N_b). Bolts in one row cannot carry a
+        moment by their forces: the pressure then changes linearly with the distance from their line.
         """
         share, position, unit = unit_pressures(self)
         equal, y = unit.mean(axis=0), self.bolts[:, 1]
         if one_row(self):
             distance = _lever_of_one_row(self, share, position, unit)
             return PressureShape(share, position, equal, distance * growing(share, position[:, 1], equal))
-        away, distance = y - y.mean(), lever(y)[1]
-        return PressureShape(share, position, equal, distance / (away @ away) * (away @ unit))
+        distances, distance = y - y.mean(), lever(y)[1]
+        return PressureShape(share, position, equal, distance / (distances @ distances) * (distances @ unit))
 
 
 def check_holes(plate: BoltedPlate) -> None:
-    """Raise ValueError for a hole that is not inside the plate or overlaps another one."""
+    """Raise ValueError if a hole is not inside the plate or overlaps another hole."""
     radius, bolts = 0.5 * plate.hole_diameter, plate.bolts
     half = 0.5 * np.array([plate.length, plate.width])
     for i, bolt in enumerate(bolts):
@@ -135,11 +136,11 @@ def check_holes(plate: BoltedPlate) -> None:
                 f"bolt {i + 1} at ({bolt[0]:g}, {bolt[1]:g}) m with a hole of {2.0 * radius:g} m leaves "
                 f"the plate; allowed are |x| < {x:g} m and |y| < {y:g} m"
             )
-        apart = np.hypot(*(bolts[:i] - bolt).T)
-        if apart.size and apart.min() <= plate.hole_diameter:
+        distances = np.hypot(*(bolts[:i] - bolt).T)
+        if distances.size and distances.min() <= plate.hole_diameter:
             raise ValueError(
-                f"the holes of bolts {apart.argmin() + 1} and {i + 1} overlap: hole_diameter = "
-                f"{plate.hole_diameter:g} m is outside (0, {apart.min():g}), their distance"
+                f"the holes of bolts {distances.argmin() + 1} and {i + 1} overlap: hole_diameter = "
+                f"{plate.hole_diameter:g} m is outside (0, {distances.min():g}), their distance"
             )
 
 
@@ -149,22 +150,24 @@ def one_row(plate: BoltedPlate) -> bool:
 
 
 def lever(y: Array) -> tuple[float, float]:
-    """N_b [1] and L_a [m] of bolts at y (n) [m]: of two rows of N_b bolts at the distance L_a, where a moment
-    changes the force of a bolt by as much as it does here at most.
+    """Equivalent pair of bolt rows: bolts per row N_b [1] and distance L_a [m], for bolts at y (n) [m].
 
-    N_b bolts are farthest from the centre, and L_a = sum(y^2)/(N_b max|y|); of two equal rows it is their
-    distance.
+    A moment changes the force of a bolt in the equivalent rows by as much as that of the outermost bolts. N_b
+    is the number of outermost bolts, L_a = sum(y^2)/(N_b max|y|), y from the centre. For two equal rows L_a
+    is their distance.
     """
-    away = y - np.mean(y)
-    far = float(np.max(np.abs(away)))
-    count = min(np.sum(np.isclose(side * away, far, rtol=1e-6)) or np.inf for side in (1.0, -1.0))
-    return float(count), float(np.sum(away * away) / (count * far))
+    distances = y - np.mean(y)
+    max_distance = float(np.max(np.abs(distances)))
+    count = min(
+        np.sum(np.isclose(side * distances, max_distance, rtol=1e-6)) or np.inf for side in (1.0, -1.0)
+    )
+    return float(count), float(np.sum(distances * distances) / (count * max_distance))
 
 
 def cells(plate: BoltedPlate) -> tuple[Array, Array]:
-    """Areas (n) [m2] and centroids (n, 2) [m] of the cells of the plate, holes cut out.
+    """Areas (n) [m2] and centroids (n, 2) [m] of the cells of the plate, without the holes.
 
-    Cells that a bolt presses on are halved until they are small against its disc.
+    Cells within the disc of a bolt are halved in both directions until they are small compared with R.
     """
     reach, plan, count = plate.reach, np.array([plate.length, plate.width]), plate.coarse
     index = np.stack(np.meshgrid(*(np.arange(n) for n in count), indexing="ij"), -1).reshape(-1, 2)
@@ -172,8 +175,8 @@ def cells(plate: BoltedPlate) -> tuple[Array, Array]:
     middle = (index + 0.5) * side - 0.5 * plan
     done_middle, done_side = [], []
     while middle.size:
-        pressed = _distance(plate, middle, side) * EDGE < reach
-        split = pressed & (np.max(side) > reach / ACROSS * EDGE)
+        is_loaded = _distance(plate, middle, side) * EDGE < reach
+        split = is_loaded & (np.max(side) > reach / ACROSS * EDGE)
         done_middle.append(middle[~split])
         done_side.append(np.broadcast_to(side, middle[~split].shape))
         side = 0.5 * side
@@ -183,39 +186,43 @@ def cells(plate: BoltedPlate) -> tuple[Array, Array]:
 
 
 def _distance(plate: BoltedPlate, middle: Array, side: Array) -> Array:
-    """Distance (n) [m] of the nearest bolt from cells of one size."""
-    beside = np.maximum(np.abs(middle[:, None, :] - plate.bolts) - 0.5 * side, 0.0)
-    return np.asarray(np.min(np.hypot(beside[..., 0], beside[..., 1]), axis=1))
+    """Distance (n) [m] from cells, with centres (n, 2) and sides (2) [m], to the nearest bolt axis."""
+    gap = np.maximum(np.abs(middle[:, None, :] - plate.bolts) - 0.5 * side, 0.0)
+    return np.asarray(np.min(np.hypot(gap[..., 0], gap[..., 1]), axis=1))
 
 
 def _solid(plate: BoltedPlate, middle: Array, side: Array) -> tuple[Array, Array]:
-    """Areas and centroids of cells without what the holes take; cells inside a hole are left out."""
-    part = (np.arange(_PARTS) + 0.5) / _PARTS - 0.5
-    grid = np.stack(np.meshgrid(part, part, indexing="ij"), -1).reshape(-1, 2)
+    """Areas [m2] and centroids [m] of cells without the holes; cells inside a hole are omitted."""
+    positions = (np.arange(_PARTS) + 0.5) / _PARTS - 0.5
+    grid = np.stack(np.meshgrid(positions, positions, indexing="ij"), -1).reshape(-1, 2)
     areas, centroids = np.prod(side, axis=1), middle.copy()
     reach = 0.5 * np.hypot(*side.T) + 0.5 * plate.hole_diameter
     for bolt in plate.bolts:
-        near = np.flatnonzero(np.hypot(*(middle - bolt).T) < reach)
-        points = middle[near, None, :] + grid * side[near, None, :]
+        affected = np.flatnonzero(np.hypot(*(middle - bolt).T) < reach)
+        points = middle[affected, None, :] + grid * side[affected, None, :]
         solid = np.hypot(*np.moveaxis(points - bolt, -1, 0)) > 0.5 * plate.hole_diameter * EDGE
-        kept = solid.mean(axis=1)
-        areas[near] *= kept
+        solid_share = solid.mean(axis=1)
+        areas[affected] *= solid_share
         total = np.sum(points * solid[..., None], axis=1)
-        centroids[near] = np.where(kept[:, None] > 0.0, total / np.maximum(solid.sum(1), 1)[:, None], 0.0)
-    there = areas > 0.0
-    return areas[there], centroids[there]
+        centroids[affected] = np.where(
+            solid_share[:, None] > 0.0, total / np.maximum(solid.sum(1), 1)[:, None], 0.0
+        )
+    remaining = areas > 0.0
+    return areas[remaining], centroids[remaining]
 
 
 def decay(plate: BoltedPlate, distance: Array) -> Array:
-    """Pressure of a bolt at distances [m] from its axis, over the one at the edge of its hole [1]."""
+    """Pressure of a bolt at distances (...) [m] from its axis, over that at the edge of its hole [1]."""
     a, R = 0.5 * plate.hole_diameter, plate.reach
     r = np.clip(distance, a, R)
     return np.asarray((R - r) ** 3 * (3.0 * r + R - 4.0 * a) / (R - a) ** 4)
 
 
 def unit_pressures(plate: BoltedPlate) -> tuple[Array, Array, Array]:
-    """Shares (k) [1] and positions (k, 2) [m] of the cells from their centroid, and the pressure (n, k) [1]
-    of each bolt over its mean on the whole area."""
+    """Shares (k) [1] and positions (k, 2) [m] of the cells, and pressures (n, k) [1] of each bolt.
+
+    Positions are relative to the centroid of the contact, pressures to their mean over the whole contact.
+    """
     areas, points = cells(plate)
     unit = np.array([_balanced(plate, areas, points - bolt) for bolt in plate.bolts])
     share = areas / areas.sum()
@@ -223,29 +230,30 @@ def unit_pressures(plate: BoltedPlate) -> tuple[Array, Array, Array]:
 
 
 def _lever_of_one_row(plate: BoltedPlate, share: Array, position: Array, unit: Array) -> float:
-    """L_a [m] of bolts in one row."""
+    """Length L_a [m] of bolts in one row, see `BoltedPlate.rows`."""
     equal = unit.mean(axis=0)
-    away = position[:, 1] - share @ (equal * position[:, 1])
-    reach = np.max(np.abs(away[equal > 0.0]))
-    return float(len(plate.x) * (share @ (equal * away**2)) / reach)
+    distances = position[:, 1] - share @ (equal * position[:, 1])
+    reach = np.max(np.abs(distances[equal > 0.0]))
+    return float(len(plate.x) * (share @ (equal * distances**2)) / reach)
 
 
 def _balanced(plate: BoltedPlate, areas: Array, offset: Array) -> Array:
-    """Pressures (n) [Pa] at offsets (n, 2) [m] from a bolt of 1 N: they sum to 1 N without a moment about it.
+    """Pressure (n) [Pa] of a bolt with 1 N at offsets (n, 2) [m] from its axis, without a moment about it.
 
-    Newton's method for the two factors of the exponential; the logarithm of the sum is convex in them.
+    Newton's method for the two coefficients of the exponential correction; the logarithm of the total force
+    is a convex function of them.
     """
     force = areas * decay(plate, np.hypot(*offset.T))
-    pressed = force > 0.0
-    weight, at = force[pressed], offset[pressed] / plate.reach
+    is_loaded = force > 0.0
+    weight, relative = force[is_loaded], offset[is_loaded] / plate.reach
     factor = np.zeros(2)
     for _ in range(_STEPS):
-        part = weight * np.exp(at @ factor)
-        part /= part.sum()
-        mean = part @ at
+        share = weight * np.exp(relative @ factor)
+        share /= share.sum()
+        mean = share @ relative
         if np.max(np.abs(mean)) < _BALANCED:
             break
-        factor -= np.linalg.solve((at - mean).T @ (part[:, None] * (at - mean)), mean)
+        factor -= np.linalg.solve((relative - mean).T @ (share[:, None] * (relative - mean)), mean)
     result = np.zeros_like(areas)
-    result[pressed] = part / areas[pressed]
+    result[is_loaded] = share / areas[is_loaded]
     return result

@@ -1,9 +1,10 @@
-"""Numbers that are the same to the bit on every processor, and what decides is taken from them alone.
+"""Arithmetic with the same result, to the bit, on every processor.
 
-Additions, products, quotients and square roots of IEEE 754 are rounded in one way everywhere. Exponentials,
-powers and angles are not, nor are products of matrices, in which a library chooses the order and may fuse an
-addition with its product. A search that compares such numbers ends elsewhere when their last bits differ. So
-searches take rounded numbers, combine them by the functions of this module, and numpy's elementary ones.
+Additions, products, quotients and square roots of IEEE 754 are rounded identically everywhere. Exponentials,
+powers and trigonometric functions are not. Nor are matrix products: a library chooses the order of additions
+and may fuse a product with an addition. A search that compares such numbers can end differently if their last
+bits differ. So searches use rounded numbers, and combine them only by functions of this module and elementary
+operations of numpy.
 """
 
 import numpy as np
@@ -13,48 +14,47 @@ from ...quantity import Array
 from .shape import PressureShape
 
 DIGITS = 20
-"""Binary digits to which numbers are rounded before they decide: 1e-6, far above what processors differ by
-and far below what a choice of points is accurate to."""
+"""Binary digits to which numbers are rounded before comparisons [1]. 2^-20 = 1e-6 is far above differences
+between processors, and far below the accuracy of a choice of points."""
 NEARLY_HALF = 0.5 - 0.01 * np.sqrt(2.0)
-"""What is added to a number of steps before it is cut off [1]."""
+"""Number added before truncation to an integer [1]: rounds up slightly above half a step."""
 TOGETHER = 22
-"""Rows of a symmetric matrix that are summed up to the same column [1]: all but half are found once."""
+"""Block size [1] for symmetric products: nearly half of the matrix is copied instead of computed."""
 NOTHING = 2.0**-46
-"""Part of the largest number [1] below which another one is zero: what rounding leaves of it."""
+"""Ratio to the largest number [1] below which a number counts as zero: round-off."""
 
 
 def rounded(shape: PressureShape, digits: int = DIGITS) -> PressureShape:
-    """A shape whose numbers are rounded to binary digits: shares to their own, all else to the
-    largest one's.
+    """Round a pressure distribution to binary digits: each share to its own, other numbers to the largest's.
 
-    Numbers are rounded up a little above the half of a step, where no short fraction lies, and alike on both
-    sides of zero: what mirrors itself goes on doing so.
+    Numbers are rounded up from slightly above half a step, where no short fraction lies. Rounding is
+    symmetric about zero, so a symmetric distribution stays symmetric.
     """
     mantissa, exponent = np.frexp(shape.share)
     share = np.ldexp(_steps(mantissa, digits), exponent)
-    others = (to_digits(values, digits) for values in (shape.position, shape.equal, shape.tilt))
-    return PressureShape(share, *others)
+    rounded_values = (to_digits(values, digits) for values in (shape.position, shape.equal, shape.tilt))
+    return PressureShape(share, *rounded_values)
 
 
 def to_digits(values: Array, digits: int = DIGITS) -> Array:
-    """Values rounded to binary digits of the largest one."""
+    """Round values to a number of binary digits of the largest one."""
     exponent = np.frexp(np.max(np.abs(values)))[1]
     return np.asarray(np.ldexp(_steps(np.ldexp(values, -exponent), digits), exponent))
 
 
 def ranks(values: Array) -> NDArray[np.intp]:
-    """Ranks (n) of values, the largest first; of equal ones in the order of their places."""
+    """Ranks (n) of values in descending order, after rounding; equal values keep their order."""
     return np.argsort(np.argsort(-to_digits(values), kind="stable"), kind="stable")
 
 
 def _steps(values: Array, digits: int) -> Array:
-    """Values up to 1 in steps of 2^-digits."""
+    """Round values of size up to 1 to multiples of 2^-digits."""
     sizes = np.floor(np.ldexp(np.abs(values), digits) + NEARLY_HALF)
     return np.asarray(np.ldexp(np.copysign(sizes, values) + 0.0, -digits))
 
 
 def cleared(shape: PressureShape) -> PressureShape:
-    """A shape in which what rounding left of a zero is one."""
+    """Replace round-off in a pressure distribution by exact zeros, see ZERO_RATIO."""
 
     def zeros(values: Array) -> Array:
         return np.where(np.abs(values) > NOTHING * np.max(np.abs(values)), values, 0.0)
@@ -64,17 +64,17 @@ def cleared(shape: PressureShape) -> PressureShape:
 
 
 def over(rows: Array, weights: Array) -> Array:
-    """Sums (m) of rows (m, n) times weights (n)."""
+    """Weighted sums (m) of rows (m, n) with weights (n)."""
     return np.asarray(np.add.reduce(rows * weights, axis=1))
 
 
 def combined(weights: Array, rows: Array) -> Array:
-    """Sum (n) of rows (m, n), each times its weight (m)."""
+    """Linear combination (n) of rows (m, n) with weights (m)."""
     return np.asarray(np.add.reduce(weights[:, None] * rows, axis=0))
 
 
 def product(one: Array, other: Array) -> Array:
-    """(m, k) sums over n of one (m, n) times other (k, n)."""
+    """Matrix product a b^T (m, k) of a (m, n) and b (k, n)."""
     out = np.zeros((len(one), len(other)))
     for left, right in zip(one.T.copy(), other.T.copy(), strict=True):
         out += left[:, None] * right
@@ -82,12 +82,12 @@ def product(one: Array, other: Array) -> Array:
 
 
 def squared(rows: Array) -> Array:
-    """(m, m) the same of rows (m, n) with themselves."""
+    """Symmetric matrix product a a^T (m, m) of rows a (m, n)."""
     columns, out = rows.T.copy(), np.empty((len(rows), len(rows)))
     for first in range(0, len(rows), TOGETHER):
         last = first + TOGETHER
-        for one, row in zip(out[first:last], rows[first:last], strict=True):
-            one[:last] = np.add.reduce(row[:, None] * columns[:, :last], axis=0)
+        for out_row, row in zip(out[first:last], rows[first:last], strict=True):
+            out_row[:last] = np.add.reduce(row[:, None] * columns[:, :last], axis=0)
         out[:first, first:last] = out[first:last, :first].T
     return out
 
@@ -98,22 +98,22 @@ def length(vector: Array) -> float:
 
 
 def powers(base: float, count: int) -> Array:
-    """base, base^2, ... (count)."""
+    """Powers base, base^2, ... (count)."""
     return np.multiply.accumulate(np.full(count, base))
 
 
 def root(values: Array, power: Array) -> Array:
-    """(m, n) the roots of values >= 0 (m, n) or (m, 1), of 2, 4, 8, ... 64 (m, 1)."""
+    """Roots values^(1/power) (m, n) of values >= 0 (m, n) or (m, 1); power (m, 1) of 2, 4, 8, ... 64."""
     return _again(np.sqrt, values, power)
 
 
 def to_power(values: Array, power: Array) -> Array:
-    """(m, n) values (m, n) to a power of 2, 4, 8, ... 64 (m, 1)."""
+    """Powers values^power (m, n) of values (m, n); power (m, 1) of 2, 4, 8, ... 64."""
     return _again(np.square, values, power)
 
 
 def _again(function: np.ufunc, values: Array, power: Array) -> Array:
-    """(m, n) the function of values, once, twice, ... for powers of 2, 4, ..."""
+    """Apply a function to values repeatedly: log2(power) times. Returns an array (m, n)."""
     out = np.broadcast_to(values, np.broadcast_shapes(values.shape, power.shape)).copy()
     for k in range(6):
         function(out, out=out, where=power > 2.0**k)

@@ -1,4 +1,4 @@
-"""What a bolted contact's pressure looks like, and the shape that comes as numbers: a nodal field."""
+"""Pressure distribution of a bolted contact: nodes, friction patches, nodal fields of parameter files."""
 
 from dataclasses import dataclass, replace
 from typing import TypeAlias
@@ -9,20 +9,20 @@ from numpy.typing import NDArray
 from ...quantity import Array, check, quantity, series
 
 BALANCE = 1e-6
-"""Largest error of a field's sums [1]: what the reduction of a field keeps."""
+"""Largest error of the sums and means of a nodal field [1]."""
 ALIKE = 11
-"""Decimals to which `equal` and `tilt` of nodes agree that symmetry makes equal: they are numbers near 1."""
+"""Decimals to which pressures of nodes are compared [1]: symmetric nodes then agree."""
 
 
 @dataclass(frozen=True, slots=True)
 class PressureShape:
-    """Nodes of the bolted contact and the pressure that unit bolt forces make.
+    """Pressure distribution of a bolted contact at n nodes.
 
-    share    : (n)    [1] part of the nominal area, sums to 1
-    position : (n, 2) [m] relative to the centroid of the contact
-    equal    : (n)    [1] pressure over mean pressure with equal bolt forces
-    tilt     : (n)    [1] the same for +1 on the row y > 0 and -1 on the row y < 0, over the mean
-                          pressure of one row
+    share         : (n)    [1] share of the node in the nominal area, with the sum 1
+    position      : (n, 2) [m] relative to the centroid of the contact
+    preload_shape : (n)    [1] pressure over mean pressure for equal bolt forces
+    moment_shape  : (n)    [1] pressure by a moment about x: bolt forces +1 in the row y > 0 and -1 in the row
+                    y < 0, over the mean pressure of one row
     """
 
     share: Array
@@ -31,17 +31,17 @@ class PressureShape:
     tilt: Array
 
     def part(self, nodes: "slice | NDArray[np.intp]") -> "PressureShape":
-        """Some of the nodes, with their shares."""
+        """Distribution at a subset of the nodes, with unchanged shares."""
         return PressureShape(self.share[nodes], self.position[nodes], self.equal[nodes], self.tilt[nodes])
 
     def as_patches(self) -> "FrictionPatches":
-        """Each node as a patch of friction without a size of its own."""
+        """Friction patches, one per node, with the radius 0."""
         return FrictionPatches(self.share, self.position, self.equal, self.tilt, np.zeros_like(self.share))
 
     def merged(self, moment: bool = True) -> "MergedShape":
-        """Nodes that have the same pressure under every preload and moment as one.
+        """Merge nodes that have the same pressure at every preload and moment.
 
-        Without `moment` they are those that have it under every preload.
+        with_moment : False: merge nodes with the same pressure at every preload, without moment
         """
         tilt = self.tilt if moment else 0.0 * self.tilt
         keys = np.round(np.column_stack([self.equal, tilt]), ALIKE)
@@ -53,36 +53,38 @@ class PressureShape:
 
 @dataclass(frozen=True, slots=True)
 class FrictionPatches(PressureShape):
-    """Patches that carry the friction of a contact, each for the nodes around it.
+    """Patches that represent the friction of a contact, each for the nodes around it.
 
-    radius : (n) [m] of the circle around a patch on which its sliders stand, below 0 where they are opposite
+    radius : (n) [m] radius of the circle around the centre of a patch on which its sliders lie; negative: the
+        circle is turned by 180 degrees
     """
 
     radius: Array
 
 
 def growing(share: Array, y: Array, equal: Array) -> Array:
-    """What a moment of 1 N.m on 1 m2 adds to the pressure (n) [1/m] if it grows from the centre of pressure.
+    """Pressure (n) [1/m] by a moment of 1 N.m on an area of 1 m2, linear in the distance from the centre.
 
-    share, y, equal are (n) of a PressureShape. equal (y - y_p)/sum(share equal (y - y_p)^2), y_p the centre.
+    It is p (y - y_p)/sum(share p (y - y_p)^2), with p = preload_shape and y_p the centre of pressure.
+    share, y [m], preload_shape : (n) as in PressureShape
 
-    Raises ValueError if all nodes that touch have the same y.
+    Raises ValueError if all nodes in contact have the same y.
     """
     force = share * equal
-    away = y - force @ y
-    spread = float(force @ away**2)
-    if not spread > 0.0:
+    distances = y - force @ y
+    second_moment = float(force @ distances**2)
+    if not second_moment > 0.0:
         raise ValueError("all nodes that touch have the same y, expected a contact across the bolt rows")
-    return np.asarray(equal * away / spread)
+    return np.asarray(equal * distances / second_moment)
 
 
 BOLT_MEANS = ("bolt_x", "bolt_y", "bolt_x2", "bolt_y2", "bolt_xy")
-"""What a field says of its bolts, in the order of `means`."""
+"""Entries of a nodal field for the positions of its bolts, in the order of `position_means`."""
 Means: TypeAlias = tuple[float, float, float, float, float]
 
 
 def means(points: Array) -> Means:
-    """Means of x, y, x^2, y^2 and x y of points (n, 2)."""
+    """Means of x, y [m], x^2, y^2 and x y [m2] of points (n, 2) [m]."""
     x, y = points.T
     first, second, xx, yy, xy = (float(np.mean(values)) for values in (x, y, x * x, y * y, x * y))
     return first, second, xx, yy, xy
@@ -90,9 +92,9 @@ def means(points: Array) -> Means:
 
 @dataclass(frozen=True, slots=True)
 class MergedShape:
-    """Nodes of different pressure; share, equal and tilt as in PressureShape.
+    """Nodes with different pressures, merged from a PressureShape; share and pressures (n) [1] as there.
 
-    x2, y2 : (n) [m2] means of the squared distances from the centroid along and across the bolt rows
+    x2, y2 : (n) [m2] mean squared distances from the centroid along and across the bolt rows
     """
 
     share: Array
@@ -103,15 +105,15 @@ class MergedShape:
 
 
 _POINTS = ("share", "x", "y", "equal", "tilt")
-"""What a point of a field has."""
+"""Entries of a nodal field for its points."""
 PATCH = "patch_"
-"""Begins the names of what a patch has."""
+"""Prefix of the entries of a nodal field for its friction patches."""
 PATCHES = 22
-"""Most points that carry the friction of a joint [1], each with sliders."""
+"""Largest number of friction patches of a joint [1], each with sliders."""
 
 
 def as_lists(shape: PressureShape) -> dict[str, tuple[float, ...]]:
-    """What a field has of its points, or of its patches."""
+    """{entry of a nodal field: values} for the points, or for friction patches."""
     rows = dict(zip(_POINTS, (shape.share, *shape.position.T, shape.equal, shape.tilt), strict=True))
     if isinstance(shape, FrictionPatches):
         rows = {PATCH + name: row for name, row in (rows | {"radius": shape.radius}).items()}
@@ -120,32 +122,49 @@ def as_lists(shape: PressureShape) -> dict[str, tuple[float, ...]]:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NodalField:
-    """The pressure of a bolted contact at points that stand for a nodal contact result.
+    """Pressure of a bolted contact at points that represent the result of a contact analysis.
 
-    Raises ValueError if the points, or the patches of friction where there are some, are not equally many in
-    every entry or do not balance: shares that sum to 1, the centroid at the origin, a mean of 1 of `equal`
-    and of 0 of `tilt`, within BALANCE.
+    Optional friction patches represent the friction.
+
+    Raises ValueError if the entries of the points, or of the patches, have different lengths or do not
+    balance. Balanced within BALANCE_TOLERANCE: the sum of shares is 1, the centroid is the origin, the mean
+    of `equal` is 1, the mean of `tilt` is 0.
     """
 
-    share: tuple[float, ...] = series("1", "parts of the nominal area, which sum to 1", gt=0.0)
+    share: tuple[float, ...] = series("1", "shares of the points in the nominal area, which sum to 1", gt=0.0)
     x: tuple[float, ...] = series("m", "positions along the bolt rows, from the centroid")
     y: tuple[float, ...] = series("m", "positions across the bolt rows, from the centroid")
     equal: tuple[float, ...] = series("1", "pressures over mean pressure with equal bolt forces", ge=0.0)
     tilt: tuple[float, ...] = series(
         "1", "pressures that a moment adds, over the mean pressure of one row's share of it"
     )
-    patch_share: tuple[float, ...] = series("1", "the same of the patches of friction", gt=0.0, optional=True)
-    patch_x: tuple[float, ...] = series("m", "places of the patches along the bolt rows", optional=True)
-    patch_y: tuple[float, ...] = series("m", "places of the patches across the bolt rows", optional=True)
-    patch_equal: tuple[float, ...] = series("1", "`equal` of the patches", ge=0.0, optional=True)
-    patch_tilt: tuple[float, ...] = series("1", "`tilt` of the patches", optional=True)
-    patch_radius: tuple[float, ...] = series(
-        "m",
-        "radii of the circles around the patches on which their sliders stand, below 0 where opposite",
+    patch_share: tuple[float, ...] = series(
+        "1", "shares of the friction patches in the nominal area, which sum to 1", gt=0.0, optional=True
+    )
+    patch_x: tuple[float, ...] = series(
+        "m", "positions of the friction patches along the bolt rows, from the centroid", optional=True
+    )
+    patch_y: tuple[float, ...] = series(
+        "m", "positions of the friction patches across the bolt rows, from the centroid", optional=True
+    )
+    patch_equal: tuple[float, ...] = series(
+        "1",
+        "pressures at the friction patches over mean pressure with equal bolt forces",
+        ge=0.0,
         optional=True,
     )
-    bolt_x: float = quantity("m", "mean of the bolts' places along the rows, from the centroid", default=0.0)
-    bolt_y: float = quantity("m", "mean of the bolts' places across the rows, from the centroid", default=0.0)
+    patch_tilt: tuple[float, ...] = series(
+        "1", "pressures at the friction patches that a moment adds, as tilt", optional=True
+    )
+    patch_radius: tuple[float, ...] = series(
+        "m",
+        "radii of the circles on which the sliders of a patch lie; negative: circle turned by 180 degrees",
+        optional=True,
+    )
+    bolt_x: float = quantity("m", "mean position of the bolts along the rows, from the centroid", default=0.0)
+    bolt_y: float = quantity(
+        "m", "mean position of the bolts across the rows, from the centroid", default=0.0
+    )
     bolt_x2: float = quantity(
         "m2", "mean square of the bolts' distances along the rows, from the centroid", ge=0.0, default=0.0
     )
@@ -153,7 +172,7 @@ class NodalField:
         "m2", "mean square of the bolts' distances across the rows, from the centroid", ge=0.0, default=0.0
     )
     bolt_xy: float = quantity(
-        "m2", "mean product of the bolts' places along and across the rows", default=0.0
+        "m2", "mean product of the bolts' positions along and across the rows, from the centroid", default=0.0
     )
 
     def __post_init__(self) -> None:
@@ -164,16 +183,16 @@ class NodalField:
             raise ValueError(f"patch_share has {count} numbers, expected at most {PATCHES}")
 
     def _check_points(self, prefix: str) -> None:
-        """Raise ValueError if the points, or the patches, do not balance."""
+        """Raise ValueError if the points (prefix "") or the patches do not balance, see the class."""
         count = len(getattr(self, f"{prefix}share"))
         for name in (*_POINTS, "radius") if prefix and self.patch_radius else _POINTS:
-            if (given := len(getattr(self, prefix + name))) != count:
+            if (length := len(getattr(self, prefix + name))) != count:
                 raise ValueError(
-                    f"{prefix}{name} has {given} numbers, expected as many as {prefix}share has: {count}"
+                    f"{prefix}{name} has {length} numbers, expected as many as {prefix}share has: {count}"
                 )
         if not count:
             return
-        shape, what = self._points(prefix), "of the patches" if prefix else ""
+        shape, owner = self._points(prefix), "of the patches" if prefix else ""
         reach = float(np.max(np.abs(shape.position)))
         x, y = shape.share @ shape.position
         steep = max(float(np.max(np.abs(shape.tilt))), 1.0)
@@ -185,7 +204,7 @@ class NodalField:
             (f"the mean of {prefix}tilt", float(shape.share @ shape.tilt), 0.0, steep),
         ):
             if not abs(value - expected) <= BALANCE * size:
-                text = f"{text} {what}".rstrip() if "centroid" in text else text
+                text = f"{text} {owner}".rstrip() if "centroid" in text else text
                 raise ValueError(f"{text} is {value:.9g}, expected {expected:g} within {BALANCE * size:.1g}")
 
     @property
@@ -194,11 +213,11 @@ class NodalField:
         return self.bolt_x, self.bolt_y, self.bolt_x2, self.bolt_y2, self.bolt_xy
 
     def shape(self) -> PressureShape:
-        """The points as arrays."""
+        """Pressure distribution at the points."""
         return self._points("")
 
     def patches(self) -> FrictionPatches | None:
-        """Those of its friction, where the field has some of all its nodes."""
+        """Friction patches; None if the field states none."""
         if not self.patch_share:
             return None
         patches = self._points(PATCH).as_patches()

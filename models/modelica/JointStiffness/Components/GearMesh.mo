@@ -16,9 +16,9 @@ model GearMesh "Mesh of two gear wheels with rough flanks, bending teeth and bac
     annotation (Placement(transformation(extent={{90,-10},{110,10}})));
   Modelica.Units.SI.Position along(nominal=1e-4) "Way of both base circles towards each other";
   Modelica.Units.SI.Velocity v(nominal=0.1) "Its rate";
-  Modelica.Units.SI.Position s_rel(nominal=1e-5) "r_b1 phi1 + r_b2 phi2 beyond half the backlash, 0 inside";
+  Modelica.Units.SI.Position s_rel(nominal=1e-5) "deflection r_b1 phi1 + r_b2 phi2 beyond half the backlash, 0 within it";
   Real phase "Place in the mesh cycle";
-  Real pairs "tooth pairs in contact at the present phase, once flanks touch";
+  Real pairs "tooth pairs in contact at the present phase, if the flanks touch";
   Modelica.Units.SI.Force f(nominal=1e3) "normal force of the mesh, positive on the driving flanks";
   Modelica.Units.SI.TranslationalSpringConstant K(nominal=1e8) "stiffness df/ds_rel at the present phase of the mesh cycle";
   Modelica.Units.SI.Energy E(nominal=1e-2) "elastic energy of the mesh";

@@ -6,27 +6,27 @@ model HarmonicDriveSpring "Torsional spring and damper of a harmonic drive betwe
   parameter Modelica.Units.SI.RotationalDampingConstant d(min=0) = data.d "viscous damping at the output";
   parameter Modelica.Units.SI.Torque hysteresis_friction(min=0) = data.hysteresis_friction "Friction of its hysteresis; 0: none"
     annotation (Dialog(tab="Friction"));
-  parameter Modelica.Units.SI.RotationalSpringConstant hysteresis_stiffness(min=0) = data.hysteresis_stiffness "extra stiffness of tiny motions, before friction slips"
+  parameter Modelica.Units.SI.RotationalSpringConstant hysteresis_stiffness(min=0) = data.hysteresis_stiffness "extra stiffness for small motions, before friction slips"
     annotation (Dialog(tab="Friction"));
   parameter Modelica.Units.SI.Torque friction_coulomb(min=0) = data.friction_coulomb "dry friction at the wave generator"
     annotation (Dialog(tab="Friction"));
-  parameter Modelica.Units.SI.Torque friction_stribeck(min=0) = data.friction_stribeck "further dry friction at rest, which speed takes away"
+  parameter Modelica.Units.SI.Torque friction_stribeck(min=0) = data.friction_stribeck "extra dry friction at standstill that vanishes with speed (Stribeck)"
     annotation (Dialog(tab="Friction"));
-  parameter Modelica.Units.SI.AngularVelocity stribeck_speed(min=Modelica.Constants.small) = data.stribeck_speed "speed of the wave generator that leaves 1/e of friction_stribeck"
+  parameter Modelica.Units.SI.AngularVelocity stribeck_speed(min=Modelica.Constants.small) = data.stribeck_speed "speed of the wave generator at which friction_stribeck has decreased to 1/e"
     annotation (Dialog(tab="Friction"));
-  parameter Modelica.Units.SI.RotationalDampingConstant friction_viscous(min=0) = data.friction_viscous "friction at the wave generator over its speed"
+  parameter Modelica.Units.SI.RotationalDampingConstant friction_viscous(min=0) = data.friction_viscous "viscous friction coefficient at the wave generator"
     annotation (Dialog(tab="Friction"));
   parameter Real load_loss(min=0, unit="1") = data.load_loss "dry friction at the wave generator over the torque transmitted to it"
     annotation (Dialog(tab="Friction"));
-  parameter Real load_loss_back(unit="1") = data.load_loss_back "the same where the load drives the motor; negative: as load_loss"
+  parameter Real load_loss_back(unit="1") = data.load_loss_back "load_loss while the load drives the motor; negative: equal to load_loss"
     annotation (Dialog(tab="Friction"));
   parameter Modelica.Units.SI.Angle presliding(min=Modelica.Constants.small) = data.presliding "angle of the wave generator over which dry friction builds up to 1 - 1/e"
     annotation (Dialog(tab="Friction"));
   parameter Real temperature_factor(min=0, unit="1") = data.temperature_factor "factor of all friction"
     annotation (Dialog(tab="Friction"));
-  parameter Modelica.Units.SI.LinearTemperatureCoefficient viscous_temperature_coefficient = data.viscous_temperature_coefficient "fall of friction_viscous per kelvin above 293.15 K, over its value"
+  parameter Modelica.Units.SI.LinearTemperatureCoefficient viscous_temperature_coefficient = data.viscous_temperature_coefficient "relative decrease of friction_viscous per kelvin above 293.15 K"
     annotation (Dialog(tab="Friction"));
-  parameter Modelica.Units.SI.LinearTemperatureCoefficient dry_temperature_coefficient = data.dry_temperature_coefficient "fall of dry friction per kelvin above 293.15 K, over its value"
+  parameter Modelica.Units.SI.LinearTemperatureCoefficient dry_temperature_coefficient = data.dry_temperature_coefficient "relative decrease of dry friction per kelvin above 293.15 K"
     annotation (Dialog(tab="Friction"));
   parameter Boolean useHeatPort = false "= true, if heatPort is enabled: it gives the temperature and takes lossPower"
     annotation (Evaluate=true, HideResult=true, choices(checkBox=true), Dialog(tab="Friction"));
@@ -36,11 +36,11 @@ model HarmonicDriveSpring "Torsional spring and damper of a harmonic drive betwe
     annotation (Dialog(tab="Kinematic error"));
   parameter Modelica.Units.SI.Angle error_1_phase = data.error_1_phase "phase of error_1 at phi1 = 0"
     annotation (Dialog(tab="Kinematic error"));
-  parameter Modelica.Units.SI.Angle error_2 = data.error_2 "the same with two periods per turn"
+  parameter Modelica.Units.SI.Angle error_2 = data.error_2 "kinematic error at the output, amplitude, two periods per turn"
     annotation (Dialog(tab="Kinematic error"));
   parameter Modelica.Units.SI.Angle error_2_phase = data.error_2_phase "phase of error_2 at phi1 = 0"
     annotation (Dialog(tab="Kinematic error"));
-  parameter Modelica.Units.SI.Angle error_4 = data.error_4 "the same with four periods per turn"
+  parameter Modelica.Units.SI.Angle error_4 = data.error_4 "kinematic error at the output, amplitude, four periods per turn"
     annotation (Dialog(tab="Kinematic error"));
   parameter Modelica.Units.SI.Angle error_4_phase = data.error_4_phase "phase of error_4 at phi1 = 0"
     annotation (Dialog(tab="Kinematic error"));
@@ -54,7 +54,7 @@ model HarmonicDriveSpring "Torsional spring and damper of a harmonic drive betwe
     annotation (Placement(transformation(extent={{90,-10},{110,10}})));
   Modelica.Thermal.HeatTransfer.Interfaces.HeatPort_a heatPort(T=temperature, Q_flow=-lossPower) if useHeatPort "Lubricant"
     annotation (Placement(transformation(extent={{-10,-110},{10,-90}})));
-  Modelica.Units.SI.Temperature temperature "of the lubricant";
+  Modelica.Units.SI.Temperature temperature "temperature of the lubricant";
   Modelica.Units.SI.Angle phi_rel(start=0, nominal=1e-3, stateSelect=stateSelect)
     "wind-up at the output, phi2 - phi1/ratio - phi_error (= flange_b.phi - flange_a.phi/ratio - phi_error)";
   Modelica.Units.SI.Angle phi_error(nominal=1e-4) "kinematic error at the output, a function of phi1";
@@ -63,9 +63,9 @@ model HarmonicDriveSpring "Torsional spring and damper of a harmonic drive betwe
   Modelica.Units.SI.Torque tau_h(nominal=0.1) "Torque of the hysteresis";
   Modelica.Units.SI.Torque tau(nominal=5) "Torque at the output (= flange_b.tau)";
   Modelica.Units.SI.AngularVelocity w1 "Speed of the wave generator; 0 with use_damping=false";
-  Modelica.Units.SI.Torque tau_friction(nominal=0.01) "friction of the wave generator, positive where it turns so";
+  Modelica.Units.SI.Torque tau_friction(nominal=0.01) "friction torque at the wave generator, positive against positive rotation";
   Modelica.Units.SI.RotationalSpringConstant K_WTS(nominal=5e3) "tangent stiffness dT/dphi of the midline at the present wind-up";
-  Modelica.Units.SI.RotationalSpringConstant K_TS(nominal=5e3) "its part of the contact pair: 1/K_WTS = 1/K_FTS + 1/K_TS";
+  Modelica.Units.SI.RotationalSpringConstant K_TS(nominal=5e3) "stiffness of the contact pair: 1/K_WTS = 1/K_FTS + 1/K_TS";
   Modelica.Units.SI.Power lossPower "Power dissipated by damper and friction";
 protected
   constant Real layer=1e-3 "Width of the layer beyond its friction in which a slider of the wave generator ceases to stick, over that friction";

@@ -75,9 +75,9 @@ partial block BoltedJoint "Bolted joint under uneven pressure: motion in, force 
     annotation (Placement(transformation(extent={{100,-75},{120,-55}})));
   Modelica.Blocks.Interfaces.RealOutput C_loop(unit="N.s/m") "its viscous equivalent, as C_xx is that of eta_t"
     annotation (Placement(transformation(extent={{100,-82},{120,-62}})));
-  Modelica.Blocks.Interfaces.RealOutput step_at_once(unit="s") "largest stable step if the master passes the force on before the body steps: along x, y or z, with `mass` on it"
+  Modelica.Blocks.Interfaces.RealOutput step_at_once(unit="s") "largest stable step if the master passes the new force on before the body steps: along x, y or z, with `mass` on it"
     annotation (Placement(transformation(extent={{100,-89},{120,-69}})));
-  Modelica.Blocks.Interfaces.RealOutput step_side_by_side(unit="s") "largest stable step if it steps all side by side and lag_b = 1; 0: none is: along x, y or z, with `mass` on it"
+  Modelica.Blocks.Interfaces.RealOutput step_side_by_side(unit="s") "largest stable step for a parallel (Jacobi) master with lag_b = 1; 0: unstable at any step: along x, y or z, with `mass` on it"
     annotation (Placement(transformation(extent={{100,-96},{120,-76}})));
   annotation (
     Icon(graphics={Text(extent={{-90,30},{90,-30}}, textColor={43,58,74}, textString="FMU")}),

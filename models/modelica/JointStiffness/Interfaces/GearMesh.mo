@@ -13,19 +13,19 @@ partial block GearMesh "Mesh of two gear wheels with rough flanks and backlash: 
     annotation (Placement(transformation(extent={{100,70},{120,90}})));
   Modelica.Blocks.Interfaces.RealOutput tau2(unit="N.m") "torque of the mesh on wheel 2"
     annotation (Placement(transformation(extent={{100,50},{120,70}})));
-  Modelica.Blocks.Interfaces.RealOutput s_rel(unit="m") "r_b1 phi1 + r_b2 phi2 beyond half the backlash, 0 inside"
+  Modelica.Blocks.Interfaces.RealOutput s_rel(unit="m") "deflection r_b1 phi1 + r_b2 phi2 beyond half the backlash, 0 within it"
     annotation (Placement(transformation(extent={{100,30},{120,50}})));
   Modelica.Blocks.Interfaces.RealOutput f(unit="N") "normal force of the mesh, positive on the driving flanks"
     annotation (Placement(transformation(extent={{100,10},{120,30}})));
   Modelica.Blocks.Interfaces.RealOutput K(unit="N/m") "stiffness df/ds_rel at the present phase of the mesh cycle"
     annotation (Placement(transformation(extent={{100,-10},{120,10}})));
-  Modelica.Blocks.Interfaces.RealOutput pairs(unit="1") "tooth pairs in contact at the present phase, once flanks touch"
+  Modelica.Blocks.Interfaces.RealOutput pairs(unit="1") "tooth pairs in contact at the present phase, if the flanks touch"
     annotation (Placement(transformation(extent={{100,-30},{120,-10}})));
   Modelica.Blocks.Interfaces.RealOutput E(unit="J") "elastic energy of the mesh"
     annotation (Placement(transformation(extent={{100,-50},{120,-30}})));
-  Modelica.Blocks.Interfaces.RealOutput step_at_once(unit="s") "largest stable step if the master passes the force on before the body steps: with inertia1, inertia2, K, d"
+  Modelica.Blocks.Interfaces.RealOutput step_at_once(unit="s") "largest stable step if the master passes the new force on before the body steps: with inertia1, inertia2, K, d"
     annotation (Placement(transformation(extent={{100,-70},{120,-50}})));
-  Modelica.Blocks.Interfaces.RealOutput step_side_by_side(unit="s") "largest stable step if it steps all side by side and lag_b = 1; 0: none is: with inertia1, inertia2, K, d"
+  Modelica.Blocks.Interfaces.RealOutput step_side_by_side(unit="s") "largest stable step for a parallel (Jacobi) master with lag_b = 1; 0: unstable at any step: with inertia1, inertia2, K, d"
     annotation (Placement(transformation(extent={{100,-90},{120,-70}})));
   annotation (
     Icon(graphics={Text(extent={{-90,30},{90,-30}}, textColor={43,58,74}, textString="FMU")}),

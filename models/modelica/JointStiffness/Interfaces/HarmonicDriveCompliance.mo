@@ -7,9 +7,9 @@ partial block HarmonicDriveCompliance "Wind-up of a harmonic drive with the wave
     annotation (Placement(transformation(extent={{100,67},{120,87}})));
   Modelica.Blocks.Interfaces.RealOutput K_WTS(unit="N.m/rad") "tangent stiffness dT/dphi of the midline at the present wind-up"
     annotation (Placement(transformation(extent={{100,41},{120,61}})));
-  Modelica.Blocks.Interfaces.RealOutput K_TS(unit="N.m/rad") "its part of the contact pair: 1/K_WTS = 1/K_FTS + 1/K_TS"
+  Modelica.Blocks.Interfaces.RealOutput K_TS(unit="N.m/rad") "stiffness of the contact pair: 1/K_WTS = 1/K_FTS + 1/K_TS"
     annotation (Placement(transformation(extent={{100,16},{120,36}})));
-  Modelica.Blocks.Interfaces.RealOutput K_FTS(unit="N.m/rad") "its part of circular spline and flexspline"
+  Modelica.Blocks.Interfaces.RealOutput K_FTS(unit="N.m/rad") "stiffness of circular spline and flexspline"
     annotation (Placement(transformation(extent={{100,-10},{120,10}})));
   Modelica.Blocks.Interfaces.RealOutput K_TS_pair(unit="N.m/rad") "K_TS over drive_scale, if any: scale of Hu 2023, Fig. 11"
     annotation (Placement(transformation(extent={{100,-36},{120,-16}})));

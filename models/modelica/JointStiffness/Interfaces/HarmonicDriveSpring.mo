@@ -9,7 +9,7 @@ partial block HarmonicDriveSpring "Torsional spring and damper of a harmonic dri
     annotation (Placement(transformation(extent={{-140,-20},{-100,20}})));
   Modelica.Blocks.Interfaces.RealInput w2(unit="rad/s") "speed of the output flange"
     annotation (Placement(transformation(extent={{-140,-56},{-100,-16}})));
-  Modelica.Blocks.Interfaces.RealInput temperature(unit="K", min=0) "of the lubricant"
+  Modelica.Blocks.Interfaces.RealInput temperature(unit="K", min=0) "temperature of the lubricant"
     annotation (Placement(transformation(extent={{-140,-92},{-100,-52}})));
   Modelica.Blocks.Interfaces.RealOutput tau1(unit="N.m") "torque on flange 1, tau (1/ratio + dphi_error/dphi1) - tau_friction"
     annotation (Placement(transformation(extent={{100,74},{120,94}})));
@@ -21,9 +21,9 @@ partial block HarmonicDriveSpring "Torsional spring and damper of a harmonic dri
     annotation (Placement(transformation(extent={{100,35},{120,55}})));
   Modelica.Blocks.Interfaces.RealOutput K_WTS(unit="N.m/rad") "tangent stiffness dT/dphi of the midline at the present wind-up"
     annotation (Placement(transformation(extent={{100,22},{120,42}})));
-  Modelica.Blocks.Interfaces.RealOutput K_TS(unit="N.m/rad") "its part of the contact pair: 1/K_WTS = 1/K_FTS + 1/K_TS"
+  Modelica.Blocks.Interfaces.RealOutput K_TS(unit="N.m/rad") "stiffness of the contact pair: 1/K_WTS = 1/K_FTS + 1/K_TS"
     annotation (Placement(transformation(extent={{100,9},{120,29}})));
-  Modelica.Blocks.Interfaces.RealOutput K_FTS(unit="N.m/rad") "its part of circular spline and flexspline"
+  Modelica.Blocks.Interfaces.RealOutput K_FTS(unit="N.m/rad") "stiffness of circular spline and flexspline"
     annotation (Placement(transformation(extent={{100,-4},{120,16}})));
   Modelica.Blocks.Interfaces.RealOutput K_TS_pair(unit="N.m/rad") "K_TS over drive_scale, if any: scale of Hu 2023, Fig. 11"
     annotation (Placement(transformation(extent={{100,-16},{120,4}})));
@@ -31,13 +31,13 @@ partial block HarmonicDriveSpring "Torsional spring and damper of a harmonic dri
     annotation (Placement(transformation(extent={{100,-29},{120,-9}})));
   Modelica.Blocks.Interfaces.RealOutput E_loss(unit="J") "work turned into heat by hysteresis and dry friction since initialization"
     annotation (Placement(transformation(extent={{100,-42},{120,-22}})));
-  Modelica.Blocks.Interfaces.RealOutput tau_friction(unit="N.m") "friction of the wave generator, positive where it turns so"
+  Modelica.Blocks.Interfaces.RealOutput tau_friction(unit="N.m") "friction torque at the wave generator, positive against positive rotation"
     annotation (Placement(transformation(extent={{100,-55},{120,-35}})));
   Modelica.Blocks.Interfaces.RealOutput phi_error(unit="rad") "kinematic error at the output, a function of phi1"
     annotation (Placement(transformation(extent={{100,-68},{120,-48}})));
-  Modelica.Blocks.Interfaces.RealOutput step_at_once(unit="s") "largest stable step if the master passes the force on before the body steps: with inertia1, inertia2, K_WTS, d"
+  Modelica.Blocks.Interfaces.RealOutput step_at_once(unit="s") "largest stable step if the master passes the new force on before the body steps: with inertia1, inertia2, K_WTS, d"
     annotation (Placement(transformation(extent={{100,-81},{120,-61}})));
-  Modelica.Blocks.Interfaces.RealOutput step_side_by_side(unit="s") "largest stable step if it steps all side by side and lag_b = 1; 0: none is: with inertia1, inertia2, K_WTS, d"
+  Modelica.Blocks.Interfaces.RealOutput step_side_by_side(unit="s") "largest stable step for a parallel (Jacobi) master with lag_b = 1; 0: unstable at any step: with inertia1, inertia2, K_WTS, d"
     annotation (Placement(transformation(extent={{100,-94},{120,-74}})));
   annotation (
     Icon(graphics={Text(extent={{-90,30},{90,-30}}, textColor={43,58,74}, textString="FMU")}),

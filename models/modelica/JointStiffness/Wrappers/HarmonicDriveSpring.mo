@@ -1,6 +1,6 @@
 within JointStiffness.Wrappers;
 model HarmonicDriveSpring "HarmonicDriveSpring as an imported FMU, between flanges"
-  parameter Modelica.Units.SI.ThermodynamicTemperature temperature=293.15 "of the lubricant";
+  parameter Modelica.Units.SI.ThermodynamicTemperature temperature=293.15 "temperature of the lubricant";
   replaceable JointStiffness.Interfaces.HarmonicDriveSpring fmu "Redeclare as the imported FMU"
     annotation (Placement(transformation(extent={{-20,-20},{20,20}})));
   Modelica.Mechanics.Rotational.Interfaces.Flange_a flange1 "wave generator (motor)"
