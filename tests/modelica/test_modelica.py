@@ -403,7 +403,7 @@ def test_bolted_component_gives_the_forces_of_the_package(rumoca: Any, bolted: B
 
 
 def test_bolts_of_the_component_lift_off_as_those_of_the_package(rumoca: Any, tmp_path: Path):
-    """Rows lift off one after the other: the moment has unloaded one of them. Stiff bolts, so that the contact
+    """Rows lift off one after the other, as the moment loads them unevenly. Stiff bolts, so that the contact
     is far from its end."""
     file = default("bolted_joint").with_values({"bolt_stiffness": 1e10}, "user", "test")
     params, stated = tmp_path / "stiff.toml", ["--preload", "15e3", "--moment", "4500"]

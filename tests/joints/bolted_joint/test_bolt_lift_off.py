@@ -221,7 +221,7 @@ def test_a_closed_elastic_cycle_through_lift_off_has_no_work(file):
 
 
 def test_without_preload_bolts_are_at_lift_off(spring):
-    """No forces; half of their stiffness, the mean of opening and closing. A bolt that opens pulls at once."""
+    """No forces, and half of their stiffness: the mean of both sides. Bolts of a joint that opens pull."""
     out, _ = at(spring, *STILL, preload=0.0)
     full, _ = at(spring, *STILL, preload=EMBEDDING + 1e-3)  # hardly a contact
     assert [abs(out[name]) for name in FORCES] == [0.0] * 6

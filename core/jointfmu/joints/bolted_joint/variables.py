@@ -70,7 +70,10 @@ def _whole(model: Model, joint: Bolted) -> Model:
     """
     if not joint.elastic:
         return model
-    meaning = "working force of bolt {}: preload less embedding, what the moment adds, its share of the load"
+    meaning = (
+        "working force of bolt {}: preload less embedding, what the moment adds, its share of the load; "
+        "0 where its head lifts off"
+    )
     forces = [
         Variable(bolt_force_name(j), "N", meaning.format(j + 1), 1e4) for j in range(round(joint.n_bolts))
     ]
