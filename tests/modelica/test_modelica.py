@@ -278,7 +278,7 @@ def test_pymoca_reads_every_file_and_flattens_every_model():
         assert read is not None, path
         root.extend(read)
     # variables and equations of the flat model; an if- or when-equation counts as one
-    expected = {"Examples.RobotJoint": (130, 51), "Examples.BoltedColumn": (97, 46)}
+    expected = {"Examples.RobotJoint": (130, 51), "Examples.BoltedColumn": (100, 47)}
     for path in sorted(COMMITTED.rglob("*.mo")):
         folder, name = path.parent.name, path.stem
         if folder in ("Components", "Wrappers", "Examples") and name != "package":
@@ -400,6 +400,24 @@ def test_bolted_component_gives_the_forces_of_the_package(rumoca: Any, bolted: B
                 2.0 * bolted_modelica.DAMPING_TOLERANCE * damping if axis == "z" else 0.0
             )
             assert error <= allowed, (axis, t, found[f"joint.f[{i + 1}]"][k], exact[f"f_{axis}"])
+
+
+def test_bolts_of_the_component_lift_off_as_those_of_the_package(rumoca: Any, tmp_path: Path):
+    """Rows lift off one after the other, as the moment loads them unevenly. Stiff bolts, so that the contact
+    is far from its end."""
+    file = default("bolted_joint").with_values({"bolt_stiffness": 1e10}, "user", "test")
+    params, stated = tmp_path / "stiff.toml", ["--preload", "15e3", "--moment", "4500"]
+    params.write_text(dump(file), encoding="utf-8")
+    assert main(["modelica", "--params", str(params), *stated, "--out", str(tmp_path)]) == 0
+    body = "JointStiffness.Components.BoltedJoint joint(memory=false, damping=false);"
+    body += "\n  Move mx; Move my; Move mz(at=1e-6, rate=-4e-6);"
+    wires = "\n  ".join(f"connect(joint.flange_{a}, m{a}.flange);" for a in "xyz")
+    found = simulate(rumoca, top(body, wires, move("Translational", "s")), 1.0, 2e-2, written=tmp_path)
+    spring = BoltedJointSpring.of_nodes(replace(file.values, memory=False))
+    exact = [spring.motion(15e3, 4500.0, (0.0, 0.0, z), (0.0,) * 3)["f_z"] for z in 1e-6 - 4e-6 * found.time]
+    np.testing.assert_allclose(found["joint.f[3]"], exact, rtol=EXACT, atol=EXACT * 8 * 15e3)
+    least = [found[f"joint.pull[{j + 1}]"].min() for j in range(8)]
+    np.testing.assert_allclose(least, [-20e3] * 3 + [-15e3] * 2 + [-10e3] * 3, rtol=1e-9)
 
 
 def test_elastic_shear_of_the_bolted_component_is_that_of_the_package(rumoca: Any, bolted: BoltedJointSpring):

@@ -68,8 +68,10 @@ def with_field(
     given: dict[str, object] = {f"field.{name}": values for name, values in lists.items()}
     given["A_0"] = float(np.sum(field.area))
     if bolts is not None:
-        places = means(bolts - field.centroid)
+        positions = bolts - field.centroid
+        places = means(positions)
         given |= {f"field.{name}": value for name, value in zip(BOLT_MEANS, places, strict=True)}
+        given |= {f"field.each_bolt_{a}": tuple(positions[:, i].tolist()) for i, a in enumerate("xy")}
     kept = {n: v for n, v in file.flat.items() if not n.startswith(_REPLACED)}
     text = f"{source}, {preload:g} N per bolt; {reduction.points} points for {reduction.nodes} nodes"
     return replace(

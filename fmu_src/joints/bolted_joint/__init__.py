@@ -12,6 +12,7 @@ import numpy as np
 
 from jointfmu.joints.bolted_joint import spring
 from jointfmu.joints.bolted_joint.bodies import DIGITS, MODES, ElasticBodies, Modes, RigidBodies
+from jointfmu.joints.bolted_joint.bolts import bolt_positions, moment_lever
 from jointfmu.joints.bolted_joint.contact import MOST_PARTS, PART_DIGITS, loop_sums, parts
 from jointfmu.joints.bolted_joint.law import Bolted
 from jointfmu.mechanics.footprint.shape import BOLT_MEANS, PATCHES, PressureShape
@@ -23,6 +24,8 @@ from ...joint_parts.data import DataPart, DataTable
 from ...joint_parts.terminals import axis, rotation
 
 _SECTIONS = ("pattern.", "plate.", "field.", "bodies.")
+BOLTS = 64
+"""Bolts of a joint with rigid sides that compiled parts have room for [1]; more need a compiler."""
 _ONE = {"share": (1.0,), "x": (0.0,), "y": (0.0,), "equal": (1.0,), "tilt": (0.0,)}
 """A field of one point."""
 
@@ -57,14 +60,15 @@ def _tables(joint: Bolted) -> Mapping[str, DataTable]:
 def _bodies(joint: Bolted) -> Mapping[str, DataTable]:
     """Modes in rows of all of them, as whole numbers of two bytes.
 
-    A joint with rigid sides has room for one row.
+    A joint with rigid sides has room for one row, and for BOLTS bolts.
     """
-    modes, lever, most = Modes.of(RigidBodies(), 0, np.zeros((0, 2))), np.zeros(0), (1, 1, 1, 1)
+    modes, most = Modes.of(RigidBodies(), 0, np.zeros((0, 2))), (1, 1, 1, 1)
+    bolts = bolt_positions(joint)
     pressing, pairs = np.zeros((0, 4)), 1
     if joint.elastic:
         points, patches = spring.points(joint.pattern), spring.patches(joint.pattern)
         modes = Modes.of(joint.bodies, len(points.share), patches.position)
-        lever, pressing = modes.lever, _pressing(parts(points, patches))
+        pressing = _pressing(parts(points, patches))
         pairs = MOST_PARTS * spring.POINTS + PATCHES
         most = MODES, spring.POINTS, PATCHES, len(modes.bolts)
     patch = dict(zip(("patch_x", "patch_y", "patch_around"), modes.patch, strict=True))
@@ -72,7 +76,10 @@ def _bodies(joint: Bolted) -> Mapping[str, DataTable]:
     room = dict(zip(moved, (most[1], *(most[2],) * 3, most[3]), strict=True))
     return {
         "modes": DataTable(modes.stiffness[:, None], most[0]),
-        "bolts": DataTable(np.column_stack([modes.bolts, lever]), most[3]),
+        "bolts": DataTable(
+            np.column_stack([bolts, moment_lever(bolts)]),
+            len(bolts) if joint.elastic else max(len(bolts), BOLTS),
+        ),
         **{name: DataTable(_padded(rows), room[name], digits=True) for name, rows in moved.items()},
         "pressing": DataTable(pressing, pairs, digits=True),
     }

@@ -1,5 +1,6 @@
 /* Repeats `BoltedJointSpring.evolve` of the package: the sums over nodes and patches; the laws in it are
  * generated. */
+#include "bolts.h"
 #include "whole.h"
 
 #include <math.h>
@@ -64,7 +65,7 @@ static void lay(Kind *kind, int j, double reference, double lowest)
 bool kind_tabulate(Joint *joint, Text *why)
 {
     Kind *kind = &joint->kind;
-    double head[6];
+    double head[7];
     kind->tight = false;
     if (!spots_begin(&kind->spots, joint->c, why) || !refined(joint, tabulate, APPROACH_STEPS, why))
         return false;
@@ -74,6 +75,7 @@ bool kind_tabulate(Joint *joint, Text *why)
     kind->ratio = head[2];
     kind->area = head[3];
     kind->bolt = head[4];
+    kind->bolt_count = head[6] / (double)data.n_bolts;
     kind->begin.known = kind->end.known = false;
     if (ELASTIC && (!kind->memory || head[5] != 0.0)) {
         text_add(why, kind->memory ? "damping = true beside sides = elastic: expected false, the dashpots stand between rigid sides"
@@ -133,6 +135,7 @@ static void tighten(Joint *joint, const double *inputs)
         kind->patch_start[j] = tighten_point(joint, data.patches[j], bolts, &segment, &carried);
     if (ELASTIC)
         whole_approach(joint, kind->tightened, NULL, kind->patch_start);
+    bolts_tighten(joint, inputs);
     kind->preload = inputs[PRELOAD];
     kind->moment = inputs[MOMENT];
     kind->tight = true;
@@ -800,6 +803,8 @@ static bool sum_up(Joint *joint, const double *inputs, const double *memory, dou
     add_loops(joint, inputs, x);
     if (ELASTIC)
         whole_sums(joint, inputs, x);
+    else
+        bolts_sums(joint, inputs, x);
     fill(joint, inputs, x);
     return true;
 }
@@ -813,7 +818,7 @@ bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, do
         return false;
     outputs(x, joint->c, out);
     if (ELASTIC)
-        whole_bolts(joint, inputs, out + N_INTERFACE_OUTPUTS);
+        memcpy(out + N_INTERFACE_OUTPUTS, joint->kind.bolt_force, (size_t)data.n_stretch * sizeof *out);
     return true;
 }
 
@@ -975,6 +980,7 @@ void joint_derivative(Joint *joint, const double *inputs, const double *memory, 
     memcpy(x, joint->kind.known, sizeof joint->kind.known);
     bolt_pressures(at, joint->c, bolts);
     bolt_pressures_seed(at, joint->c, bolts + 2);
+    bolts_tighten_rates(joint, inputs, seed);
     if (ELASTIC && !amplitude_rates(joint, inputs, memory, after, seed, bolts, &ignored))
         return;
     if (!node_rates(joint, inputs, seed, bolts, dx, &ignored))
@@ -982,13 +988,15 @@ void joint_derivative(Joint *joint, const double *inputs, const double *memory, 
     patch_rates(joint, inputs, memory, after, seed, bolts, dx);
     if (ELASTIC)
         whole_sum_rates(joint, inputs, seed, dx);
+    else
+        bolts_sum_rates(joint, seed, dx);
     memcpy(dx + X_S_REL, seed + S_REL, 3 * sizeof *dx);
     memcpy(dx + X_THETA, seed + THETA, 3 * sizeof *dx);
     memcpy(dx + X_RATES, seed + V_REL, 3 * sizeof *dx);
     memcpy(dx + X_RATES + 3, seed + OMEGA, 3 * sizeof *dx);
     outputs_seed(x, joint->c, result);
     if (ELASTIC)
-        whole_bolt_rates(joint, inputs, seed, result + N_INTERFACE_OUTPUTS);
+        whole_bolt_rates(joint, seed, result + N_INTERFACE_OUTPUTS);
 }
 
 END_OF_COLD

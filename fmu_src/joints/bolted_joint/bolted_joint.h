@@ -48,9 +48,16 @@ typedef struct {
     double spread[MOST_PATCHES][2][SLIDERS]; /* forces before it of sliders that were at rest */
     Work work;
 
+    /* Stiffness of a bolt, bolts at each place; of each place the force at tightening, whether the moment would have
+     * made it negative, its rate along the last seed; in the last evaluation the gap under the head, the force, and
+     * what part of its stiffness it has. */
+    double bolt, bolt_count, bolt_tightened[MOST_BOLTS], bolt_tightening[MOST_BOLTS];
+    bool bolt_unloaded[MOST_BOLTS];
+    double bolt_gap[MOST_BOLTS], bolt_force[MOST_BOLTS], bolt_pulls[MOST_BOLTS];
+
     /* Elastic sides: stiffness of the modes; what modes and motions move, at points, patches (along x, y, around their centres and apart)
      * and bolts. */
-    double bolt, bodies[MODES], opening[MOST_OPENING][WIDE], patch[4][MOST_PATCH_X][WIDE], stretch[MOST_STRETCH][WIDE];
+    double bodies[MODES], opening[MOST_OPENING][WIDE], patch[4][MOST_PATCH_X][WIDE], stretch[MOST_STRETCH][WIDE];
     double presses[MOST_PRESSING]; /* pressure of a patch over that of a point, of the pairs in `data` */
     int press_end[MOST_PATCHES];   /* of the pairs of each patch */
     /* In the last evaluation, zero of rigid sides: amplitudes, what they open and shift; what they shifted before. */

@@ -2,7 +2,7 @@
 
 import casadi as ca
 
-from jointfmu.joints.bolted_joint import bodies, contact, law, memory, outputs, trials, whole
+from jointfmu.joints.bolted_joint import bodies, bolts, contact, law, memory, outputs, trials, whole
 from jointfmu.joints.model import Model
 from jointfmu.mechanics import jenkins, sliders
 from jointfmu.mechanics.footprint.shape import PATCHES
@@ -19,7 +19,8 @@ def _functions(g: Graph, model: Model) -> None:
     )
     add_closing(g)
     head = [joint.memory, joint.mu, joint.shear_ratio(), joint.A_0, joint.bolt_stiffness, joint.damping]
-    g.add("joint_head", "-> memory, mu, K_T/K_N, A_0, stiffness of a bolt, damping", [], head)
+    doc = "-> memory, mu, K_T/K_N, A_0, stiffness of a bolt, damping, number of bolts"
+    g.add("joint_head", doc, [], [*head, joint.n_bolts])
     _tightening(g)
     _shear(g)
     sums = dict(zip(outputs.SUMS, symbols("sum", len(outputs.SUMS)), strict=True))
@@ -106,6 +107,7 @@ def _definitions(g: Graph, model: Model) -> Definitions:
         f"WHOLE_{name}": getattr(whole, name) for name in ("CLOSE", "CANCELS", "ROUGH", "LEAST_PART", "CHORD")
     }
     numbers["WHOLE_DIFFERENCE"] = trials.DIFFERENCE
+    numbers |= {"BOLT_LIFT_OFF_RATIO": bolts.LIFT_OFF_RATIO, "BOLT_AT_LIFT_OFF": bolts.AT_LIFT_OFF}
     return Definitions(counts, numbers)
 
 

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "bolts.h"
 #include "cold.h"
 #include "tabulated.h"
 
@@ -96,8 +97,8 @@ void whole_begin(Kind *kind)
         lay_row(data.patch_y[j], 0.0, 1.0, x, kind->patch[1][j]);
         lay_row(data.patch_around[j], 0.0, 0.0, data.patches[j][RADIUS], kind->patch[2][j]);
     }
-    for (int b = 0; b < (int)data.n_bolts; b++)
-        lay_row(data.stretch[b], 1.0, data.bolts[b][1], -data.bolts[b][0], kind->stretch[b]);
+    for (int b = 0; b < (int)data.n_stretch; b++)
+        lay_row(data.stretch[b], 1.0, data.bolts[b][BOLT_Y], -data.bolts[b][BOLT_X], kind->stretch[b]);
     for (int e = 0; e < (int)data.n_pressing; e++) {
         const int16_t *pair = data.pressing[e];
         kind->presses[e] = pair[PAIR_PART] / PART_DIGITS * data.nodes[pair[PAIR_POINT]][SHARE] / data.patches[pair[PAIR_PATCH]][SHARE];
@@ -127,12 +128,12 @@ void whole_deform(const double *amplitude, const Kind *kind, double *opened, dou
 static void press_all(Kind *kind, int size)
 {
     const bool fours = kind->work.abreast.fours;
-    const int sizes[2] = {(int)data.n_nodes, (int)data.n_bolts};
+    const int sizes[2] = {(int)data.n_nodes, (int)data.n_stretch};
     const double(*const rows[2])[WIDE] = {(const double(*)[WIDE])kind->opening, (const double(*)[WIDE])kind->stretch};
     memset(kind->by_normal, 0, sizeof kind->by_normal);
     for (int s = 0; s < 2; s++) {
         for (int i = 0; i < sizes[s]; i++)
-            kind->by[i] = s == 0 ? kind->area * data.nodes[i][SHARE] * kind->k[i] : kind->bolt;
+            kind->by[i] = s == 0 ? kind->area * data.nodes[i][SHARE] * kind->k[i] : kind->bolt * kind->bolt_pulls[i];
         dense_weigh(fours, sizes[s], kind->by, rows[s], kind->weighted);
         dense_products(fours, sizes[s], (const double(*)[WIDE])kind->weighted, rows[s], size, false, kind->by_normal);
     }
@@ -177,14 +178,16 @@ static void differentiate(Kind *kind, int size, bool all, Factors *factors)
 
 /* Equilibrium */
 
-static inline double seat(int b, const double *v)
-{
-    return v[INPUT_S_REL_X + 2] + v[INPUT_THETA_X] * data.bolts[b][1] - v[INPUT_THETA_X + 1] * data.bolts[b][0];
-}
-
 static inline double stretched(const Kind *kind, int b, const double *v, const double *amplitude)
 {
     return seat(b, v) + dense_dot(kind->stretch[b], amplitude);
+}
+
+/* Gaps, forces and stiffness of the bolts at inputs and amplitudes. */
+static void elongate_bolts(Kind *kind, const double *inputs, const double *amplitude)
+{
+    for (int b = 0; b < (int)data.n_stretch; b++)
+        bolt_elongate(kind, b, stretched(kind, b, inputs, amplitude));
 }
 
 /* Residual of the amplitudes, and what of it is round-off. */
@@ -211,14 +214,14 @@ static double residual(const Joint *joint, const double *inputs, const double *a
             forces += fabs(shear[d][j]);
         }
     }
-    for (int b = 0; b < (int)data.n_bolts; b++) {
-        bolts[b] = kind->bolt * stretched(kind, b, inputs, amplitude);
+    for (int b = 0; b < (int)data.n_stretch; b++) {
+        bolts[b] = kind->bolt * (stretched(kind, b, inputs, amplitude) + kind->bolt_gap[b]);
         forces += fabs(bolts[b]);
     }
     dense_add_rows(fours, (int)data.n_nodes, normal, (const double(*)[WIDE])kind->opening, r);
     for (int d = 0; d < 3; d++)
         dense_add_rows(fours, (int)data.n_patches, shear[d], (const double(*)[WIDE])kind->patch[d], r);
-    dense_add_rows(fours, (int)data.n_bolts, bolts, (const double(*)[WIDE])kind->stretch, r);
+    dense_add_rows(fours, (int)data.n_stretch, bolts, (const double(*)[WIDE])kind->stretch, r);
     return WHOLE_CLOSE * (forces + stiffness * apart * WHOLE_CANCELS + kind->area * kind->approach.closed);
 }
 
@@ -286,8 +289,10 @@ static void place(const double *inputs, const double *memory, double part, doubl
         at[motion_of(d)] = first[d] + part * (inputs[motion_of(d)] - first[d]);
 }
 
-static void deform(Kind *kind, const double *amplitude)
+/* The bodies at amplitudes, and the bolts at inputs. */
+static void deform(Kind *kind, const double *inputs, const double *amplitude)
 {
+    elongate_bolts(kind, inputs, amplitude);
     memcpy(kind->amplitude, amplitude, sizeof kind->amplitude);
     whole_deform(amplitude, kind, kind->opened, kind->bent);
 }
@@ -302,7 +307,7 @@ static bool predict(Joint *joint, const double *inputs, const double *memory, do
     if (kind->end.known && memcmp(key, kind->end.key, sizeof key) == 0) {
         kind->begin = kind->end;
     } else if (!kind->begin.known || memcmp(key, kind->begin.key, sizeof key) != 0) {
-        deform(kind, memory + AT_AMPLITUDE);
+        deform(kind, first, memory + AT_AMPLITUDE);
         if (!joint_press(joint, first, why))
             return false;
         memcpy(tangent, memory + AT_TANGENT, sizeof tangent);
@@ -329,7 +334,7 @@ typedef struct {
 
 static bool try_at(Joint *joint, Way *way, const double *at, const double *amplitude, bool whole, Text *why)
 {
-    deform(&joint->kind, amplitude);
+    deform(&joint->kind, at, amplitude);
     way->whole = whole;
     if (!whole)
         return joint_forces(joint, at, way->memory, why);
@@ -486,22 +491,22 @@ static void tell_whole(const Kind *kind, const double stiffness[MOTIONS], double
     static const int sums[MOTIONS] = {SUM_TANGENT_X, SUM_TANGENT_Y, SUM_NORMAL_STIFFNESS,
                                       SUM_NORMAL_ABOUT_X, SUM_NORMAL_ABOUT_Y, SUM_TANGENT_Z};
     double bolts[MOTIONS] = {0.0};
-    for (int b = 0; b < (int)data.n_bolts; b++) {
+    for (int b = 0; b < (int)data.n_stretch; b++) {
         bolts[2] += own;
-        bolts[3] += own * data.bolts[b][1] * data.bolts[b][1];
-        bolts[4] += own * data.bolts[b][0] * data.bolts[b][0];
+        bolts[3] += own * data.bolts[b][BOLT_Y] * data.bolts[b][BOLT_Y];
+        bolts[4] += own * data.bolts[b][BOLT_X] * data.bolts[b][BOLT_X];
     }
     for (int d = 0; d < MOTIONS; d++)
         x[sums[d]] = (stiffness[d] - bolts[d]) / kind->area;
 }
 
-static void tell_stretch(const Kind *kind, const double *amplitude, double *x)
+static void tell_stretch(const Kind *kind, const double *amplitude, const double *gaps, double *x)
 {
-    for (int b = 0; b < (int)data.n_bolts; b++) {
-        const double stretch = dense_dot(kind->stretch[b], amplitude);
+    for (int b = 0; b < (int)data.n_stretch; b++) {
+        const double stretch = dense_dot(kind->stretch[b], amplitude) + gaps[b];
         x[SUM_STRETCH] += stretch;
-        x[SUM_STRETCH_X] += stretch * data.bolts[b][0];
-        x[SUM_STRETCH_Y] += stretch * data.bolts[b][1];
+        x[SUM_STRETCH_X] += stretch * data.bolts[b][BOLT_X];
+        x[SUM_STRETCH_Y] += stretch * data.bolts[b][BOLT_Y];
     }
 }
 
@@ -512,26 +517,14 @@ void whole_sums(Joint *joint, const double *inputs, double *x)
     const Kind *kind = &joint->kind;
     double energy = 0.0;
     tell_whole(kind, kind->whole, kind->bolt, x);
-    tell_stretch(kind, kind->amplitude, x);
+    tell_stretch(kind, kind->amplitude, kind->bolt_gap, x);
     for (int k = 0; k < MODES; k++)
         energy += kind->bodies[k] * kind->amplitude[k] * kind->amplitude[k];
-    for (int b = 0; b < (int)data.n_bolts; b++) {
-        const double stretch = stretched(kind, b, inputs, kind->amplitude);
-        energy += kind->bolt * stretch * stretch;
+    for (int b = 0; b < (int)data.n_stretch; b++) {
+        const double stretch = stretched(kind, b, inputs, kind->amplitude), gap = kind->bolt_gap[b];
+        energy += kind->bolt * stretch * stretch - kind->bolt * gap * gap;
     }
     x[SUM_LOOP_ENERGY] += 0.5 * energy / kind->area;
-}
-
-void whole_bolts(const Joint *joint, const double *inputs, double *out)
-{
-    if (!ELASTIC)
-        return;
-    const Kind *kind = &joint->kind;
-    double left;
-    working_preload(inputs + INPUT_PRELOAD, joint->c, &left);
-    for (int b = 0; b < (int)data.n_bolts; b++)
-        out[b] = left + inputs[INPUT_MOMENT] * data.bolts[b][2] +
-                 kind->bolt * stretched(kind, b, inputs, kind->amplitude);
 }
 
 void whole_rates(Joint *joint, const double *inputs, const double *memory, const double *after, const double *seed)
@@ -545,8 +538,8 @@ void whole_rates(Joint *joint, const double *inputs, const double *memory, const
     for (int j = 0; j < (int)data.n_patches; j++)
         for (int d = 0; d < 3; d++)
             add_scaled(-kind->area * data.patches[j][SHARE] * kind->shears[j].traction[d], kind->patch[d][j], r);
-    for (int b = 0; b < (int)data.n_bolts; b++)
-        add_scaled(-kind->bolt * seat(b, seed), kind->stretch[b], r);
+    for (int b = 0; b < (int)data.n_stretch; b++)
+        add_scaled(-kind->bolt * (seat(b, seed) + bolt_gap_rate(kind, b, seat(b, seed))), kind->stretch[b], r);
     exact(joint, inputs, memory, after);
     dense_solve(kind->work.abreast.fours, &kind->factors, r);
     memcpy(kind->amplitude_rate, r, sizeof r);
@@ -579,25 +572,28 @@ void whole_sum_rates(const Joint *joint, const double *inputs, const double *see
         rates[d] = kind->area * sum;
     }
     tell_whole(kind, rates, 0.0, dx);
-    tell_stretch(kind, kind->amplitude_rate, dx);
+    double gap_rates[MOST_STRETCH];
+    for (int b = 0; b < (int)data.n_stretch; b++)
+        gap_rates[b] = bolt_gap_rate(kind, b, stretched(kind, b, seed, kind->amplitude_rate));
+    tell_stretch(kind, kind->amplitude_rate, gap_rates, dx);
     for (int k = 0; k < MODES; k++)
         energy += kind->bodies[k] * kind->amplitude[k] * kind->amplitude_rate[k];
-    for (int b = 0; b < (int)data.n_bolts; b++)
+    for (int b = 0; b < (int)data.n_stretch; b++)
         energy += kind->bolt * stretched(kind, b, inputs, kind->amplitude) *
-                  stretched(kind, b, seed, kind->amplitude_rate);
+                      stretched(kind, b, seed, kind->amplitude_rate) -
+                  kind->bolt * kind->bolt_gap[b] * gap_rates[b];
     dx[SUM_LOOP_ENERGY] += energy / kind->area;
 }
 
-void whole_bolt_rates(const Joint *joint, const double *inputs, const double *seed, double *result)
+void whole_bolt_rates(const Joint *joint, const double *seed, double *result)
 {
     if (!ELASTIC)
         return;
     const Kind *kind = &joint->kind;
-    double left;
-    working_preload_seed((const double[]){inputs[INPUT_PRELOAD], seed[INPUT_PRELOAD]}, joint->c, &left);
-    for (int b = 0; b < (int)data.n_bolts; b++)
-        result[b] = left + seed[INPUT_MOMENT] * data.bolts[b][2] +
-                    kind->bolt * stretched(kind, b, seed, kind->amplitude_rate);
+    for (int b = 0; b < (int)data.n_stretch; b++) {
+        const double rate = stretched(kind, b, seed, kind->amplitude_rate);
+        result[b] = kind->bolt_tightening[b] + kind->bolt * (rate + bolt_gap_rate(kind, b, rate));
+    }
 }
 
 END_OF_COLD

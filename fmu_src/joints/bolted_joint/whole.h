@@ -26,14 +26,13 @@ void whole_pressed(const Kind *kind, const double *points, double *patches);
 void whole_approach(const Joint *joint, const double *pressure, const double *inputs, double *approach);
 /* Amplitudes in equilibrium at the inputs, with the sums and the memory there; false: refused, with the reason. */
 bool whole_evaluate(Joint *joint, const double *inputs, const double *memory, double *after, double *x, Text *why);
-/* Sums that elastic sides change, and the forces of the bolts. */
+/* Sums that elastic sides change. */
 void whole_sums(Joint *joint, const double *inputs, double *x);
-void whole_bolts(const Joint *joint, const double *inputs, double *out);
 /* Rates of the amplitudes along a seed, given those of pressures and tractions while they stay. */
 void whole_rates(Joint *joint, const double *inputs, const double *memory, const double *after, const double *seed);
-/* Rates of what `whole_sums` and `whole_bolts` give. */
+/* Rates of what `whole_sums` gives, and of the forces of the bolts. */
 void whole_sum_rates(const Joint *joint, const double *inputs, const double *seed, double *dx);
-void whole_bolt_rates(const Joint *joint, const double *inputs, const double *seed, double *result);
+void whole_bolt_rates(const Joint *joint, const double *seed, double *result);
 
 /* In bolted_joint.c: the joint at given amplitudes, its pressures and tractions alone, or pressures, and derivatives
  * of a patch's traction. */

@@ -463,7 +463,9 @@ def test_a_path_far_into_slip_and_opening_is_found_with_few_parts(made, monkeypa
             motions = 1e-11 * np.eye(amplitude.size)
             rises = np.stack([(residual(d) - residual(-d)) / 2e-11 for d in motions], axis=1)
             there = way.at(place, amplitude)
-            exact = self._derivative(there.stiffness, way.apart(there), way.slopes(place, amplitude))
+            bolts = self.bolts.tangent(tight.bolt_force, self.stretch(place, amplitude))
+            slopes = way.slopes(place, amplitude)
+            exact = self._derivative(there.stiffness, way.apart(there), slopes, bolts)
             apart.append(np.max(np.abs(exact - rises)) / np.max(np.abs(rises - rises.T)))
         found.append(newton(self, way, part, tight, amplitude, derivative))
         return found[-1]

@@ -150,8 +150,11 @@ class States:
         tangent = ratio * spring.curve.derivatives(now - size / reach, 1)[1]
         secant = np.where(size < 1e-6 * np.max(np.abs(self.start)), ratio * k, secant)
         bent = (tangent - secant) / size**2
-        bolt = np.full(g.size - 3 * n, joint.bolt_stiffness)
-        force = np.concatenate([-area * (p - tight), area * secant * u, area * secant * v, bolt * g[3 * n :]])
+        held = np.full(g.size - 3 * n, float(working_preload(joint, self.preload)))
+        bolts, elongation = spring.bolts, g[3 * n :]
+        bolt = bolts.tangent(held, elongation)
+        pull = bolts.stiffness * (elongation + bolts.gap(held, elongation))
+        force = np.concatenate([-area * (p - tight), area * secant * u, area * secant * v, pull])
         own = [area * k, area * (secant + bent * u * u), area * (secant + bent * v * v), bolt]
         cross = np.zeros(g.size)
         cross[n : 2 * n] = area * bent * u * v  # of shifts along y on forces along x

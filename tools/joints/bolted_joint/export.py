@@ -114,7 +114,9 @@ def _sums(spring: BoltedJointSpring, preload: float, moment: float) -> dict[str,
     rest = (0.0, 0.0, 0.0)
     state = spring.motion(preload, moment, rest, rest)
     sums = {name: float(state[name]) for name in SUMS}
-    return sums | {"K_zz": sums["K_zz"] - float(spring.joint.n_bolts * spring.joint.bolt_stiffness)}
+    tightened = spring.bolts.tightened(spring.joint, preload, moment)
+    bolts = spring.bolts.count * spring.bolts.tangent(tightened, np.zeros_like(tightened))
+    return sums | {"K_zz": sums["K_zz"] - float(np.sum(bolts))}
 
 
 def _split(
@@ -163,10 +165,10 @@ _BLOCK = 100_000
 def pull_table(spring: BoltedJointSpring, preload: float, moment: float, error: float) -> "LoadTable":
     """Force [N] that holds the bolted joint together over its separation s_rel_z [m], stiffness [N/m].
 
-    The bolts' own stiffness acts beside the interface. From STRONGEST times the force at tightening, pressed
-    together, to where the last node opens; from there on only the bolts' force grows. The errors refer to the
-    force at tightening where the load is smaller, and to the stiffness there. Raises ValueError if nothing is
-    in contact or the hardness is reached.
+    The bolts' own stiffness acts beside the interface while they pull. From STRONGEST times the force at
+    tightening, pressed together, to where the last node opens; from there on only the bolts' force grows. The
+    errors refer to the force at tightening where the load is smaller, and to the stiffness there. Raises
+    ValueError if nothing is in contact or the hardness is reached.
     """
     from ...export.tables import LoadTable, thinned
 
@@ -175,7 +177,15 @@ def pull_table(spring: BoltedJointSpring, preload: float, moment: float, error: 
     shape = spring.shape.merged(moment=moment != 0.0)
     alike = spring.curve.inverse(pressures(spring.joint, shape, preload, moment))
     weight = spring.joint.A_0 * shape.share
+    springs, held_bolts = spring.bolts, spring.bolts.tightened(spring.joint, preload, moment)
     bolts = float(spring.joint.n_bolts * spring.joint.bolt_stiffness)
+
+    def missing(separation: Array) -> tuple[Array, Array]:
+        """Compression [N] and stiffness [N/m] that bolts would have if they pushed."""
+        elongation = separation[:, None] + np.zeros(len(held_bolts))
+        gap = springs.gap(held_bolts, elongation)
+        lost = springs.stiffness - springs.tangent(held_bolts, elongation)
+        return springs.count * springs.stiffness * gap.sum(axis=1), springs.count * lost.sum(axis=1)
 
     def total(separation: Array) -> Array:
         blocks = np.array_split(separation[:, None], max(separation.size * alike.size // _BLOCK, 1))
@@ -188,8 +198,9 @@ def pull_table(spring: BoltedJointSpring, preload: float, moment: float, error: 
     opening = float(np.max(start) - low)
     s = np.concatenate([np.linspace(-end, 0.0, _FINE), np.linspace(0.0, opening, _FINE)[1:]])
     force, stiffness = total(s)
-    pull = held - force + bolts * s
-    table = thinned(s, pull, stiffness + bolts, error, (held, stiff), keep=(_FINE - 1,))
+    compression, lost = missing(s)
+    pull = held - force + bolts * s + compression
+    table = thinned(s, pull, stiffness + (bolts - lost), error, (held, stiff), keep=(_FINE - 1,))
     last = [2.0 * opening, held + 2.0 * bolts * opening, bolts]
     return LoadTable(np.vstack([table.rows, last]), table.straight, table.monotone)
 

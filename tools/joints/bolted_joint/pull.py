@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from jointfmu.joints.bolted_joint.contact import STICKS, Place
-from jointfmu.joints.bolted_joint.law import working_preload
+from jointfmu.joints.bolted_joint.contact import STICKS
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.quantity import Array
 
@@ -21,32 +20,38 @@ MOST = 2.0
 def bolt_forces(spring: BoltedJointSpring, preload: float, moment: float, pulls: Array) -> Array:
     """Force (m, bolts) [N] of each bolt under the first m of growing pulls (n) [N], from the tightened state.
 
-    Motion and amplitudes z of least energy at rest, K z - G^T A (p - p_tightened) = F: K is that of modes,
-    bolts and patches, which have the traction of a shift from rest over that shift, as they last were. Ends
-    where a bolt has MOST of its force at tightening.
+    Motion and amplitudes z of least energy at rest,
+
+        K z + E^T (B - B_tightened) - G^T A (p - p_tightened) = F,
+
+    B the forces of the bolts. K is that of modes and patches, which have the traction of a shift from rest
+    over that shift, as they last were. Ends where a bolt has MOST of its force at tightening.
     """
     whole, modes, law = spring.whole, spring.modes, spring.foundation()
     start = spring.tightened(preload, moment)
-    z, bolt = np.zeros(6 + len(modes.stiffness)), spring.joint.bolt_stiffness
-    tension = working_preload(spring.joint, preload) + moment * modes.lever
-    G = np.zeros((len(start), len(z)))
+    z, bolts = np.zeros(6 + len(modes.stiffness)), spring.bolts
+    tension = bolts.tightened(spring.joint, preload, moment)
+    G, E = (np.zeros((len(rows), len(z))) for rows in (start, tension))
     G[:, 2:5], G[:, 6:] = whole.points, modes.opening
+    E[:, 2:5], E[:, 6:] = whole.seats, modes.stretch
     tight, stiff = spring.curve.derivatives(start, 1)
     least, found = LEAST * law.stick(spring.pressed(start)).max(), []
 
     def left(z: Array, K: Array, pull: float) -> Array:
         p = spring.curve.derivatives(start - G @ z, 0)[0]
-        return np.asarray(K @ z - G.T @ (whole.weight * (p - tight)) - pull * (np.arange(len(z)) == 2))
+        inside = E.T @ (bolts.force(tension, E @ z) - tension) - G.T @ (whole.weight * (p - tight))
+        return np.asarray(K @ z + inside - pull * (np.arange(len(z)) == 2))
 
     for pull in pulls:
         for _ in range(STEPS):
             approach = start - G @ z
             shift = np.linalg.norm(spring.shift(z[[0, 1, 5]], z[6:]), axis=1) + LEAST_SHIFT
             stick = np.maximum(law.backbone(spring.pressed(approach), shift) / shift, least)
-            K = whole.slope(np.zeros_like(start), stick[:, None] * STICKS)
+            K = whole.slope(np.zeros_like(start), stick[:, None] * STICKS, np.zeros_like(tension))
             normal = np.maximum(spring.curve.derivatives(approach, 1)[1], LEAST * stiff.max()) * whole.weight
             r = left(z, K, pull)
-            step = -np.linalg.solve(K + G.T @ (normal[:, None] * G), r)
+            pulling = bolts.tangent(tension, E @ z)[:, None]
+            step = -np.linalg.solve(K + E.T @ (pulling * E) + G.T @ (normal[:, None] * G), r)
             falls, size = float(r @ step), 1.0
             if -falls <= CLOSE * pull * abs(z[2]):
                 break
@@ -58,7 +63,7 @@ def bolt_forces(spring: BoltedJointSpring, preload: float, moment: float, pulls:
             z = z + size * step
         else:
             break
-        forces = tension + bolt * whole.stretch(Place(z[:6]), z[6:])
+        forces = bolts.force(tension, E @ z)
         if np.any(forces > MOST * tension):
             break
         found.append(forces)

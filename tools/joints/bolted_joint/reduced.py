@@ -18,6 +18,7 @@ from scipy.interpolate import CubicSpline
 from jointfmu.contact.laws import mindlin
 from jointfmu.joints.bolted_joint import KIND
 from jointfmu.joints.bolted_joint.bodies import Modes
+from jointfmu.joints.bolted_joint.bolts import AT_LIFT_OFF, BoltSprings
 from jointfmu.joints.bolted_joint.contact import pressing
 from jointfmu.joints.bolted_joint.law import Bolted, interface_alone, node_pressure, slip_force
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring, patches, points
@@ -175,7 +176,8 @@ def _evaluate(
     zero = np.zeros((factor.size, int(np.sum(~touching))))
     curves = {name: np.concatenate([zero, value], axis=1) for name, value in curves.items()}
     slip = np.broadcast_to(slip_force(joint, factor * loads), curves["K_zz"].shape)
-    curves["K_zz"] = curves["K_zz"] + joint.n_bolts * joint.bolt_stiffness
+    pulling = np.where(touching, 1.0, AT_LIFT_OFF)
+    curves["K_zz"] = curves["K_zz"] + joint.n_bolts * joint.bolt_stiffness * pulling
     if sides:
         few, between = _few(ramp, FEW_SIDES)
         at = np.concatenate([[-np.inf], few])
@@ -209,7 +211,8 @@ class Sides(NamedTuple):
         """Raises ValueError for bodies that were computed for another contact."""
         shape, few = points(pattern), patches(pattern)
         modes = Modes.of(joint.bodies, shape.share.size, few.position)
-        whole = Whole.of(modes, shape, few, area=1.0, bolt=1.0, closed=0.0)
+        bolts = BoltSprings(modes.bolts, count=1.0, stiffness=1.0, lift_off=0.0)
+        whole = Whole.of(modes, shape, few, area=1.0, bolts=bolts, closed=0.0)
 
         def products(weight: Array, *motions: tuple[Array, Array]) -> Array:
             rows = [np.column_stack(motion) for motion in motions]
@@ -239,7 +242,8 @@ class Sides(NamedTuple):
         for load in ramp:
             with np.errstate(divide="ignore"):
                 points, patches = (places.at(scaled, load + np.log(equal)) for equal in self.equal)
-            normal = joint.A_0 * (points @ self.normal) + joint.bolt_stiffness * self.bolts
+            pulling = 1.0 if np.isfinite(load) else AT_LIFT_OFF
+            normal = joint.A_0 * (points @ self.normal) + joint.bolt_stiffness * self.bolts * pulling
             shear = joint.shear_ratio() * joint.A_0 * (patches @ self.shear)
             H = np.stack([each.reshape(-1, size, size) for each in (normal, shear)])
             beside = np.moveaxis(H[:, :, 1:, 0], 0, -1)

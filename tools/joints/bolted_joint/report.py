@@ -15,7 +15,7 @@ from jointfmu.joints.bolted_joint.law import (
     slip_force,
     working_preload,
 )
-from jointfmu.joints.bolted_joint.outputs import bolt_force
+from jointfmu.joints.bolted_joint.outputs import bolt_force_name
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.joints.model import Model
 from jointfmu.mechanics.footprint.shape import NodalField
@@ -189,7 +189,7 @@ def _bolt_forces(spring: BoltedJointSpring, preload: float, moment: float, most:
     """Force of each bolt over the force along z that pulls, up to the most [N]."""
     pulls = np.linspace(0.0, most, 27)
     columns = 1e-3 * bolt_forces(spring, preload, moment, pulls).T
-    series = [Series(bolt_force(j), 1e-3 * pulls[: len(y)], y) for j, y in enumerate(columns)]
+    series = [Series(bolt_force_name(j), 1e-3 * pulls[: len(y)], y) for j, y in enumerate(columns)]
     return Panel("Bolts under a force along z", "force that pulls [kN]", "force of a bolt [kN]", series)
 
 

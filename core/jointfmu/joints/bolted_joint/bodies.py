@@ -99,13 +99,6 @@ class Modes:
     stretch: Array
     bolts: Array
 
-    @property
-    def lever(self) -> Array:
-        """Force that a moment adds to each bolt (b) over the moment [1/m], as in `BoltedPlate.shape`."""
-        away = self.bolts[:, 1] - np.sum(self.bolts[:, 1]) / max(len(self.bolts), 1)
-        square = float(away @ away)
-        return away / square if square > 0.0 else away
-
     @classmethod
     def none(cls, points: int, patches: int) -> "Modes":
         """Of rigid bodies."""

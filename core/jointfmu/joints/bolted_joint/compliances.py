@@ -39,14 +39,16 @@ class Compliances(NamedTuple):
     @classmethod
     def of(cls, spring: "BoltedJointSpring", preload: float, moment: float = 0.0) -> "Compliances":
         """Of a joint with elastic sides, tightened by the force of each bolt [N] and a moment [N.m]."""
-        whole, modes, bolt = spring.whole, spring.modes, spring.joint.bolt_stiffness
+        whole, modes = spring.whole, spring.modes
+        bolt_force = spring.bolts.tightened(spring.joint, preload, moment)
+        bolt = spring.bolts.tangent(bolt_force, np.zeros_like(bolt_force))[:, None]
         H = spring.slope(preload, moment)
         K, follow = whole.condensed(H), -np.linalg.solve(H[6:, 6:], H[6:, :6])
         stretch = modes.stretch @ follow
         stretch[:, 2:5] += whole.seats
-        members, bolts = modes.stiffness @ follow**2, bolt * np.sum(stretch**2, axis=0)
+        members, bolts = modes.stiffness @ follow**2, np.sum(bolt * stretch**2, axis=0)
         held, shanks = np.diag(K), np.zeros(6)
-        shanks[2:5] = bolt * np.sum(whole.seats**2, axis=0)
+        shanks[2:5] = np.sum(bolt * whole.seats**2, axis=0)
         parts = np.stack([held - members - bolts, members, bolts]) / held**2
         return cls(parts, 1.0 / (np.diag(H)[:6] - shanks), shanks, bolt * stretch @ np.linalg.inv(K))
 

@@ -31,15 +31,16 @@ traction_x, _y, torsion    : [Pa] shear traction against the shift, and its mome
 tangent_x, _y, _z          : [Pa/m] derivatives of these in the shift along x, along y and the turn
 loss                       : [J/m2] turned into heat by friction so far
 loop_work, loop_energy     : [J/m2] loss of a cycle at the present amplitude, and elastic energy at its end
-stretch                    : [m] of all bolts by the modes of elastic sides; _x, _y: times x and y
+stretch                    : [m] elongation of all bolts by the modes of elastic sides, and the gaps under
+                             their heads; _x, _y: times x and y
 
-With elastic sides normal_stiffness, normal_about_* and tangent_* are those of the whole joint, less what the
-bolts have between rigid sides.
+normal_stiffness and normal_about_* lack what bolts that lifted off have between rigid sides. With elastic
+sides they and tangent_* are those of the whole joint, less what all bolts have between rigid sides.
 """
 STRETCHES = SUMS[-3:]
 
 
-def bolt_force(bolt: int) -> str:
+def bolt_force_name(bolt: int) -> str:
     """Name of the force of a bolt, counted from 0."""
     return f"F_bolt[{bolt + 1}]"
 
@@ -55,8 +56,8 @@ def outputs(
     """Outputs from the SUMS at a shift s_rel [m] and small turn theta [rad] with rates v_rel and omega.
 
     A unit rotation about an in-plane axis moves a node along its normal, about the normal along the
-    plane: Hu 2023, Eq. 45, corrected. The bolts act beside the interface, each at its place, by their tension
-    alone.
+    plane: Hu 2023, Eq. 45, corrected. The bolts act beside the interface, each at its place, and only pull:
+    see `BoltSprings`.
     """
     area, rho = joint.A_0, joint.shear_ratio()
     bolts, (_, _, bolt_x2, bolt_y2, _) = joint.n_bolts * joint.bolt_stiffness, joint.pattern.bolt_means
@@ -70,7 +71,8 @@ def outputs(
     pulled = [joint.bolt_stiffness * sums[name] for name in STRETCHES]
     f_x, f_y, m_z = (-area * sums[name] for name in ("traction_x", "traction_y", "torsion"))
     eta_loop = _ratio(sums["loop_work"], 2.0 * np.pi * sums["loop_energy"])
-    K = [area * sums["tangent_x"], area * sums["tangent_y"], area * sums["normal_stiffness"] + bolts]
+    K_zz = np.maximum(area * sums["normal_stiffness"] + bolts, 0.0)  # not below by round-off
+    K = [area * sums["tangent_x"], area * sums["tangent_y"], K_zz]
     damped = [where(joint.damping, part, 0.0 * part) for part in (C_t, C_t, C_n)]
     steps = [stable_steps(k, c, 1.0 / joint.mass) for k, c in zip(K, damped, strict=True)]
     shortest = {
@@ -91,8 +93,8 @@ def outputs(
         "C_zz": C_n,
         "eta_t": eta_t,
         "eta_n": eta_n,
-        "K_rx": area * sums["normal_about_x"] + bolts * bolt_y2,
-        "K_ry": area * sums["normal_about_y"] + bolts * bolt_x2,
+        "K_rx": np.maximum(area * sums["normal_about_x"] + bolts * bolt_y2, 0.0),
+        "K_ry": np.maximum(area * sums["normal_about_y"] + bolts * bolt_x2, 0.0),
         "K_rz": area * sums["tangent_z"],
         "p_mean": sums["pressure"],
         "p_max": p_max,
@@ -107,7 +109,7 @@ def outputs(
 def _tension(
     stiffness: Number, means: Sequence[Number], s_z: Number, turn: Sequence[Number]
 ) -> tuple[Number, Number, Number]:
-    """f_z, m_x, m_y [N, N.m] of bolts, each stretched by s_z + theta_x y - theta_y x.
+    """f_z, m_x, m_y [N, N.m] of bolts without gaps, each elongated by s_z + theta_x y - theta_y x.
 
     stiffness is the sum of theirs, means those of their x, y, x^2, y^2, x y.
     """

@@ -1,6 +1,6 @@
 """The exported bolted joint: six degrees of freedom under uneven pressure, with friction that remembers."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 
@@ -17,6 +17,7 @@ from ...mechanics.memory import Layout
 from ...mechanics.sliders import Foundation, around, lowered, offsets
 from ...quantity import Array, Number
 from .bodies import MODES, Modes, RigidBodies
+from .bolts import BoltSprings
 from .compliances import Compliances
 from .contact import (
     STICKS,
@@ -32,11 +33,11 @@ from .contact import (
     tangent_sums,
     traction_sums,
 )
-from .law import Bolted, interface_alone, pressures, working_preload
+from .law import Bolted, interface_alone, pressures
 from .memory import ALONG, FREE, RESTING, UNKNOWN, Memory, memory_of, moved_on, resting
-from .outputs import STRETCHES, bolt_force, outputs
+from .outputs import STRETCHES, bolt_force_name, outputs
 from .trials import Trial, Trials, Way, told
-from .whole import Whole
+from .whole import Tightened, Whole
 
 POINTS = 120
 """Points that carry the normal force [1], where a pattern has more nodes."""
@@ -63,8 +64,8 @@ class BoltedJointSpring:
     Every node follows the pressure-approach curve `p(delta)` of the interface from its own pressure at
     tightening: the normal traction is the gradient of a potential, V' = p. Shear is carried by the sliders of
     `Foundation` on fewer points, which slip and remember, or without memory by the potential of
-    `elastic_shear`. The n bolts act beside the interface: they carry the joint once it is open, by their
-    tension alone.
+    `elastic_shear`. The n bolts act beside the interface: they carry the joint once it is open. They only
+    pull, see `BoltSprings`.
 
     shape   : the points that carry the normal force
     patches : the points that carry the friction
@@ -202,13 +203,15 @@ class BoltedJointSpring:
         """
         joint, shape = self.joint, self.shape
         start, tight, first = self._tightened(float(preload), float(moment))
+        bolt_force = self.bolts.tightened(joint, preload, moment)
         before = self.memory.split(memory)
 
         trials = Trials(self, (start, first), place, before, told(preload, moment, place))
         amplitude = np.zeros(0)
         if joint.elastic:
             begin = before["amplitude"][: len(self.modes.stiffness)]
-            amplitude, at = self.whole.solve(trials, tight, begin, *self._followed(trials, begin))
+            followed = self._followed(trials, bolt_force, begin)
+            amplitude, at = self.whole.solve(trials, Tightened(tight, bolt_force), begin, *followed)
         else:
             at = trials.at(place, amplitude)
         if at.way is not None:
@@ -233,18 +236,24 @@ class BoltedJointSpring:
             "elastic": shape.share @ elastic,
             **shear,
             **loop_sums(self.foundation(), self.patches.share, at.approach, size),
-            **dict.fromkeys(STRETCHES, 0.0),
         }
         if joint.elastic:
-            sums |= self._whole_sums(at, place, amplitude, sums["loop_energy"])
+            sums |= self._whole_sums(at, place, amplitude, bolt_force, sums["loop_energy"])
+        else:
+            sums |= self._gap_sums(place, bolt_force, sums)
         s_rel, theta = place.six.reshape(2, 3).tolist()
         out = outputs(joint, sums, s_rel, theta, rates, np.max(at.derivatives[0]))
-        return out | self._bolt_forces(preload, moment, place, amplitude), after
+        if not joint.elastic:
+            return out, after
+        forces = self.bolts.force(bolt_force, self.whole.stretch(place, amplitude))
+        return out | {bolt_force_name(j): force for j, force in enumerate(forces)}, after
 
     def slope(self, preload: float, moment: float = 0.0) -> Array:
         """`Whole.slope` of elastic sides at tightening."""
         stick = self.foundation().stick(self.tightened_patches(preload, moment))[:, None] * STICKS
-        return self.whole.slope(self.curve.derivatives(self.tightened(preload, moment), 1)[1], stick)
+        bolt_force = self.bolts.tightened(self.joint, preload, moment)
+        bolts = self.bolts.tangent(bolt_force, np.zeros_like(bolt_force))
+        return self.whole.slope(self.curve.derivatives(self.tightened(preload, moment), 1)[1], stick, bolts)
 
     def compliances(self, preload: float, moment: float = 0.0) -> Compliances:
         """Of elastic sides, tightened by the force of each bolt [N] and a moment [N.m]."""
@@ -253,9 +262,13 @@ class BoltedJointSpring:
     @cached_property
     def whole(self) -> Whole:
         """The contact with what gives way around it."""
-        joint = self.joint
-        bolt, closed = joint.bolt_stiffness, self.curve.closed
-        return Whole.of(self.modes, self.shape, self.patches, joint.A_0, bolt, closed)
+        area, closed = self.joint.A_0, self.curve.closed
+        return Whole.of(self.modes, self.shape, self.patches, area, self.bolts, closed)
+
+    @cached_property
+    def bolts(self) -> BoltSprings:
+        """Its bolts, which act beside the contact."""
+        return BoltSprings.of(self.joint, self.curve.closed)
 
     def shift(self, rigid: Array, amplitude: Array) -> Array:
         """`shifts` (m, 3) [m] of the patches by a rigid motion (3) and amplitudes (k) [m] of the modes."""
@@ -317,7 +330,7 @@ class BoltedJointSpring:
         force[..., 0], force[:, 1, 1] = traction[:, :2], traction[:, 2]
         return Moved(force, np.zeros_like(stick), stick[:, None] * STICKS)
 
-    def _followed(self, trials: Trials, amplitude: Array) -> tuple[Array, Array]:
+    def _followed(self, trials: Trials, bolt_force: Array, amplitude: Array) -> tuple[Array, Array]:
         """Amplitudes (k) [m] that follow the motion from `amplitude` in the tangent of its beginning, and the
         derivative (k, k) [N/m] of the residual by them there."""
         whole, before, there = self.whole, trials.before, trials.place(0.0)
@@ -325,19 +338,41 @@ class BoltedJointSpring:
         tangent = before["tangent"]
         if before["state"] == UNKNOWN:
             tangent = self.foundation().stick(patches)[:, None] * STICKS
-        H = whole.slope(self.curve.derivatives(points, 1)[1], tangent)
+        bolts = self.bolts.tangent(bolt_force, whole.stretch(there, amplitude))
+        H = whole.slope(self.curve.derivatives(points, 1)[1], tangent, bolts)
         motion = trials.end.six - there.six
         return np.asarray(amplitude - np.linalg.solve(H[6:, 6:], H[6:, :6] @ motion)), H[6:, 6:]
 
+    def _gap_sums(self, place: Place, bolt_force: Array, sums: Mapping[str, Number]) -> dict[str, Number]:
+        """Sums of rigid sides with the gaps under the heads, from bolt forces (b) [N] at tightening."""
+        bolts, area = self.bolts, self.joint.A_0
+        elongation = bolts.elongation @ place.normal
+        gap = bolts.count * bolts.gap(bolt_force, elongation)
+        missing = bolts.count * (bolts.stiffness - bolts.tangent(bolt_force, elongation))
+        x, y = bolts.position.T
+        return {
+            **dict(zip(STRETCHES, [np.sum(gap), gap @ x, gap @ y], strict=True)),
+            "normal_stiffness": sums["normal_stiffness"] - np.sum(missing) / area,
+            "normal_about_x": sums["normal_about_x"] - (missing @ y**2) / area,
+            "normal_about_y": sums["normal_about_y"] - (missing @ x**2) / area,
+        }
+
     def _whole_sums(
-        self, at: "Trial", place: Place, amplitude: Array, loop_energy: Number
+        self, at: "Trial", place: Place, amplitude: Array, bolt_force: Array, loop_energy: Number
     ) -> dict[str, Number]:
-        """Sums of elastic sides: stiffnesses of the whole without the bolts' own part, see `outputs`."""
+        """Sums of elastic sides: stiffnesses of the whole without the bolts' own part, see `outputs`.
+
+        bolt_force : (b) [N] at tightening
+        """
         joint, area, modes = self.joint, self.joint.A_0, self.modes
         bolts, (_, _, x2, y2, _) = joint.n_bolts * joint.bolt_stiffness, joint.pattern.bolt_means
-        K = np.maximum(np.diag(self.whole.condensed(self.whole.slope(at.stiffness, at.tangent))), 0.0)
-        stretch, whole = modes.stretch @ amplitude, self.whole.stretch(place, amplitude)
-        energy = 0.5 * (modes.stiffness @ amplitude**2 + joint.bolt_stiffness * (whole @ whole))
+        whole = self.whole.stretch(place, amplitude)
+        gap = self.bolts.gap(bolt_force, whole)
+        slope = self.whole.slope(at.stiffness, at.tangent, self.bolts.tangent(bolt_force, whole))
+        K = np.maximum(np.diag(self.whole.condensed(slope)), 0.0)
+        stretch = modes.stretch @ amplitude + gap
+        elastic = joint.bolt_stiffness * (whole @ whole) - joint.bolt_stiffness * (gap @ gap)
+        energy = 0.5 * (modes.stiffness @ amplitude**2 + elastic)
         values = [np.sum(stretch), *(stretch @ modes.bolts)]
         return {
             **dict(zip(STRETCHES, values, strict=True)),
@@ -349,14 +384,6 @@ class BoltedJointSpring:
             "tangent_z": K[5] / area,
             "loop_energy": loop_energy + energy / area,
         }
-
-    def _bolt_forces(
-        self, preload: float, moment: float, place: Place, amplitude: Array
-    ) -> dict[str, Number]:
-        """Working force [N] of each bolt of elastic sides."""
-        given = working_preload(self.joint, preload) + moment * self.modes.lever
-        forces = given + self.joint.bolt_stiffness * self.whole.stretch(place, amplitude)
-        return {bolt_force(j): force for j, force in enumerate(forces)}
 
     def works(self, p: Array) -> tuple[Array, Array]:
         """Plastic and elastic work [J] of the whole area at pressures (...) (Zhao 2018, Eqs. 16, 18).

@@ -12,7 +12,7 @@ from ...quantity import Number, where
 from ..model import BEYOND, Loop, Model, Outside, Ramp, Values, Variable
 from .contact import Place
 from .law import Bolted, BoltedJoint, working_preload
-from .outputs import bolt_force
+from .outputs import bolt_force_name
 from .spring import BoltedJointSpring
 
 LINEAR = 0.5**0.5
@@ -70,8 +70,13 @@ def _whole(model: Model, joint: Bolted) -> Model:
     """
     if not joint.elastic:
         return model
-    meaning = "working force of bolt {}: preload less embedding, what the moment adds, its share of the load"
-    forces = [Variable(bolt_force(j), "N", meaning.format(j + 1), 1e4) for j in range(round(joint.n_bolts))]
+    meaning = (
+        "working force of bolt {}: preload less embedding, what the moment adds, its share of the load; "
+        "0 where its head lifts off"
+    )
+    forces = [
+        Variable(bolt_force_name(j), "N", meaning.format(j + 1), 1e4) for j in range(round(joint.n_bolts))
+    ]
     inputs = ("preload", "moment", *_PLACE[2:])
     known = {
         name: (*inputs, *(v for v in given if v not in inputs)) for name, given in model.dependencies.items()

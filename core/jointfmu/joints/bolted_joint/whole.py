@@ -5,7 +5,8 @@ patches shift by G_q q + G_a a, and so do the seats of the bolts. Equilibrium is
 
     r(a) = S a + G_a^T f = 0,    f = -(p - p_tightened) A share, t A share, k_b e
 
-at points, patches and bolts, S the stiffness of the modes. It is found by Newton's method with the
+at points, patches and bolts, S the stiffness of the modes; k_b e is at least the bolt's force at tightening
+with the opposite sign, see `BoltSprings`. It is found by Newton's method with the
 derivative of r, at first that at the beginning of the way, which Broyden's update carries on; it is not
 symmetric, as the normal force acts on friction. What is left of H = G^T W G + S to the attachments where a
 follows is the stiffness of the whole, W the tangents of points, patches and bolts in a further motion.
@@ -14,12 +15,14 @@ follows is the stiffness of the whole, W the tangents of points, patches and bol
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
 from ...mechanics.footprint.shape import FrictionPatches, PressureShape
 from ...quantity import Array
 from .bodies import Modes
+from .bolts import BoltSprings
 from .contact import Place, shifts
 from .trials import Trial, Trials
 
@@ -38,6 +41,13 @@ LEAST_PART = 1e-4
 """Least part of a motion that is gone at once [1]."""
 
 
+class Tightened(NamedTuple):
+    """Pressure (n) [Pa] of the points, and force (b) [N] of the bolts, at tightening."""
+
+    pressure: Array
+    bolt_force: Array
+
+
 @dataclass(frozen=True)
 class Whole:
     """A contact between bodies that give way, and its bolts.
@@ -45,7 +55,7 @@ class Whole:
     points  : (n, 3) opening by s_z, theta_x, theta_y; patches: (3, m, 3) `shifts` by s_x, s_y, theta_z
     seats   : (b, 3) stretch by s_z, theta_x, theta_y
     weight  : (n) [m2] area of the points, `patch` (m) of the patches
-    bolt    : [N/m] stiffness of each bolt
+    bolts   : one at each place of the modes
     closed  : [N] load of the whole area at which the contact closes, see `Curve.closed`
     """
 
@@ -55,7 +65,7 @@ class Whole:
     seats: Array
     weight: Array
     patch: Array
-    bolt: float
+    bolts: BoltSprings
     closed: float
 
     @classmethod
@@ -65,7 +75,7 @@ class Whole:
         shape: PressureShape,
         patches: FrictionPatches,
         area: float,
-        bolt: float,
+        bolts: BoltSprings,
         closed: float,
     ) -> "Whole":
         """Of points and patches of a nominal area [m2]; the contact closes under a pressure `closed` [Pa]."""
@@ -74,10 +84,10 @@ class Whole:
             modes,
             _apart(shape.position),
             np.stack([shifts(patches, turn) for turn in turns], axis=-1).transpose(1, 0, 2),
-            _apart(modes.bolts),
+            bolts.elongation,
             area * shape.share,
             area * patches.share,
-            bolt,
+            bolts,
             area * closed,
         )
 
@@ -85,24 +95,27 @@ class Whole:
         """Of the bolts (b) [m]."""
         return np.asarray(self.seats @ place.normal + self.modes.stretch @ amplitude)
 
-    def residual(self, at: Trial, tight: Array, place: Place, amplitude: Array) -> tuple[Array, float]:
-        """r (k) [N] of amplitudes (k) [m], and what of it is round-off [N]; tight (n) [Pa] at tightening."""
-        modes = self.modes
-        rigid, own = self.seats @ place.normal, modes.stretch @ amplitude
-        bolts = self.bolt * (rigid + own)
+    def residual(self, at: Trial, tight: Tightened, place: Place, amplitude: Array) -> tuple[Array, float]:
+        """r (k) [N] of amplitudes (k) [m], and what of it is round-off [N]."""
+        modes, stretch = self.modes, self.stretch(place, amplitude)
+        bolts = self.bolts.stiffness * (stretch + self.bolts.gap(tight.bolt_force, stretch))
         r = modes.stiffness * amplitude + modes.stretch.T @ bolts
-        r = r - modes.opening.T @ (self.weight * (at.pressure - tight))
+        r = r - modes.opening.T @ (self.weight * (at.pressure - tight.pressure))
         for axis in range(3):
             r = r + modes.patch[axis].T @ (self.patch * at.traction[:, axis])
-        sizes = self.weight @ (at.pressure + tight), np.sum(np.abs(bolts)), self.patch @ np.abs(at.traction)
+        sizes = (
+            self.weight @ (at.pressure + tight.pressure),
+            np.sum(np.abs(bolts)),
+            self.patch @ np.abs(at.traction),
+        )
         apart = np.max(np.abs(self.points @ place.normal))
         forces = sum(np.sum(size) for size in sizes) + (self.weight @ at.stiffness) * apart * CANCELS
         return r, float(CLOSE * (forces + self.closed))
 
-    def slope(self, stiffness: Array, tangent: Array) -> Array:
+    def slope(self, stiffness: Array, tangent: Array, bolts: Array) -> Array:
         """H (6 + k, 6 + k) [N/m] over s_x, s_y, s_z, theta_x, theta_y, theta_z and the amplitudes.
 
-        stiffness (n) [Pa/m] of the points, tangent (m, 6) [Pa/m] of the patches.
+        stiffness (n) [Pa/m] of the points, tangent (m, 6) [Pa/m] of the patches, bolts (b) [N/m].
         """
         modes, normal, shear = self.modes, slice(2, 5), (0, 1, 5)
         size = 6 + len(modes.stiffness)
@@ -117,7 +130,7 @@ class Whole:
         seats = motions(self.seats, normal, modes.stretch)
         u, v, w = (motions(self.patches[axis], shear, modes.patch[axis]) for axis in range(3))
         xx, xy, yy, xt, yt, tt = (self.patch * tangent.T)[:, :, None]
-        H += points.T @ ((self.weight * stiffness)[:, None] * points) + self.bolt * seats.T @ seats
+        H += points.T @ ((self.weight * stiffness)[:, None] * points) + (bolts * seats.T) @ seats
         H += u.T @ (xx * u + xy * v + xt * w) + v.T @ (xy * u + yy * v + yt * w)
         H += w.T @ (xt * u + yt * v + tt * w)
         H[6:, 6:] += np.diag(modes.stiffness)
@@ -128,7 +141,7 @@ class Whole:
         return np.asarray(H[:6, :6] - H[:6, 6:] @ np.linalg.solve(H[6:, 6:], H[6:, :6]))
 
     def solve(
-        self, trials: Trials, tight: Array, start: Array, first: Array, J: Array
+        self, trials: Trials, tight: Tightened, start: Array, first: Array, J: Array
     ) -> tuple[Array, Trial]:
         """Amplitudes (k) [m] in equilibrium at the end of a motion, and the trial there.
 
@@ -156,14 +169,14 @@ class Whole:
             rate = (found[0] - amplitude) / (part - done)
             amplitude, done, step = found[0], part, 2.0 * step
 
-    def _derivative(self, stiffness: Array, apart: Array, slopes: Array) -> Array:
+    def _derivative(self, stiffness: Array, apart: Array, slopes: Array, bolts: Array) -> Array:
         """Of the residual by the amplitudes: (k, k) [N/m].
 
         stiffness (n) [Pa/m] of the points, slopes (m, 3, 4) [Pa/m] of the tractions by shifts and by coming
-        apart, which the modes do by (m, k) [1].
+        apart, which the modes do by (m, k) [1], bolts (b) [N/m].
         """
         modes = self.modes
-        J = np.diag(modes.stiffness) + self.bolt * modes.stretch.T @ modes.stretch
+        J = np.diag(modes.stiffness) + (bolts * modes.stretch.T) @ modes.stretch
         J += modes.opening.T @ ((self.weight * stiffness)[:, None] * modes.opening)
         every = np.concatenate([modes.patch, apart[None]])
         for axis in range(3):
@@ -171,7 +184,7 @@ class Whole:
         return np.asarray(J)
 
     def _newton(
-        self, trials: Trials, part: float, tight: Array, amplitude: Array, J: Array
+        self, trials: Trials, part: float, tight: Tightened, amplitude: Array, J: Array
     ) -> tuple[Array, Trial] | float:
         """Equilibrium at a part [1] of the motion, from amplitudes (k) [m] and a derivative J (k, k), or
         the residual [N] left."""
@@ -185,7 +198,9 @@ class Whole:
             if left <= close * least:
                 return amplitude, at
             if not left < CHORD * before:
-                J = self._derivative(at.stiffness, trials.apart(at), trials.slopes(place, amplitude))
+                bolts = self.bolts.tangent(tight.bolt_force, self.stretch(place, amplitude))
+                slopes = trials.slopes(place, amplitude)
+                J = self._derivative(at.stiffness, trials.apart(at), slopes, bolts)
                 steps, own = [], True
             try:
                 step, before = _broyden(np.asarray(-np.linalg.solve(J, r)), steps), left

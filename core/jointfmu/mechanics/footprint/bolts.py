@@ -57,7 +57,12 @@ class BoltPattern:
     @property
     def bolt_means(self) -> Means:
         """Means of x, y [m], x^2, y^2, x y [m2] of the bolts, from the centroid of the contact."""
-        return means(self.bolts)
+        return means(self.bolt_positions)
+
+    @property
+    def bolt_positions(self) -> Array:
+        """Positions (8, 2) [m] of the bolts, from the centroid of the contact."""
+        return self.bolts
 
     def decay(self, distance: Array) -> Array:
         """Pressure of one bolt over its value at the axis [1]: (1 + (r/decay_length)^2)^-decay_exponent.

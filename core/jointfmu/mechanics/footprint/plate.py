@@ -90,7 +90,12 @@ class BoltedPlate:
     @property
     def bolt_means(self) -> Means:
         """Means of x, y [m], x^2, y^2, x y [m2] of the bolts, from the centroid of the contact."""
-        return means(self.bolts - self.centroid)
+        return means(self.bolt_positions)
+
+    @property
+    def bolt_positions(self) -> Array:
+        """Positions (n, 2) [m] of the bolts, from the centroid of the contact."""
+        return np.asarray(self.bolts - self.centroid)
 
     @property
     def rows(self) -> tuple[float, float]:

@@ -174,6 +174,12 @@ class NodalField:
     bolt_xy: float = quantity(
         "m2", "mean product of the bolts' positions along and across the rows, from the centroid", default=0.0
     )
+    each_bolt_x: tuple[float, ...] = series(
+        "m", "position of each bolt along the rows, from the centroid", optional=True
+    )
+    each_bolt_y: tuple[float, ...] = series(
+        "m", "position of each bolt across the rows, from the centroid", optional=True
+    )
 
     def __post_init__(self) -> None:
         check(self)
@@ -181,6 +187,10 @@ class NodalField:
             self._check_points(prefix)
         if (count := len(self.patch_share)) > PATCHES:
             raise ValueError(f"patch_share has {count} numbers, expected at most {PATCHES}")
+        if len(self.each_bolt_y) != (count := len(self.each_bolt_x)):
+            raise ValueError(
+                f"each_bolt_y has {len(self.each_bolt_y)} numbers, expected {count}: one per each_bolt_x"
+            )
 
     def _check_points(self, prefix: str) -> None:
         """Raise ValueError if the points (prefix "") or the patches do not balance, see the class."""
@@ -211,6 +221,11 @@ class NodalField:
     def bolt_means(self) -> Means:
         """Means of x, y [m], x^2, y^2, x y [m2] of the bolts, from the centroid of the contact."""
         return self.bolt_x, self.bolt_y, self.bolt_x2, self.bolt_y2, self.bolt_xy
+
+    @property
+    def bolt_positions(self) -> Array:
+        """Positions (n, 2) [m] of the bolts, from the centroid of the contact; none where it has no list."""
+        return np.stack([self.each_bolt_x, self.each_bolt_y], axis=-1)
 
     def shape(self) -> PressureShape:
         """Pressure distribution at the points."""

@@ -35,6 +35,8 @@ protected
   constant Real bent=0.2 "Across over along, from which on a path has turned as well";
   constant Real changed=0.02 "Change of the normal force over that at tightening after which the sliders' forces are kept";
   constant Real spread=0.288675134594813 "1/sqrt(12)";
+  parameter Integer b=size(data.bolt_forces, 1) "Number of bolts";
+  Modelica.Units.SI.Force pull[b](each nominal=1e3) "Forces of the bolts less those at tightening: bolts only pull";
   Real c "Approach from the tightened state [m]";
   Real v_c "Its rate [m/s]";
   Real bend "Derivative of the normal stiffness [N/m2]";
@@ -115,9 +117,12 @@ equation
   for a in 1:2 loop
     f[a] = -(if memory then sum(q[a, :]) else K_t/R*s_rel[a]) - C_t*v_rel[a];
   end for;
+  for j in 1:b loop
+    pull[j] = noEvent(max(data.bolts/b*s_rel[3], -data.bolt_forces[j]));
+  end for;
   f[3] = JointStiffness.Functions.load(-s_rel[3], data.table)
     + (if memory then 0 else data.shear*bend*square/(R*(1 + R)))
-    - data.bolts*s_rel[3] - C_n*v_rel[3];
+    - sum(pull) - C_n*v_rel[3];
   flange_x.f = -f[1];
   flange_y.f = -f[2];
   flange_z.f = -f[3];
@@ -137,16 +142,16 @@ equation
 <p>The three flanges are side 2 along x, y and z, from the tightened state; z is the normal, positive apart. Side 1 is fixed. Hold a flange that does not move with <code>Modelica.Mechanics.Translational.Components.Fixed</code>.</p>
 <h4>Law</h4>
 <p>All nodes i of the contact, with shares A<sub>i</sub> of the nominal area, follow one curve p(δ) of pressure over approach, from their own pressure at tightening. Force and stiffness derive from one potential:</p>
-<p>U(s) = Σ A<sub>i</sub> [ V(δ<sub>i</sub> − s<sub>z</sub>) + ½ ρ p′(δ<sub>i</sub> − s<sub>z</sub>) (s<sub>x</sub><sup>2</sup> + s<sub>y</sub><sup>2</sup>) ] + P<sub>0</sub> s<sub>z</sub> + ½ n k s<sub>z</sub><sup>2</sup>, &emsp; V′ = p, &emsp; ρ = K<sub>T</sub>/K<sub>N</sub></p>
+<p>U(s) = Σ A<sub>i</sub> [ V(δ<sub>i</sub> − s<sub>z</sub>) + ½ ρ p′(δ<sub>i</sub> − s<sub>z</sub>) (s<sub>x</sub><sup>2</sup> + s<sub>y</sub><sup>2</sup>) ] + P<sub>0</sub> s<sub>z</sub> + Σ W<sub>j</sub>(s<sub>z</sub>), &emsp; V′ = p, &emsp; ρ = K<sub>T</sub>/K<sub>N</sub></p>
 <p>f = −∂U/∂s − C v, &emsp; K<sub>zz</sub> = ∂<sup>2</sup>U/∂s<sub>z</sub><sup>2</sup>, &emsp; K<sub>xx</sub> = K<sub>yy</sub> = ∂<sup>2</sup>U/∂s<sub>x</sub><sup>2</sup></p>
-<p>so a closed path returns its energy, the tangential stiffness follows the normal approach, and shear reacts on the normal force. <code>K_rx</code>, <code>K_ry</code> and <code>K_rz</code> project the stiffness of the nodes on rotations about their centroid; the n bolts of stiffness k = <code>bolt_stiffness</code> add n k to <code>K_zz</code> and their part to <code>K_rx</code> and <code>K_ry</code>, and carry the joint once it is open. The pressure at tightening is that of the bolts. A frame spreads each bolt force by 1/(1 + (r/decay_length)<sup>2</sup>)<sup>decay_exponent</sup>; a plate by Fernlund's polynomial, (R − r)<sup>3</sup> (3r + R − 4a) from the hole's edge a to R, over the disc that the deformation cone of VDI 2230 gives; a field brings its own pressures. The moment M changes the bolt forces of its two rows by ±M/(L<sub>a</sub> N<sub>b</sub>) (Zhao 2018, section 3).</p>
+<p>so a closed path returns its energy, the tangential stiffness follows the normal approach, and shear reacts on the normal force. <code>K_rx</code>, <code>K_ry</code> and <code>K_rz</code> project the stiffness of the nodes on rotations about their centroid; the n bolts of stiffness k = <code>bolt_stiffness</code> add n k to <code>K_zz</code> and their part to <code>K_rx</code> and <code>K_ry</code>, and carry the joint once it is open. They only pull: W<sub>j</sub>′ = max(k s<sub>z</sub>, −F<sub>0j</sub>), with F<sub>0j</sub> the force of bolt j at tightening. The pressure at tightening is that of the bolts. A frame spreads each bolt force by 1/(1 + (r/decay_length)<sup>2</sup>)<sup>decay_exponent</sup>; a plate by Fernlund's polynomial, (R − r)<sup>3</sup> (3r + R − 4a) from the hole's edge a to R, over the disc that the deformation cone of VDI 2230 gives; a field brings its own pressures. The moment M changes the bolt forces of its two rows by ±M/(L<sub>a</sub> N<sub>b</sub>) (Zhao 2018, section 3).</p>
 <p>The curve comes from sums over contact spots of truncated area a′ up to the largest one, a′<sub>L</sub>, whose load is p A<sub>0</sub>:</p>
 <p>n(a′) = ½ D ψ<sup>1−D/2</sup> a′<sub>L</sub><sup>D/2</sup> a′<sup>−(D+2)/2</sup> (Zhao 2018, Eq. 2)</p>
 <p>F = ∫ f n da′, &emsp; f = H a′ below a′<sub>c</sub>, &emsp; f = (4/3) E* R<sup>1/2</sup> δ<sup>3/2</sup> above (Eqs. 4-10, 4 and 9 corrected)</p>
 <p>K<sub>N</sub> = ∫ k<sub>n</sub> n da′, &emsp; K<sub>T</sub> = ∫ 8 G′ r (1 − x)<sup>1/3</sup> n da′, &emsp; dp/dδ = K<sub>N</sub>/A<sub>0</sub> (Eqs. 14, 22)</p>
 <p>C<sub>n</sub> = η<sub>n</sub> (m K<sub>N</sub>)<sup>1/2</sup> if plastic_damping, else 0, &emsp; η<sub>n</sub> = Σ W<sub>plastic</sub> / Σ W<sub>elastic</sub> (Eqs. 16-20, corrected)</p>
 <p>C<sub>t</sub> = η<sub>t</sub> (m K<sub>T</sub>)<sup>1/2</sup>, &emsp; 1/η<sub>t</sub> = (5π/12) H<sub>2</sub>/H<sub>1</sub> − 1, &emsp; of Mindlin's loop at x = traction_ratio (Eq. 29, corrected)</p>
-<p>All nodes of the joint at its preload and moment add up to one curve g(c) of the total force over the approach c = -s<sub>z</sub>, from which normal force and friction follow: f<sub>z</sub> = g(c) - g(0) - n k s<sub>z</sub>. Friction is that of 28 sliders, whose forces along x and y go straight on from where they were last kept (an event): where the shift has turned, or the normal force has changed by a fiftieth of the tightened one. Each takes together springs that touch one after the other, of the tangential stiffness &rho; g''(h) dh at the height h, and slips at &mu; times their normal force. The sums of their stiffness, &rho; g'(c), and of their friction, &mu; g(c), are exact at every approach.</p>
+<p>All nodes of the joint at its preload and moment add up to one curve g(c) of the total force over the approach c = -s<sub>z</sub>, from which normal force and friction follow: f<sub>z</sub> = g(c) - g(0) - &Sigma; max(k s<sub>z</sub>, -F<sub>0</sub>). F<sub>0</sub> is the force of a bolt at tightening: where it would push, its head lifts off. Friction is that of 28 sliders, whose forces along x and y go straight on from where they were last kept (an event): where the shift has turned, or the normal force has changed by a fiftieth of the tightened one. Each takes together springs that touch one after the other, of the tangential stiffness &rho; g''(h) dh at the height h, and slips at &mu; times their normal force. The sums of their stiffness, &rho; g'(c), and of their friction, &mu; g(c), are exact at every approach.</p>
 <p>With <code>memory=false</code> shear is elastic, grows to &mu; g(0) and reacts on the normal force, with the FMU's law for the sum of its nodes: R = (1 + (&rho; g'(c) u/(&mu; g(0)))<sup>2</sup>)<sup>&frac12;</sup> at the shift u, f<sub>x</sub> = -&rho; g'(c) s<sub>x</sub>/R, f<sub>z</sub> as above and &rho; g''(c) u<sup>2</sup>/(R (1 + R)).</p>
 <h4>Not in this table</h4>
 <ul>

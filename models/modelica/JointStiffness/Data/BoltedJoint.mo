@@ -5,6 +5,7 @@ record BoltedJoint "A bolted joint at a fixed preload and moment"
   parameter Modelica.Units.SI.Torque moment "Bending moment on the joint";
   parameter Modelica.Units.SI.Mass mass(min=0) "mass of the structure, used for the equivalent viscous damping C_N, C_T";
   parameter Modelica.Units.SI.TranslationalSpringConstant bolts(min=0) "Stiffness of all bolts, beside the interface";
+  parameter Modelica.Units.SI.Force bolt_forces[:](each min=0) "Force of each bolt at tightening, which has an equal part of this stiffness";
   parameter Boolean plastic_damping = false "normal damping by the plastic work of first loading (Zhao 2018, Eqs. 19-20)";
   parameter Boolean memory = true "friction with partial slip and memory; without it an elastic joint";
   parameter Boolean damping = false "the dashpots C_xx, C_yy, C_zz of Zhao 2018 act";

@@ -20,7 +20,8 @@ from pathlib import Path
 import numpy as np
 
 from jointfmu.contact.interface import stiffness_curve
-from jointfmu.joints.bolted_joint.law import Bolted, pressures
+from jointfmu.joints.bolted_joint.bolts import AT_LIFT_OFF
+from jointfmu.joints.bolted_joint.law import Bolted, pressures, working_preload
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.mechanics.curve import approach_curve
 from jointfmu.mechanics.footprint.bolts import PressureSource, pressure_shape
@@ -65,7 +66,8 @@ def joint_stiffness(joint: Bolted, preload: Array, direction: str = "normal") ->
     k[closing] = curve.derivatives(curve.inverse(p[closing]), 1)[1]
     normal = joint.A_0 * np.sum(shape.share * k, axis=-1)
     if direction == "normal":
-        return np.asarray(normal + joint.n_bolts * joint.bolt_stiffness)
+        pulling = np.where(working_preload(joint, preload) > 0.0, 1.0, AT_LIFT_OFF)
+        return np.asarray(normal + joint.n_bolts * joint.bolt_stiffness * pulling)
     return np.asarray(joint.shear_ratio() * normal)
 
 

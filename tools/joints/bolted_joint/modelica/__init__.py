@@ -13,6 +13,7 @@ from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
 
 from ....modelica.records import (
+    COMPUTED,
     InterpolationTable,
     ModelicaComponent,
     ModelicaRecord,
@@ -21,6 +22,7 @@ from ....modelica.records import (
     given,
     identifier,
     matrix,
+    number,
     thinned,
 )
 
@@ -49,6 +51,7 @@ class Tightened(NamedTuple):
               friction are taken together
     sliders : rows (2 n - 2, 2) of stiffness [N/m] and friction [N] at tightening, of those that slip earlier
               first
+    bolts   : force of each bolt at tightening (b) [N], all bolts of a position together
     """
 
     table: InterpolationTable
@@ -57,6 +60,7 @@ class Tightened(NamedTuple):
     force: float
     heights: Array
     sliders: Array
+    bolts: Array
 
 
 def tightened(spring: BoltedJointSpring, preload: float, moment: float) -> Tightened:
@@ -100,7 +104,8 @@ def tightened(spring: BoltedJointSpring, preload: float, moment: float) -> Tight
     ratio = float(spring.joint.shear_ratio())
     carried = Foundation(whole, ratio, spring.joint.mu, heights).carried(0.0)
     sliders = np.column_stack([np.concatenate([x[::2], x[1::2]]) for x in (carried.stiffness, carried.limit)])
-    return Tightened(table, damping, ratio, at_rest, rows, sliders)
+    bolts = spring.bolts.count * spring.bolts.tightened(spring.joint, preload, moment)
+    return Tightened(table, damping, ratio, at_rest, rows, sliders, bolts)
 
 
 def _dissipation(spring: BoltedJointSpring, approach: Array) -> Array:
@@ -143,6 +148,7 @@ def _record(name: str, spring: BoltedJointSpring, preload: float, moment: float)
             "heights": matrix(tight.heights),
             "sliders": matrix(tight.sliders),
             "eta_n": matrix(tight.damping),
+            "bolt_forces": f"{{{', '.join(number(force, COMPUTED) for force in tight.bolts)}}}",
         },
         more="; where the force is below the one at tightening, relative to that",
     )

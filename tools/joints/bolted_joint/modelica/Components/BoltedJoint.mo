@@ -35,6 +35,8 @@ protected
   constant Real bent=0.2 "Across over along, from which on a path has turned as well";
   constant Real changed=0.02 "Change of the normal force over that at tightening after which the sliders' forces are kept";
   constant Real spread=<< spread >> "1/sqrt(12)";
+  parameter Integer b=size(data.bolt_forces, 1) "Number of bolts";
+  Modelica.Units.SI.Force pull[b](each nominal=1e3) "Forces of the bolts less those at tightening: bolts only pull";
   Real c "Approach from the tightened state [m]";
   Real v_c "Its rate [m/s]";
   Real bend "Derivative of the normal stiffness [N/m2]";
@@ -115,9 +117,12 @@ equation
   for a in 1:2 loop
     f[a] = -(if memory then sum(q[a, :]) else K_t/R*s_rel[a]) - C_t*v_rel[a];
   end for;
+  for j in 1:b loop
+    pull[j] = noEvent(max(data.bolts/b*s_rel[3], -data.bolt_forces[j]));
+  end for;
   f[3] = JointStiffness.Functions.load(-s_rel[3], data.table)
     + (if memory then 0 else data.shear*bend*square/(R*(1 + R)))
-    - data.bolts*s_rel[3] - C_n*v_rel[3];
+    - sum(pull) - C_n*v_rel[3];
   flange_x.f = -f[1];
   flange_y.f = -f[2];
   flange_z.f = -f[3];
@@ -137,7 +142,7 @@ equation
 <p>The three flanges are side 2 along x, y and z, from the tightened state; z is the normal, positive apart. Side 1 is fixed. Hold a flange that does not move with <code>Modelica.Mechanics.Translational.Components.Fixed</code>.</p>
 <h4>Law</h4>
 << html.law >>
-<p>All nodes of the joint at its preload and moment add up to one curve g(c) of the total force over the approach c = -s<sub>z</sub>, from which normal force and friction follow: f<sub>z</sub> = g(c) - g(0) - n k s<sub>z</sub>. Friction is that of << sliders >> sliders, whose forces along x and y go straight on from where they were last kept (an event): where the shift has turned, or the normal force has changed by a fiftieth of the tightened one. Each takes together springs that touch one after the other, of the tangential stiffness &rho; g''(h) dh at the height h, and slips at &mu; times their normal force. The sums of their stiffness, &rho; g'(c), and of their friction, &mu; g(c), are exact at every approach.</p>
+<p>All nodes of the joint at its preload and moment add up to one curve g(c) of the total force over the approach c = -s<sub>z</sub>, from which normal force and friction follow: f<sub>z</sub> = g(c) - g(0) - &Sigma; max(k s<sub>z</sub>, -F<sub>0</sub>). F<sub>0</sub> is the force of a bolt at tightening: where it would push, its head lifts off. Friction is that of << sliders >> sliders, whose forces along x and y go straight on from where they were last kept (an event): where the shift has turned, or the normal force has changed by a fiftieth of the tightened one. Each takes together springs that touch one after the other, of the tangential stiffness &rho; g''(h) dh at the height h, and slips at &mu; times their normal force. The sums of their stiffness, &rho; g'(c), and of their friction, &mu; g(c), are exact at every approach.</p>
 <p>With <code>memory=false</code> shear is elastic, grows to &mu; g(0) and reacts on the normal force, with the FMU's law for the sum of its nodes: R = (1 + (&rho; g'(c) u/(&mu; g(0)))<sup>2</sup>)<sup>&frac12;</sup> at the shift u, f<sub>x</sub> = -&rho; g'(c) s<sub>x</sub>/R, f<sub>z</sub> as above and &rho; g''(c) u<sup>2</sup>/(R (1 + R)).</p>
 <h4>Not in this table</h4>
 <ul>

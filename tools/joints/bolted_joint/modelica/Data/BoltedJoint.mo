@@ -5,6 +5,7 @@ record BoltedJoint "A bolted joint at a fixed preload and moment"
   parameter Modelica.Units.SI.Torque moment "Bending moment on the joint";
   parameter Modelica.Units.SI.Mass mass(min=0) "<< meta.mass >>";
   parameter Modelica.Units.SI.TranslationalSpringConstant bolts(min=0) "Stiffness of all bolts, beside the interface";
+  parameter Modelica.Units.SI.Force bolt_forces[:](each min=0) "Force of each bolt at tightening, which has an equal part of this stiffness";
   parameter Boolean plastic_damping = false "<< meta.plastic_damping >>";
   parameter Boolean memory = true "<< meta.memory >>";
   parameter Boolean damping = false "<< meta.damping >>";

@@ -1,0 +1,115 @@
+"""Bolt forces: a bolt only pulls. Where it would push, its head lifts off its bearing face.
+
+The force of a bolt that the motion of the sides elongates by e from the tightened state is
+
+    F = max(0, F_0 + k e) = F_0 + k (e + h),    h = max(0, -(F_0/k + e)),
+
+F_0 its force at tightening, k its stiffness and h the gap under its head or nut. It is the derivative of a
+convex potential in e. A tapped bolt keeps its thread; its head lifts off alike.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ...mechanics.footprint.shape import NodalField
+from ...quantity import Array
+from .bodies import ElasticBodies
+from .law import Bolted, working_preload
+
+LIFT_OFF_RATIO = 1e-9
+"""Force over the load at which the contact closes [1] up to which a bolt stands at lift-off: its stiffness is
+the mean of both sides. Round-off of the equilibrium is far below it."""
+AT_LIFT_OFF = 0.5
+"""Part of its stiffness [1] that a bolt at lift-off has. A bolt without preload is there in the tightened
+state."""
+ONE_ROW = 1e-6
+"""Distance across the rows over the size of the bolt pattern [1] up to which bolts form one row."""
+
+
+@dataclass(frozen=True)
+class BoltSprings:
+    """The bolts of a joint as springs between its sides, which only pull.
+
+    position  : (b, 2) [m] of the bolts, from the centroid of the contact
+    count     : bolts at each position [1]: not 1 where `n_bolts` differs from the number of positions
+    stiffness : [N/m] of each bolt
+    lift_off  : [N] largest force of a bolt that stands at lift-off
+    """
+
+    position: Array
+    count: float
+    stiffness: float
+    lift_off: float
+
+    @classmethod
+    def of(cls, joint: Bolted, closed: float) -> "BoltSprings":
+        """The bolts of a joint; closed [Pa]: pressure at which its contact closes."""
+        position = bolt_positions(joint)
+        count = float(joint.n_bolts) / len(position)
+        return cls(position, count, float(joint.bolt_stiffness), LIFT_OFF_RATIO * closed * float(joint.A_0))
+
+    @cached_property
+    def lever(self) -> Array:
+        """(b) [1/m] force that a moment adds to each bolt over the moment, see `moment_lever`."""
+        return moment_lever(self.position) / self.count
+
+    @cached_property
+    def elongation(self) -> Array:
+        """(b, 3) elongation of the bolts by s_z, theta_x, theta_y of rigid sides."""
+        x, y = self.position.T
+        return np.stack([np.ones_like(x), y, -x], axis=-1)
+
+    def tightened(self, joint: Bolted, preload: float, moment: float) -> Array:
+        """Force (b) [N] of each bolt at tightening: working preload and share of the moment, at least 0."""
+        return np.asarray(np.maximum(working_preload(joint, preload) + moment * self.lever, 0.0))
+
+    def gap(self, tightened: Array, elongation: Array) -> Array:
+        """Gap h (b) [m] under the heads at elongations (b) [m] from tightened forces (b) [N]."""
+        if self.stiffness == 0.0:
+            return np.zeros_like(elongation)
+        return np.maximum(-(tightened + self.stiffness * elongation), 0.0) / self.stiffness
+
+    def force(self, tightened: Array, elongation: Array) -> Array:
+        """Force F (b) [N] of each bolt, at least 0."""
+        return np.maximum(tightened + self.stiffness * elongation, 0.0)
+
+    def tangent(self, tightened: Array, elongation: Array) -> Array:
+        """Stiffness dF/de (b) [N/m] of each bolt; at lift-off the mean of both sides."""
+        force = tightened + self.stiffness * elongation
+        pulling = np.where(force > self.lift_off, 1.0, np.where(force < -self.lift_off, 0.0, AT_LIFT_OFF))
+        return np.asarray(self.stiffness * pulling)
+
+
+def bolt_positions(joint: Bolted) -> Array:
+    """Positions (b, 2) [m] of the bolts of a joint, from the centroid of its contact.
+
+    A field without a list of its bolts has four positions with the means that it states.
+    """
+    if isinstance(joint.bodies, ElasticBodies):
+        return np.stack([joint.bodies.bolt_x, joint.bodies.bolt_y], axis=-1)
+    if isinstance(joint.pattern, NodalField) and not joint.pattern.each_bolt_x:
+        return _rectangle(*joint.pattern.bolt_means)
+    return joint.pattern.bolt_positions
+
+
+def moment_lever(position: Array) -> Array:
+    """Force that a moment about x adds to each bolt over the moment (b) [1/m], as in `BoltedPlate.shape`.
+
+    Bolts of one row along x cannot carry a moment by their forces: 0.
+    """
+    x, y = position.T
+    if np.ptp(y) <= ONE_ROW * max(float(np.ptp(x)), float(np.max(np.abs(y)))):
+        return np.zeros_like(y)
+    away = y - np.sum(y) / len(y)
+    return np.asarray(away / float(away @ away))
+
+
+def _rectangle(x: float, y: float, x2: float, y2: float, xy: float) -> Array:
+    """Corners (4, 2) [m] of the parallelogram whose means of x, y, x^2, y^2, x y are these: the positions
+    themselves of one bolt, two bolts, and four bolts on a rectangle along x and y."""
+    across = np.sqrt(max(x2 - x * x, 0.0))
+    shear = (xy - x * y) / across if across > 0.0 else 0.0
+    along = np.sqrt(max(y2 - y * y - shear * shear, 0.0))
+    return np.array([[x + u * across, y + u * shear + v * along] for u in (-1.0, 1.0) for v in (-1.0, 1.0)])
