@@ -12,8 +12,8 @@ from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity.units import CELSIUS, UNITS
 
+from ..licence import copyright_line
 from ..xml_parts import Listed, listed, model_structure, serialized, stop_time, text, unit_definitions, units
-from .licence import copyright_line
 
 LOG_CATEGORIES = {
     "logEvents": "changes of mode and new tables, if logging is on",

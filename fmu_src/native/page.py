@@ -17,9 +17,9 @@ from jointfmu.quantity.units import UNITS, display_unit
 from ..folders import asset, parts_of
 from ..joint_parts import RampPanel, chart
 from ..joint_parts.terminals import Terminal
+from ..licence import licences
 from ..templates import law_terms, template
 from ..xml_parts import listed
-from .licence import licences
 from .terminals import terminals
 
 _POINTS = 41

@@ -11,7 +11,7 @@ from pathlib import Path
 from types import ModuleType
 
 from jointfmu_fmu_src.archive import pack, workshop
-from jointfmu_fmu_src.native.licence import licence
+from jointfmu_fmu_src.licence import licence
 from jointfmu_fmu_src.proof.members import proof
 from jointfmu_fmu_src.python.imports import imported
 from jointfmu_fmu_src.xml_parts import VARIABILITIES

@@ -11,7 +11,7 @@ from base64 import b64encode
 from pathlib import Path
 
 from jointfmu_fmu_src.joint_parts import chart
-from jointfmu_fmu_src.native.licence import webassembly_licences
+from jointfmu_fmu_src.licence import webassembly_licences
 from jointfmu_fmu_src.templates import template
 
 from jointfmu import __version__

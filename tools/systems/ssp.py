@@ -11,9 +11,9 @@ from typing import Any, NamedTuple
 from xml.etree.ElementTree import Element, SubElement
 
 from jointfmu_fmu_src.archive import pack, workshop
+from jointfmu_fmu_src.licence import copyright_line
 from jointfmu_fmu_src.native.build import build
 from jointfmu_fmu_src.native.compiled.kept import VERSIONS
-from jointfmu_fmu_src.native.licence import copyright_line
 from jointfmu_fmu_src.partners import parameters as partner_parameters
 from jointfmu_fmu_src.ssv import NUMBER, SSP, Value, add_units, parameter_set
 from jointfmu_fmu_src.xml_parts import VARIABILITIES, serialized

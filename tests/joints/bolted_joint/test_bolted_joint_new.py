@@ -399,7 +399,11 @@ def test_a_computed_field_is_near_the_cones(capsys, tmp_path, monkeypatch):
         words = ["--plate", "60x60", "--bolts", "M16", "--grip", "30", *FACES, "--preload", "60e3"]
         made(capsys, *words, "--field", field, path=path)
         files[field] = BoltedJointSpring.of(load(path).values).motion(6e4, 0.0, STILL, STILL)
-    for name, within in (("K_zz", 0.01), ("K_rx", 0.25), ("p_max", 0.4)):  # docs/bolted_joint_explanation.md has such figures
+    for name, within in (
+        ("K_zz", 0.01),
+        ("K_rx", 0.25),
+        ("p_max", 0.4),
+    ):  # docs/bolted_joint_explanation.md has such figures
         assert float(files["cones"][name]) == pytest.approx(float(files["computed"][name]), rel=within), name
 
 

@@ -5,10 +5,10 @@ from pathlib import Path
 
 from jointfmu_fmu_src.archive import pack, workshop
 from jointfmu_fmu_src.joint_parts.data import NO_TABLES, Split
+from jointfmu_fmu_src.licence import licences
 from jointfmu_fmu_src.native.build import core
 from jointfmu_fmu_src.native.compiled.compiler import TARGETS, exported, libraries
 from jointfmu_fmu_src.native.data import data_of
-from jointfmu_fmu_src.native.licence import licences
 from jointfmu_fmu_src.native.page import plain_page
 
 from jointfmu.files.outputs import ARCHIVE, check_outputs
