@@ -403,7 +403,7 @@ def test_a_computed_field_is_near_the_cones(capsys, tmp_path, monkeypatch):
         ("K_zz", 0.01),
         ("K_rx", 0.25),
         ("p_max", 0.4),
-    ):  # docs/bolted_joint_explanation.md has such figures
+    ):
         assert float(files["cones"][name]) == pytest.approx(float(files["computed"][name]), rel=within), name
 
 
