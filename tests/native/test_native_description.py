@@ -22,8 +22,8 @@ from clients import needs
 from fmpy.model_description import read_build_description
 from fmpy.validation import validate_fmu
 from joint_cases import CASES, NAMES
+from jointfmu_fmu_src import licence as licence_module
 from jointfmu_fmu_src.licence import licence
-from jointfmu_fmu_src.native import licence as licence_module
 from jointfmu_fmu_src.native.description import LOG_CATEGORIES, build_description, fmi2_xml, fmi3_xml
 from jointfmu_fmu_src.native.page import documentation
 from jointfmu_fmu_src.native.terminals import terminals_and_icons
