@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
+from functools import cache, partial
 from math import comb
 from pathlib import Path
 from types import ModuleType
@@ -114,11 +114,22 @@ def library(file: ParameterFile | None = None, points: Points | None = None) -> 
 def _joint(
     kind: Kind, module: ModuleType, file: ParameterFile | None, points: Sequence[WorkingPoint] | None
 ) -> _Joint:
-    own = file if file and file.joint == kind.name else default(kind.name)
     component: ModelicaComponent = module.COMPONENT
-    wanted = points or (*_start(own), *component.points)
-    records = dict(zip(wanted, component.records(own, wanted), strict=True))
+    is_given = file is not None and file.joint == kind.name
+    own = file if file and is_given else default(kind.name)
+    wanted = tuple(points or (*_start(own), *component.points))
+    made = component.records(own, wanted) if is_given else _default_records(kind.name, module, wanted)
+    records = dict(zip(wanted, made, strict=True))
     return _Joint(kind, own, component, records, environment(Path(str(module.__file__)).parent))
+
+
+@cache
+def _default_records(
+    joint: str, module: ModuleType, points: tuple[WorkingPoint, ...]
+) -> tuple[ModelicaRecord, ...]:
+    """Records of the default parameters of a joint, which the library of another joint has too."""
+    component: ModelicaComponent = module.COMPONENT
+    return tuple(component.records(default(joint), points))
 
 
 def _start(file: ParameterFile) -> list[WorkingPoint]:
