@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from conftest import refused_line
+from conftest import RELEASED, refused_line
 from jointfmu_fmu_src.joint_parts.c_text import comment, string
 from jointfmu_fmu_src.native.data import block
 from jointfmu_fmu_src.native.page import documentation
@@ -100,7 +100,8 @@ def test_c_compiles_without_warning_and_runs_nothing(tmp_path: Path) -> None:
     (tmp_path / "main.c").write_text("\n".join(lines), encoding="utf-8")
     (tmp_path / "data.h").write_text(data.header())
     options = ["-std=c11", "-Wall", "-Wextra", "-Werror", "-Wtrigraphs", "-Wcomment", "main.c", "-o", "main"]
-    subprocess.run([sys.executable, "-m", "ziglang", "cc", *options], cwd=tmp_path, check=True, timeout=300)
+    command = [sys.executable, "-m", "ziglang", "cc", *RELEASED, *options]
+    subprocess.run(command, cwd=tmp_path, check=True, timeout=300)
     done = subprocess.run([tmp_path / "main"], capture_output=True, check=True, timeout=60)
     assert done.stdout == b""
 

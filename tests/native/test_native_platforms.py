@@ -34,7 +34,8 @@ HOSTS = Path(__file__).parent / "hosts"
 VERSIONS = ("fmi2", "fmi3")
 
 BARE = (
-    "-target", "aarch64-linux-musl", *_COMPILED, "-w", "-DLINKED", "-nostdlib", "-static", "-fno-builtin-fprintf",
+    "-target", "aarch64-linux-musl", *_COMPILED, "-w", "-DLINKED", "-nostdlib", "-static",
+    "-fno-builtin-fprintf",
     *(
         f"-isystem{Path(ziglang.__file__).parent / 'lib' / 'libc' / 'include' / headers}"
         for headers in ("aarch64-linux-musl", "generic-musl")
@@ -165,7 +166,7 @@ def run(native: Path, tmp_path_factory: pytest.TempPathFactory, wine: dict[str, 
 
 @pytest.fixture(scope="module")
 def run_sources(native: Path, tmp_path_factory: pytest.TempPathFactory) -> Run:
-    """Runs the sources of an FMU, linked with a host into one program for aarch64, and gives what it prints."""
+    """Runs the sources of an FMU and a host, one program for aarch64, and gives what it prints."""
     work = tmp_path_factory.mktemp("linked")
 
     @cache

@@ -111,10 +111,25 @@ class Members(Mapping[str, bytes]):
 
     def __init__(self, path: str | Path) -> None:
         self._path = path
+        self._archive: zipfile.ZipFile | None = None
         with opened(path) as archive:
             self._names = dict.fromkeys(archive.namelist())
 
+    @contextmanager
+    def open_for_reading(self) -> Iterator[None]:
+        """Open the archive once for all members that the body reads."""
+        with opened(self._path) as self._archive:
+            try:
+                yield
+            finally:
+                self._archive = None
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._names
+
     def __getitem__(self, name: str) -> bytes:
+        if self._archive:
+            return content(self._archive, name)
         with opened(self._path) as archive:
             return content(archive, name)
 
