@@ -207,8 +207,8 @@ static void measure_start(const char *token, int repeats)
 
 static size_t allocated(void)
 {
-    const struct mallinfo2 info = mallinfo2();
-    return info.uordblks + info.hblkhd;
+    const struct mallinfo info = mallinfo(); /* of glibc 2.17, for which FMUs are built */
+    return (size_t)info.uordblks + (size_t)info.hblkhd;
 }
 
 static void measure_memory(const char *token)

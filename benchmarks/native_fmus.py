@@ -178,7 +178,8 @@ def build_host(folder: Path) -> Path:
     """Compile native_fmus.c."""
     file = folder / "host"
     include = Path(fmpy.__file__).parent / "c-code"
-    options = ("-std=gnu11", "-O2", f"-I{HOSTS}", f"-I{include}", "-ldl", "-o", str(file))
+    target = ("-target", compiler.TARGETS[PLATFORM], "-s")  # for which zig has compiled its runtime
+    options = ("-std=gnu11", "-O2", *target, f"-I{HOSTS}", f"-I{include}", "-ldl", "-o", str(file))
     subprocess.run(
         [sys.executable, "-m", "ziglang", "cc", str(HERE / "native_fmus.c"), *options], check=True, cwd=folder
     )

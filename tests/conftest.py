@@ -259,6 +259,16 @@ def fine_elements(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(REFINEMENT, "bodies", 1.0)
 
 
+@pytest.fixture
+def few_points(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A page's ramp and loops have few points: of elastic plates all take 20 s, and are drawn alike."""
+    from jointfmu_tools.ramps.loops import Swing
+    from jointfmu_tools.report import course
+
+    monkeypatch.setattr(course, "_POINTS", 11)
+    monkeypatch.setattr(course, "_SWING", Swing(points=8))
+
+
 @pytest.fixture(scope="session", autouse=True)
 def solved_once(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     """Bodies of equal plates, of elements twice as large but with `fine_elements`, and patches of equal

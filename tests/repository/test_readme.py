@@ -18,8 +18,6 @@ from jointfmu_tools import cli
 from jointfmu_tools.fields import nodal_result
 from jointfmu_tools.fields.nodal_result import ContactField
 from jointfmu_tools.published import validation
-from jointfmu_tools.ramps.loops import Swing
-from jointfmu_tools.report import course
 
 from jointfmu.files.outputs import write_parameter_text
 from jointfmu.mechanics.footprint import bolts
@@ -39,13 +37,6 @@ def blocks(language, text=README):
 
 def test_the_readme_is_short():
     assert len(re.findall(r"\S*\w\S*", README)) <= 700
-
-
-@pytest.fixture
-def few_points(monkeypatch):
-    """A page's ramp and loops have few points: of elastic plates all take 20 s, and are drawn alike."""
-    monkeypatch.setattr(course, "_POINTS", 11)
-    monkeypatch.setattr(course, "_SWING", Swing(points=8))
 
 
 @pytest.mark.slow

@@ -307,7 +307,7 @@ def test_a_tool_frame_of_a_urdf_is_the_tip(tmp_path):
 
 
 OTHERS = {
-    "airo-models": [("ur3e/ur3e.urdf", 6), ("ur5e/ur5e.urdf", 6)],
+    "airo-models": [("ur3e/ur3e.urdf", 6)],
     "openarm-mujoco": [("v2/openarm_bimanual.xml", 7)],
     "robosuite": [(f"robots/{n}/robot.xml", 7) for n in ("panda", "iiwa", "kinova3", "sawyer", "xarm7")],
 }

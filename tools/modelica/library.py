@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
+from functools import cache, partial
 from math import comb
 from pathlib import Path
 from types import ModuleType
@@ -121,11 +121,25 @@ def _joint(
     kind: Kind, module: ModuleType, file: ParameterFile | None, points: Sequence[WorkingPoint] | None
 ) -> _Joint:
     """Collect parameters, component, records and templates of a joint."""
-    joint_file = file if file and file.joint == kind.name else default(kind.name)
     component: ModelicaComponent = module.COMPONENT
-    used_points = points or (*_start(joint_file), *component.points)
-    records = dict(zip(used_points, component.records(joint_file, used_points), strict=True))
+    is_given = file is not None and file.joint == kind.name
+    joint_file = file if file and is_given else default(kind.name)
+    used_points = tuple(points or (*_start(joint_file), *component.points))
+    if is_given:
+        found = component.records(joint_file, used_points)
+    else:
+        found = _default_records(kind.name, module, used_points)
+    records = dict(zip(used_points, found, strict=True))
     return _Joint(kind, joint_file, component, records, environment(Path(str(module.__file__)).parent))
+
+
+@cache
+def _default_records(
+    joint: str, module: ModuleType, points: tuple[WorkingPoint, ...]
+) -> tuple[ModelicaRecord, ...]:
+    """Records of the default parameters of a joint, which the library of another joint has too."""
+    component: ModelicaComponent = module.COMPONENT
+    return tuple(component.records(default(joint), points))
 
 
 def _start(file: ParameterFile) -> list[WorkingPoint]:

@@ -82,13 +82,17 @@ class Related:
 
     def __init__(self, fmu: Path, members: Mapping[str, bytes] | None = None) -> None:
         self.fmu = fmu
-        own = Members(fmu)
-        self.members: Mapping[str, bytes] = members or own
+        self._own = Members(fmu)
+        self.members: Mapping[str, bytes] = members or self._own
         if MANIFEST not in self.members:
             raise ValueError(f"{fmu}: has no {MANIFEST}; expected an FMU with experiments after FMI-LS-REF")
 
     def experiments(self) -> list[Experiment]:
         """All experiments of the manifest, in its order."""
+        with self._own.open_for_reading():
+            return self._all_experiments()
+
+    def _all_experiments(self) -> list[Experiment]:
         root = self._xml(MANIFEST)
         if (found := root.get(f"{{{ATTRIBUTES}}}fmi-ls-name")) != NAME:
             raise ValueError(f"{self.fmu}: {MANIFEST} is of {found!r}, expected {NAME!r}")

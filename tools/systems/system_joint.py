@@ -1,6 +1,7 @@
 """The parameters of a joint that a section of a system's file names."""
 
 from collections.abc import Mapping
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -37,8 +38,16 @@ def _bought(name: str, joint: str, wanted: str) -> ParameterFile:
     if found is None or "catalogue" not in {option.name for option in found.NEW.options}:
         raise ValueError(f"{name}.catalogue = {wanted!r}, expected none of a {joint}: it has no catalogue")
     try:
-        file = found.NEW.run({option.name: None for option in found.NEW.options} | {"catalogue": wanted}).file
+        return _catalogue_file(joint, wanted)
     except ValueError as error:
         raise ValueError(f"{name}: {error}") from None
+
+
+@cache
+def _catalogue_file(joint: str, wanted: str) -> ParameterFile:
+    """Parameters of a joint in its catalogue; an arm asks for them twice, for the ratio first."""
+    found = part(KINDS[joint], "new")
+    assert found is not None
+    file = found.NEW.run({option.name: None for option in found.NEW.options} | {"catalogue": wanted}).file
     assert isinstance(file, ParameterFile)
     return file

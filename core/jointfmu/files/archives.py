@@ -114,10 +114,25 @@ class Members(Mapping[str, bytes]):
 
     def __init__(self, path: str | Path) -> None:
         self._path = path
+        self._archive: zipfile.ZipFile | None = None
         with open_archive(path) as archive:
             self._names = dict.fromkeys(archive.namelist())
 
+    @contextmanager
+    def open_for_reading(self) -> Iterator[None]:
+        """Open the archive once for all members that the body reads."""
+        with open_archive(self._path) as self._archive:
+            try:
+                yield
+            finally:
+                self._archive = None
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._names
+
     def __getitem__(self, name: str) -> bytes:
+        if self._archive:
+            return read_member(self._archive, name)
         with open_archive(self._path) as archive:
             return read_member(archive, name)
 

@@ -416,7 +416,7 @@ THIN += ["--material", "aluminium", "--Ra", "0.8"]
 
 
 @pytest.mark.parametrize("sides", ["rigid", pytest.param("elastic", marks=[pytest.mark.slow, needs("gmsh")])])
-def test_a_joint_of_which_embedding_takes_much_has_a_page_and_a_report(tmp_path, capsys, sides):
+def test_a_joint_of_which_embedding_takes_much_has_a_page_and_a_report(tmp_path, capsys, few_points, sides):
     """1745 N of 4000 and of 1800 N: loops are drawn under a preload of which embedding leaves some."""
     for preload in {"rigid": ("4000", "1800"), "elastic": ("4000",)}[sides]:
         path, page = (tmp_path / f"{preload}.{kind}" for kind in ("toml", "html"))

@@ -5,10 +5,8 @@
 #include "host.h"
 
 #ifdef __GLIBC__
-#if __GLIBC_PREREQ(2, 33)
 #include <malloc.h>
-#define HAS_MALLINFO2
-#endif
+#pragma GCC diagnostic ignored "-Wdeprecated-declarations" /* mallinfo, which old glibc has alone */
 #endif
 
 static Library library;
@@ -326,10 +324,12 @@ enum { MANY = 10000 };
 
 static size_t allocated(void)
 {
-#ifdef HAS_MALLINFO2
+#ifndef __GLIBC__
+    return 0;
+#elif __GLIBC_PREREQ(2, 33)
     return mallinfo2().uordblks;
 #else
-    return 0;
+    return (size_t)mallinfo().uordblks;
 #endif
 }
 
