@@ -99,9 +99,7 @@ def check_ringing(systems: Mapping[str, Sequence[Ringing]]) -> list[Check]:
 
 
 def check_decays(systems: Mapping[str, Sequence[Decay]]) -> list[Check]:
-    """Compare frequency and damping of ring-downs with stiffness and loss of the loops, over the
-    amplitude.
-    """
+    """Compare frequency and damping of ring-downs with stiffness and loss of the loops."""
     checks = []
     for name, simulated in systems.items():
         frequency = max(float(np.max(np.abs(d.frequency / d.expected - 1.0))) for d in simulated)

@@ -1,5 +1,4 @@
-"""Bolted joint in the main job: check of the ramp, published points, figures, free vibration, laboratory
-page."""
+"""Bolted joint in the main job: check of the ramp, published points, figures, vibration, laboratory page."""
 
 import tomllib
 from collections.abc import Mapping, Sequence

@@ -1,5 +1,4 @@
-"""Published values of Zhao 2018: how to compute each quantity, and which values calibrate the bolted
-joint."""
+"""Published values of Zhao 2018: how to compute each quantity, and which values calibrate parameters."""
 
 from dataclasses import replace
 
@@ -21,8 +20,9 @@ def p_max(joint: BoltedJoint, preload: float) -> float:
 
 
 def p_between(joint: BoltedJoint, preload: float) -> float:
-    """Pressure [Pa] midway between a corner bolt and the next bolt in the other row, at a preload [N] per
-    bolt.
+    """Pressure [Pa] midway between a corner bolt and the next bolt of the other row.
+
+    preload : [N] per bolt
     """
     pattern = bolt_pattern(joint)
     areas, nodes = cells(pattern)
@@ -42,9 +42,7 @@ def critical_area(joint: BoltedJoint, choice: str) -> float:
 
 
 def spot_stiffness_ratio(joint: BoltedJoint) -> float:
-    """Stiffness of a spot that grows along the family of sizes, over the Hertzian stiffness of the spot
-    [1].
-    """
+    """Stiffness of a spot by the choice `family` over that by the choice `hertz` [1]."""
     family, hertz = (
         zhao.normal_stiffness(replace(joint, spot_stiffness=kind), 1e-6) for kind in ("family", "hertz")
     )
@@ -57,9 +55,7 @@ def rms_height(joint: BoltedJoint, longest_wave: float) -> float:
 
 
 def mindlin_function(joint: BoltedJoint, function: str, x: float) -> float:
-    """Mindlin's function H1 (`loop`), H2 (`storage`) or W_d/W (`loss_ratio`) [1] at a traction ratio x
-    [1].
-    """
+    """Mindlin's H1 (`loop`), H2 (`storage`) or W_d/W (`loss_ratio`) [1] at a traction ratio x [1]."""
     table = {"loop": mindlin.loop, "storage": mindlin.storage, "loss_ratio": mindlin.loss_ratio}
     return float(table[function](x))
 

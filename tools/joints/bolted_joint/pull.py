@@ -1,5 +1,4 @@
-"""Bolt forces of a joint with elastic sides under a tensile force along z; the other five motions are
-free."""
+"""Bolt forces of a joint with elastic sides under a tensile force along z, free in its other five motions."""
 
 import numpy as np
 

@@ -157,8 +157,9 @@ def _off_masing(joint: Bolted, preload: float, loops: Loops, law: HysteresisLaw)
 
 
 def rest_stiffness(joint: Bolted, preload: float) -> float:
-    """Shear stiffness K_xx [N/m] at rest, at a preload [N] of each bolt. Raises ValueError as
-    `first_loading`.
+    """Shear stiffness K_xx [N/m] at rest, at a preload [N] of each bolt.
+
+    Raises ValueError as `first_loading`.
     """
     curve, approach, weight = _tightened(joint, preload)
     if joint.elastic:
@@ -167,8 +168,7 @@ def rest_stiffness(joint: Bolted, preload: float) -> float:
 
 
 def _tightened(joint: Bolted, preload: float) -> tuple[Curve, Array, Array]:
-    """Preloaded interface: curve of pressure over approach, approaches (n) [m] and areas (n) [m2] of the
-    nodes.
+    """Preloaded interface: curve of the law, approaches (n) [m] and areas (n) [m2] of the nodes.
 
     Raises ValueError if nothing is in contact or a pressure is outside the law.
     """

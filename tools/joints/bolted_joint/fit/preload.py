@@ -187,8 +187,9 @@ def _measured(path: Path) -> PreloadCurve:
 def _stated(
     start: ParameterFile, curve: PreloadCurve, modal_mass: float | None, series: float | None
 ) -> ParameterFile:
-    """Start parameters with the modal mass [kg] of the test. Raises ValueError for a mass or stiffness <=
-    0.
+    """Start parameters with the modal mass [kg] of the test.
+
+    Raises ValueError for a mass or a series stiffness that is not positive.
     """
     for name, value, unit in (("modal mass", modal_mass, "kg"), ("series stiffness", series, "N/m")):
         if value is not None and not 0.0 < value < np.inf:
@@ -218,9 +219,7 @@ def _best_start(
     wanted += [Unknown(SERIES, "N/m", 3.0 * float(level), 0.0, np.inf)] * (SERIES in names)
 
     def tried(values: dict[str, float]) -> tuple[Mapping[str, float], float]:
-        """Adjust the mass, if it is fitted, to the mean frequency. Returns values, sum of squared
-        residuals.
-        """
+        """Scale the mass, if it is fitted, to the mean frequency. Returns values and squared error."""
         rest = miss(values)
         if "mass" in values:
             values["mass"] *= float(np.exp(2.0 * np.mean(rest)))

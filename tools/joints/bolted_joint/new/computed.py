@@ -166,8 +166,7 @@ def with_bodies(file: ParameterFile, bodies: ElasticBodies, attached: str) -> Pa
 
 
 def _springs(file: ParameterFile, preload: float, joint: "WholeJoint", shape: PressureShape | None) -> Array:
-    """Stiffness per area (points, 3) [N/m3] of the tightened interface along x, y, z at the integration
-    points.
+    """Stiffness per area (points, 3) [N/m3] along x, y, z of the tightened interface, at integration points.
 
     Each point takes the stiffness of the nearest node of the pressure shape. One factor then makes the total
     equal to the stiffness of the joint.
@@ -264,9 +263,7 @@ def _share(found: Compliances, alone: bool) -> Facts:
 
 
 def _load(found: Compliances, tension: float, attached: str) -> Facts:
-    """Effect of an external force along the bolt axis, without bending: load factor, bolt share, opening
-    load.
-    """
+    """Effect of an external force along z without bending: load factor, bolt share, opening load."""
     where = f"a force along z at {ATTACHED[attached]}"
     opens = found.opening_load(tension)
     free = f"{where}, other motions free"

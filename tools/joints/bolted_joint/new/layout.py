@@ -16,8 +16,9 @@ _GRID = re.compile(r"(\d+)x(\d+)")
 
 
 def bolts(text: str) -> tuple[int, Thread]:
-    """Parse number and thread of the bolts, as in 4xM12. Raises ValueError for bad text or an unknown
-    thread.
+    """Parse number and thread of the bolts, as in 4xM12.
+
+    Raises ValueError for bad text or an unknown thread.
     """
     match = _BOLTS.fullmatch(text.strip())
     if not match or match[1] == "0":

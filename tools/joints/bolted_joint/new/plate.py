@@ -238,8 +238,9 @@ def _put_bolts(sheet: Sheet, plate: BoltedPlate, one: Clamped, thread: Thread) -
 
 
 def _preload(sheet: Sheet, given: Given, thread: Thread) -> tuple[float, list[str]]:
-    """Add the preload [N] to the sheet. Returns it with a warning if it exceeds the proof load of the
-    bolt.
+    """Add the preload [N] to the sheet.
+
+    Returns the preload, and a warning if it exceeds the proof load of the bolt.
     """
     name = given["property_class"] or "8.8"
     if given["preload"] is None:
