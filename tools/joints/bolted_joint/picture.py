@@ -1,4 +1,4 @@
-"""SVG pictures of a bolted joint: plan view of the interface with pressure and bolts, section of both sides."""
+"""SVG pictures of a bolted joint: plan view of the interface with pressure and bolts, and section."""
 
 from dataclasses import dataclass, field
 from html import escape

@@ -153,8 +153,9 @@ _SINGLE = {
 
 
 def _torque(torques: Torques, series: str, size: str, ratio: str) -> dict[str, Printed]:
-    """Rated and repeated peak torque of a drive: published, else estimated from another series; else
-    empty.
+    """Rated and repeated peak torque of a drive.
+
+    Published, else estimated from another series; empty if no series has them.
     """
     if series.startswith(ACTUATORS):
         return {}
@@ -174,8 +175,9 @@ def _torque(torques: Torques, series: str, size: str, ratio: str) -> dict[str, P
 
 
 def _limits(drive: str, size: str, ratio: float) -> dict[str, Printed]:
-    """Upper limits of hysteresis and lost motion, from actuators of the same size, else from all
-    actuators.
+    """Upper limits of hysteresis and lost motion of a drive.
+
+    From actuators of the same size, else the largest of all actuators.
     """
     step = "30" if ratio < 50.0 else "50" if ratio == 50.0 else "50+"
     rows = [row for row in _table("accuracy") if row["ratio"] == step]

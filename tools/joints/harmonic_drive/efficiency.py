@@ -1,5 +1,4 @@
-"""Catalogue quantities of a drive by simulation: efficiency, no-load torques, hysteresis loss, lost
-motion."""
+"""Catalogue quantities of a drive by simulation: efficiency, no-load torques, hysteresis, lost motion."""
 
 import math
 from collections.abc import Callable, Iterator, Mapping
@@ -39,9 +38,7 @@ def parameters(item: Item) -> dict[str, float]:
 
 
 class PythonDrive:
-    """Harmonic drive in Python with the interface of a running FMU. It starts at rest with all angles
-    zero.
-    """
+    """Harmonic drive in Python with the interface of a running FMU; starts at rest at zero angles."""
 
     def __init__(self, model: Model, file: ParameterFile) -> None:
         assert model.rest
@@ -122,8 +119,10 @@ class Bench:
         return -self.drive.get()[1]
 
     def efficiency(self, speed: float, load: float) -> float:
-        """Efficiency [1], output power over motor power, at a motor speed [rad/s] > 0 and a load [N.m] >
-        0.
+        """Efficiency [1]: output power over motor power.
+
+        speed : [rad/s] of the motor, > 0
+        load  : [N.m] at the output against the motion, > 0
         """
         return load / (abs(self.ratio) * self.motor_torque(speed, -math.copysign(load, self.ratio)))
 
@@ -178,9 +177,7 @@ LOST_MOTION = 0.04
 
 
 def hysteresis_loss(spring: HarmonicDriveSpring) -> float:
-    """Hysteresis loss [rad]: angle between the branches at zero torque, of the loop up to the rated
-    torque.
-    """
+    """Hysteresis loss [rad]: angle between the branches at zero torque, in the loop up to rated torque."""
     rated = float(spring.joint.rated_torque)
     unloading, loading = (_wind_up(spring, (rated, sign * rated, 0.0)) for sign in (1.0, -1.0))
     return unloading - loading

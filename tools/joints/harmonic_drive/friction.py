@@ -201,8 +201,9 @@ def interval_text(interval: tuple[float, float]) -> str:
 
 
 def efficiency(drive: Drive, temperature: float = REFERENCE) -> float:
-    """Output power over motor power [1] of a drive at rated torque, SPEED and a temperature [K], without
-    hysteresis.
+    """Efficiency [1] of a drive at rated torque and QUOTED_SPEED, without hysteresis.
+
+    temperature : [K] of the lubricant
     """
     carried = drive.rated_torque / abs(drive.ratio)
     against = -math.copysign(drive.rated_torque, drive.ratio)

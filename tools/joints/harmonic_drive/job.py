@@ -1,6 +1,4 @@
-"""The drive in the main job: what must hold of its ramps, published points, figures, a link that rings on
-it, the laboratory.
-"""
+"""Harmonic drive in the main job: checks of the ramps, published points, figures, vibration, laboratory."""
 
 import math
 from collections.abc import Mapping

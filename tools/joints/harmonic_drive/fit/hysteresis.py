@@ -185,8 +185,7 @@ def _solved(
     spread: Array,
     more: Sequence[Unknown] = (),
 ) -> tuple[Solution, Array]:
-    """Fit stiffness and hysteresis, and extra unknowns of the torque; solution, and wind-up (n) [rad] of the
-    law.
+    """Fit stiffness and hysteresis to wind-ups. Returns the solution, and the wind-up (n) [rad] of the law.
 
     torque         : {name: value} -> torque (n) [N.m]
     torque_changes : as in `fit_log`
