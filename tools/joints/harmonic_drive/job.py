@@ -104,9 +104,7 @@ def _spring(outcome: Any) -> Path:
 
 
 def friction(fmu: Path) -> list[Panel]:
-    """Panels of efficiency over load, and of back-driving torque, of the catalogue drives; computed by an
-    FMU.
-    """
+    """Panels of efficiency over load, and of back-driving torque, of the catalogue drives, by an FMU."""
     panels, published_torques, found_torques = [], [], []
     drives, share = efficiency.printed_drives(), np.linspace(0.1, 1.0, 41) ** 2
     for drive in drives:

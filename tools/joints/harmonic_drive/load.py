@@ -1,5 +1,4 @@
-"""Harmonic drive under load: Python object, transmission of a robot, export to other solvers, tooth
-pressure."""
+"""Harmonic drive under load: Python object, transmission of a robot, export, pressure on the contact pair."""
 
 from collections.abc import Iterator
 from typing import TYPE_CHECKING

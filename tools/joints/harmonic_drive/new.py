@@ -1,5 +1,4 @@
-"""`jointfmu new` for a harmonic drive: by its name in the catalogue, or from the numbers of a catalogue
-row."""
+"""`jointfmu new` for a harmonic drive: by its name in the catalogue, or from numbers of a catalogue row."""
 
 from collections.abc import Mapping
 from dataclasses import replace

@@ -1,5 +1,4 @@
-"""Published values of Hu 2023: how to compute each quantity, and which values calibrate the harmonic
-drive."""
+"""Published values of Hu 2023: how to compute each quantity, and which values calibrate parameters."""
 
 from dataclasses import replace
 
@@ -72,8 +71,9 @@ def plastic_onset_pressure(drive: HarmonicDrive, nu: float) -> float:
 
 
 def shear_over_friction(drive: HarmonicDrive, stage: str) -> float:
-    """Tangential force over friction limit, t/(mu f) [1], of a spot with the shear stress tau_b =
-    sigma_s/sqrt(3).
+    """Tangential force over friction limit, t/(mu f) [1], of a spot at the end of a stage.
+
+    The shear stress on the spot is tau_b = sigma_s/sqrt(3).
 
     stage : end of "elastic", of the "first" or of the "second" elastic-plastic stage
     """

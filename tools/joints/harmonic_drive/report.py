@@ -31,9 +31,7 @@ _MOST = 10.0
 
 
 def friction(course: Course) -> list[Figure]:
-    """Figures of the friction: efficiency over load, no-load torque over speed; starting and back-driving
-    torque.
-    """
+    """Figures of the friction: efficiency over load, starting and back-driving torque, no-load friction."""
     model, file = course.model, course.file
     drive = file.values
     title = "Friction"
