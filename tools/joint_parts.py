@@ -1,7 +1,7 @@
-"""What the tools know of a joint: modules of its folder in `tools/joints`, which the folder names.
+"""Tool modules of the joints: for each joint, which module of its folder in `tools/joints` serves which tool.
 
-The folders stand above the tools that they serve. They are read with `import jointfmu_tools`; a part is
-loaded when its tool asks for it.
+The `__init__.py` of the folder names the modules (`ToolParts`). `import jointfmu_tools` reads these names; a
+module is imported when its tool asks for it.
 """
 
 from collections.abc import Sequence
@@ -12,7 +12,7 @@ from pkgutil import iter_modules
 from types import ModuleType
 from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:  # the command line begins here, and is there at once
+if TYPE_CHECKING:  # the command line imports this module first: no slow imports
     from jointfmu.joints.kind import Kind
 
 TOOLS = (
@@ -34,25 +34,27 @@ TOOLS = (
     "ringing",
     "transmission",
 )
-"""Names that a part may have: each is of the tool that asks for it."""
+"""Tools that look for a module in the folder of a joint."""
 
 
 class ToolParts:
-    """The parts of one joint.
+    """Tool modules of one joint.
 
-    names   : of modules that are called as their tool
-    modules : {tool: module}, for one module that serves several tools
+    package : of the folder of the joint
+    names   : modules with the name of their tool
+    modules : {tool: module}, if a module has another name than its tool
 
-    Raises ImportError if a name is of no tool or has no module, or if a tool's module is not named.
+    Raises ImportError if a name is not in TOOLS, if a named module is missing, or if the folder has a module
+    with the name of a tool that is not in `names`.
     """
 
     def __init__(self, package: str, names: Sequence[str], **modules: str) -> None:
         self.package, self.modules = package, {name: name for name in names} | modules
-        there = {module.name for module in iter_modules([str(self.folder)])}
-        wrong = {name: "is of no tool" for name in self.modules if name not in TOOLS}
-        wrong |= dict.fromkeys(there & {*TOOLS} - {*names}, "is a part that its __init__.py must name")
-        wrong |= {name: "is not there" for name in self.modules.values() if name not in there}
-        for name, text in wrong.items():
+        existing = {module.name for module in iter_modules([str(self.folder)])}
+        faults = {name: "is of no tool" for name in self.modules if name not in TOOLS}
+        faults |= dict.fromkeys(existing & {*TOOLS} - {*names}, "is a part that its __init__.py must name")
+        faults |= {name: "is not there" for name in self.modules.values() if name not in existing}
+        for name, text in faults.items():
             raise ImportError(f"{package}.{name} {text}; parts are {', '.join(TOOLS)}")
 
     @property
@@ -60,26 +62,27 @@ class ToolParts:
         return Path(str(import_module(self.package).__file__)).parent
 
     def load(self, tool: str) -> ModuleType | None:
-        """The part for a tool; None if the joint has none."""
+        """Import the module for a tool; None if the joint has no such module."""
         return import_module(f"{self.package}.{self.modules[tool]}") if tool in self.modules else None
 
 
 @dataclass(frozen=True, slots=True)
 class Option:
-    """What a user states to a part: a word, a number, or a number with a unit of its own, as text.
+    """Command-line option, also a keyword argument in Python, of a tool module.
 
-    name     : on the command line with hyphens
-    text     : meaning, a number's with its unit
-    metavar  : what stands for its value in the help
-    default  : where nothing is stated
-    choices  : words that are allowed; none: any
-    many     : it takes several
-    by       : sign between the numbers of one value, the x of 200x100
-    flag     : it takes none
-    required : it must be stated
-    number   : it is a number in the unit of its text
-    unit     : of a number that may be stated with a unit of its own
-    unit_by  : the option that states the unit of numbers without one; it is not passed on
+    name         : in Python; on the command line with hyphens
+    text         : help; for a number with its unit
+    metavar      : placeholder of the value in the help
+    default      : value if the user does not set the option
+    choices      : allowed words; empty: any text
+    is_list      : takes several values
+    separator    : character between the numbers of one value, for example the x of 200x100
+    is_flag      : takes no value
+    is_required  : the user must set the option
+    is_number    : the value is a number in the unit of `text`
+    default_unit : unit of a number that the user states without a unit
+    unit_option  : name of the option that sets the unit of numbers without a unit; this option itself is not
+                   passed to the tool module
     """
 
     name: str
@@ -98,9 +101,9 @@ class Option:
 
 
 PARTS: dict[str, ToolParts] = {}
-"""{name of a joint: its parts}, filled by `jointfmu_tools.joints`; a joint of another package is added."""
+"""{name of a joint: its tool modules}. `jointfmu_tools.joints` fills it; other packages add their joints."""
 
 
 def part(kind: "Kind", tool: str) -> ModuleType | None:
-    """What a tool finds of a joint; None if there is nothing."""
+    """Import the module of a joint for a tool; None if the joint has no such module."""
     return PARTS[kind.name].load(tool) if kind.name in PARTS else None

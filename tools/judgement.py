@@ -1,7 +1,7 @@
-"""How far to believe a stiffness: its level beside the roughness, and where the interface law ends.
+"""Plausibility of a stiffness: comparison with the estimate from roughness, validity of the interface law.
 
-Every command that reports a stiffness says it, by `judge` at pressures; a joint at loads is judged by its
-pressure, in `jointfmu_tools`.
+Every command that reports a stiffness also reports this result, by `assess_law` at pressures. For a joint
+under loads `jointfmu_tools.pressure` computes the pressures first.
 """
 
 from collections.abc import Iterator, Sequence
@@ -17,16 +17,16 @@ from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array, Number
 
 FACTOR = 3.0
-"""Ratio to p/(GAMMA h), either way, beyond which a law's level is doubtful [1] (docs/validity.md)."""
+"""Factor [1] above or below the estimate p/(GAMMA h) that makes a stiffness doubtful (docs/validity.md)."""
 
 
 @dataclass(frozen=True, slots=True)
 class Level:
-    """Stiffness of an interface law beside p/(GAMMA h).
+    """Stiffness of an interface law, compared with the estimate p/(GAMMA h) from roughness.
 
-    h         : [m] rms height of both surfaces together
+    h         : [m] rms height of both surfaces combined
     pressure  : (n) [Pa] > 0
-    stiffness : (n) [N/m3] of the law, per area, as the joint takes it
+    stiffness : (n) [N/m3] stiffness per area of the law, times the scale of the joint
     """
 
     h: float
@@ -35,12 +35,12 @@ class Level:
 
     @property
     def ratio(self) -> Array:
-        """Stiffness over p/(GAMMA h) (n) [1]."""
+        """Ratio (n) [1] of the stiffness to p/(GAMMA h)."""
         return np.asarray(self.stiffness / level(self.pressure, self.h))
 
     @property
     def doubtful(self) -> bool:
-        """Whether the ratio is beyond FACTOR at any of the pressures."""
+        """Whether the ratio is above MAX_RATIO or below 1/MAX_RATIO at any pressure."""
         return bool(np.any((self.ratio > FACTOR) | (self.ratio < 1.0 / FACTOR)))
 
     def __str__(self) -> str:
@@ -48,7 +48,7 @@ class Level:
         return f"the law's K is {_span(self.ratio)} times p/({GAMMA:g} h) {at}"
 
     def document(self) -> dict[str, Any]:
-        """As one JSON object."""
+        """Convert to a JSON object."""
         columns = (self.pressure, self.stiffness, level(self.pressure, self.h), self.ratio)
         names = ("pressure", "stiffness", "expected", "ratio")
         points = [dict(zip(names, map(float, row), strict=True)) for row in zip(*columns, strict=True)]
@@ -57,29 +57,35 @@ class Level:
 
 @dataclass(frozen=True, slots=True)
 class Judgement:
-    """What is to be said beside a stiffness; `level` is None where no roughness is known."""
+    """Plausibility of a stiffness: comparison with the roughness, and warnings.
+
+    level : None if the roughness is unknown
+    """
 
     level: Level | None
     warnings: tuple[str, ...]
 
     def lines(self) -> Iterator[str]:
-        """For people, without the warnings."""
+        """Readable lines, without the warnings."""
         if self.level is not None:
             yield str(self.level)
 
     def with_warnings(self, more: Sequence[str]) -> "Judgement":
-        """The same with further warnings, which come first."""
+        """Copy with further warnings before the present ones."""
         return Judgement(self.level, (*more, *self.warnings))
 
     def document(self) -> dict[str, Any]:
-        """{"level": ... or null, "warnings": [...]} for JSON."""
+        """Convert to a JSON object: {"level": object or null, "warnings": [...]}."""
         return {"level": self.level and self.level.document(), "warnings": list(self.warnings)}
 
 
 def known_height(file: ParameterFile) -> float | None:
-    """Rms height h [m] of both surfaces together: of the law, else stated beside it; or None."""
-    own = law_height(KINDS[file.joint].law_of(file.values))
-    return height(file.roughness) if own is None else own
+    """Combined rms height h [m] of both surfaces, from the law or else from the surface data of the file.
+
+    None if the file has neither.
+    """
+    h = law_height(KINDS[file.joint].law_of(file.values))
+    return height(file.roughness) if h is None else h
 
 
 def judge(
@@ -90,37 +96,37 @@ def judge(
     scale: Sequence[float] | float = 1.0,
     limits: bool = True,
 ) -> Judgement:
-    """The judgement of an interface law at nominal pressures [Pa]; those of zero do not count.
+    """Assess the stiffness of an interface law at nominal pressures [Pa]. Zero and infinite ones are ignored.
 
-    h      : [m] of both surfaces together, None if it is not known
-    scale  : the joint's stiffness over the interface law's [1], at each pressure or the same
-    peak   : [Pa] greatest pressure, where the mean ones are given
-    limits : whether to say where the law ends
+    h            : [m] combined rms height of both surfaces; None: unknown
+    peak         : [Pa] largest pressure, if `pressures` are mean values
+    scale        : stiffness of the joint over that of the interface law [1], one value or one per pressure
+    check_limits : also warn about pressures outside the range of validity
     """
-    every = np.asarray(pressures, dtype=np.float64)
-    pressed = (every > 0.0) & (every < np.inf)
-    p, factor = every[pressed], np.broadcast_to(scale, every.shape)[pressed]
-    found = None
+    nominal = np.asarray(pressures, dtype=np.float64)
+    in_contact = (nominal > 0.0) & (nominal < np.inf)
+    p, factor = nominal[in_contact], np.broadcast_to(scale, nominal.shape)[in_contact]
+    comparison = None
     if h is not None and p.size:
-        found = Level(h, p, factor * stiffness_curve(law, p)[0])
-    greatest = float(np.max(p, initial=peak))
-    least = float(np.min(p, initial=greatest))
-    warnings = beyond(law, greatest, least) if limits and greatest > 0.0 else []
+        comparison = Level(h, p, factor * stiffness_curve(law, p)[0])
+    highest = float(np.max(p, initial=peak))
+    lowest = float(np.min(p, initial=highest))
+    warnings = beyond(law, highest, lowest) if limits and highest > 0.0 else []
     if h is not None and h > 2.0 * ROUGHEST:
         warnings.insert(
             0, f"h = {h:.3g} m is no roughness: faces that are joined have up to {ROUGHEST:g} m each"
         )
-    if found is not None and found.doubtful:
+    if comparison is not None and comparison.doubtful:
         warnings.append(
-            f"the law's K is {_span(found.ratio)} times that of the roughness, K/A_0 = p/({GAMMA:g} h) with "
-            f"h = {1e6 * found.h:.3g} um: beyond a factor of {FACTOR:g} a measurement decides, and without "
-            "one believe the roughness (docs/validity.md)"
+            f"the law's K is {_span(comparison.ratio)} times that of the roughness, "
+            f"K/A_0 = p/({GAMMA:g} h) with h = {1e6 * comparison.h:.3g} um: beyond a factor of {FACTOR:g} a "
+            "measurement decides, and without one believe the roughness (docs/validity.md)"
         )
-    return Judgement(found, tuple(warnings))
+    return Judgement(comparison, tuple(warnings))
 
 
 def law_height(law: InterfaceLaw) -> Number | None:
-    """h [m] of an interface law that has it; else None."""
+    """Combined rms height h [m] of an interface law; None if the law has no such parameter."""
     return getattr(law, "h", None)
 
 

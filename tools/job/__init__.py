@@ -1,1 +1,1 @@
-"""The main job: all FMUs built, checked, compared with the papers, and the report."""
+"""Main job (`build_fmus.py`): build and check all FMUs, compare them with the papers, write the report."""

@@ -1,4 +1,4 @@
-"""The load ramps through the FMUs, and what must hold of them."""
+"""Numerical checks of the FMUs: load ramps, resonances, decays, and published values."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -21,22 +21,27 @@ from ..systems.decays import FREQUENCY_TOLERANCE, Decay
 from ..systems.ringing import DAMPING_TOLERANCE, RESONANCE_TOLERANCE, Ringing
 
 _COARSE = 10.0
-"""Step of a ramp that is repeated, over its own [1]."""
+"""Step of the repeated ramp over the step of the default ramp [1]."""
 _INTERVALS = 10_000
-"""Of an integral [1]."""
+"""Intervals of the Simpson rule between two ends of an integral [1]."""
 ThroughFmu = Callable[[Point, Path], float | None]
-"""A published point and the folder of the FMUs -> what they give, None where they do not show it."""
+"""(published point, folder of the FMUs) -> value computed by an FMU; None if no FMU has this quantity."""
 INTEGRATION_TOLERANCE = 1e-6
-"""FMU against an independent integration of its stiffness [1]."""
+"""Allowed deviation [1] of an FMU from an independent integration of its stiffness."""
 REPEAT_TOLERANCE = 1e-9
-"""FMU at ten times larger steps against the same points [1]."""
+"""Allowed deviation [1] of an FMU between ten times larger steps and the default ones, at the same loads."""
 FLAVOUR_TOLERANCE = 1e-9
-"""One flavour against another [1]: both evaluate the same law, to the round-off of its inversion."""
+"""Allowed deviation [1] between two flavours of an FMU: round-off in the inversion of the same law."""
 
 
 @dataclass(frozen=True, slots=True)
 class Check:
-    """One check of a ramp: largest relative deviation, what is allowed."""
+    """Result of one check of an FMU.
+
+    name      : what is compared
+    deviation : largest relative deviation [1]
+    tolerance : allowed deviation [1]
+    """
 
     fmu: str
     name: str
@@ -45,93 +50,93 @@ class Check:
 
     @property
     def passed(self) -> bool:
-        """Whether the deviation is a number and small enough."""
+        """Whether the deviation is within the tolerance; False for NaN."""
         return bool(self.deviation <= self.allowed)
 
 
 def default_ramp(name: str, folder: Path, factor: float = 1.0) -> ramp.RampResult:
-    """The FMU's own load ramp, steps enlarged by a factor."""
+    """Run the default load ramp of an FMU, with its step times a factor."""
     r = MODELS[name].ramp
     return ramp.run(folder / f"{name}.fmu", r.input, r.end, r.step * factor)
 
 
 def check(name: str, folder: Path, result: ramp.RampResult) -> list[Check]:
-    """All checks of an FMU's ramp: its own, RAMPS[name] in its joint's file, after those of every FMU."""
+    """Check the ramp of an FMU: repeat it with larger steps, then run the check RAMPS[name] of the joint."""
     worst = _repeated(name, folder, result)
     checks = [
         Check(name, "ten times larger steps, every output at the shared points", worst, REPEAT_TOLERANCE)
     ]
-    own = part(KINDS[MODELS[name].joint], "checks")
-    if own and name in own.RAMPS:
-        compared, largest = own.RAMPS[name](folder, result)
+    module = part(KINDS[MODELS[name].joint], "checks")
+    if module and name in module.RAMPS:
+        compared, largest = module.RAMPS[name](folder, result)
         checks.append(Check(name, compared, largest, INTEGRATION_TOLERANCE))
     return checks
 
 
 def same(name: str, folder: Path, expected: ramp.RampResult) -> Check:
-    """The ramp of another flavour, at ten times larger steps, against that expected at the shared points."""
+    """Compare the ramp of another flavour, with ten times larger steps, with `expected` at equal loads."""
     worst = _repeated(name, folder, expected)
     return Check(name, f"flavour {folder.name}: every output the same", worst, FLAVOUR_TOLERANCE)
 
 
 def _repeated(name: str, folder: Path, result: ramp.RampResult) -> float:
-    """Largest deviation [1] of the ramp at ten times larger steps, of all columns at the shared points."""
+    """Largest deviation [1] of any column between the ramp with ten times larger steps and `result`."""
     coarse = default_ramp(name, folder, _COARSE).columns
     return max(deviation(coarse[column], fine[:: int(_COARSE)]) for column, fine in result.columns.items())
 
 
 def check_ringing(systems: Mapping[str, Sequence[Ringing]]) -> list[Check]:
-    """Simulated free motion against stiffness and damping of the joint."""
+    """Compare simulated free vibrations with stiffness and damping of the joint."""
     checks = []
     for name, rings in systems.items():
         frequency = max(abs(r.frequency / r.expected - 1.0) for r in rings)
         checks.append(Check(name, "resonance against sqrt(K/J)", frequency, RESONANCE_TOLERANCE))
         damping = [abs(r.damping / r.stated - 1.0) for r in rings if r.damped]
         if damping:
-            said = "free decay against the stated damping"
-            checks.append(Check(name, said, max(damping), DAMPING_TOLERANCE))
+            text = "free decay against the stated damping"
+            checks.append(Check(name, text, max(damping), DAMPING_TOLERANCE))
     return checks
 
 
 def check_decays(systems: Mapping[str, Sequence[Decay]]) -> list[Check]:
-    """Ring-downs over the falling amplitude against the energy of the joint's loops."""
+    """Compare frequency and damping of ring-downs with stiffness and loss of the loops."""
     checks = []
-    for name, found in systems.items():
-        frequency = max(float(np.max(np.abs(d.frequency / d.expected - 1.0))) for d in found)
-        damping = max(float(np.max(np.abs(d.damping / d.stated - 1.0)[1:])) for d in found)
+    for name, simulated in systems.items():
+        frequency = max(float(np.max(np.abs(d.frequency / d.expected - 1.0))) for d in simulated)
+        damping = max(float(np.max(np.abs(d.damping / d.stated - 1.0)[1:])) for d in simulated)
         checks.append(Check(name, "ring-down, frequency against loops", frequency, FREQUENCY_TOLERANCE))
         checks.append(Check(name, "ring-down, damping against loops", damping, LOOP_DAMPING_TOLERANCE))
     return checks
 
 
 def integrals(rate: Callable[[Array], Array], ends: Iterable[float]) -> Array:
-    """Of a rate (n) at points (n) between neighbouring ends > 0, by scipy's Simpson rule over the logarithm.
+    """Integrals of `rate` between neighbouring ends > 0, by Simpson's rule over the logarithm.
 
-    Against an adaptive rule: within 1e-8, also where a law has a kink.
+    Within 1e-8 of an adaptive rule, also for a law with a kink.
     """
-    found = []
+    values = []
     for pair in pairwise(ends):
         points = np.geomspace(*pair, _INTERVALS + 1)
-        found.append(simpson(points * rate(points), dx=np.log(pair[1] / pair[0]) / _INTERVALS))
-    return np.array(found)
+        values.append(simpson(points * rate(points), dx=np.log(pair[1] / pair[0]) / _INTERVALS))
+    return np.array(values)
 
 
 def deviation(value: object, expected: object) -> float:
-    """Largest difference over the largest expected value [1]; the value itself where zeros are."""
+    """Largest difference over the largest expected value [1]; largest |value| if all expected are zero."""
     a, b = np.asarray(value), np.asarray(expected)
     scale = float(np.max(np.abs(b)))
     return float(np.max(np.abs(a - b))) / scale if scale > 0.0 else float(np.max(np.abs(a)))
 
 
 def published_through_fmus(folder: Path) -> list[ValidatedPoint]:
-    """The published points that an FMU can show, computed by running the FMU: `through_fmu` of its joint."""
+    """Compute published points by running FMUs, with `through_fmu` of the joints that define it."""
     rows = []
     for kind in KINDS.values():
-        through: ThroughFmu | None = getattr(part(kind, "checks"), "through_fmu", None)
-        if through is None:
+        compute: ThroughFmu | None = getattr(part(kind, "checks"), "through_fmu", None)
+        if compute is None:
             continue
         for point in (p for paper in published(kind).papers for p in points(paper)):
-            value = through(point, folder)
+            value = compute(point, folder)
             if value is not None:
                 rows.append(compare(point, value))
     return rows

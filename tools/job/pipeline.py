@@ -1,4 +1,4 @@
-"""The main job: build every FMU, validate and prove it, run the ramps, compare, write the report."""
+"""Main job: build, validate and prove all FMUs, run the ramps, compare with the papers, write the report."""
 
 import sys
 from dataclasses import dataclass, field
@@ -29,7 +29,21 @@ from .checks import Check, check, check_decays, check_ringing, default_ramp, pub
 
 @dataclass(slots=True)
 class JobResult:
-    """What was built and found; `fmus` is the folder of the FMUs of FMI 2.0."""
+    """Results of the main job.
+
+    fmi2_folder : folder of the FMUs of FMI 2.0
+    fmu_paths   : FMUs of the joints, of all flavours
+    systems     : system files (.ssp) and the FMUs that they add
+    problems    : errors, one line each
+    ramps       : {FMU: its load ramp}
+    proofs      : results of the experiments of each FMU
+    checks      : numerical checks of the ramps, resonances and decays
+    rows        : published points, computed by the package
+    fmu_rows    : published points, computed by running FMUs
+    ringing, decays : {system: simulated free vibrations}
+    arms        : {name: robot arm, its simulated columns}
+    figures     : {joint: figures of the report}
+    """
 
     fmus: Path
     built: list[Path] = field(default_factory=list)
@@ -47,7 +61,10 @@ class JobResult:
 
     @property
     def misses(self) -> list[str]:
-        """One line for everything that failed; of an FMU's published points those that the package meets."""
+        """One line for each failure.
+
+        A published point that an FMU misses is listed only if the package meets it.
+        """
         lines = list(self.problems)
         lines += [f"{shown(proof.fmu)}: {text}" for proof in self.proofs for text in proof.misses]
         lines += [
@@ -67,14 +84,14 @@ class JobResult:
 
 
 def shown(fmu: Path) -> str:
-    """An FMU as it is named in the report."""
+    """Name of an FMU in the report: flavour/name."""
     return f"{fmu.parent.name}/{fmu.stem}"
 
 
 def run(out: Path) -> JobResult:
-    """Build all flavours, prove, check, and write the laboratory and `out/report/index.html`, ramps as CSV.
+    """Build, prove and check all flavours; write report, laboratory page and ramps (CSV) to folder/report.
 
-    The ramps shown are those of the flavour `fmi2`; the others must repeat them.
+    The report shows the ramps of the flavour `fmi2`. The ramps of the other flavours must be equal to them.
     """
     folder = out / "fmi2"
     outcome = JobResult(folder)
@@ -85,12 +102,12 @@ def run(out: Path) -> JobResult:
         arms, ringdowns = pool.submit(cosimulation.arms, folder), pool.submit(decays.examples, folder)
         ringing = pool.submit(examples, folder)
         page = pool.submit(write_laboratory, out / "report" / "laboratory.html")
-        every = [*outcome.built, *components]
-        found = pool.map(_examined, every)
+        paths = [*outcome.built, *components]
+        examined = pool.map(_examined, paths)
         _compare(outcome, out)
         outcome.arms, outcome.decays, outcome.ringing = arms.result(), ringdowns.result(), ringing.result()
-        outcome.figures = drawn(outcome)  # while the others prove
-        for problems, proof in track(found, "validate and prove", len(every)):
+        outcome.figures = drawn(outcome)  # while other processes prove the FMUs
+        for problems, proof in track(examined, "validate and prove", len(paths)):
             outcome.problems += problems
             outcome.proofs.append(proof)
         outcome.checks += [*check_ringing(outcome.ringing), *check_decays(outcome.decays)]
@@ -100,20 +117,20 @@ def run(out: Path) -> JobResult:
 
 
 def _examined(path: Path) -> tuple[list[str], Proof]:
-    """What fmpy finds wrong in an FMU, and its proof."""
+    """Validate an FMU with fmpy and prove it: problems found, result of the proof."""
     return [f"{shown(path)}: {problem}" for problem in validate_fmu(str(path))], prove(path)
 
 
 def _compare(outcome: JobResult, out: Path) -> None:
-    """The ramps of all FMUs, and the published numbers."""
+    """Run and check the ramps of all FMUs, and compare with the published numbers."""
     for name in track(MODELS, "ramp", len(MODELS)):
         result = default_ramp(name, outcome.fmus)
         outcome.ramps[name] = result
         outcome.problems += [f"{name}: unexpected message: {text}" for text in result.messages]
         write_text(out / "report" / f"{name}.csv", result.csv())
         outcome.checks += check(name, outcome.fmus, result)
-        beside = [out / flavour for flavour in FLAVOURS if out / flavour != outcome.fmus]
-        outcome.checks += [same(name, folder, result) for folder in beside]
+        other_folders = [out / flavour for flavour in FLAVOURS if out / flavour != outcome.fmus]
+        outcome.checks += [same(name, folder, result) for folder in other_folders]
     for step in track(("package", "FMUs"), "compare", 2):
         if step == "package":
             outcome.rows = validation.validate()
@@ -122,7 +139,7 @@ def _compare(outcome: JobResult, out: Path) -> None:
 
 
 def main(out: Path) -> int:
-    """Run the main job; the last lines say what was built, compared and missed."""
+    """Run the main job and print a summary. Returns the exit code: 0, 1 for a failure, 2 for bad input."""
     try:
         outcome = run(out)
     except (ValueError, RuntimeError) as error:

@@ -1,4 +1,4 @@
-"""What the tools know of each joint, a folder each."""
+"""Tool modules of the joints, one folder for each joint."""
 
 from importlib import import_module
 

@@ -1,4 +1,4 @@
-"""What the tools know of the bolted joint."""
+"""Tool modules of the bolted joint."""
 
 from ...joint_parts import ToolParts
 

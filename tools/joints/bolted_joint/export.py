@@ -1,7 +1,8 @@
-"""What other solvers are given of a bolted joint: at a working point as springs and dashpots between node
-pairs (Zhao 2018, section 2), its contact, and its normal force over its separation as a table.
+"""Export of a bolted joint to other solvers.
 
-The springs are the interface: the bolts are a part of the structure around it.
+Three forms: springs and dashpots between node pairs at a working point (Zhao 2018, section 2), the contact
+law of the interface, and a table of the normal force as a function of the separation. The springs contain the
+interface only: the bolts belong to the surrounding structure.
 """
 
 from collections.abc import Sequence
@@ -29,18 +30,21 @@ if TYPE_CHECKING:
     from ...export.tables import LoadTable
 
 SUMS = ("K_xx", "K_yy", "K_zz", "C_xx", "C_yy", "C_zz")
+"""Outputs of the joint that the springs and dashpots of all nodes must add up to."""
 FORCE_TOLERANCE = 0.3
-"""How far the force of the pressures on a mesh may be from the joint's before it is made equal [1]."""
+"""Relative error [1] of the total force of interpolated pressures that is still corrected by scaling."""
 AREA_TOLERANCE = 0.1
-"""How far the area of a mesh may be from the joint's A_0 [1]."""
+"""Relative difference [1] allowed between the area of a mesh and A_0 of the joint."""
 _OUTSIDE = 0.1
+"""Distance of a mesh node from the nearest node of the joint over the diagonal of the contact [1], at
+most."""
 
 
 def of_joint(spring: BoltedJointSpring, preload: float, moment: float, first: int = 1) -> Springs:
-    """The joint's own nodes, preload [N] per bolt and moment [N.m].
+    """Springs at the nodes of the joint itself, for a preload [N] per bolt and a moment [N.m].
 
-    Every node of the pressure shape becomes a pair of coincident nodes: side 1 is labelled from
-    `first` on, side 2 follows.
+    Every node of the pressure shape becomes a pair of coincident nodes with consecutive labels: the node of
+    side 1, then that of side 2. The first label is `first_label`.
     """
     count = spring.shape.share.size
     labels = first + np.arange(2 * count, dtype=np.int64).reshape(2, count).T
@@ -48,11 +52,11 @@ def of_joint(spring: BoltedJointSpring, preload: float, moment: float, first: in
 
 
 def on_mesh(spring: BoltedJointSpring, mesh: "Mesh", preload: float, moment: float) -> Springs:
-    """The joint's pressure on the pairs of a mesh, preload [N] per bolt and moment [N.m].
+    """Springs at the node pairs of a mesh, for a preload [N] per bolt and a moment [N.m].
 
-    The pressure shape is interpolated linearly between its nodes (outside of them: the nearest one)
-    and normalised to the same total force; the stiffnesses are then multiplied by one factor so that
-    they add up to the joint's.
+    The pressure shape is interpolated linearly between the nodes of the joint (outside of them: value of the
+    nearest node) and scaled to the same total force. Then all stiffnesses are multiplied by one factor, so
+    that they add up to the stiffness of the joint.
 
     Raises ValueError if a pair lies off the joint, if the areas do not add up to A_0 within
     AREA_TOLERANCE, or the interpolated pressures to the joint's force within FORCE_TOLERANCE.
@@ -82,14 +86,15 @@ def on_mesh(spring: BoltedJointSpring, mesh: "Mesh", preload: float, moment: flo
         )
     equal /= force
     tilt -= (share @ tilt) * equal
-    there = spring.on(PressureShape(share, place, equal, tilt))
-    return _split(there, mesh.nodes, preload, moment, _sums(spring, preload, moment))
+    mapped = spring.on(PressureShape(share, place, equal, tilt))
+    return _split(mapped, mesh.nodes, preload, moment, _sums(spring, preload, moment))
 
 
 def under_pressure(spring: BoltedJointSpring, mesh: "Mesh") -> Springs:
-    """The pairs of a mesh under the pressures that its file states.
+    """Springs at the node pairs of a mesh, under the nodal pressures in the file of the mesh.
 
-    Raises ValueError as `on_mesh` does for the area.
+    Raises ValueError if the file has no pressures, or if the areas do not add up to A_0 within
+    AREA_TOLERANCE.
     """
     if mesh.pressure is None:
         raise ValueError(f"{mesh.path}: has no column 'pressure'; expected pressure [Pa]")
@@ -97,8 +102,8 @@ def under_pressure(spring: BoltedJointSpring, mesh: "Mesh") -> Springs:
     share = mesh.area / mesh.area.sum()
     mean = float(share @ mesh.pressure)
     shape = PressureShape(share, mesh.position, mesh.pressure / mean, np.zeros_like(share))
-    there = spring.on(shape)
-    return _split(there, mesh.nodes, mean * spring.joint.A_0 / spring.joint.n_bolts, 0.0, None)
+    mapped = spring.on(shape)
+    return _split(mapped, mesh.nodes, mean * spring.joint.A_0 / spring.joint.n_bolts, 0.0, None)
 
 
 def _check_area(spring: BoltedJointSpring, mesh: "Mesh") -> None:
@@ -126,7 +131,12 @@ def _split(
     moment: float,
     whole: dict[str, float] | None,
 ) -> Springs:
-    """Share out the joint's stiffness and damping (or `whole`) in proportion to share times k(p)."""
+    """Distribute stiffness and damping to the nodes, in proportion to area share times k(p).
+
+    totals : {name in SUMS: total}; None: the totals of `spring`
+
+    Raises ValueError if nothing is in contact or a pressure is outside the law.
+    """
     joint, shape = spring.joint, spring.shape
     p = pressures(joint, shape, preload, moment)
     highest = spring.curve.end[1]
@@ -135,9 +145,9 @@ def _split(
             f"preload = {preload:g} N per bolt with moment = {moment:g} N.m is outside the law: expected "
             f"contact after embedding ({joint.embedding:g} N), and at most {highest:g} Pa"
         )
-    each = shape.share * spring.curve.derivatives(spring.curve.inverse(p), 1)[1]
-    closed = each > 0.0
-    part = (each / each.sum())[closed]
+    nodal_stiffness = shape.share * spring.curve.derivatives(spring.curve.inverse(p), 1)[1]
+    closed = nodal_stiffness > 0.0
+    part = (nodal_stiffness / nodal_stiffness.sum())[closed]
     own = _sums(spring, preload, moment)
     sums = whole or own
     return Springs(
@@ -156,19 +166,24 @@ def _split(
 
 
 STRONGEST = 10.0
-"""End of the table: its total force over the one at tightening [1]."""
+"""Total contact force at the compressed end of the table over the one at tightening [1]."""
 _FINE = 4000
-"""Points at which errors are measured on either side of the tightened state."""
+"""Sample points on either side of the tightened state, at which the error of the table is measured."""
 _BLOCK = 100_000
+"""Nodes times sample points that are evaluated at once, to limit the memory."""
 
 
 def pull_table(spring: BoltedJointSpring, preload: float, moment: float, error: float) -> "LoadTable":
-    """Force [N] that holds the bolted joint together over its separation s_rel_z [m], stiffness [N/m].
+    """Normal force [N] and stiffness [N/m] of interface and bolts as functions of the separation s_rel_z [m].
 
-    The bolts' own stiffness acts beside the interface while they pull. From STRONGEST times the force at
-    tightening, pressed together, to where the last node opens; from there on only the bolts' force grows. The
-    errors refer to the force at tightening where the load is smaller, and to the stiffness there. Raises
-    ValueError if nothing is in contact or the hardness is reached.
+    The force is positive when it pulls the sides together. The table starts in compression, at a contact
+    force of MAX_FORCE_RATIO times the one at tightening. It ends where the last node opens; beyond, only the
+    force of the bolts grows. A bolt adds its stiffness while it pulls.
+
+    error : largest relative error [1]; where force or stiffness are smaller than at tightening, relative to
+            the value at tightening
+
+    Raises ValueError if nothing is in contact or the pressure reaches the hardness.
     """
     from ...export.tables import LoadTable, thinned
 
@@ -207,7 +222,7 @@ def pull_table(spring: BoltedJointSpring, preload: float, moment: float, error: 
 
 @dataclass(frozen=True, slots=True)
 class Tightening:
-    """Working point."""
+    """Working point of a bolted joint: preload of each bolt and bending moment."""
 
     preload: float = quantity("N", "the force of each bolt")
     moment: float = quantity("N.m", "the bending moment")
@@ -226,14 +241,14 @@ def _springs(
         return under_pressure(spring, mesh), f"pressures of {mesh.path.name}"
     if mesh is None:
         return of_joint(spring, state.preload, state.moment, placing.first), str(state)
-    there = on_mesh(spring, mesh, state.preload, state.moment)
-    return there, f"{state}, on the nodes of {mesh.path.name}"
+    springs = on_mesh(spring, mesh, state.preload, state.moment)
+    return springs, f"{state}, on the nodes of {mesh.path.name}"
 
 
 def _contact(joint: Bolted) -> "tuple[Curve, Sequence[str]]":
     ratio = float(joint.shear_ratio())
-    more = f"tangential stiffness of the law: {ratio:.9g} times the slope of the table"
-    return BoltedJointSpring.of_nodes(joint).curve, [more]
+    note = f"tangential stiffness of the law: {ratio:.9g} times the slope of the table"
+    return BoltedJointSpring.of_nodes(joint).curve, [note]
 
 
 def _pull(joint: Bolted, state: Tightening | None, error: float) -> "LoadTable":

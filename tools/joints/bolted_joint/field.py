@@ -1,4 +1,4 @@
-"""How a bolted joint carries its bolts' forces: its layout, its pressures, under a field too."""
+"""Layout and contact pressures of a bolted joint, also for a computed pressure field."""
 
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
@@ -25,13 +25,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class PlaneLayout:
-    """What lies where in a joint's plane, from the centroid of its contact [m].
+    """Geometry of a bolted joint in the contact plane, relative to the centroid of the contact [m].
 
-    bolts   : (b, 2), none where the file does not say
-    outline : rectangles (lower corner, upper corner) of the contact, the outer one first; none of a field
-              without bodies
-    extent  : (2, 2) lowest and highest places
-    hole, head : diameters, 0 where the file does not say
+    bolts      : positions (b, 2); empty if the file has none
+    outline    : rectangles (lower corner, upper corner) of the contact, the outer one first; empty for a
+                 pressure field without bodies
+    extent     : (2, 2) lower and upper corner of the bounding box
+    hole, head : diameters; 0 if the file has none
     """
 
     bolts: Array
@@ -42,7 +42,7 @@ class PlaneLayout:
 
     @classmethod
     def of(cls, joint: Bolted) -> "PlaneLayout":
-        """Of a joint's parameters."""
+        """Layout from the parameters of a joint."""
         pattern = joint.pattern
         bodies = joint.bodies if isinstance(joint.bodies, ElasticBodies) else None
         head = bodies.head_diameter if bodies else 0.0
@@ -75,7 +75,7 @@ def _peak(joint: Bolted, preload: float) -> float:
 
 
 def _usual(joint: Bolted) -> float:
-    """A preload [N] that a bolt bears: that of an M16, or 70 % of the proof load of a smaller one."""
+    """Typical preload [N] of a bolt: 30 kN (M16), or 70 % of the proof load of a smaller bolt."""
     borne = _borne(joint)
     return 30e3 if borne is None else min(30e3, 0.7 * borne[0])
 
@@ -91,7 +91,7 @@ PRESSURE = NominalPressure(load="preload", usual=_usual, mean=_mean, peak=_peak,
 def _pressures(
     joint: Bolted, shape: PressureShape | MergedShape, preload: ArrayLike, moment: ArrayLike
 ) -> Array:
-    """Node pressures [Pa] under what embedding has left of the preload: a field is computed for that."""
+    """Node pressures [Pa] at a preload after embedding: a field is computed for the remaining preload."""
     return pressures(replace(joint, embedding=0.0), shape, preload, moment)
 
 

@@ -1,6 +1,4 @@
-"""The joint in the main job: what must hold of its ramp, published points, figures, a mass that rings on it,
-the laboratory with pressure map and measured joints.
-"""
+"""Bolted joint in the main job: check of the ramp, published points, figures, vibration, laboratory page."""
 
 import tomllib
 from collections.abc import Mapping, Sequence
@@ -37,11 +35,11 @@ def _pulled(folder: Path, result: ramp.RampResult) -> tuple[str, float]:
 
 
 RAMPS = {_FMU: _pulled}
-"""{FMU: (folder, its ramp) -> (what is compared, largest relative deviation)}."""
+"""{FMU: check}, a check being (folder, ramp of the FMU) -> (text, largest relative deviation [1])."""
 
 
 def through_fmu(point: Point, folder: Path) -> float | None:
-    """A published point from FMUs in a folder; None where they do not show it."""
+    """Compute a published point by running an FMU of a folder; None if no FMU has this quantity."""
     if point.quantity != "p_max":
         return None
     load = point.where["preload"]
@@ -49,11 +47,12 @@ def through_fmu(point: Point, folder: Path) -> float | None:
 
 
 _CASES = ((9e3, 0.0), (15e3, 4500.0))
-"""Preload [N] and moment [N.m] of the maps of the box specimen, without and with that of the paper."""
+"""Preload [N] and moment [N.m] of the two pressure maps: without a moment, and with the moment of the
+paper."""
 
 
 def figures(outcome: Any) -> list[Figure]:
-    """The figures of an outcome of the main job."""
+    """Figures of the bolted joint, from the results of the main job (`JobResult`)."""
     joint = default("bolted_joint").values
     return [
         Figure(
@@ -72,7 +71,7 @@ def figures(outcome: Any) -> list[Figure]:
 
 
 def stiffness(result: RampResult) -> list[Panel]:
-    """Stiffness and damping of the bolted joint over preload."""
+    """Panels of stiffness and damping as functions of the preload."""
     c, over = result.columns, "preload per bolt [kN]"
     load = c["preload"] / 1e3
     return [
@@ -82,7 +81,7 @@ def stiffness(result: RampResult) -> list[Panel]:
 
 
 PRELOADS = (3e3, 9e3, 15e3, 30e3)
-"""Per bolt [N]."""
+"""Preloads per bolt [N] of the simulated free vibrations."""
 
 
 def _rest(path: Path, preload: float, parameters: Mapping[str, Any]) -> Rest:
@@ -113,8 +112,9 @@ RINGING = Body(
 
 
 _PRESSURES = (0.3e6, 8e6)
-"""Of the measured curves [Pa]: the mean pressures of the load ramp, as far as they were measured."""
+"""Range [Pa] of the measured curves: the mean pressures of the load ramp."""
 _SHARE = 41
+"""Points of a measured curve."""
 
 
 def _bolts(joint: Any) -> tuple[Sequence[Sequence[float]], str]:
@@ -125,7 +125,7 @@ def _bolts(joint: Any) -> tuple[Sequence[Sequence[float]], str]:
 
 
 def _measured() -> list[MeasuredCurve]:
-    """Normal stiffness of measured joints per area: approach = C p^m gives p^(1 - m)/(C m)."""
+    """Measured normal stiffness per area k [N/m3]: from approach = C p^m follows k = p^(1 - m)/(C m)."""
     text = (files("jointfmu_models") / "reference" / "measured_joints.toml").read_text(encoding="utf-8")
     curves = []
     for row in tomllib.loads(text)["normal"]:
@@ -148,4 +148,4 @@ LABORATORY = {
         picture=Map("contact pressure", "Pa", "MPa", "of the nodes that the FMU carries", _bolts),
     )
 }
-"""{FMU: what the page shows beside its variables}."""
+"""{FMU: contents of its laboratory page that are not variables of the FMU}."""

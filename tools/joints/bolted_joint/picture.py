@@ -1,4 +1,4 @@
-"""The joint as a picture: its interface from above with pressure and bolts, and a section with its sides."""
+"""SVG pictures of a bolted joint: plan view of the interface with pressure and bolts, and section."""
 
 from dataclasses import dataclass, field
 from html import escape
@@ -15,15 +15,15 @@ from jointfmu.quantity import Array
 from .field import PlaneLayout
 
 WIDE, HIGH = 420.0, 330.0
-"""Most that the plan takes of the picture [px]."""
+"""Largest width and height of the drawn joint [px]."""
 EDGE, TICK = 64.0, 9.0
-"""Free on all sides, and size of hatching [px]."""
+"""Margin on all sides, and spacing of the hatching [px]."""
 SEAM = 0.6
-"""By how much cells overlap, so that no line is between them [px]."""
+"""Overlap of neighbouring cells [px], which avoids visible gaps."""
 DOT = 0.22
-"""Radius of a point of a field over the distance of points that were spread evenly [1]."""
+"""Radius of a dot, which marks a node of a field, over the mean distance of the nodes [1]."""
 THIN = 70.0
-"""Least height of both sides in the section [px]: below it z is stretched."""
+"""Smallest height of both sides together in the section [px]: thinner plates are stretched along z."""
 VIRIDIS = np.array(
     [[68, 1, 84], [59, 82, 139], [33, 145, 140], [94, 201, 98], [253, 231, 37]], dtype=np.float64
 )
@@ -32,19 +32,20 @@ INK, SOFT, RED, OPEN = "#1d232b", "#5a6572", "#c1442e", "#e3e6ea"
 
 @dataclass
 class Svg:
-    """SVG elements, in pixels, on white paper."""
+    """SVG drawing on a white background; all lengths in pixels."""
 
     width: float
     height: float
     parts: list[str] = field(default_factory=list)
 
     def put(self, kind: str, text: str = "", /, **given: object) -> None:
-        """An element; `_` in names of attributes is `-`."""
-        told = " ".join(
+        """Add an element. An `_` in the name of an attribute becomes `-`."""
+        attributes = " ".join(
             f'{name.replace("_", "-")}="{f"{value:.1f}" if isinstance(value, float) else value}"'
             for name, value in given.items()
         )
-        self.parts.append(f"<{kind} {told}>{escape(text)}</{kind}>" if text else f"<{kind} {told}/>")
+        element = f"<{kind} {attributes}"
+        self.parts.append(f"{element}>{escape(text)}</{kind}>" if text else f"{element}/>")
 
     def line(self, x1: float, y1: float, x2: float, y2: float, stroke: str = INK, dash: str = "") -> None:
         more = {"stroke_dasharray": dash} if dash else {}
@@ -56,7 +57,7 @@ class Svg:
         self.put("text", text, x=x, y=y, text_anchor=anchor, fill=fill, **more)
 
     def held(self, x1: float, y1: float, x2: float, y2: float) -> None:
-        """The sign of an attachment along a line, hatched on its left."""
+        """Add the symbol of a fixed support along a line: hatching on its left."""
         self.put("line", x1=x1, y1=y1, x2=x2, y2=y2, stroke=RED, stroke_width=2)
         along = np.array([x2 - x1, y2 - y1])
         size = float(np.hypot(*along))
@@ -84,7 +85,11 @@ class Svg:
 
 
 def plan(joint: Bolted, preload: float, moment: float) -> str:
-    """The tightened interface from side 2: pressure, bolts with numbers, attachments."""
+    """Plan view of the tightened interface from side 2, as SVG: pressure, numbered bolts, attachments.
+
+    preload : [N] of each bolt
+    moment  : [N.m]
+    """
     shape, layout = pressure_shape(joint.pattern), PlaneLayout.of(joint)
     p = np.asarray(pressures(joint, shape, preload, moment))
     low, high = layout.extent
@@ -104,8 +109,8 @@ def plan(joint: Bolted, preload: float, moment: float) -> str:
         if points:
             sheet.put("circle", cx=x, cy=y, r=dot, fill=fill)
         else:
-            across, up = cells[i]
-            sheet.put("rect", x=x - 0.5 * across, y=y - 0.5 * up, width=across, height=up, fill=fill)
+            dx, dy = cells[i]
+            sheet.put("rect", x=x - 0.5 * dx, y=y - 0.5 * dy, width=dx, height=dy, fill=fill)
     for lower, upper in layout.outline:
         (x1, y2), (x2, y1) = at(lower), at(upper)
         sheet.put("rect", x=x1, y=y1, width=x2 - x1, height=y2 - y1, fill="none", stroke=INK)
@@ -153,7 +158,7 @@ def _seats(joint: Bolted) -> str:
 
 
 def _colour(part: float) -> str:
-    """Viridis of a part [1] of the greatest pressure."""
+    """Colour of the map Viridis for a pressure over the largest pressure [1]."""
     place = np.linspace(0.0, 1.0, len(VIRIDIS))
     return "#" + "".join(f"{round(float(np.interp(part, place, column))):02x}" for column in VIRIDIS.T)
 
@@ -171,7 +176,7 @@ def _bar(sheet: Svg, x: float, y: float, height: float, top: float) -> None:
 
 
 def _bolts(sheet: Svg, at: Array, layout: PlaneLayout, scale: float, held: bool) -> None:
-    """Holes, heads, centre lines and numbers of bolts at (b, 2) [px]."""
+    """Draw holes, heads, centre lines and numbers of bolts at positions (b, 2) [px]."""
     hole, head = 0.5 * scale * layout.hole, 0.5 * scale * layout.head
     for number, (x, y) in enumerate(at, start=1):
         reach = max(hole, head, 6.0) + 7.0
@@ -191,7 +196,7 @@ def _bolts(sheet: Svg, at: Array, layout: PlaneLayout, scale: float, held: bool)
 
 
 def section(joint: Bolted) -> str:
-    """Both sides from the front with their thicknesses, the bolts, and where the load enters."""
+    """Section of both sides, as SVG: thicknesses, bolts, and surfaces at which the load is applied."""
     bodies = joint.bodies
     assert isinstance(bodies, ElasticBodies)
     layout, attached = PlaneLayout.of(joint), _attached(joint)
@@ -243,7 +248,7 @@ def section(joint: Bolted) -> str:
 def _bolt(
     sheet: Svg, x: float, ends: tuple[float, float], half: float, head: float, held: bool, thread: float
 ) -> None:
-    """One bolt with head and nut, or to the end of a thread [px]; schematic."""
+    """Draw one bolt, schematic [px]: with head and nut, or with head and tapped thread."""
     (top, bottom), shank = ends, 0.6 * half
     sheet.put("rect", x=x - shank, y=top, width=2.0 * shank, height=bottom - top, fill="#fff", stroke=INK)
     for y in (bottom,) if thread else (top - head, bottom):

@@ -1,4 +1,4 @@
-"""What the published numbers of Zhao 2018 mean for a bolted joint, and which of them calibrate it."""
+"""Published values of Zhao 2018: how to compute each quantity, and which values calibrate parameters."""
 
 from dataclasses import replace
 
@@ -15,12 +15,15 @@ from ...published.computed import CalibrationFit, Published
 
 
 def p_max(joint: BoltedJoint, preload: float) -> float:
-    """Largest node pressure [Pa] at a preload [N] per bolt."""
+    """Largest nodal pressure [Pa] at a preload [N] per bolt."""
     return float(np.max(pressures(joint, pressure_shape(joint.pattern), preload, 0.0)))
 
 
 def p_between(joint: BoltedJoint, preload: float) -> float:
-    """Pressure [Pa] midway between a corner bolt and its neighbour off the row, at a preload [N]."""
+    """Pressure [Pa] midway between a corner bolt and the next bolt of the other row.
+
+    preload : [N] per bolt
+    """
     pattern = bolt_pattern(joint)
     areas, nodes = cells(pattern)
     middle = pattern.bolts[[0, 3]].mean(axis=0)[None, :]
@@ -29,17 +32,17 @@ def p_between(joint: BoltedJoint, preload: float) -> float:
 
 
 def row_force(joint: BoltedJoint, preload: float, moment: float, row: int) -> float:
-    """Bolt force [N] in row 1 or 2 under a moment [N.m]."""
+    """Force [N] of a bolt in row 1 or 2, at a preload [N] per bolt and a moment [N.m]."""
     return row_forces(joint, preload, moment)[row - 1]
 
 
 def critical_area(joint: BoltedJoint, choice: str) -> float:
-    """a'_c [m2] by a named choice."""
+    """Critical area a'_c [m2] of a spot, by one of the choices of the parameter `critical_area`."""
     return float(zhao.critical_area(replace(joint, critical_area=choice)))
 
 
 def spot_stiffness_ratio(joint: BoltedJoint) -> float:
-    """Spot stiffness along the size family over Hertz [1]."""
+    """Stiffness of a spot by the choice `family` over that by the choice `hertz` [1]."""
     family, hertz = (
         zhao.normal_stiffness(replace(joint, spot_stiffness=kind), 1e-6) for kind in ("family", "hertz")
     )
@@ -47,23 +50,23 @@ def spot_stiffness_ratio(joint: BoltedJoint) -> float:
 
 
 def rms_height(joint: BoltedJoint, longest_wave: float) -> float:
-    """Rms height h [m] of the waves of D and G up to a longest one [m]."""
+    """Rms height h [m] of the fractal surface (D, G) with wavelengths up to `longest_wave` [m]."""
     return float(height(joint.surface.D, joint.surface.G, longest_wave))
 
 
 def mindlin_function(joint: BoltedJoint, function: str, x: float) -> float:
-    """H1 (`loop`), H2 (`storage`) or W_d/W (`loss_ratio`) [1] at a traction ratio."""
+    """Mindlin's H1 (`loop`), H2 (`storage`) or W_d/W (`loss_ratio`) [1] at a traction ratio x [1]."""
     table = {"loop": mindlin.loop, "storage": mindlin.storage, "loss_ratio": mindlin.loss_ratio}
     return float(table[function](x))
 
 
 def psi(joint: BoltedJoint, D: float) -> float:
-    """Domain extension factor [1] of a profile dimension."""
+    """Domain extension factor psi [1] for a fractal dimension D of the profile."""
     return float(domain_extension(D))
 
 
 def frequency_error(joint: BoltedJoint, predicted: float, measured: float) -> float:
-    """Error [%] of a predicted frequency against the experiment."""
+    """Error [%] of a predicted frequency relative to the measured one [Hz]."""
     return 100.0 * (predicted / measured - 1.0)
 
 
@@ -87,4 +90,4 @@ PUBLISHED = Published(
         ),
     ),
 )
-"""{quantity of a reference file: function}, and the fits."""
+"""{quantity of a reference file: function that computes it}, and fits that calibrate parameters."""

@@ -1,4 +1,4 @@
-"""A bolted joint between elastic sides under a force along z that leaves its other five motions free."""
+"""Bolt forces of a joint with elastic sides under a tensile force along z, free in its other five motions."""
 
 import numpy as np
 
@@ -7,25 +7,27 @@ from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.quantity import Array
 
 CLOSE = 1e-10
-"""Work of a step over that of the pull [1] at which there is equilibrium."""
+"""Work of a Newton correction over the work of the external force [1] that counts as equilibrium."""
 STEPS, PARTS = 100, 8
-"""Most steps of Newton's method at a pull [1], and most parts of each that are tried."""
+"""Newton iterations at one force, and trial lengths in each iteration."""
 LEAST_SHIFT, LEAST = 1e-12, 1e-6
-"""Shift of a patch [m] that counts as none, and stiffness over the greatest one of tightening [1] that open
-patches keep, and open points in the derivative: a joint that is open may shift, and turn on one bolt."""
+"""Tangential displacement of a patch [m] that avoids a division by zero, and stiffness of open patches and
+points over the largest stiffness at tightening [1]: it keeps the matrix of an open joint regular."""
 MOST = 2.0
-"""Force of a bolt over that of tightening [1] beyond which nothing is told."""
+"""Bolt force over the force at tightening [1] at which the calculation ends."""
 
 
 def bolt_forces(spring: BoltedJointSpring, preload: float, moment: float, pulls: Array) -> Array:
-    """Force (m, bolts) [N] of each bolt under the first m of growing pulls (n) [N], from the tightened state.
+    """Bolt forces (m, bolts) [N] under the first m of increasing tensile forces (n) [N].
 
-    Motion and amplitudes z of least energy at rest,
+    Static equilibrium from the tightened state,
 
-        K z + E^T (B - B_tightened) - G^T A (p - p_tightened) = F,
+        K z + E^T (B - B_tightened) - G^T A (p - p_tightened) = F.
 
-    B the forces of the bolts. K is that of modes and patches, which have the traction of a shift from rest
-    over that shift, as they last were. Ends where a bolt has MOST of its force at tightening.
+    z: relative displacement and modal coordinates; B: bolt forces; E: elongation of the bolts; G: derivative
+    of the opening of the points; A: areas; p: contact pressure. K: stiffness of modes and patches, with the
+    secant stiffness of the patches from the iteration before. Ends at the first force at which a bolt exceeds
+    MAX_BOLT_FORCE_RATIO, or at which the iteration does not converge.
     """
     whole, modes, law = spring.whole, spring.modes, spring.foundation()
     start = spring.tightened(preload, moment)

@@ -1,4 +1,4 @@
-"""What the page of a user's bolted joint shows: a picture, the whole beside its parts, what mu does to it."""
+"""Figures in the report of a bolted joint: pictures, stiffness shares, bolt forces, effect of friction."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -29,20 +29,20 @@ from .picture import plan, section
 from .pull import MOST, bolt_forces
 
 BEYOND = 1.3
-"""Pull that is drawn over that at which the interface opens [1]."""
+"""Largest plotted tensile force over the opening load of the interface [1]."""
 ALIKE = 0.05
-"""How much more than on average [1] a bolt gets of a force along z that bolts share alike."""
+"""Excess of the largest bolt share over the mean share [1], up to which bolts count as equally loaded."""
 TOLD_AT = 0.1
-"""Shear over mu times the normal force [1] at which the band of the friction is told."""
+"""Shear force over the gross-slip force [1] at which the loss factor is reported."""
 
 
 def joint_figures(course: Course) -> list[Figure]:
-    """The joint as a picture, then in numbers."""
+    """All figures of the joint: pictures, complete joint, friction."""
     return [pictured(course), *whole_joint(course), *friction(course)]
 
 
 def pictured(course: Course) -> Figure:
-    """The joint from above, and from the front where the file says how thick its sides are."""
+    """Plan view of the joint, and a section if the file has the thickness of the sides."""
     joint = course.file.values
     preload, moment = _tight(course)
     bodies, bolts = joint.bodies, PlaneLayout.of(joint).bolts
@@ -68,7 +68,7 @@ def pictured(course: Course) -> Figure:
 
 
 def friction(course: Course) -> list[Figure]:
-    """What the range of mu does to slip and loss, where the file states one."""
+    """Table of gross-slip force and loss factor over the range of mu; empty if the file states no range."""
     if "mu" not in course.file.ranges:
         return []
     shear, rows = friction_band(course.file, _tight(course)[0])
@@ -83,7 +83,12 @@ def friction(course: Course) -> list[Figure]:
 
 
 class Band(NamedTuple):
-    """mu [1], the shear [N] at which all slips, and the loss factor [1] at a shear that is stated."""
+    """Effect of one friction coefficient.
+
+    mu          : friction coefficient [1]
+    slip_force  : shear force [N] of gross slip
+    loss_factor : [1] of a loop with a given amplitude of the shear force
+    """
 
     mu: float
     slip_force: float
@@ -91,9 +96,10 @@ class Band(NamedTuple):
 
 
 def friction_band(file: ParameterFile, preload: float) -> tuple[float, list[Band]]:
-    """Shear [N] of the loss factors; what the file's mu makes of a preload [N], and both ends of its range.
+    """Gross-slip force and loss factor for mu of the file and both ends of its range, at a preload [N].
 
-    The loss factor is that of a loop of the interface between rigid sides, under the same shear force.
+    Returns the amplitude [N] of the shear force, then one FrictionResult per mu. The loss factors are those
+    of the interface between rigid sides, all at this amplitude.
     """
     joint = interface_alone(file.values)
     left = float(working_preload(joint, preload))
@@ -107,9 +113,10 @@ def friction_band(file: ParameterFile, preload: float) -> tuple[float, list[Band
 
 
 def loss_factor(spring: BoltedJointSpring, left: float, shear: float) -> float:
-    """Loss over 2 pi times the stored energy of a loop with an amplitude of the shear force [N].
+    """Loss factor [1]: dissipated energy over 2 pi times the stored energy, in a loop of the shear force.
 
-    left : [N] force of each bolt that embedding leaves, without a moment
+    remaining_preload : [N] of each bolt after embedding; without a moment
+    shear             : amplitude [N] of the shear force
     """
     joint, shape = spring.joint, spring.patches
     law, mean = spring.foundation(), left * joint.n_bolts / joint.A_0
@@ -124,13 +131,16 @@ def loss_factor(spring: BoltedJointSpring, left: float, shear: float) -> float:
 
 
 def _tight(course: Course) -> tuple[float, float]:
-    """Preload [N] and moment [N.m]."""
+    """Preload [N] and moment [N.m] of the tightened joint."""
     preload, moment = (float(course.about.get(name, 0.0)) for name in ("preload", "moment"))
     return preload, moment
 
 
 def whole_joint(course: Course) -> list[Figure]:
-    """The whole joint beside its interface and its bolts, and the force of each bolt over a pull along z."""
+    """Stiffness of the complete joint, its interface and its bolts, and bolt forces over a force along z.
+
+    Empty for rigid sides.
+    """
     joint, spring = course.file.values, course.spring
     if not joint.elastic:
         return []
@@ -160,7 +170,7 @@ def _told(value: float, unit: str) -> str:
 
 
 def _rows(found: Compliances) -> list[tuple[str, ...]]:
-    """Stiffnesses, and parts of the compliance, by direction."""
+    """Table rows, one per direction: stiffnesses, and shares of the compliance."""
     heads = ("whole joint", "interface alone", "members", "bolts alone", "interface", "members", "bolts")
     rows: list[tuple[str, ...]] = [("", *heads)]
     for name, unit, each, shares in found.rows():
@@ -186,7 +196,7 @@ def _text(found: Compliances, tension: float, moment: float) -> str:
 
 
 def _bolt_forces(spring: BoltedJointSpring, preload: float, moment: float, most: float) -> Panel:
-    """Force of each bolt over the force along z that pulls, up to the most [N]."""
+    """Panel of the force of each bolt over a tensile force along z, up to `max_force` [N]."""
     pulls = np.linspace(0.0, most, 27)
     columns = 1e-3 * bolt_forces(spring, preload, moment, pulls).T
     series = [Series(bolt_force_name(j), 1e-3 * pulls[: len(y)], y) for j, y in enumerate(columns)]
@@ -195,4 +205,4 @@ def _bolt_forces(spring: BoltedJointSpring, preload: float, moment: float, most:
 
 FIGURES = {"BoltedJoint": joint_figures}
 BESIDE: dict[str, Callable[[Model, ParameterFile], list[Beside]]] = {}
-"""No catalogue prints what a bolted joint does."""
+"""Empty: there are no catalogue values of bolted joints to compare with."""

@@ -1,4 +1,4 @@
-"""What the tools know of the gear contact."""
+"""Tool modules of the gear contact."""
 
 from ...joint_parts import ToolParts
 

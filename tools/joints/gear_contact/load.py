@@ -1,4 +1,4 @@
-"""The load of a gear contact: curves for other solvers, pressure on the flanks, span in the laboratory."""
+"""Gear contact under load: curves for other solvers, flank pressure, slider range of the laboratory page."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -39,4 +39,4 @@ EXPORTS = Exports(
 
 PRESSURE = FLANKS
 LABORATORY = {"GearContact": LaboratoryModel(spans={"f": (0.0, 3e3)})}
-"""{FMU: what the page shows beside its variables}."""
+"""{FMU: contents of its laboratory page that are not variables of the FMU}."""

@@ -1,4 +1,4 @@
-"""A tooth contact from a drawing: two flanks of one width, their curvatures and their faces."""
+"""`jointfmu new` for a gear contact: two tooth flanks of equal width, from curvatures and surface finish."""
 
 from ...drawing.faces import OPTIONS
 from ...drawing.part import Drawing, Given, NewJoint
@@ -25,21 +25,21 @@ def _flanks(given: Given) -> NewJoint:
     if not curvature > 0.0:
         raise ValueError(f"--radii = {' '.join(given['radii'])}: the flanks do not bulge towards each other")
     sides = [Elastic(E=sheet.value(f"side{i}.E"), nu=sheet.value(f"side{i}.nu")) for i in (1, 2)]
-    found = patch(load, width, curvature, contact_modulus(*sides))
+    hertz = patch(load, width, curvature, contact_modulus(*sides))
     text = f"Hertz's line contact under {load:g} N, {width * 1e3:g} mm wide, 1/R = {curvature:.4g} 1/m"
-    sheet.put("A_0", float(found.area), "derived", text)
+    sheet.put("A_0", float(hertz.area), "derived", text)
     sheet.stated("inputs.f", load)
     file = sheet.file(f"flanks {given['width']} wide")
     state = GearContactSpring.of(file.values).approach(load)
     facts = {
         "load": (load, "N", "normal load"),
-        "half_width": (float(found.half_width), "m", "half width of the patch (Hertz)"),
-        "p_hertz": (float(found.pressure), "Pa", "greatest pressure of smooth flanks (Hertz)"),
+        "half_width": (float(hertz.half_width), "m", "half width of the patch (Hertz)"),
+        "p_hertz": (float(hertz.pressure), "Pa", "greatest pressure of smooth flanks (Hertz)"),
         "h": (file.flat["h"], "m", "rms height of both flanks together"),
         "K_N": (float(state["K_N"]), "N/m", "stiffness of the rough interface at this load"),
         "s_rel": (float(state["s_rel"]), "m", "approach of the rough interface at this load"),
     }
-    return NewJoint(file, facts, faces.beyond(float(found.pressure), file.flat["H"]))
+    return NewJoint(file, facts, faces.beyond(float(hertz.pressure), file.flat["H"]))
 
 
 def _curvature(text: str) -> float:

@@ -1,4 +1,4 @@
-"""What the claims of Yu 2022 mean for a gear contact."""
+"""Published claims of Yu 2022: how to check each of them for a gear contact."""
 
 from dataclasses import replace
 from typing import Any
@@ -13,9 +13,12 @@ from ...published.computed import Published
 
 
 def claim(contact: GearContact, of: str, over: str) -> bool:
-    """A claim of Yu 2022, section 5, with the parameters named there.
+    """Check whether a claim of Yu 2022, section 5, holds for the parameter values in that section.
 
-    Load and stiffness are compared at equal real areas, real areas at an equal largest spot.
+    of   : quantity that changes: load, stiffness, real area `A_r` or `elastic_fraction`
+    over : parameter that is varied; "MB": the claim compares with the model of Majumdar and Bhushan
+
+    Loads and stiffnesses are compared at equal real areas, real areas at an equal largest spot.
     """
     if over == "MB":
         return _below_majumdar_bhushan(contact)
@@ -52,7 +55,7 @@ def _varied(contact: GearContact, **changes: Any) -> GearContact:
 
 
 def _at_real_area(law: Yu2022, fraction: float) -> dict[str, float]:
-    """State at a real area that is a fraction of A_0; Eq. 54 gives the largest spot."""
+    """State of the law at a real contact area of `fraction` times A_0, with the largest spot by Eq. 54."""
     spots = law.spots()
     largest = fraction * law.A_0 * (1.0 - spots.m) / (spots.m * spots.weight)
     state: dict[str, Any] = law.state(np.log(largest / spots.reference))
@@ -60,9 +63,10 @@ def _at_real_area(law: Yu2022, fraction: float) -> dict[str, float]:
 
 
 def _below_majumdar_bhushan(contact: GearContact) -> bool:
-    """Load below that of Majumdar and Bhushan (1991), same D and G, at 1 to 10 % real area.
+    """Whether the load is below that of Majumdar and Bhushan (1991) at all real areas from 1 to 10 % of A_0.
 
-    Elastic spots above a_c = G^2 (2 E/H)^(2/(D-1)), plastic ones below; profile dimension D.
+    Both models have the same D (fractal dimension of the profile) and G. In the model of Majumdar and Bhushan
+    spots are elastic above the area a_c = G^2 (2 E/H)^(2/(D-1)) and plastic below.
     """
     D, G = contact.surface1.D, contact.surface1.G
     E, H = contact.side1.E / (1.0 - contact.side1.nu**2), contact.hardness
@@ -83,4 +87,4 @@ PUBLISHED = Published(
         "claim": claim,
     },
 )
-"""{quantity of a reference file: function}, and the fits."""
+"""{quantity of a reference file: function that computes it}."""

@@ -1,6 +1,4 @@
-"""The ramp of the gear contact: what must hold of it in the main job, the figure of the report; for many
-samples at once.
-"""
+"""Load ramp of the gear contact: check and figure of the main job, evaluation of many samples at once."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -34,11 +32,11 @@ def _approach(folder: Path, result: RampResult) -> tuple[str, float]:
 
 
 RAMPS = {"GearContact": _approach}
-"""{FMU: (folder, its ramp) -> (what is compared, largest relative deviation)}."""
+"""{FMU: check}, a check being (folder, ramp of the FMU) -> (text, largest relative deviation [1])."""
 
 
 def figures(outcome: Any) -> list[Figure]:
-    """The figure of an outcome of the main job."""
+    """Figure of the gear contact, from the results of the main job (`JobResult`)."""
     c = outcome.ramps["GearContact"].columns
     load = c["f"] / 1e3
     panels = [
@@ -52,9 +50,12 @@ def figures(outcome: Any) -> list[Figure]:
 def evaluate(
     parameters: type[Contact], values: Mapping[str, object], loads: Array, factor: Array
 ) -> dict[str, Array]:
-    """K_N [N/m] and s_rel [m] (n, m) at the forces factor (n, 1) times loads (m) [N], ascending.
+    """Stiffness K_N (n, m) [N/m] and approach s_rel (n, m) [m] at the forces factor times loads.
 
-    values : by structured name, numbers or samples (n)
+    parameters : class of the parameter set
+    values     : {structured name: number, or samples (n)}
+    loads      : (m) [N], ascending
+    factor     : (n, 1) [1], one for each sample
     """
     contact = columns(parameters, values, 1)
     scale = factor / contact.A_0
@@ -67,7 +68,7 @@ def evaluate(
 
 
 def exact(joint: Contact, loads: Array) -> dict[str, Array]:
-    """K_N and s_rel (m) of the exported spring at forces (m) [N]; no stiffness without force."""
+    """K_N (m) [N/m] and s_rel (m) [m] of the exported joint at forces (m) [N]; both are 0 at zero force."""
     state = GearContactSpring.of(joint).approach(loads)
     return {name: np.where(loads > 0.0, state[name], 0.0) for name in REDUCED.units}
 

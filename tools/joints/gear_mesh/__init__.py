@@ -1,4 +1,4 @@
-"""What the tools know of the gear mesh."""
+"""Tool modules of the gear mesh."""
 
 from ...joint_parts import ToolParts
 

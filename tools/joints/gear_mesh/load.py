@@ -1,4 +1,4 @@
-"""What a load does to a gear mesh: curves for other solvers, and pressure on the flanks of one tooth pair."""
+"""Gear mesh under load: curves for other solvers, and pressure on the flanks of one tooth pair."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING

@@ -1,4 +1,4 @@
-"""A gear mesh from a drawing: module, teeth, width, angles and faces of two external wheels."""
+"""`jointfmu new` for a gear mesh: two external gear wheels, from their geometry and surface finish."""
 
 from dataclasses import dataclass
 
@@ -16,20 +16,24 @@ from ...drawing.reading import number
 from ...joint_parts import Option
 
 E_STEEL = 206e9
-"""Modulus [Pa] to which the stiffness of ISO 6336-1 belongs."""
+"""Young's modulus [Pa] of steel wheels for which ISO 6336-1 states the stiffness."""
 CORRECTION = 0.8
-"""C_M of ISO 6336-1: measured over theoretical single stiffness [1]."""
+"""Factor C_M of ISO 6336-1: measured over theoretical single stiffness [1]."""
 LOADED = 100e3
-"""Tangential load over face width [N/m] below which ISO 6336-1 takes teeth for softer."""
+"""Tangential load per face width [N/m] below which ISO 6336-1 reduces the tooth stiffness."""
 DAMPING = 0.06
-"""Damping ratio of the mesh on its two wheels as solid discs [1]."""
+"""Damping ratio [1] of the oscillation of both wheels, as solid discs, on the mesh stiffness."""
 
 
 @dataclass(frozen=True, slots=True)
 class InvoluteGearPair:
-    """Two external involute wheels without profile shift, addendum of one module.
+    """Two external involute gear wheels without profile shift, with an addendum of one module.
 
-    module [m] and angles [rad] are those of the normal section; z: teeth; width [m]
+    module         : [m] normal module
+    z              : number of teeth of both wheels
+    width          : [m] common face width
+    pressure_angle : [rad] normal pressure angle
+    helix_angle    : [rad] at the reference circle
     """
 
     module: float
@@ -40,25 +44,26 @@ class InvoluteGearPair:
 
     @property
     def transverse_angle(self) -> float:
-        """alpha_t [rad], tan(alpha_t) = tan(alpha_n)/cos(beta)."""
+        """Transverse pressure angle alpha_t [rad]: tan(alpha_t) = tan(alpha_n)/cos(beta)."""
         return float(np.arctan(np.tan(self.pressure_angle) / np.cos(self.helix_angle)))
 
     @property
     def radii(self) -> tuple[float, float]:
-        """Reference radii [m]."""
+        """Radii of both reference circles [m]."""
         first, second = (0.5 * self.module * z / np.cos(self.helix_angle) for z in self.z)
         return float(first), float(second)
 
     @property
     def base_radii(self) -> tuple[float, float]:
-        """r cos(alpha_t) [m]."""
+        """Radii of both base circles [m]: r cos(alpha_t)."""
         first, second = (r * np.cos(self.transverse_angle) for r in self.radii)
         return float(first), float(second)
 
     @property
     def contact_ratio(self) -> float:
-        """epsilon_alpha [1] of the transverse section (ISO 21771): the mean length of the lines of contact
-        is epsilon_alpha width/cos(beta_b), whatever the overlap.
+        """Transverse contact ratio epsilon_alpha [1] (ISO 21771).
+
+        The mean total length of the contact lines is epsilon_alpha width/cos(beta_b), for any overlap ratio.
         """
         (r1, r2), base = self.radii, self.base_radii
         path = sum(np.sqrt((r + self.module) ** 2 - b**2) for r, b in zip((r1, r2), base, strict=True)) - (
@@ -68,21 +73,24 @@ class InvoluteGearPair:
 
     @property
     def overlap_ratio(self) -> float:
-        """epsilon_beta [1] (ISO 21771): cycles over which the transverse sections are spread."""
+        """Overlap ratio epsilon_beta [1] (ISO 21771): phase shift over the face width, in mesh cycles."""
         return float(self.width * np.sin(self.helix_angle) / (np.pi * self.module))
 
     @property
     def curvature(self) -> float:
-        """1/R_1 + 1/R_2 [1/m] at the pitch point, in the section normal to the flanks."""
-        base = np.arcsin(np.sin(self.helix_angle) * np.cos(self.pressure_angle))
-        bulge = (np.cos(base) / (r * np.sin(self.transverse_angle)) for r in self.radii)
-        return float(sum(bulge))
+        """Relative curvature 1/R_1 + 1/R_2 [1/m] at the pitch point, in the section normal to the flanks."""
+        base_helix = np.arcsin(np.sin(self.helix_angle) * np.cos(self.pressure_angle))
+        curvatures = (np.cos(base_helix) / (r * np.sin(self.transverse_angle)) for r in self.radii)
+        return float(sum(curvatures))
 
     def tooth_stiffness(self, moduli: tuple[float, float], torque: float) -> float:
-        """c' width [N/m] of one pair with contact over the full width, moduli [Pa].
+        """Single stiffness c' times width [N/m] of one tooth pair in contact over the full width.
 
-        ISO 6336-1, method B: solid wheels, no profile shift, basic rack with a dedendum of 1.2 modules
-        (C_B is 1 at 20 degrees), K_A = 1; softer where the torque of wheel 1 [N.m] loads less than LOADED.
+        moduli : Young's moduli [Pa] of both wheels
+        torque : [N.m] of wheel 1; below REFERENCE_LINE_LOAD the stiffness is reduced
+
+        ISO 6336-1, method B: solid wheels, no profile shift, K_A = 1, basic rack with a dedendum of 1.2
+        modules (C_B is 1 at 20 degrees).
         """
         virtual = [z / np.cos(self.helix_angle) ** 3 for z in self.z]
         q = 0.04723 + 0.15551 / virtual[0] + 0.25791 / virtual[1]  # mm um/N
@@ -93,11 +101,19 @@ class InvoluteGearPair:
         return float(CORRECTION * rack * loaded * theory)
 
     def mesh_stiffness(self, tooth: float) -> float:
-        """c_gamma width [N/m] of ISO 6336-1 with the stiffness of one pair [N/m]."""
+        """Mesh stiffness c_gamma times width [N/m] of ISO 6336-1.
+
+        tooth_stiffness : [N/m] of one tooth pair
+        """
         return tooth * (0.75 * self.contact_ratio + 0.25)
 
     def damping(self, stiffness: float, density: tuple[float, float]) -> float:
-        """2 DAMPING sqrt(stiffness mass) [N.s/m], of the two wheels as solid discs on the line of action."""
+        """Damping [N.s/m] along the line of action: 2 DAMPING_RATIO sqrt(stiffness mass).
+
+        stiffness : [N/m] of the mesh
+        density   : [kg/m3] of both wheels; mass is that of both wheels in series, as solid discs, reduced to
+                    the line of action
+        """
         masses = [
             0.5 * np.pi * rho * self.width * r**4 / b**2
             for rho, r, b in zip(density, self.radii, self.base_radii, strict=True)
@@ -106,24 +122,27 @@ class InvoluteGearPair:
 
 
 def mesh(given: Given) -> NewJoint:
-    """The mesh of a drawing; ValueError, one line, for what does not fit."""
+    """Make the parameters of a gear mesh from the options of a drawing.
+
+    Raises ValueError with a one-line message for options that are invalid or contradict each other.
+    """
     wheels, torque = _wheels(given), number("torque", given["torque"], "N.m", "N.m")
     sheet = Sheet(KIND.name, "roughness")
     faces.put(sheet, given)
     moduli = (sheet.value("side1.E"), sheet.value("side2.E"))
     load = torque / wheels.base_radii[0]
     sides = [Elastic(E=E, nu=sheet.value(f"side{i + 1}.nu")) for i, E in enumerate(moduli)]
-    found = patch(load, wheels.width, wheels.curvature, contact_modulus(*sides))
+    hertz = patch(load, wheels.width, wheels.curvature, contact_modulus(*sides))
     _put(sheet, wheels, given, wheels.tooth_stiffness(moduli, torque))
     text = f"Hertz's line contact at the pitch point, one pair under {torque:g} N.m of wheel 1"
-    sheet.put("A_0", float(found.area), "derived", text)
+    sheet.put("A_0", float(hertz.area), "derived", text)
     file = sheet.file(f"wheels of module {given['module']}, {wheels.z[0]:g} to {wheels.z[1]:g} teeth")
     spring = GearMeshSpring.of(file.values)
     deflection = float(spring.curve.inverse(load / wheels.contact_ratio))
     stiffness = wheels.contact_ratio * float(spring.curve.derivatives(np.array([deflection]), 1)[1][0])
     facts = {
         "load": (load, "N", "normal force of the mesh at the torque"),
-        "p_hertz": (float(found.pressure), "Pa", "greatest pressure of smooth flanks, one pair in contact"),
+        "p_hertz": (float(hertz.pressure), "Pa", "greatest pressure of smooth flanks, one pair in contact"),
         "contact_ratio": (wheels.contact_ratio, "1", "mean number of pairs in contact over the full width"),
         "overlap_ratio": (wheels.overlap_ratio, "1", "mesh cycles over which a helix spreads the contact"),
         "K_tooth": (file.flat["K_tooth"], "N/m", "bending of one pair (ISO 6336-1)"),
@@ -132,7 +151,7 @@ def mesh(given: Given) -> NewJoint:
         "c_gamma": (wheels.mesh_stiffness(file.flat["K_tooth"]), "N/m", "the same by ISO 6336-1, to compare"),
         "deflection": (deflection, "m", "of a pair at this load"),
     }
-    return NewJoint(file, facts, faces.beyond(float(found.pressure), file.flat["H"]))
+    return NewJoint(file, facts, faces.beyond(float(hertz.pressure), file.flat["H"]))
 
 
 def _wheels(given: Given) -> InvoluteGearPair:
@@ -153,7 +172,10 @@ def _wheels(given: Given) -> InvoluteGearPair:
 
 
 def _put(sheet: Sheet, wheels: InvoluteGearPair, given: Given, K: float) -> None:
-    """Put what the wheels decide; K: of one pair [N/m]."""
+    """Add the parameters that follow from the gear geometry to the sheet.
+
+    tooth_stiffness : [N/m] of one tooth pair
+    """
     for i, radius in enumerate(wheels.base_radii):
         sheet.put(f"r_b{i + 1}", radius, "derived", "m_n z cos(alpha_t)/(2 cos(beta)) of the drawing")
     sheet.stated("teeth1", wheels.z[0])

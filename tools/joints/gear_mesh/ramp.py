@@ -1,8 +1,8 @@
-"""The ramp of the gear mesh: what must hold of it in the main job, figures of the report; for many samples at
-once, K and f along a turn of wheel 1 from first touch.
+"""Load ramp of the gear mesh: check and figures for the main job, and evaluation for many samples at once.
 
-For these wheel 2 is held where the flanks touch at phi1 = 0, so that s_rel = r_b1 phi1 and no load lies in
-the backlash. The pair's curve is that of `spring.pair_curve` over the nodes of `batch.approach`.
+The evaluation gives stiffness K and force f over the angle phi1 of wheel 1. Wheel 2 is fixed where the flanks
+touch at phi1 = 0, so that s_rel = r_b1 phi1 and no angle lies within the backlash. The curve of a tooth pair
+is the one of `spring.pair_curve`, at the nodes of `batch.approach`.
 """
 
 from collections.abc import Mapping
@@ -25,7 +25,7 @@ from ...report.figure import Figure, Panel, Series
 from ...uncertainty.problem import Reduced
 
 _CLOSED = 10.0
-"""Force of a pair [N] from which its contact is closed, with the default parameters."""
+"""Force [N] of a tooth pair above which its contact is closed, with the default parameters."""
 
 
 def _series(folder: Path, result: RampResult) -> tuple[str, float]:
@@ -38,25 +38,25 @@ def _series(folder: Path, result: RampResult) -> tuple[str, float]:
     c = result.columns
     pair = c["f"] / c["pairs"]
     first = int(np.argmax(pair > _CLOSED))
-    at = np.linspace(first, pair.size - 1, 4).astype(int)
-    way = integrals(compliance, pair[at])
+    rows = np.linspace(first, pair.size - 1, 4).astype(int)
+    deflection = integrals(compliance, pair[rows])
     work = -cumulative_simpson(c["tau1"], x=c["phi1"], initial=0.0)
     return (
         "s_rel against the integral of df/K of flanks and teeth (scipy, Simpson), E against the work of tau1",
-        max(deviation(np.diff(c["s_rel"][at]), way), deviation(c["E"], work)),
+        max(deviation(np.diff(c["s_rel"][rows]), deflection), deviation(c["E"], work)),
     )
 
 
 RAMPS = {"GearMesh": _series}
-"""{FMU: (folder, its ramp) -> (what is compared, largest relative deviation)}."""
+"""{FMU: check}, a check being (folder, ramp of the FMU) -> (text, largest relative deviation [1])."""
 
 
 _FORCES = (5e2, 1e3, 2e3)
-"""Constant forces of the mesh [N]."""
+"""Constant forces of the mesh [N] in the figures over the mesh cycle."""
 
 
 def figures(outcome: Any) -> list[Figure]:
-    """The figures of an outcome of the main job."""
+    """Figures of the gear mesh, from the results of the main job (`JobResult`)."""
     return [
         Figure(
             "Stiffness and deflection over the mesh cycle",
@@ -73,7 +73,7 @@ def figures(outcome: Any) -> list[Figure]:
 
 
 def cycle(spring: GearMeshSpring) -> list[Panel]:
-    """Stiffness and deflection over two mesh cycles at constant forces."""
+    """Panels of stiffness and deflection over two mesh cycles, at constant forces."""
     phase = np.linspace(0.0, 2.0, 401)
     mesh = spring.joint
     count, _ = pairs(mesh.contact_ratio, mesh.engagement, mesh.overlap_ratio, phase)
@@ -91,7 +91,7 @@ def cycle(spring: GearMeshSpring) -> list[Panel]:
 
 
 def torque_angle(result: RampResult) -> list[Panel]:
-    """Torque on wheel 1 over its angle, both flanks, and near the first touch of the driving ones."""
+    """Panels of the torque on wheel 1 over its angle: for both flanks, and near the first contact."""
     angle, torque = result.columns["phi1"] * 1e3, -result.columns["tau1"]
     first = int(np.argmax(torque > 0.0))
     some = slice(max(first - 3, 0), first + 15)
@@ -104,31 +104,34 @@ def torque_angle(result: RampResult) -> list[Panel]:
 
 
 RAMP_END = 0.05
-"""Default end of the ramp: part of the angle at which the teeth alone carry the end of the table [1]."""
+"""Default end of the ramp over `largest_table_angle` [1]."""
 
 
 def evaluate(
     parameters: type[Mesh], values: Mapping[str, object], loads: Array, factor: Array
 ) -> dict[str, Array]:
-    """K [N/m] and f [N] (n, m) at the angles factor (n, 1) times loads (m) [rad], ascending.
+    """Stiffness K (n, m) [N/m] and force f (n, m) [N] at the angles factor times loads.
 
-    values : by structured name, numbers or samples (n)
+    parameters : class of the parameter set
+    values     : {structured name: number, or samples (n)}
+    loads      : (m) [rad], ascending
+    factor     : (n, 1) [1], one for each sample
     """
     mesh = columns(parameters, values, 1)
     angle = factor * loads
     cycle = phase(mesh, (angle, 0.0, held(mesh), 0.0))
     count, _ = pairs(mesh.contact_ratio, mesh.engagement, mesh.overlap_ratio, cycle)
-    turned = loads > 0.0
-    way = mesh.r_b1 * factor
-    most = mesh.K_tooth * way * loads[-1] / mesh.A_0  # more than the pressure there
-    pair = _pair(mesh, most)(np.log(loads[turned]), np.log(way))
+    loaded = loads > 0.0
+    deflection = mesh.r_b1 * factor
+    max_pressure = mesh.K_tooth * deflection * loads[-1] / mesh.A_0  # upper bound: flanks as rigid
+    pair = _pair(mesh, max_pressure)(np.log(loads[loaded]), np.log(deflection))
     K, f = np.zeros((2, *angle.shape))
-    K[:, turned], f[:, turned] = np.exp(pair["K"]), np.exp(pair["f"])
+    K[:, loaded], f[:, loaded] = np.exp(pair["K"]), np.exp(pair["f"])
     return {"K": count * K, "f": count * f}
 
 
 def _pair(mesh: Mesh, most: Array) -> Rows:
-    """Logs of K and f of one pair over the log of its deflection, up to a pressure (n, 1) [Pa]."""
+    """Tables of log K and log f of one tooth pair over log deflection, up to `max_pressure` (n, 1) [Pa]."""
     rows, _ = tabulate(mesh, np.zeros_like(most), most)
     p, (k, growth), approach = rows.pressure, rows.values["k"], rows.values["s"][0]
     pressure, stiffness = np.exp(p), np.exp(k)
@@ -138,19 +141,20 @@ def _pair(mesh: Mesh, most: Array) -> Rows:
 
 
 def held(mesh: Mesh) -> Any:
-    """Angle of wheel 2 [rad] at which the driving flanks touch at phi1 = 0."""
+    """Angle [rad] of wheel 2 at which the driving flanks are in contact at phi1 = 0."""
     return 0.5 * mesh.backlash / mesh.r_b2
 
 
 def table_end(mesh: Mesh) -> Any:
-    """Angle [rad] at which the teeth alone carry the end of the table, the hardness on A_0; the flanks'
-    approach comes on top.
+    """Angle [rad] of wheel 1 at which tooth bending alone gives the largest force of the table.
+
+    This force is the hardness times A_0. The approach of the flanks is neglected.
     """
     return mesh.hardness * mesh.A_0 / (mesh.K_tooth * mesh.r_b1)
 
 
 def exact(joint: Mesh, loads: Array) -> dict[str, Array]:
-    """K and f (m) of the exported spring at angles (m) [rad]."""
+    """K (m) [N/m] and f (m) [N] of the exported joint at angles (m) [rad]."""
     state = GearMeshSpring.of(joint).motion(loads, 0.0, held(joint), 0.0)
     return {name: state[name] for name in REDUCED.units}
 

@@ -1,4 +1,4 @@
-"""What the tools know of the harmonic drive."""
+"""Tool modules of the harmonic drive."""
 
 from ...joint_parts import ToolParts
 

@@ -1,9 +1,10 @@
-"""Harmonic drives of the makers' catalogues: models/reference/harmonic_drive_catalogue_*.csv.
+"""Catalogue of harmonic drives, read from models/reference/harmonic_drive_catalogue_*.csv.
 
-A row of stiffness holds for the series that it names, and from ratio 80 on for all ratios. Torques are
-printed for some series and ratios; where a series lacks them, those of the same size and ratio in another
-one are an estimate. Limits of hysteresis and lost motion are printed for actuators with the same stiffness,
-starting and back-driving torque for single drives, from which those of the others are scaled.
+Stiffness: each row holds for the series that it names; a row for ratio 80 holds for all ratios above, too.
+Torques: makers publish them for some series and ratios. For other series the torques of a drive of the same
+size and ratio are used as an estimate. Hysteresis and lost motion: makers publish limits of actuators with
+the same stiffness. Friction: makers publish starting and back-driving torques of some drives. Those of the
+other drives are scaled from them.
 """
 
 import csv
@@ -27,8 +28,9 @@ ROW = (
     Column("T1", "N.m", "torque at the first corner", "N.m"),
     Column("T2", "N.m", "torque at the second corner", "N.m"),
 )
+"""Columns of the torsional stiffness."""
 LINES = tuple(column.name for column in ROW)
-"""The torsional stiffness, and its names."""
+"""Names of these columns."""
 COLUMNS = (
     Column("ratio", "1", "speed ratio", "1"),
     *ROW,
@@ -41,32 +43,36 @@ COLUMNS = (
     Column("back_driving_torque", "N.m", "at the output, no motor", "N.m"),
     Column("efficiency", "1", "at rated torque and 2000 rev/min", "1"),
 )
+"""All columns of the catalogue."""
 RATIOS = ("80", "100", "120", "160")
-"""What a row for ratio 80 and more stands for, where any series has a torque at that size."""
+"""Ratios of the drives in a row for "ratio 80 and more", if any series has a torque for this size and
+ratio."""
 ACTUATORS = ("CHA", "FHA", "RSF")
-"""Drives with a motor, whose torques are not those of the gear alone."""
+"""Series with a built-in motor; their published torques are not those of the gear alone."""
 STRONG = ("CSG", "SHG")
-"""Series of higher torque, by STRONGER."""
+"""Series with higher torques than the others, by the factor STRONG_TORQUE_RATIO."""
 STRONGER = 1.3
-"""Torque of a CSG over that of a CSF of the same size and ratio [1]."""
+"""Torque of a CSG drive over that of a CSF drive of the same size and ratio [1]."""
 ALIKE = ("CSG", "SHG", "HFUC", "HFUS")
-"""Series with torques, in the order in which others take them from."""
+"""Series with published torques, in the order in which they serve as estimates for other series."""
 Torques: TypeAlias = Mapping[tuple[str, str, str], Mapping[str, str]]
-"""{(series, size, ratio): row}."""
+"""Published torques: {(series, size, ratio): row of the file}."""
 _NAMES = 3
-"""Nearest names that a refusal tells."""
+"""Number of similar names in the error for an unknown name."""
 
 
 def find(name: str) -> Item:
-    """A drive by its name, SERIES-SIZE-RATIO, whatever its case and signs; what follows is passed over.
+    """Find a drive by its name, SERIES-SIZE-RATIO.
 
-    Raises ValueError with the nearest names if there is none.
+    Case and separators do not matter; further parts of the name are ignored.
+
+    Raises ValueError with similar names if there is no such drive.
     """
     known = {_key(item.name): item for item in items()}
     wanted = _key(name)
-    begun = [item for key, item in known.items() if wanted == key or wanted.startswith(f"{key}-")]
-    if begun:
-        return max(begun, key=lambda item: len(item.name))
+    matches = [item for key, item in known.items() if wanted == key or wanted.startswith(f"{key}-")]
+    if matches:
+        return max(matches, key=lambda item: len(item.name))
     near = sorted(known, key=lambda key: _distance(key, wanted))[:_NAMES]
     raise ValueError(
         f"catalogue {name!r} is unknown; nearest are {', '.join(known[key].name for key in near)} "
@@ -75,16 +81,16 @@ def find(name: str) -> Item:
 
 
 def _distance(key: str, wanted: str) -> tuple[float, ...]:
-    """How far a name is from a wanted one: by its letters, then by size, then by ratio."""
-    own, other = (re.sub("[^a-z]", "", name) for name in (key, wanted))
+    """Distance between two names, for sorting: difference of the letters, then of size, then of ratio."""
+    letters, wanted_letters = (re.sub("[^a-z]", "", name) for name in (key, wanted))
     numbers = ([float(n) for n in re.findall(r"[1-9]\d*", name)] for name in (key, wanted))
-    apart = [abs(math.log(a / b)) for a, b in zip(*numbers, strict=False)]
-    return -SequenceMatcher(None, own, other).ratio(), *apart
+    distances = [abs(math.log(a / b)) for a, b in zip(*numbers, strict=False)]
+    return -SequenceMatcher(None, letters, wanted_letters).ratio(), *distances
 
 
 @cache
 def items() -> tuple[Item, ...]:
-    """All drives with a row of stiffness, and those that share one with them."""
+    """All drives of the catalogue: those with a row of stiffness, and those that share such a row."""
     torques = {(row["series"], row["size"], row["ratio"]): row for row in _table("torque")}
     found = {item.name: item for row in _table("stiffness") for item in _of_row(row, torques)}
     for row in _table("friction"):
@@ -94,21 +100,20 @@ def items() -> tuple[Item, ...]:
 
 
 def _of_row(row: Mapping[str, str], torques: Torques) -> Iterator[Item]:
-    """The drives for which a row of stiffness holds."""
+    """Drives for which a row of stiffness holds."""
     group = row["series"].removeprefix("HD ")
     ratios = [row["ratio"]]
     if row["ratio"].endswith("+"):
         ratios = [r for r in RATIOS if any((s, row["size"], r) in torques for s in ALIKE)]
-    what = f"{group}, size {row['size']}, ratio {row['ratio']}"
-    source = f"{what}: {row['source']}"
+    source = f"{group}, size {row['size']}, ratio {row['ratio']}: {row['source']}"
     printed = {name: row[column] for name, column in _STIFFNESS.items()}
     lines = {name: Printed(float(text), "catalogue", source) for name, text in printed.items() if text}
     if "K3" not in lines:
         lines["K3"] = _last_line(row, source)
     for series in group.split("/"):
-        own = series if group == series else f"{series}-{row['size']}"
+        stem = series if group == series else f"{series}-{row['size']}"
         for ratio in ratios:
-            name = f"{own}-{ratio}"
+            name = f"{stem}-{ratio}"
             numbers = {
                 "ratio": Printed(float(ratio), "catalogue", f"{name}: {source}"),
                 **lines,
@@ -119,7 +124,7 @@ def _of_row(row: Mapping[str, str], torques: Torques) -> Iterator[Item]:
 
 
 def _last_line(row: Mapping[str, str], source: str) -> Printed:
-    """K3 where it is not printed: of a drive with the same lines below T2, else K2."""
+    """Estimate of K3 if it is not published: K3 of a drive with equal T1, T2, K1 and K2, else K2."""
     known = [heading for column, heading in _STIFFNESS.items() if column != "K3"]
     for other in _table("stiffness"):
         if other["K3"] and all(float(other[h]) == float(row[h]) for h in known):
@@ -130,7 +135,7 @@ def _last_line(row: Mapping[str, str], source: str) -> Printed:
 
 
 _STIFFNESS = {"K1": "K1_Nm_per_rad", "K2": "K2", "K3": "K3", "T1": "T1_Nm", "T2": "T2_Nm"}
-"""{column: its heading in the file}."""
+"""{column: heading in the file of stiffnesses}."""
 _TORQUE = {"rated_torque": "rated_Nm", "peak_torque": "repeated_peak_Nm"}
 _LIMITS = {"hysteresis_loss": "hysteresis_below_arcmin", "lost_motion": "lost_motion_below_arcmin"}
 _SINGLE = {
@@ -144,11 +149,14 @@ _SINGLE = {
     "back_driving_torque": ("back_driving_Nm", 1.0),
     "efficiency": ("efficiency", 1.0),
 }
-"""{column: its heading in the file of single drives, SI unit over that of the file}."""
+"""{column: (heading in the file of single drives, factor to the SI unit)}."""
 
 
 def _torque(torques: Torques, series: str, size: str, ratio: str) -> dict[str, Printed]:
-    """Rated and repeated peak torque of a drive: as printed, else of a series alike; none if none has it."""
+    """Rated and repeated peak torque of a drive.
+
+    Published, else estimated from another series; empty if no series has them.
+    """
     if series.startswith(ACTUATORS):
         return {}
     for other in (series, *ALIKE):
@@ -167,7 +175,10 @@ def _torque(torques: Torques, series: str, size: str, ratio: str) -> dict[str, P
 
 
 def _limits(drive: str, size: str, ratio: float) -> dict[str, Printed]:
-    """Upper limits of hysteresis and lost motion: of actuators with the same stiffness, else of them all."""
+    """Upper limits of hysteresis and lost motion of a drive.
+
+    From actuators of the same size, else the largest of all actuators.
+    """
     step = "30" if ratio < 50.0 else "50" if ratio == 50.0 else "50+"
     rows = [row for row in _table("accuracy") if row["ratio"] == step]
     alike = [row for row in rows if row["size"] == size]
@@ -187,7 +198,11 @@ def _limits(drive: str, size: str, ratio: float) -> dict[str, Printed]:
 
 
 def _single(row: Mapping[str, str], like: Item) -> Item:
-    """A drive whose friction is printed; what else is not is that of `like`, which may be itself."""
+    """Drive with published friction.
+
+    similar_drive : drive of the same size, ratio and stiffness, which may be the drive itself; it supplies
+                    the values that are not published
+    """
     name, numbers = row["drive"], dict(like.numbers)
     if name != like.name:
         text = f"that of {like.name}, of the same size, ratio and stiffness; "

@@ -1,4 +1,4 @@
-"""What catalogues quote of a drive, found by running it: efficiency, torques without load, its loop."""
+"""Catalogue quantities of a drive by simulation: efficiency, no-load torques, hysteresis, lost motion."""
 
 import math
 from collections.abc import Callable, Iterator, Mapping
@@ -21,24 +21,24 @@ from .friction import friction
 _MOTION = ("phi1", "w1", "phi2", "w2")
 _TORQUES = ("tau", "tau1")
 _FAR = 20.0
-"""Way of the wave generator over `presliding` [1] after which its friction has built up."""
+"""Rotation of the wave generator over `presliding` [1] after which friction is fully developed."""
 _STEADY: Mapping[str, float] = {"hysteresis_loss": 0.0, "error_1": 0.0, "error_2": 0.0, "error_4": 0.0}
-"""Without what changes along a turn or remembers the load."""
+"""Parameters without hysteresis and kinematic error, which depend on the load history and on the angle."""
 
 
 def printed_drives() -> list[Item]:
-    """The catalogue's drives whose starting torque is printed."""
+    """Drives of the catalogue with a published starting torque."""
     return [item for item in items() if (n := item.numbers.get("starting_torque")) and n.kind == "catalogue"]
 
 
 def parameters(item: Item) -> dict[str, float]:
-    """Ratio and friction of a drive of the catalogue, for the FMU."""
+    """Ratio and friction parameters of a catalogue drive: {parameter of the FMU: value}."""
     numbers = {"ratio": item.numbers["ratio"], **friction(item.numbers)}
     return {name: number.value for name, number in numbers.items()}
 
 
 class PythonDrive:
-    """The Python drive in the place of an FMU; it begins at rest with all angles zero."""
+    """Harmonic drive in Python with the interface of a running FMU; starts at rest at zero angles."""
 
     def __init__(self, model: Model, file: ParameterFile) -> None:
         assert model.rest
@@ -52,12 +52,12 @@ class PythonDrive:
         self._inputs = {**self._rest, **dict(zip(_MOTION, values, strict=True))}
 
     def get(self) -> list[float]:
-        """The torques at the present inputs, and the stiffness."""
+        """Outputs tau, tau1 [N.m] and K_WTS [N.m/rad] at the present inputs."""
         outputs = self._evolved()[0]
         return [float(outputs[name]) for name in (*_TORQUES, "K_WTS")]
 
     def step(self, time: float, size: float) -> None:
-        """Accept the present inputs."""
+        """Accept the present inputs: update the history variables."""
         self._memory = self._evolved()[1]
 
     def _evolved(self) -> Any:
@@ -66,24 +66,35 @@ class PythonDrive:
 
 
 def wound_up(carried: Callable[[float], float], torque: float, stiffness: float) -> float:
-    """Wind-up [rad] at which a drive of about this stiffness [N.m/rad] carries a torque [N.m]."""
+    """Solve for the wind-up [rad] at which a drive transmits a torque [N.m].
 
-    def missing(angle: float) -> float:
+    transmitted_torque : wind-up [rad] -> torque [N.m]
+    stiffness          : approximate stiffness [N.m/rad], for the initial bracket
+    """
+
+    def residual(angle: float) -> float:
         return carried(angle) - torque
 
     if not torque:
         return 0.0
-    far = torque / stiffness
-    while missing(far) * torque < 0.0:
-        far *= 2.0
-    return float(brentq(missing, 0.0, far, xtol=1e-16))
+    end = torque / stiffness
+    while residual(end) * torque < 0.0:
+        end *= 2.0
+    return float(brentq(residual, 0.0, end, xtol=1e-16))
 
 
 @dataclass(slots=True)
 class Bench:
-    """A drive between two flanges that is turned and loaded; see `bench` and `spring_bench`.
+    """Simulated test bench: a drive whose input rotates at a steady speed, with a torque at its output.
 
-    drive : takes phi1, w1, phi2, w2, gives tau and tau1 and maybe more, and is accepted by a step
+    drive       : running drive with inputs phi1, w1, phi2, w2 and first outputs tau, tau1
+    ratio       : speed ratio [1]
+    presliding  : rotation [rad] of the wave generator before its friction slips
+    stiffness   : [N.m/rad] without torque
+    motor_angle : phi1 [rad]
+    step_count  : steps so far
+
+    `open_fmu_bench` and `make_python_bench` make one.
     """
 
     drive: Slave | PythonDrive
@@ -94,38 +105,49 @@ class Bench:
     steps: int = 0
 
     def motor_torque(self, speed: float, torque: float) -> float:
-        """Torque [N.m] that the motor gives at a steady speed [rad/s], 0 as the limit from above.
+        """Torque [N.m] of the motor at a steady speed.
 
-        torque : [N.m] from outside on the output, positive as its angle
+        speed  : [rad/s] of the motor; 0.0 is the limit for positive speeds
+        torque : [N.m] external torque on the output, positive in the direction of its angle
         """
-        wound, ratio = self._wind_up(torque), self.ratio
-        self.drive.set(self.angle, 0.0, self.angle / ratio + wound, 0.0)
+        wind_up, ratio = self._wind_up(torque), self.ratio
+        self.drive.set(self.angle, 0.0, self.angle / ratio + wind_up, 0.0)
         self.drive.step(float(self.steps), 1.0)
         self.steps += 1
         self.angle += math.copysign(_FAR * self.presliding, speed)
-        self.drive.set(self.angle, speed, self.angle / ratio + wound, speed / ratio)
+        self.drive.set(self.angle, speed, self.angle / ratio + wind_up, speed / ratio)
         return -self.drive.get()[1]
 
     def efficiency(self, speed: float, load: float) -> float:
-        """Output power over motor power [1] at the motor's speed [rad/s] > 0 against a load [N.m] > 0."""
+        """Efficiency [1]: output power over motor power.
+
+        speed : [rad/s] of the motor, > 0
+        load  : [N.m] at the output against the motion, > 0
+        """
         return load / (abs(self.ratio) * self.motor_torque(speed, -math.copysign(load, self.ratio)))
 
     def starting_torque(self) -> float:
-        """Torque [N.m] of the motor that sets a drive without load in motion."""
+        """Motor torque [N.m] that starts the rotation of the drive without load."""
         return self.motor_torque(0.0, 0.0)
 
     def back_driving_torque(self, most: float) -> float:
-        """Torque [N.m] at the output that moves a drive without motor; inf if none up to `most` does."""
+        """Torque [N.m] at the output that rotates the drive without a motor.
 
-        def holds(load: float) -> float:
+        max_torque : end of the search; inf is returned if a larger torque is needed
+        """
+
+        def required_torque(load: float) -> float:
+            """Motor torque [N.m] for slow rotation in the direction of the load."""
             return self.motor_torque(0.0, math.copysign(load, self.ratio))
 
-        if holds(0.0) == 0.0:
+        if required_torque(0.0) == 0.0:
             return 0.0
-        return math.inf if holds(most) > 0.0 else float(brentq(holds, 0.0, most, rtol=1e-9))
+        if required_torque(most) > 0.0:
+            return math.inf
+        return float(brentq(required_torque, 0.0, most, rtol=1e-9))
 
     def _wind_up(self, torque: float) -> float:
-        """Wind-up [rad] under a torque [N.m]."""
+        """Wind-up [rad] of the output under a torque [N.m]."""
 
         def carried(angle: float) -> float:
             self.drive.set(self.angle, 0.0, self.angle / self.ratio + angle, 0.0)
@@ -136,7 +158,7 @@ class Bench:
 
 @contextmanager
 def bench(path: Path, parameters: Mapping[str, float]) -> Iterator[Bench]:
-    """The FMU HarmonicDriveSpring (FMI 2.0) at a path, with parameters beside the default ones."""
+    """Open the FMU HarmonicDriveSpring (FMI 2.0) as a test bench; `parameters` replace default values."""
     wires = (*_TORQUES, "K_WTS", "ratio", "presliding")
     with Slave(path, {**parameters, **_STEADY}, _MOTION, wires) as drive:
         _, _, stiffness, ratio, presliding = drive.get()
@@ -144,38 +166,39 @@ def bench(path: Path, parameters: Mapping[str, float]) -> Iterator[Bench]:
 
 
 def spring_bench(model: Model, file: ParameterFile) -> Bench:
-    """The same of the Python drive with the parameters of a file: no FMU is needed."""
+    """Make a test bench of the drive in Python, with the parameters of a file. No FMU is needed."""
     steady = file.with_values(_STEADY, "user", "steady")
     drive = PythonDrive(model, steady)
     return Bench(drive, steady.values.ratio, steady.values.presliding, drive.get()[2])
 
 
 LOST_MOTION = 0.04
-"""Torque over rated torque [1] between which catalogues state lost motion."""
+"""Torque over rated torque [1], positive and negative, at which catalogues state lost motion."""
 
 
 def hysteresis_loss(spring: HarmonicDriveSpring) -> float:
-    """Angle [rad] between the branches at zero torque, of the loop through rated torque."""
+    """Hysteresis loss [rad]: angle between the branches at zero torque, in the loop up to rated torque."""
     rated = float(spring.joint.rated_torque)
-    there, back = (_wind_up(spring, (rated, sign * rated, 0.0)) for sign in (1.0, -1.0))
-    return there - back
+    unloading, loading = (_wind_up(spring, (rated, sign * rated, 0.0)) for sign in (1.0, -1.0))
+    return unloading - loading
 
 
 def lost_motion(spring: HarmonicDriveSpring) -> float:
-    """Angle [rad] between LOST_MOTION times rated torque and its negative, midway between the branches of
-    the loop through rated torque.
+    """Lost motion [rad]: change of the mean angle of both branches between -4 % and +4 % of the rated torque.
+
+    The branches are those of the loop up to the rated torque; LOST_MOTION_RATIO is the 4 %.
     """
     rated = float(spring.joint.rated_torque)
     ends = (
         0.5 * sum(_wind_up(spring, (rated, side * rated, sign * LOST_MOTION * rated)) for side in (1.0, -1.0))
         for sign in (1.0, -1.0)
     )
-    there, back = ends
-    return there - back
+    positive, negative = ends
+    return positive - negative
 
 
 def _wind_up(spring: HarmonicDriveSpring, torques: tuple[float, ...]) -> float:
-    """Wind-up [rad] at the last of the torques [N.m] that follow one another from rest."""
+    """Wind-up [rad] after a sequence of torques [N.m], starting at rest."""
     memory = spring.rest()
     for torque in torques:
         out, memory = spring.loaded(torque, memory)

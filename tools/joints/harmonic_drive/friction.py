@@ -1,16 +1,17 @@
-"""Friction of every drive of the catalogue: as it is printed, or scaled from drives that print it.
+"""Friction of the drives in the catalogue: published, or scaled from drives with published friction.
 
-Without load, at the wave generator of a drive of size D and ratio R,
+No-load torques at the wave generator, for size D and ratio R:
 
     starting torque = a (D/20)^p 100/R,    running torque at 2000 rev/min and R = 100 = b (D/20)^3
 
-a, p and b by least squares in logarithms over what is printed. Dry friction goes with 1/R, as the radial
-deformation of the flexspline does that every turn of the wave generator makes; of the printed drives one
-alone has a ratio below 100, so that this power is not fitted. The cube is that of a rolling bearing's moment
-over its diameter (Palmgren). What the running torque has beyond the starting torque is the grease's, alike
-for all ratios. Both losses with load are the mean of those that are printed.
+a, p and b are fitted to the published torques by least squares over logarithms. Dry friction is proportional
+to 1/R, like the radial deformation of the flexspline. This exponent is not fitted: only one drive with
+published friction has a ratio below 100. The exponent 3 is the one of the friction moment of a rolling
+bearing over its diameter (Palmgren). The difference of running and starting torque is viscous friction of the
+grease, equal for all ratios. Both load-dependent losses are mean values of the published drives.
 
-Intervals are to hold LEVEL of all single drives: Student's prediction intervals of the regressions.
+Intervals are Student's prediction intervals of the regressions: a single drive lies inside with probability
+CONFIDENCE_LEVEL.
 """
 
 import math
@@ -29,15 +30,23 @@ from ...catalogue import Item, Printed
 from ...command_line.common import flag
 
 LEVEL = 0.95
+"""Probability of the intervals [1]."""
 SIZE, RATIO = 20.0, 100.0
-"""To which the law refers [1]."""
+"""Reference size and reference ratio of the scaling laws [1]."""
 POWER = 3.0
-"""Of the running torque over the size [1]."""
+"""Exponent of the size in the scaling law of the running torque [1]."""
 
 
 @dataclass(frozen=True, slots=True)
 class PrintedFriction:
-    """What is printed of a drive: torques [N.m], losses over the torque transmitted [1]; None: it is not."""
+    """Published friction of a drive; None: not published.
+
+    size, ratio       : [1]
+    starting_torque   : [N.m] at the wave generator
+    running_torque    : [N.m] at the wave generator, at 2000 rev/min
+    load_loss         : friction over transmitted torque [1], if the motor drives
+    load_loss_back    : friction over transmitted torque [1], if the output drives
+    """
 
     size: float
     ratio: float
@@ -48,7 +57,7 @@ class PrintedFriction:
 
 
 class Scaled(NamedTuple):
-    """A scaled number and its interval, in the unit of the number."""
+    """Number from a scaling law, with the ends of its interval, all in the same unit."""
 
     value: float
     low: float
@@ -57,7 +66,12 @@ class Scaled(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class ScaledFriction:
-    """Of one drive: starting torque and what a speed of 2000 rev/min adds [N.m], losses [1]."""
+    """Scaled friction of one drive.
+
+    starting_torque : [N.m]
+    viscous_torque  : [N.m] increase of the torque from start to 2000 rev/min
+    load_loss, load_loss_back : [1]
+    """
 
     starting: Scaled
     rise: Scaled
@@ -66,72 +80,83 @@ class ScaledFriction:
 
 
 def scaled(size: float, ratio: float, drives: Collection[PrintedFriction]) -> ScaledFriction:
-    """The friction of a drive of a size and ratio [1] from those that are known, four or more."""
-    dry = np.array([(np.log(k.size / SIZE), np.log(k.starting * k.ratio / RATIO)) for k in drives])
-    wet = [np.log(k.running / (k.size / SIZE) ** POWER) for k in drives if k.running is not None]
-    line = np.stack([np.ones(len(dry)), dry[:, 0]], axis=1)
-    usual = _torque(line, dry[:, 1], np.array([1.0, np.log(size / SIZE)]), 1.0)
-    running = _torque(np.ones((len(wet), 1)), np.array(wet), np.ones(1), (size / SIZE) ** POWER)
-    rise = (max(x - usual.value, 0.0) for x in running)
-    part = RATIO / ratio
-    starting = Scaled(*(part * x for x in usual))
+    """Scale the friction of published drives (four or more) to a drive of a size [1] and a ratio [1]."""
+    starting_logs = np.array([(np.log(k.size / SIZE), np.log(k.starting * k.ratio / RATIO)) for k in drives])
+    running_logs = [np.log(k.running / (k.size / SIZE) ** POWER) for k in drives if k.running is not None]
+    design = np.stack([np.ones(len(starting_logs)), starting_logs[:, 0]], axis=1)
+    reference = _torque(design, starting_logs[:, 1], np.array([1.0, np.log(size / SIZE)]), 1.0)
+    ones = np.ones((len(running_logs), 1))
+    running = _torque(ones, np.array(running_logs), np.ones(1), (size / SIZE) ** POWER)
+    rise = (max(x - reference.value, 0.0) for x in running)
+    starting = Scaled(*(RATIO / ratio * x for x in reference))
     losses = (_mean([getattr(k, name) for k in drives]) for name in ("load_loss", "load_loss_back"))
     return ScaledFriction(starting, Scaled(*rise), *losses)
 
 
 def _torque(design: Array, logarithms: Array, at: Array, factor: float) -> Scaled:
-    """A torque [N.m] by a law of its logarithm, times a factor."""
+    """Torque [N.m] from a linear regression of its logarithm, times a factor.
+
+    design, logarithms : (n, k), (n) data of the regression
+    design_row         : (k) of the drive
+    """
     value, half = _predicted(design, logarithms, at)
     return Scaled(*(factor * float(np.exp(x)) for x in (value, value - half, value + half)))
 
 
 def _mean(values: Sequence[float | None]) -> Scaled:
-    """The mean of what is known; the interval has nothing below zero."""
-    found = np.array([value for value in values if value is not None])
-    value, half = _predicted(np.ones((found.size, 1)), found, np.ones(1))
+    """Mean of the published values, with an interval that is cut at zero."""
+    published = np.array([value for value in values if value is not None])
+    value, half = _predicted(np.ones((published.size, 1)), published, np.ones(1))
     return Scaled(value, max(value - half, 0.0), value + half)
 
 
 def _predicted(design: Array, values: Array, at: Array) -> tuple[float, float]:
-    """A linear law (k) through values (n) at a place, and half of the interval of a single value there."""
+    """Predict a value by linear regression; value, and half width of its prediction interval.
+
+    design, values : (n, k), (n) data of the regression
+    design_row     : (k) of the predicted value
+    """
     from scipy.special import stdtrit
 
     law = np.linalg.lstsq(design, values)[0]
-    free = values.size - law.size
-    rest = values - design @ law
-    spread = np.sqrt(rest @ rest / free * (1.0 + at @ np.linalg.inv(design.T @ design) @ at))
-    return float(at @ law), float(stdtrit(free, 0.5 + 0.5 * LEVEL) * spread)
+    freedom = values.size - law.size
+    residuals = values - design @ law
+    deviation = np.sqrt(residuals @ residuals / freedom * (1.0 + at @ np.linalg.inv(design.T @ design) @ at))
+    return float(at @ law), float(stdtrit(freedom, 0.5 + 0.5 * LEVEL) * deviation)
 
 
 SPEED = 2000.0 * math.pi / 30.0
-"""[rad/s] of the wave generator, at which catalogues quote running torque and efficiency."""
+"""Speed [rad/s] of the wave generator at which catalogues state running torque and efficiency: 2000
+rev/min."""
 QUOTED = ("starting_torque", "running_torque", "back_driving_torque", "efficiency")
-"""Columns of the catalogue that this takes."""
+"""Columns of the catalogue that describe friction."""
 _MET = 1e-5
-"""Part [1] of a limit by which a stated number may miss it: it may be typed as the refusal prints it."""
+"""Relative tolerance [1] of limits, so that a user can type a limit as an error message shows it."""
 _DIGITS = 12
-"""Decimals of the ends of intervals in SI units: a bound of zero is one."""
+"""Decimals to which ends of intervals in SI units are rounded, so that round-off does not hide a zero."""
 SET_BY: Mapping[str, tuple[str, str]] = {
     "starting_torque": ("friction_coulomb", "starting torque"),
     "running_torque": ("friction_viscous", "rise from starting to running torque"),
     "back_driving_torque": ("load_loss_back", "back-driving torque"),
     "efficiency": ("load_loss", "efficiency at rated torque"),
 }
-"""{column: parameter that it sets, what the source of that says of it}."""
+"""{column: (parameter that follows from it, text for the source of the parameter)}."""
 
 
 def friction(printed: Mapping[str, Printed], stated: Collection[str] = ()) -> dict[str, Printed]:
-    """friction_coulomb, friction_viscous and both load losses of a drive; nothing without a starting torque.
+    """Friction parameters of a drive from catalogue numbers: {parameter: number}.
 
-    printed : ratio, QUOTED and rated_torque, as far as they are known
-    stated  : those of QUOTED that must be met
+    numbers      : ratio, rated_torque and FRICTION_COLUMNS, as far as they are known
+    stated_names : of FRICTION_COLUMNS; contradictions of these numbers are errors
 
-    The starting torque is the dry friction at rest, and the rise to the running torque at SPEED is viscous.
-    load_loss is what the efficiency at rated torque leaves, 1/efficiency - 1 - running torque ratio/rated
-    torque, load_loss_back what the back-driving torque tells, 1 - ratio starting torque/back-driving torque;
-    at least 0. Where one of the two is known it stands for both.
+    friction_coulomb = starting torque
+    friction_viscous = (running torque - starting torque)/QUOTED_SPEED
+    load_loss        = 1/efficiency - 1 - running torque ratio/rated torque, at least 0
+    load_loss_back   = 1 - ratio starting torque/back-driving torque, at least 0
 
-    Raises ValueError where a stated number leaves less than 0.
+    Without an efficiency, load_loss is load_loss_back. Without a starting torque the result is empty.
+
+    Raises ValueError if a stated number would make a parameter negative.
     """
     if "starting_torque" not in printed:
         return {}
@@ -153,20 +178,20 @@ def friction(printed: Mapping[str, Printed], stated: Collection[str] = ()) -> di
             lambda torque: 1.0 - ratio * start.value / torque,
             f" {back.value:.4g} N.m over ratio times starting torque",
         )
-    found = {SET_BY[name][0]: _set(name, printed[name], *value) for name, value in values.items()}
-    if "load_loss_back" in found and "load_loss" not in found:
-        found["load_loss"] = found["load_loss_back"]
-    return found
+    parameters = {SET_BY[name][0]: _set(name, printed[name], *value) for name, value in values.items()}
+    if "load_loss_back" in parameters and "load_loss" not in parameters:
+        parameters["load_loss"] = parameters["load_loss_back"]
+    return parameters
 
 
 def _idle(printed: Mapping[str, Printed]) -> float:
-    """Running torque, or where it is not known starting torque, over rated torque at the motor [1]."""
+    """Running torque over rated torque at the motor [1]; starting torque if no running torque is known."""
     torque = printed.get("running_torque", printed["starting_torque"]).value
     return torque * abs(printed["ratio"].value) / printed["rated_torque"].value
 
 
 def _check_met(printed: Mapping[str, Printed], stated: Collection[str]) -> None:
-    """Raise ValueError for a stated number beside which the rest leaves a friction below zero."""
+    """Check stated numbers. Raises ValueError if one of them would make a friction parameter negative."""
     start, ratio = printed["starting_torque"].value, abs(printed["ratio"].value)
     ends = {
         "running_torque": (start, "the starting torque"),
@@ -185,7 +210,10 @@ def _check_met(printed: Mapping[str, Printed], stated: Collection[str]) -> None:
 
 
 def _set(column: str, number: Printed, value: Callable[[float], float], text: str) -> Printed:
-    """The parameter that a column sets, with its interval where the column has one."""
+    """Friction parameter from a catalogue number, with source and interval.
+
+    convert : number -> parameter
+    """
     kind = "derived" if text and number.kind != "estimate" else number.kind
     source, interval = f"{number.source}; {SET_BY[column][1]}{text}", None
     if number.interval is not None:
@@ -196,22 +224,23 @@ def _set(column: str, number: Printed, value: Callable[[float], float], text: st
 
 
 def interval_text(interval: tuple[float, float]) -> str:
-    """An interval as the sources of parameters have it."""
+    """Text of an interval for the source of a parameter."""
     return f"{100.0 * LEVEL:g} % interval {interval[0]:.4g} to {interval[1]:.4g}"
 
 
 def efficiency(drive: Drive, temperature: float = REFERENCE) -> float:
-    """Output power over motor power [1] of a drive at rated torque, SPEED and a temperature [K], without
-    hysteresis.
+    """Efficiency [1] of a drive at rated torque and QUOTED_SPEED, without hysteresis.
+
+    temperature : [K] of the lubricant
     """
-    carried = drive.rated_torque / abs(drive.ratio)
-    against = -math.copysign(drive.rated_torque, drive.ratio)
-    braked = limits(drive, SPEED, against, temperature)[0] + viscous(drive, SPEED, temperature)
-    return float(carried / (carried + braked))
+    transmitted = drive.rated_torque / abs(drive.ratio)
+    load = -math.copysign(drive.rated_torque, drive.ratio)
+    friction_torque = limits(drive, SPEED, load, temperature)[0] + viscous(drive, SPEED, temperature)
+    return float(transmitted / (transmitted + friction_torque))
 
 
 def known(items: Iterable[Item]) -> dict[str, tuple[PrintedFriction, str]]:
-    """{drive: what is printed of its friction, and by whom} of those whose starting torque is printed."""
+    """Published friction {drive: (friction, maker)} of all drives with a published starting torque."""
     found = {}
     for item in items:
         printed = {name: number for name, number in item.numbers.items() if number.kind == "catalogue"}
@@ -222,7 +251,7 @@ def known(items: Iterable[Item]) -> dict[str, tuple[PrintedFriction, str]]:
 
 
 def _known(name: str, ratio: float, printed: Mapping[str, Printed]) -> PrintedFriction:
-    """The losses are those that `friction` makes of the columns."""
+    """Published friction of one drive; the losses follow from its numbers by `friction_parameters`."""
     losses = friction({"ratio": Printed(ratio, "catalogue", ""), **printed})
     running = printed.get("running_torque")
     return PrintedFriction(
@@ -236,18 +265,18 @@ def _known(name: str, ratio: float, printed: Mapping[str, Printed]) -> PrintedFr
 
 
 def size(name: str) -> float:
-    """Size [1] of a drive SERIES-SIZE-RATIO: the number of 14A too."""
+    """Size [1] in the name SERIES-SIZE-RATIO of a drive; a letter after the size, as in 14A, is ignored."""
     match = re.search(r"-(\d+)[A-Z]?-\d+$", name)
     assert match, name
     return float(match[1])
 
 
 def with_friction(item: Item, drives: Mapping[str, tuple[PrintedFriction, str]]) -> Item:
-    """The drive with estimates of the friction that is not printed of it.
+    """Add estimates of the friction numbers that are not published for a drive.
 
-    drives : as `known` gives them
+    published_drives : result of `collect_published`
 
-    The efficiency is left out where no rated torque is known.
+    Without a rated torque there is no estimate of the efficiency.
     """
     own, ratio = dict(item.numbers), item.numbers["ratio"].value
     law = scaled(size(item.name), ratio, [each for each, _ in drives.values()])
@@ -258,7 +287,7 @@ def with_friction(item: Item, drives: Mapping[str, tuple[PrintedFriction, str]])
     text += ", scaled by size and ratio"
 
     def estimate(column: str, value: float, *ends: float) -> None:
-        """Unless it is printed."""
+        """Add the estimate of a column, unless the drive has this column."""
         interval = min(ends), max(ends)
         own.setdefault(column, Printed(value, "estimate", text, interval=interval))
 

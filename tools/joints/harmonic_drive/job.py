@@ -1,6 +1,4 @@
-"""The drive in the main job: what must hold of its ramps, published points, figures, a link that rings on
-it, the laboratory.
-"""
+"""Harmonic drive in the main job: checks of the ramps, published points, figures, vibration, laboratory."""
 
 import math
 from collections.abc import Mapping
@@ -38,14 +36,15 @@ def _work(folder: Path, result: ramp.RampResult) -> tuple[str, float]:
 
 
 RAMPS = {"HarmonicDriveSpring": _work, "HarmonicDriveCompliance": _compliance}
-"""{FMU: (folder, its ramp) -> (what is compared, largest relative deviation)}."""
+"""{FMU: check}, a check being (folder, ramp of the FMU) -> (text, largest relative deviation [1])."""
 
 
 def through_fmu(point: Point, folder: Path) -> float | None:
-    """A published point from FMUs in a folder; None where they do not show it."""
+    """Compute a published point by running an FMU of a folder; None if no FMU has this quantity."""
     where = point.where
 
     def drive(column: str, **settings: float) -> float:
+        """Output of the FMU under the torque of the point, with other parameters."""
         torque = where["torque"]
         fmu = folder / "HarmonicDriveCompliance.fmu"
         return float(ramp.run(fmu, "tau", torque, torque, settings).columns[column][-1])
@@ -70,7 +69,7 @@ _FMU = "HarmonicDriveCompliance"
 
 
 def figures(outcome: Any) -> list[Figure]:
-    """The figures of an outcome of the main job."""
+    """Figures of the harmonic drive, from the results of the main job (`JobResult`)."""
     result = outcome.ramps[_FMU]
     return [
         Figure(
@@ -99,13 +98,13 @@ def figures(outcome: Any) -> list[Figure]:
 
 
 def _spring(outcome: Any) -> Path:
-    """The FMU between two flanges, FMI 2.0."""
+    """Path of the FMU HarmonicDriveSpring, FMI 2.0."""
     paths: list[Path] = outcome.built
     return next(p for p in paths if (p.parent.name, p.stem) == ("fmi2", "HarmonicDriveSpring"))
 
 
 def friction(fmu: Path) -> list[Panel]:
-    """Efficiency over load at some speeds, and the torques that move the catalogue's drives backwards."""
+    """Panels of efficiency over load, and of back-driving torque, of the catalogue drives, by an FMU."""
     panels, published_torques, found_torques = [], [], []
     drives, share = efficiency.printed_drives(), np.linspace(0.1, 1.0, 41) ** 2
     for drive in drives:
@@ -130,7 +129,7 @@ def friction(fmu: Path) -> list[Panel]:
 
 
 def stiffness(result: RampResult, rows: list[ValidatedPoint]) -> list[Panel]:
-    """K_WTS and the pair's part over torque, with the published points on the curves."""
+    """Panels of the stiffness of the drive and of the contact pair over torque, with published points."""
     c = result.columns
     points = [row.point for row in rows]
     drive = [Series(name, c["tau"], c[name]) for name in ("K_WTS", "K_TS")]
@@ -156,18 +155,18 @@ def stiffness(result: RampResult, rows: list[ValidatedPoint]) -> list[Panel]:
 
 
 def torque_angle(result: RampResult) -> Panel:
-    """Torque over wind-up, both signs."""
+    """Panel of the torque over the wind-up, for both directions."""
     tau, angle = result.columns["tau"], np.degrees(result.columns["phi_rel"]) * 60.0
     both = np.concatenate([-angle[::-1], angle]), np.concatenate([-tau[::-1], tau])
     return Panel("Torque over wind-up", "wind-up [arcmin]", "torque [N m]", [Series("torque", *both)])
 
 
 LOADING = (0.0, 0.1, 0.2, 0.4, 0.7, 1.0)
-"""Torques over the rated torque [1]."""
+"""Torques over the rated torque [1] of the simulated free vibrations."""
 
 
 def _torques(path: Path, parameters: Mapping[str, float]) -> list[float]:
-    """From zero to the drive's rated torque [N.m]."""
+    """Torques [N.m] of the simulated free vibrations, from zero to the rated torque."""
     with Slave(path, parameters, (), ("rated_torque",)) as drive:
         (rated,) = drive.get()
     return [share * rated for share in LOADING]
@@ -184,13 +183,16 @@ def _rest(path: Path, torque: float, parameters: Mapping[str, float]) -> Rest:
 def _wound_up(drive: Slave, torque: float) -> tuple[float, float]:
     """Wind-up [rad] and stiffness [N.m/rad] of a drive under a torque [N.m]."""
 
-    def at(angle: float) -> tuple[float, float]:
+    def torque_and_stiffness(angle: float) -> tuple[float, float]:
         drive.set(angle, 0.0)
-        carried, stiffness = drive.get()
-        return carried, stiffness
+        transmitted, stiffness = drive.get()
+        return transmitted, stiffness
 
-    angle = efficiency.wound_up(lambda angle: at(angle)[0], torque, at(0.0)[1])
-    return angle, at(angle)[1]
+    def transmitted_torque(angle: float) -> float:
+        return torque_and_stiffness(angle)[0]
+
+    angle = efficiency.wound_up(transmitted_torque, torque, torque_and_stiffness(0.0)[1])
+    return angle, torque_and_stiffness(angle)[1]
 
 
 RINGING = Body(
@@ -264,4 +266,4 @@ LABORATORY = {
         },
     ),
 }
-"""{FMU: what the page shows beside its variables}."""
+"""{FMU: contents of its laboratory page that are not variables of the FMU}."""

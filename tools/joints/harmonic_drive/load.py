@@ -1,4 +1,4 @@
-"""The harmonic drive under load: as an object, in a robot, for other solvers, and on its contact pair."""
+"""Harmonic drive under load: Python object, transmission of a robot, export, pressure on the contact pair."""
 
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
@@ -29,8 +29,11 @@ if TYPE_CHECKING:
 
 
 class DriveJoint(Joint):
-    """A harmonic drive. `wind_up`, `torque` and `stiffness` are those of the midline, wave generator locked;
-    beyond max_torque its last tangent goes on, which `messages` of `evaluate` and `follow` say.
+    """Harmonic drive.
+
+    `wind_up`, `torque` and `stiffness` describe the midline, without hysteresis and with the wave generator
+    locked. Above max_torque the midline continues with its last tangent; then `messages` of `evaluate` and
+    `follow` have a warning.
 
     >>> import jointfmu
     >>> drive = jointfmu.drive("CSG-25-100")
@@ -39,11 +42,11 @@ class DriveJoint(Joint):
     """
 
     def wind_up(self, torque: ArrayLike) -> Array:
-        """Wind-up (n) [rad] of the output under torques (n) [N.m], odd."""
+        """Wind-up (n) [rad] of the output under torques (n) [N.m]; odd in the torque."""
         return self._curve.odd_inverse(torque)[()]
 
     def torque(self, wind_up: ArrayLike) -> Array:
-        """Torque (n) [N.m] at wind-ups (n) [rad], odd."""
+        """Torque (n) [N.m] at wind-ups (n) [rad]; odd in the wind-up."""
         phi = np.asarray(wind_up, dtype=np.float64)
         return np.asarray(np.copysign(self._curve.derivatives(np.abs(phi), 1)[0], phi))[()]
 
@@ -53,7 +56,7 @@ class DriveJoint(Joint):
 
     @property
     def _curve(self) -> Curve:
-        """Torque over wind-up, from zero on."""
+        """Midline: torque over wind-up, for positive values."""
         curve = self.spring.curve
         assert isinstance(curve, Curve)
         return curve
@@ -63,7 +66,7 @@ CLASS = DriveJoint
 
 
 def TRANSMISSION(name: str, drive: Drive) -> Transmission:
-    """The drive with its spring."""
+    """Transmission of a robot with the spring and friction of a drive."""
     spring = HarmonicDriveSpring.of(drive)
 
     def wind_up(torques: ArrayLike) -> Array:
@@ -90,7 +93,7 @@ def TRANSMISSION(name: str, drive: Drive) -> Transmission:
 
 
 def _lacks(drive: Drive) -> Iterator[str]:
-    """What is no spring, slider or friction of the motor's speed."""
+    """Effects of the drive that the model `Transmission` lacks, as text."""
     if drive.load_loss or drive.loss_back:
         loss, back = (
             share * drive.rated_torque / abs(drive.ratio) for share in (drive.load_loss, drive.loss_back)
@@ -135,7 +138,7 @@ def _mean(drive: _Any, torque: float) -> float:
 
 
 def _scale(drive: _Any, torque: float) -> float:
-    """K_TS of the drive over the twist of a pair with the law's tangential stiffness, K_T radius^2."""
+    """K_TS of the drive over K_T radius^2 [1], the torsional stiffness of a pair with K_T of the law."""
     tangential = at_pressure(drive.law, _mean(drive, torque))["K_T"]
     return float(pair_stiffness(drive, torque)[0] / (tangential * drive.radius**2))
 

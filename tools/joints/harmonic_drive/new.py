@@ -1,4 +1,4 @@
-"""A harmonic drive from its catalogue: by its name, or by the row that is printed there."""
+"""`jointfmu new` for a harmonic drive: by its name in the catalogue, or from numbers of a catalogue row."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -19,17 +19,19 @@ if TYPE_CHECKING:
     from .fit.drive import Row
 
 _STATED = ("ratio", *LINES, "rated_torque", *QUOTED)
+"""Columns of the catalogue that the user can state."""
 _UNITS = {column.name: column.unit for column in COLUMNS if column.name in _STATED}
+"""{column: unit of a number without a unit}."""
 DAMPING = 1e-4
-"""d over K1 [s]: 2 % of critical where the drive swings with 60 Hz."""
+"""Damping d over K1 [s]: a damping ratio of 2 % for a natural frequency of 60 Hz."""
 FIXED: Mapping[str, str] = {
     "circular-spline": "circular spline fixed, output the flexspline: it turns against the motor",
     "flexspline": "flexspline fixed, output the circular spline: with the motor, one more than printed",
     "wave-generator": "wave generator fixed, from flexspline to circular spline: 1 + 1/(ratio printed)",
 }
-"""{part of the drive that is held: what that makes of the ratio}."""
+"""{fixed part of the drive: effect on the ratio}."""
 PEAK = 4.0
-"""max_torque over rated torque [1] where no repeated peak torque is known: about that of catalogue drives."""
+"""max_torque over rated torque [1], if no repeated peak torque is known; about that of catalogue drives."""
 
 
 def _drive(given: Given) -> NewJoint:
@@ -63,7 +65,10 @@ def _drive(given: Given) -> NewJoint:
 
 
 def _at(made: NewJoint, text: str) -> NewJoint:
-    """The joint with a temperature of its lubricant at the start; its friction there as a fact."""
+    """Set the start temperature of the lubricant, and compute the friction facts at this temperature.
+
+    text : temperature as the user states it
+    """
     kelvin, drive = temperature("temperature", text), made.file.values
     file = replace(
         made.file,
@@ -83,7 +88,7 @@ def _at(made: NewJoint, text: str) -> NewJoint:
 
 
 def _held(given: Given, ratio: Printed) -> tuple[Printed, str]:
-    """Speed of the driving part over that of the output, from the ratio that is printed; and why."""
+    """Speed ratio of input to output, from the published ratio and the fixed part; and an explanation."""
     if ratio.value < 0.0:
         if given["fixed"]:
             raise ValueError(
@@ -102,7 +107,10 @@ def _held(given: Given, ratio: Printed) -> tuple[Printed, str]:
 
 
 def _brakes(given: Given, printed: Mapping[str, Printed]) -> dict[str, Printed]:
-    """Friction parameters: of what is stated, else of a drive whose starting torque is printed."""
+    """Friction parameters of the drive, from stated numbers and those of the catalogue.
+
+    Empty for a fixed wave generator. Raises ValueError for stated numbers that contradict each other.
+    """
     stated = [name for name in QUOTED if given[name] is not None]
     if "efficiency" in stated and not printed["efficiency"].value < 1.0:
         raise ValueError(f"--efficiency = {given['efficiency']!r} is outside (0, 1)")
@@ -114,14 +122,17 @@ def _brakes(given: Given, printed: Mapping[str, Printed]) -> dict[str, Printed]:
         return {}
     if "starting_torque" not in printed and stated:
         raise ValueError(f"{flag(stated[0])} needs {flag('starting_torque')}: without it no friction acts")
-    if "starting_torque" in stated:  # what is scaled belongs to another one; the rest must be met
+    if "starting_torque" in stated:  # scaled numbers belong to another starting torque; others must be met
         printed = {n: p for n, p in printed.items() if n not in QUOTED or p.kind != "estimate"}
         stated = [name for name in QUOTED if name in printed]
     return _with_drag(friction(printed, stated), given["motor_drag"])
 
 
 def _with_drag(brakes: dict[str, Printed], stated: str | None) -> dict[str, Printed]:
-    """The dry friction with that of the motor's bearings and seals."""
+    """Add the dry friction of the motor's bearings and seals to friction_coulomb.
+
+    drag_text : as the user states it; None: no motor drag
+    """
     if stated is None:
         return brakes
     drag = number("motor_drag", stated, "N.m", "N.m", None)
@@ -140,24 +151,24 @@ def _with_drag(brakes: dict[str, Printed], stated: str | None) -> dict[str, Prin
 
 
 def _stated(given: Given, value: float) -> Printed:
-    """A number of the row, or one that takes the place of the named drive's."""
+    """Number that the user states, with its source: a catalogue row, or a replacement for a named drive."""
     kind = "user" if given["catalogue"] and not given["source"] else "catalogue"
     return Printed(value, kind, given["source"] or "stated")
 
 
 def _unit(given: Given, name: str) -> str:
-    """The unit of a number that is stated without one."""
+    """Unit of a stated number without a unit."""
     return given["stiffness_unit"] or _UNITS[name] if name.startswith("K") else _UNITS[name]
 
 
 def _of_lines(printed: dict[str, Printed], brakes: Mapping[str, Printed], name: str) -> NewJoint:
-    """The drive with the stiffness of the row itself."""
+    """Make a drive with the three lines of the catalogue as stiffness (law `catalogue`)."""
     from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 
     from .efficiency import LOST_MOTION, lost_motion
     from .fit import catalogue
 
-    _row(printed)  # refuses what cannot be
+    _row(printed)  # raises ValueError for an implausible row
     rated, peak = printed["rated_torque"].value, printed.pop("peak_torque", None)
     if peak is None:
         peak = Printed(PEAK * rated, "estimate", f"{PEAK:g} times rated_torque")
@@ -194,7 +205,7 @@ def _of_lines(printed: dict[str, Printed], brakes: Mapping[str, Printed], name: 
 
 
 def _of_pair(printed: Mapping[str, Printed], brakes: Mapping[str, Printed], name: str) -> NewJoint:
-    """The drive with the law of Hu 2023 fitted to the row."""
+    """Make a drive with the law of Hu 2023, fitted to the row."""
     from .fit import catalogue
 
     kind, ratio = printed["rated_torque"].kind, printed["ratio"].value
@@ -210,12 +221,12 @@ def _of_pair(printed: Mapping[str, Printed], brakes: Mapping[str, Printed], name
 
 
 def _short(number: Printed) -> str:
-    """Where a number comes from, without the place where it is printed."""
+    """Source of a number without the part in brackets."""
     return number.source.split(" (", 1)[0]
 
 
 def _row(printed: Mapping[str, Printed]) -> "Row":
-    """The row, checked."""
+    """Catalogue row of the numbers. Raises ValueError for an implausible row."""
     from .fit.drive import Row
 
     return Row(**{name: printed[name].value for name in LINES}, rated=printed["rated_torque"].value)

@@ -1,4 +1,4 @@
-"""What the published numbers of Hu 2023 mean for a harmonic drive, and which of them calibrate it."""
+"""Published values of Hu 2023: how to compute each quantity, and which values calibrate parameters."""
 
 from dataclasses import replace
 
@@ -16,24 +16,29 @@ from ...published.computed import CalibrationFit, Published
 def K_TS(
     drive: HarmonicDrive, torque: float, deformation: float | None = None, eccentricity: float = 0.0
 ) -> float:
-    """K_TS [N.m/rad] on the paper's scale at a torque [N.m], radial deformation and eccentricity [m]."""
+    """Stiffness K_TS [N.m/rad] of the contact pair, on the scale of the paper.
+
+    torque       : [N.m]
+    deformation  : [m] radial deformation; None: that of the drive
+    eccentricity : [m]
+    """
     w = drive.radial_deformation if deformation is None else deformation
-    there = replace(drive, radial_deformation=w, eccentricity=eccentricity)
-    return float(pair_stiffness(there, torque)[0] / drive.drive_scale)
+    changed = replace(drive, radial_deformation=w, eccentricity=eccentricity)
+    return float(pair_stiffness(changed, torque)[0] / drive.drive_scale)
 
 
 def K_TS_least(drive: HarmonicDrive, torque: float, lower: float, upper: float) -> float:
-    """Least K_TS [N.m/rad] over 41 radial deformations of an interval [m]."""
+    """Smallest K_TS [N.m/rad] at a torque [N.m], over 41 radial deformations from `lower` to `upper` [m]."""
     return min(K_TS(drive, torque, w) for w in np.linspace(lower, upper, 41).tolist())
 
 
 def K_TS_change(drive: HarmonicDrive, torque: float, eccentricity: float) -> float:
-    """Change of K_TS [%] by an eccentricity [m] at the nominal radial deformation."""
+    """Relative change [%] of K_TS by an eccentricity [m], at a torque [N.m] and the nominal deformation."""
     return 100.0 * (K_TS(drive, torque, eccentricity=eccentricity) / K_TS(drive, torque) - 1.0)
 
 
 def K_WTS(drive: HarmonicDrive, torque: float) -> float:
-    """K_WTS [N.m/rad] at a torque [N.m]."""
+    """Stiffness K_WTS [N.m/rad] of the drive at a torque [N.m]."""
     return float(drive_stiffness(drive, torque)[0])
 
 
@@ -43,7 +48,12 @@ def drive_peak_pressure(drive: HarmonicDrive, torque: float) -> float:
 
 
 def kogut_etsion_product(drive: HarmonicDrive, product: str, stage: int) -> float:
-    """Constants [1] of the elastic-plastic stages by area: load, stiffness, or where the stage ends."""
+    """Constant [1] of an elastic-plastic stage of Kogut and Etsion, written as a function of the spot area.
+
+    product : "load" or "stiffness": factor of the power law; "area": area at the end of the stage over that
+              at its onset of yield
+    stage   : 1 or 2
+    """
     if product == "area":
         return float((kogut_etsion.SECOND_AREA, kogut_etsion.PLASTIC_AREA)[stage - 1])
     powers = kogut_etsion.by_area((kogut_etsion.FIRST, kogut_etsion.SECOND)[stage - 1])
@@ -51,14 +61,22 @@ def kogut_etsion_product(drive: HarmonicDrive, product: str, stage: int) -> floa
 
 
 def plastic_onset_pressure(drive: HarmonicDrive, nu: float) -> float:
-    """Mean pressure over hardness [1] of a spot of Kogut and Etsion at the onset of full plasticity."""
+    """Mean pressure over hardness [1] of a spot at the onset of full plasticity, by Kogut and Etsion.
+
+    nu : Poisson's ratio [1]
+    """
     stage, w = kogut_etsion.SECOND, kogut_etsion.PLASTIC_ONSET
     load_per_area = stage.c * w**stage.d / (stage.m * w**stage.n)
     return float(2.0 / 3.0 * hardness_coefficient(nu) * load_per_area)
 
 
 def shear_over_friction(drive: HarmonicDrive, stage: str) -> float:
-    """t/(mu f) [1] of a spot at the end of a stage if its area carries tau_b = sigma_s/sqrt(3)."""
+    """Tangential force over friction limit, t/(mu f) [1], of a spot at the end of a stage.
+
+    The shear stress on the spot is tau_b = sigma_s/sqrt(3).
+
+    stage : end of "elastic", of the "first" or of the "second" elastic-plastic stage
+    """
     law = drive.law
     first, second = (kogut_etsion.by_area(s) for s in (kogut_etsion.FIRST, kogut_etsion.SECOND))
     load, area = {
@@ -71,7 +89,10 @@ def shear_over_friction(drive: HarmonicDrive, stage: str) -> float:
 
 
 def least_mean_pressure(drive: HarmonicDrive) -> float:
-    """F_r/S_r [Pa] of purely elastic spots, largest spot s_ec: the least F_r/S_r of larger ones."""
+    """Mean pressure F_r/S_r [Pa] on the spots, if the largest spot has the critical area s_ec.
+
+    Then all spots are elastic. This is the smallest F_r/S_r of all larger spots.
+    """
     state = at_largest_spot(drive.law, hu.critical_area(drive.law))
     return float(state["F"] / state["A_r"])
 
@@ -110,4 +131,4 @@ PUBLISHED = Published(
         ),
     ),
 )
-"""{quantity of a reference file: function}, and the fit."""
+"""{quantity of a reference file: function that computes it}, and the fit that calibrates parameters."""

@@ -1,4 +1,4 @@
-"""What a drive's page shows: its friction, and what it does beside what catalogues publish of it."""
+"""Report of a harmonic drive: figures of the friction, and comparison with catalogue values."""
 
 import math
 from collections.abc import Iterator, Mapping
@@ -21,16 +21,17 @@ from .fit.drive import Row
 from .friction import QUOTED, SET_BY, SPEED
 
 SPEEDS = (500, 2000, 3500)
-"""Of the motor [rev/min]."""
+"""Motor speeds [rev/min] in the figure of the efficiency."""
 KELVIN = (263.15, REFERENCE, 333.15)
-"""Temperatures of the lubricant [K]: where catalogues begin, where they hold, and warm."""
+"""Temperatures of the lubricant [K]: lower limit of catalogues, reference temperature, and a warm drive."""
 _LOADS = 41
+"""Points of a curve."""
 _MOST = 10.0
-"""Torque up to which back-driving is sought, over the rated torque [1]."""
+"""End of the search for the back-driving torque over the rated torque [1]."""
 
 
 def friction(course: Course) -> list[Figure]:
-    """Efficiency over the load at some speeds; the torques that set the drive in motion."""
+    """Figures of the friction: efficiency over load, starting and back-driving torque, no-load friction."""
     model, file = course.model, course.file
     drive = file.values
     title = "Friction"
@@ -55,7 +56,7 @@ def friction(course: Course) -> list[Figure]:
 
 
 def _over_speed(file: ParameterFile) -> Figure:
-    """Friction of the drive without load over the motor's speed, at some temperatures and the file's own."""
+    """Figure of the no-load friction over motor speed, at several temperatures and at that of the file."""
     drive, rpm = file.values, np.linspace(0.0, max(SPEEDS), _LOADS)
     w1 = rpm * math.pi / 30.0
     series = [
@@ -66,13 +67,13 @@ def _over_speed(file: ParameterFile) -> Figure:
         )
         for kelvin in sorted({*KELVIN, file.start("temperature")})
     ]
-    told = [
+    coefficients = [
         f"{name} = {file.flat[name]:g} 1/K ({file.sources.get(name, 'default choice')})"
         for name in ("viscous_temperature_coefficient", "dry_temperature_coefficient")
     ]
     text = (
         "Torque that turns the wave generator without load, over the motor's speed. The parameters hold at "
-        f"{_celsius(REFERENCE)}; other temperatures follow from {' and '.join(told)}."
+        f"{_celsius(REFERENCE)}; other temperatures follow from {' and '.join(coefficients)}."
     )
     panel = Panel("Friction over speed", "speed of the motor [rev/min]", "torque [N m]", series)
     return Figure("Friction over speed and temperature", text, [panel])
@@ -87,10 +88,10 @@ _UNITS = {column.name: column.unit for column in COLUMNS if column.name in QUOTE
 
 
 def beside(model: Model, file: ParameterFile) -> list[Beside]:
-    """All that the catalogue publishes of the drive that the file is of; nothing if it has no such drive.
+    """Compare a drive with all values in the catalogue; empty if the catalogue has no such drive.
 
-    A file is of the drive that it is named after, or that its ratio comes from. Estimates are left out,
-    upper limits are not. Catalogues hold at REFERENCE, and so does what stands beside them.
+    The drive is identified by the name of the file, or by the source of its ratio. Estimates are omitted,
+    upper limits are included. All values hold at REFERENCE_TEMPERATURE.
     """
     item = _drive(file)
     return [] if item is None else list(_rows(model, replace(file, inputs={}), item))
@@ -123,7 +124,7 @@ def _rows(model: Model, file: ParameterFile, item: Item) -> Iterator[Beside]:
 
 
 def _angles(spring: HarmonicDriveSpring, printed: Mapping[str, Printed], role: str) -> Iterator[Beside]:
-    """Wind-up at the corners, at rated and at peak torque: of the lines, and of the midline."""
+    """Comparison of the wind-up at T1, T2, rated and peak torque: lines of the catalogue, and midline."""
     lines = {name: printed[name].value for name in LINES}
     torques = {name: printed[name] for name in ("T1", "T2", "rated_torque", "peak_torque") if name in printed}
     row = Row(**lines, rated=torques.get("rated_torque", printed["T2"]).value)
@@ -134,14 +135,14 @@ def _angles(spring: HarmonicDriveSpring, printed: Mapping[str, Printed], role: s
 
 
 def _stiffness_set(file: ParameterFile, printed: Mapping[str, Printed]) -> bool:
-    """Whether the stiffness is that of the catalogue, as it stands or fitted."""
+    """Whether the stiffness in the file comes from the catalogue, directly or by a fit."""
     if "K1" in file.flat:
         return file.sources.get("K1") == printed["K1"].source
     return file.origins.get("K_FTS0") == "catalogue"
 
 
 def _turned(bench: Bench, column: str, printed: Mapping[str, Printed]) -> float:
-    """A torque [N.m] or the efficiency [1] of the drive on the bench."""
+    """Computed value of a friction column: a torque [N.m] or the efficiency [1]."""
     if column == "starting_torque":
         return bench.starting_torque()
     if column == "running_torque":

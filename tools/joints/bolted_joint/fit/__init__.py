@@ -1,4 +1,4 @@
-"""What fits the bolted joint: a curve over preload, loops in shear."""
+"""Fit procedures of the bolted joint: stiffness over preload, and loops in shear."""
 
 from ....fitting.procedure import DAMPING_RATIO, Procedure, fit_of
 from ....joint_parts import Option

@@ -1,15 +1,16 @@
-"""Loops, decays and responses in shear to the bolted joint's friction, level and exponent.
+"""Fit of the bolted joint to loops, decays or responses in shear: friction, stiffness level and exponent.
 
-At a constant preload the first loading of the joint's friction is its own normal curve once more (Jäger
-1995, Ciavarella 1998):
+At constant preload the first loading in shear, B(u) [N] at the displacement u [m], follows from the normal
+force of the contact (Jäger 1995, Ciavarella 1998):
 
     B(u) = mu (F_N(0) - F_N(kappa u/mu)),    kappa = K_T/K_N,
 
-F_N(s) the force of all nodes, moved apart by s from where the preload has them. So the stiffness at rest
-gives the level of the law, mu the force at which everything slips, and how the stiffness falls between
-the two the exponent of K_N over the load.
+F_N(s) normal force [N] of all nodes at the separation s [m] from the preloaded state. So three quantities can
+be fitted: the stiffness at rest gives the level of the law, the force at gross slip gives mu, and the
+decrease of the stiffness in between gives the exponent of K_N as a function of the load.
 
-Of elastic sides it is the way of the whole joint from rest, as exported; the modes of the bodies stay.
+With elastic sides the first loading is computed with the complete joint, as exported. The fit does not change
+the modes of the bodies.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -41,33 +42,35 @@ from .preload import SERIES, even_shape, joint_stiffness
 
 HEADS = Heads("force", "displacement", sizes("N", "kN"), sizes("m", "mm", "um", "nm"))
 FREE = {law: ("mu", *names) for law, names in INTERFACE.items()}
-"""What is fitted, of each law: friction, level and, where the law has one, exponent. Vibrations hardly see
-the exponent beside the level: without it."""
+"""{law: parameters to fit}: friction, level and, if the law has one, exponent. The exponent is not fitted to
+vibrations, which hardly distinguish it from the level."""
 STARTS: Mapping[str, Sequence[float]] = {"mu": (0.05, 0.15, 0.4), "surface.D": (1.2, 1.45)}
-"""Where the fit looks for a start, beside the start file's; the level begins where the data have it."""
+"""{parameter: further start values of the search}, in addition to the values of the start file. The start
+value of the level follows from the data."""
 BESIDE = (memory.DAMPING, SERIES)
-"""Unknowns that are no parameters of the joint."""
+"""Unknowns that are not parameters of the joint."""
 SERIES_STARTS = (2.0, 1.1, 1.5, 5.0)
-"""Series stiffness at which the search begins, over the whole at rest [1]."""
+"""Start values of the series stiffness over the measured stiffness at rest [1]."""
 REACH = 1.05
-"""Motion up to which the law of loops is needed, over half of their range [1]."""
+"""Largest displacement of the tabulated law over the amplitude of the loops [1]."""
 _NODES = 48
-"""Steps of the table of first loading, graded towards rest."""
+"""Steps of the table of first loading, finer near rest."""
 _WHOLE_NODES, _SLIPPED = 24, 4.0
-"""The same of elastic sides, and the motion at which all of them slip, over friction_limit/K_xx [1]."""
+"""Elastic sides: steps of the table, and displacement of gross slip over friction_limit/K_xx [1]."""
 
 
 def first_loading(
     joint: Bolted, preload: float, series: float | None = None, reach: float = np.inf
 ) -> tuple[HysteresisLaw, Facts]:
-    """The law of the joint's loops in shear at a preload [N] of each bolt, and what describes it.
+    """Law of the loops in shear at a preload [N] of each bolt, and facts about the joint.
 
-    series : stiffness [N/m] of a structure in series; the motion is that of both, B(u) of the force that both
-             bear, and Masing's rule holds for them as for the joint. What describes is the joint's alone.
-    reach  : motion [m] up to which the law of elastic sides is needed
+    series_stiffness : [N/m] of a structure in series; None: rigid. The displacement is that of joint and
+                       structure together, and Masing's rule holds for both together. The facts describe the
+                       joint without the structure.
+    max_displacement : [m] end of the table for elastic sides
 
-    Raises ValueError if nothing is in contact or a pressure is beyond the law, or if elastic sides find no
-    equilibrium.
+    Raises ValueError if nothing is in contact, if a pressure is outside the law, or if there is no
+    equilibrium with elastic sides.
     """
     curve, approach, weight = _tightened(joint, preload)
     kappa, mu = float(joint.shear_ratio()), joint.mu
@@ -106,10 +109,10 @@ def first_loading(
 def _first_loading_of_whole(
     joint: Bolted, preload: float, even: float, graded: float, reach: float
 ) -> tuple[Array, Array, Array]:
-    """Motions (n) along x from rest [m], force [N] and its slope [N/m] of elastic sides.
+    """First loading along x with elastic sides: displacement (n) [m], force (n) [N], tangent stiffness [N/m].
 
-    The motions, to `even` [m] in equal steps and as far as `graded` [m] beyond that in growing ones, end at
-    `reach` [m].
+    Displacements: s = uniform_length t + graded_length t^2, t from 0 to 1 in equal steps. If the last one is
+    larger than `max_displacement` [m], all are scaled down to end there.
     """
     spring, part = BoltedJointSpring.of(joint), np.linspace(0.0, 1.0, _WHOLE_NODES + 1)
     motion = (even * part + graded * part**2) * min(1.0, reach / (even + graded))
@@ -121,7 +124,7 @@ def _first_loading_of_whole(
 def _moved(
     spring: BoltedJointSpring, preload: float, way: Array, memory: Array
 ) -> tuple[Array, Array, Array]:
-    """Force (n) [N] and K_xx (n) [N/m] on a way along x (n) [m], and the memory behind it."""
+    """Force (n) [N] and K_xx (n) [N/m] along displacements x (n) [m], and history variables at the end."""
     found = np.empty((2, way.size))
     for i, x in enumerate(way.tolist()):
         place = Place(np.array([x, 0.0, 0.0, 0.0, 0.0, 0.0]))
@@ -131,18 +134,18 @@ def _moved(
 
 
 def _off_masing(joint: Bolted, preload: float, loops: Loops, law: HysteresisLaw) -> Array:
-    """Force (n) [N] by which elastic sides on the way of loops differ from Masing's rule.
+    """Deviation (n) [N] from Masing's rule of the forces of a joint with elastic sides, along measured loops.
 
-    Patches turn as the bodies bend, and slip that turns does not run back the way it came: after gross slip
-    about half a percent of the friction.
+    Bending of the bodies changes the slip direction of the patches, so that unloading does not mirror
+    loading. After gross slip the deviation is about half a percent of the friction force.
     """
     spring, found = BoltedJointSpring.of(joint), np.empty_like(loops.force)
     for run in range(loops.run[-1] + 1):
-        every = np.unique(loops.branch[loops.run == run])
-        middle = 0.5 * (np.max(loops.start[every]) + np.min(loops.start[every]))
-        first = np.linspace(0.0, loops.start[every[0]] - middle, _WHOLE_NODES + 1)
+        branches = np.unique(loops.branch[loops.run == run])
+        middle = 0.5 * (np.max(loops.start[branches]) + np.min(loops.start[branches]))
+        first = np.linspace(0.0, loops.start[branches[0]] - middle, _WHOLE_NODES + 1)
         memory = _moved(spring, preload, first, spring.at_rest())[2]
-        for k in every:
+        for k in branches:
             start, motion = loops.start[k], loops.motion[loops.branch == k]
             far = np.abs(motion - start)
             end = motion[np.argmax(far)]
@@ -154,7 +157,10 @@ def _off_masing(joint: Bolted, preload: float, loops: Loops, law: HysteresisLaw)
 
 
 def rest_stiffness(joint: Bolted, preload: float) -> float:
-    """K_xx [N/m] at a preload [N] of each bolt; ValueError as `first_loading`."""
+    """Shear stiffness K_xx [N/m] at rest, at a preload [N] of each bolt.
+
+    Raises ValueError as `first_loading`.
+    """
     curve, approach, weight = _tightened(joint, preload)
     if joint.elastic:
         return float(joint_stiffness(joint, np.array([preload]), "tangential")[0])
@@ -162,7 +168,10 @@ def rest_stiffness(joint: Bolted, preload: float) -> float:
 
 
 def _tightened(joint: Bolted, preload: float) -> tuple[Curve, Array, Array]:
-    """The interface's curve, approach (n) [m] of the nodes and their areas (n) [m2]."""
+    """Preloaded interface: curve of the law, approaches (n) [m] and areas (n) [m2] of the nodes.
+
+    Raises ValueError if nothing is in contact or a pressure is outside the law.
+    """
     shape, curve = even_shape(joint.pattern), approach_curve(joint)
     pressure = pressures(joint, shape, preload, 0.0)
     if not 0.0 < (most := float(np.max(pressure))) < curve.end[1]:
@@ -183,18 +192,19 @@ def fit(
     damping_ratio: float = 0.0,
     series_stiffness: float | None = None,
 ) -> FitResult:
-    """Fit a file of loops, decays, responses or frequency and damping over the amplitude (HEADS).
+    """Fit a file of loops, decays, responses, or frequency and damping over the amplitude (columns: HEADS).
 
     Parameters
     ----------
-    free       : names to fit; None: those of FREE; `damping_ratio` and `series_stiffness` may be among them
-    preload    : [N] of each bolt; None: that of the start's inputs
-    modal_mass : [kg] what vibrates on the joint; needed unless the file has loops
-    damping_ratio : [1] of the structure, beside the joint
+    start            : parameters to start from; None: the default joint
+    free             : names to fit, also `damping_ratio` and `series_stiffness`; None: those of FREE
+    preload          : [N] of each bolt in the test; None: the one in the inputs of `start`
+    modal_mass       : [kg] mass that vibrates on the joint; required unless the file has loops
+    damping_ratio    : [1] of the structure alone
     series_stiffness : [N/m] of the structure, in series with the joint; None: rigid, unless it is fitted
 
-    Raises ValueError, one line: the file, its units, its values; a loop that creates energy; a name that
-    cannot be fitted. RuntimeError if the fit finds no end.
+    Raises ValueError with a one-line message for a bad file, unit or value, a loop that creates energy, or a
+    name that cannot be fitted. Raises RuntimeError if the fit does not converge.
     """
     data = measured(path, HEADS)
     file = start or default("bolted_joint")
@@ -277,7 +287,12 @@ def fit(
 def _level(
     file: ParameterFile, names: Sequence[str], rest: Callable[[Mapping[str, float]], float]
 ) -> Exchange | None:
-    """The stiffness at rest, [N/m] of the values, and the parameter of its level, if that is fitted."""
+    """Exchange of unknowns: the stiffness at rest [N/m] for the parameter that sets the level.
+
+    rest_stiffness : {name: value} -> stiffness at rest [N/m]
+
+    None if the level is not fitted.
+    """
     _, level, *_ = FREE[file.law]
     if level not in names:
         return None
@@ -285,5 +300,5 @@ def _level(
 
 
 def _own(values: Mapping[str, float]) -> dict[str, float]:
-    """Those of the joint."""
+    """Select the parameters of the joint: all values except the other unknowns."""
     return {name: value for name, value in values.items() if name not in BESIDE}

@@ -1,15 +1,15 @@
-"""Stiffness or resonance over preload to the bolted joint's parameters.
+"""Fit of the bolted joint to stiffness or resonance frequency as a function of the preload.
 
-The joint, of elastic sides with its members and bolts, is the spring of one degree of freedom, in series with
-the structure where that is stated:
+The joint is the spring of an oscillator with one degree of freedom; with elastic sides it includes members
+and bolts. A structure in series is optional:
 
     1/K = 1/K_joint(preload) + 1/K_series,        f = sqrt(K/mass)/(2 pi).
 
-K_joint grows nearly as a power of the preload, `K_N ~ P^(D/(3-D))` for D below 1.5 and `~ P` above,
-so that a curve gives an exponent (D, below about 1.5) and a level. The level is that of G, of the moduli
-and, weakly, of H together: G is fitted, the others are taken from the start; A_0 has no effect, the law
-knows loads, no pressures. Of a roughness the level is that of h; it has no exponent. A resonance gives
-K/mass; without a stated mass the level goes into `mass` and G or h stays as it is.
+K_joint is nearly a power of the preload P, `K_N ~ P^(D/(3-D))` for D below 1.5 and `~ P` above. So a curve
+determines two parameters: the exponent (D, below about 1.5) and the level. The level depends on G, on the
+moduli and weakly on H: G is fitted, the others keep their start values. A_0 has no effect, because the law
+depends on loads, not on pressures. In the law `roughness` h sets the level, and the exponent is fixed. A
+resonance frequency determines only K/mass: without a stated mass the fit adjusts `mass` and keeps G or h.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -35,26 +35,29 @@ from ....fitting.least_squares import Solution, Unknown, best_start, solve
 from ....fitting.outcome import Facts, FitResult, Picture, fitted, systematic, unknowns
 
 SERIES = "series_stiffness"
-"""Unknown that is no parameter of the joint: the structure's own stiffness [N/m]."""
+"""Unknown that is not a parameter of the joint: stiffness [N/m] of the structure in series."""
 COLUMNS: Mapping[str, Sizes] = {
     "preload": sizes("N", "kN"),
     "stiffness": sizes("N/m", "N/um", "kN/mm", "N/mm"),
     "frequency": sizes("Hz", "kHz"),
 }
 LEAST = 4
-"""Fewest points of a curve."""
+"""Required number of points, and of different preloads."""
 FREE: Mapping[str, tuple[str, ...]] = {"zhao2018": ("surface.G", "surface.D"), "roughness": ("h",)}
-"""What is fitted, of each law: level and, where the law has one, exponent."""
+"""{law: parameters to fit}: level and, if the law has one, exponent."""
 STARTS: Mapping[str, tuple[float, ...]] = {
     "surface.D": (1.25, 1.42, 1.6),
     "surface.G": tuple(1.21e-8 * np.logspace(-3.0, 3.0, 7)),
     "h": (1e-7, 1e-6, 1e-5),
 }
-"""Where the fit looks for a start, beside the start file's values."""
+"""{parameter: further start values of the search}, in addition to the values of the start file."""
 
 
 def joint_stiffness(joint: Bolted, preload: Array, direction: str = "normal") -> Array:
-    """K_zz or K_xx (n) [N/m] of the tightened joint at preloads (n) [N]: exactly the exported ones."""
+    """Stiffness (n) [N/m] of the tightened joint at preloads (n) [N], equal to the one of the FMU.
+
+    direction : "normal" (K_zz) or "tangential" (K_xx)
+    """
     if joint.elastic:
         spring, axis = BoltedJointSpring.of(joint), 2 if direction == "normal" else 0
         return np.array([spring.whole.condensed(spring.slope(P))[axis, axis] for P in preload.tolist()])
@@ -62,7 +65,7 @@ def joint_stiffness(joint: Bolted, preload: Array, direction: str = "normal") ->
     p = pressures(joint, shape, preload, 0.0)
     curve = approach_curve(joint)
     k, _ = stiffness_curve(joint, np.maximum(p, curve.closed))
-    closing = p < curve.closed  # what the curve continues to zero pressure
+    closing = p < curve.closed  # below this pressure the curve, not the law, defines the stiffness
     k[closing] = curve.derivatives(curve.inverse(p[closing]), 1)[1]
     normal = joint.A_0 * np.sum(shape.share * k, axis=-1)
     if direction == "normal":
@@ -73,7 +76,7 @@ def joint_stiffness(joint: Bolted, preload: Array, direction: str = "normal") ->
 
 @cache
 def even_shape(pattern: PressureSource) -> MergedShape:
-    """The pressure shape, nodes of equal pressure without a moment put together."""
+    """Pressure shape without a moment, with nodes of equal pressure merged."""
     return pressure_shape(pattern).merged(moment=False)
 
 
@@ -90,13 +93,15 @@ def fit(
 
     Parameters
     ----------
-    free       : names to fit; None: those of FREE, mass in the place of the level if it is not stated
-    direction  : of the motion, normal or tangential
-    modal_mass : [kg] what vibrates on the joint, for frequencies; replaces `mass`
-    series_stiffness : [N/m] of the structure, in series; None: rigid, unless SERIES is in `free`
+    start            : parameters to start from; None: the default joint
+    free             : names to fit; None: those of FREE, with `mass` instead of the level for frequencies
+                       without `modal_mass`
+    direction        : of the motion, "normal" or "tangential"
+    modal_mass       : [kg] mass that vibrates on the joint, for frequencies; replaces `mass`
+    series_stiffness : [N/m] of the structure, in series; None: rigid, unless it is in `free`
 
-    Raises ValueError, one line: the file, its units, its values; a name that cannot be fitted.
-    RuntimeError if the fit finds no end.
+    Raises ValueError with a one-line message for a bad file, unit or value, or a name that cannot be fitted.
+    Raises RuntimeError if the fit does not converge.
     """
     curve = _measured(Path(path))
     file = _stated(start or default("bolted_joint"), curve, modal_mass, series_stiffness)
@@ -139,14 +144,19 @@ def fit(
 
 @dataclass(frozen=True, slots=True)
 class PreloadCurve:
-    """A curve over preload, ascending: `of` is stiffness [N/m] or frequency [Hz]."""
+    """Measured stiffness or frequency as a function of the preload.
+
+    quantity : "stiffness" [N/m] or "frequency" [Hz]
+    preload  : (n) [N] of each bolt, ascending
+    value    : (n) measured values
+    """
 
     of: str
     preload: Array
     value: Array
 
     def predicted(self, joint: Bolted, series: float | None, direction: str) -> Array:
-        """The same quantity of a joint, with a stiffness [N/m] in series if there is one."""
+        """Predict the quantity (n) for a joint, with an optional stiffness [N/m] in series."""
         K = joint_stiffness(joint, self.preload, direction)
         K = K if series is None else 1.0 / (1.0 / K + 1.0 / series)
         return K if self.of == "stiffness" else np.sqrt(K / joint.mass) / (2.0 * np.pi)
@@ -179,7 +189,10 @@ def _measured(path: Path) -> PreloadCurve:
 def _stated(
     start: ParameterFile, curve: PreloadCurve, modal_mass: float | None, series: float | None
 ) -> ParameterFile:
-    """The start with what the user states about the test."""
+    """Start parameters with the modal mass [kg] of the test.
+
+    Raises ValueError for a mass or a series stiffness that is not positive.
+    """
     for name, value, unit in (("modal mass", modal_mass, "kg"), ("series stiffness", series, "N/m")):
         if value is not None and not 0.0 < value < np.inf:
             raise ValueError(f"{name} = {value:g} {unit} is outside (0, inf)")
@@ -198,7 +211,7 @@ def _best_start(
     curve: PreloadCurve,
     miss: Callable[[Mapping[str, float]], Array],
 ) -> Sequence[Unknown]:
-    """The unknowns at the best of some starting points."""
+    """Unknowns with the best of several start values."""
     wanted = unknowns(file, [name for name in names if name != SERIES], {})
     level = (
         curve.value[-1]
@@ -208,7 +221,7 @@ def _best_start(
     wanted += [Unknown(SERIES, "N/m", 3.0 * float(level), 0.0, np.inf)] * (SERIES in names)
 
     def tried(values: dict[str, float]) -> tuple[Mapping[str, float], float]:
-        """With the mass that suits the data best, whose square root the frequencies have."""
+        """Scale the mass, if it is fitted, to the mean frequency. Returns values and squared error."""
         rest = miss(values)
         if "mass" in values:
             values["mass"] *= float(np.exp(2.0 * np.mean(rest)))

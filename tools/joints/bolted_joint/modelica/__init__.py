@@ -1,4 +1,4 @@
-"""The joint in the Modelica library: tightened to a preload under a moment, one record for each."""
+"""Bolted joint in the Modelica library: one record for each working point (preload, moment)."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -27,31 +27,31 @@ from ....modelica.records import (
 )
 
 DAMPING_TOLERANCE = 1e-3
-"""Largest relative error of a dissipation factor [1], which is interpolated linearly."""
+"""Largest relative error [1] of the linearly interpolated dissipation factor."""
 STRONGEST = 10.0
-"""End of the table: the total force over the one at tightening [1]."""
+"""Total contact force at the end of the table over the one at tightening [1]."""
 BELOW, EARLIEST = 12, 2e-3
-"""Pairs of sliders that touch at tightening, and the shift at which the first of them slip over that of gross
-slip [1]; the shifts at which the others do are in geometric sequence."""
+"""Number of slider pairs in contact at tightening, and slip displacement of the first pair over that of gross
+slip [1]. The slip displacements of the pairs form a geometric sequence."""
 ABOVE = (2.0, 5.0)
-"""Forces over that at tightening [1] at which further pairs are complete, when side 2 is pressed on."""
+"""Forces over the one at tightening [1] at which further slider pairs are in full contact, in compression."""
 _FINE, _COARSE = 800, 200
-"""Nodes of the total on either side of the tightened state: of its force, before thinning, and of its
+"""Sample points on either side of the tightened state: for the force, before decimation, and for the
 damping."""
 
 
 class Tightened(NamedTuple):
-    """A joint at a fixed preload and moment: all its nodes as one spring.
+    """Bolted joint at fixed preload and moment, with all nodes combined to one spring.
 
-    table   : force above the tightening force [N] over the approach from the tightened state [m]
-    damping : rows (n, 2) of approach [m] and dissipation factor eta_n [1]
-    shear   : K_T/K_N [1]
-    force   : of the interface at tightening [N]
-    heights : rows (n, 3) of approach [m], normal force [N] and stiffness [N/m], between which the springs of
-              friction are taken together
-    sliders : rows (2 n - 2, 2) of stiffness [N/m] and friction [N] at tightening, of those that slip earlier
-              first
-    bolts   : force of each bolt at tightening (b) [N], all bolts of a position together
+    table           : increase of the force [N] from the tightened state, over the approach from there [m]
+    damping         : rows (n, 2) of approach [m] and dissipation factor eta_n [1]
+    shear_ratio     : K_T/K_N [1]
+    force           : normal force of the interface at tightening [N]
+    pair_boundaries : rows (n, 3) of approach [m], normal force [N] and stiffness [N/m]; the friction springs
+                       between two rows are combined to one pair of sliders
+    sliders         : rows (2 n - 2, 2) of stiffness [N/m] and friction limit [N] at tightening: first the
+                       slider of each pair that slips earlier, then the other slider of each pair
+    bolts           : preload force (b) [N] at each bolt position, all bolts of a position together
     """
 
     table: InterpolationTable
@@ -64,10 +64,10 @@ class Tightened(NamedTuple):
 
 
 def tightened(spring: BoltedJointSpring, preload: float, moment: float) -> Tightened:
-    """Sum up a joint at a preload [N] per bolt and a moment [N.m].
+    """Combine all nodes of a joint to one spring, at a preload [N] per bolt and a moment [N.m].
 
-    With one curve g(c) of the total force over the approach c = -s_z, friction follows as for one patch: the
-    patches of a rigid side that does not turn share the shift, and their curves add.
+    Side 2 is rigid and does not rotate. So all patches have the same tangential displacement and their curves
+    add: friction follows, as for one patch, from the total force g(c) at the approach c = -s_z.
     """
     start = spring.within_law(preload, moment)
     low, high = spring.curve.displacement[[0, -1]]
@@ -75,9 +75,9 @@ def tightened(spring: BoltedJointSpring, preload: float, moment: float) -> Tight
 
     def total(c: Array) -> list[Array]:
         approach = start + c[:, None]
-        approach[approach - low < NOTHING * (high - low)] = low  # where nodes just touch their load is zero
-        each = spring.curve.derivatives(approach, 2)
-        return [area * (value @ share) for value in each]
+        approach[approach - low < NOTHING * (high - low)] = low  # nodes that just touch have no load
+        nodal = spring.curve.derivatives(approach, 2)
+        return [area * (value @ share) for value in nodal]
 
     at_rest = total(np.zeros(1))[0][0]
     first, last = float(low - np.max(start)), float(high - np.max(start))
@@ -109,13 +109,13 @@ def tightened(spring: BoltedJointSpring, preload: float, moment: float) -> Tight
 
 
 def _dissipation(spring: BoltedJointSpring, approach: Array) -> Array:
-    """eta_n (m) [1] with the nodes at approaches (m, n) [m]."""
+    """Normal dissipation factor eta_n (m) [1], at nodal approaches (m, n) [m]."""
     plastic, elastic = spring.works(spring.curve.derivatives(approach, 0)[0])
     return np.asarray((plastic @ spring.shape.share) / (elastic @ spring.shape.share))
 
 
 TIGHTENED = ((9e3, 0.0), (15e3, 0.0), (15e3, 4500.0))
-"""Preload [N] per bolt and moment [N.m]: Zhao 2018, Table 3."""
+"""Working points of the default records: preload [N] per bolt and moment [N.m], from Zhao 2018, Table 3."""
 
 
 def _records(file: ParameterFile, points: Sequence[WorkingPoint]) -> list[ModelicaRecord]:

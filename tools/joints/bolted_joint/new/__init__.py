@@ -1,4 +1,4 @@
-"""A bolted joint from a drawing: two plates and their bolts."""
+"""`jointfmu new` for a bolted joint: two plates and their bolts, from a drawing."""
 
 from ....drawing.faces import OPTIONS
 from ....drawing.part import Drawing, Given, NewJoint
@@ -16,7 +16,7 @@ ATTACHED = {
     "edge": "the edges at -x (side 1) and +x (side 2)",
     "heads": "the faces under heads and nuts",
 }
-"""What moves as one with the bodies that the joint connects."""
+"""{name: surfaces of both plates that move rigidly with the connected bodies}."""
 
 NEW = Drawing(
     text="a bolted joint of two plates",

@@ -1,4 +1,4 @@
-"""The plates of a drawing by finite elements: the pressure between them, and the stiffness of the whole."""
+"""Finite elements for the plates of a drawing: contact pressure, and stiffness of the complete joint."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -30,9 +30,16 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Plates:
-    """Two plates with their bolts: layers and density [kg/m3] of side 1 and 2, bearing [m] the diameter under
-    head and nut, preload [N] of each bolt and tension [N] that embedding leaves of it, depth [m] of its
-    thread in side 2 (0: it goes through)."""
+    """Two plates with their bolts.
+
+    plate            : contact plane with the bolt positions
+    layers           : thickness and modulus of side 1 and side 2
+    bearing_diameter : [m] of the surface under head and nut
+    density          : [kg/m3] of side 1 and side 2
+    preload          : [N] of each bolt at tightening
+    tension          : [N] preload that remains after embedding
+    thread_depth     : [m] depth of the thread in side 2; 0: through bolt with nut
+    """
 
     plate: BoltedPlate
     layers: tuple[ClampedPart, ...]
@@ -43,7 +50,10 @@ class Plates:
     depth: float = 0.0
 
     def assembly(self, file: ParameterFile) -> "Assembly":
-        """The bodies. Raises ValueError for heads that overlap or leave the plate."""
+        """Build the bodies of the finite-element model.
+
+        Raises ValueError for bolt heads that overlap or extend beyond the plate.
+        """
         from ....fem.geometry import Assembly, BoltList, Plate, TappedPlate
 
         sides = [
@@ -59,16 +69,17 @@ class Plates:
         ]
         if self.depth:
             sides[1] = TappedPlate(**flatten(sides[1]), depth=self.depth)
-        at = self.plate
-        bolts = BoltList(x=at.x, y=at.y, hole_diameter=at.hole_diameter, head_diameter=self.bearing)
+        plate = self.plate
+        bolts = BoltList(x=plate.x, y=plate.y, hole_diameter=plate.hole_diameter, head_diameter=self.bearing)
         return Assembly(file.name, sides[0], sides[1], bolts)
 
 
 def with_computed_field(file: ParameterFile, plates: Plates) -> tuple[ParameterFile, PressureShape]:
-    """The joint with the pressure of two elastic plates in contact instead of the cones of its bolts; at all
-    nodes.
+    """Replace the pressure cones of the bolts by the computed contact pressure of the elastic plates.
 
-    Raises ValueError for heads that overlap or leave the plate, and if a package is missing.
+    Returns the parameters, whose field has few nodes, and the pressure shape at all nodes of the model.
+
+    Raises ValueError for bolt heads that overlap or extend beyond the plate, and if a package is missing.
     """
 
     with installed("--field computed"):
@@ -81,7 +92,7 @@ def with_computed_field(file: ParameterFile, plates: Plates) -> tuple[ParameterF
 
 @dataclass(frozen=True, slots=True)
 class ComputedJoint:
-    """The joint between its attachments: its compliances, and its parameters with elastic sides."""
+    """Complete joint between its attachments: compliances, and parameter file with elastic sides."""
 
     compliances: Compliances
     file: ParameterFile
@@ -90,7 +101,7 @@ class ComputedJoint:
 def whole_joint(
     file: ParameterFile, plates: Plates, attached: str, shape: PressureShape | None = None
 ) -> ComputedJoint:
-    """The whole joint of a drawing at its preload, see `whole_of`."""
+    """Compute the complete joint of a drawing at its preload, see `compute_joint_of_assembly`."""
     return whole_of(file, lambda: plates.assembly(file), plates.preload, attached, shape)
 
 
@@ -101,11 +112,14 @@ def whole_of(
     attached: str,
     shape: PressureShape | None = None,
 ) -> ComputedJoint:
-    """The whole joint under the force [N] of each bolt at tightening: the bodies move at their attachments.
+    """Compute the complete joint by finite elements and reduce its bodies to modes.
 
-    shape : the pressure at all nodes of a field, of which the file has few; None: what the file has
+    make_assembly : builds the bodies
+    preload       : [N] of each bolt at tightening
+    attached      : surfaces that move rigidly with the connected bodies, a key of ATTACHED
+    shape         : pressure at all nodes of a computed field; None: the pressure shape of the file
 
-    Raises ValueError for heads that overlap or leave the plate, and if a package is missing.
+    Raises ValueError for bolt heads that overlap or extend beyond the plate, and if a package is missing.
     """
 
     with installed("the whole joint"):
@@ -132,13 +146,13 @@ def whole_of(
 
 
 def _outline(clamped: "Assembly", centroid: Array) -> tuple[float, ...]:
-    """Lowest x and y, highest x and y [m] of a contact, from its centroid [m]."""
+    """Bounding box of the contact relative to its centroid: x_min, y_min, x_max, y_max [m]."""
     half = np.min([side.layers()[0].outer for side in (clamped.side1, clamped.side2)], axis=0)
     return tuple(np.concatenate([-half - centroid, half - centroid]).tolist())
 
 
 def with_bodies(file: ParameterFile, bodies: ElasticBodies, attached: str) -> ParameterFile:
-    """The joint between elastic sides."""
+    """Parameters of the joint with elastic sides, described by `bodies`."""
     values = replace(file.values, sides="elastic", bodies=replace(bodies, attached=attached))
     source = f"finite elements of the bodies between {ATTACHED[attached]}, reduced to modes"
     names = [f"bodies.{name}" for name, value in flatten(bodies).items() if value != ()]
@@ -152,23 +166,27 @@ def with_bodies(file: ParameterFile, bodies: ElasticBodies, attached: str) -> Pa
 
 
 def _springs(file: ParameterFile, preload: float, joint: "WholeJoint", shape: PressureShape | None) -> Array:
-    """Stiffness (points, 3) [N/m3] of the tightened interface along x, y, z at the points of the elements.
+    """Stiffness per area (points, 3) [N/m3] along x, y, z of the tightened interface, at integration points.
 
-    That of the nearest node of the joint's own contact, together as stiff as that; shape as in `whole_of`.
+    Each point takes the stiffness of the nearest node of the pressure shape. One factor then makes the total
+    equal to the stiffness of the joint.
+
+    shape : as in `compute_joint_of_assembly`
     """
     from scipy.spatial import cKDTree
 
-    values, at = file.values, joint.interface
+    values, interface = file.values, joint.interface
     shape = shape or pressure_shape(values.pattern)
     curve = approach_curve(values)
-    normal = curve.derivatives(curve.inverse(pressures(values, shape, preload, 0.0)), 1)[1]
-    here = normal[cKDTree(shape.position).query(at.centred)[1]]
-    here = here * (values.A_0 * (shape.share @ normal) / (at.area @ here))
+    nodal = curve.derivatives(curve.inverse(pressures(values, shape, preload, 0.0)), 1)[1]
+    normal = nodal[cKDTree(shape.position).query(interface.centred)[1]]
+    normal = normal * (values.A_0 * (shape.share @ nodal) / (interface.area @ normal))
     ratio = float(values.shear_ratio())
-    return np.stack([ratio * here, ratio * here, here], axis=1)
+    return np.stack([ratio * normal, ratio * normal, normal], axis=1)
 
 
 Facts = dict[str, tuple[float, str, str]]
+"""{name: (value, unit, explanation)}."""
 
 
 def facts(
@@ -179,14 +197,14 @@ def facts(
     alone: str,
     shape: PressureShape | None = None,
 ) -> NewJoint:
-    """The whole joint beside the interface, and the parameters with elastic sides; or a line that says why it
-    cannot be computed.
+    """Compute the complete joint: parameters with elastic sides and facts, or a warning why this failed.
 
-    sides : rigid or elastic as stated; None: elastic if the packages are there
-    alone : that the FMU is the interface alone
-    shape : as in `whole_of`
+    sides               : "rigid" or "elastic" as the user states it; None: elastic if the packages are
+                          installed
+    interface_only_text : warning that the FMU contains the interface only
+    shape               : as in `compute_joint_of_assembly`
 
-    Raises ValueError if it was asked for and cannot be computed.
+    Raises ValueError if the user asked for elastic sides and they cannot be computed.
     """
     try:
         found = whole_joint(file, plates, attached, shape)
@@ -200,21 +218,24 @@ def facts(
 
 
 def whole_facts(file: ParameterFile, preload: float) -> Facts:
-    """Of a joint with elastic sides, as report and FMU have it; preload [N] tightens each bolt."""
-    found = BoltedJointSpring.of(file.values).compliances(preload)
+    """Facts about a joint with elastic sides at a preload [N] of each bolt, equal to report and FMU."""
+    compliances = BoltedJointSpring.of(file.values).compliances(preload)
     tension = float(working_preload(file.values, preload))
-    told = f" at preload = {preload:.5g} N"
-    return _rows(found, tension, file.values.bodies.attached, told)
+    suffix = f" at preload = {preload:.5g} N"
+    return _rows(compliances, tension, file.values.bodies.attached, suffix)
 
 
 def _rows(found: Compliances, tension: float, attached: str, told: str = "") -> Facts:
-    """The whole joint with a tension [N] of each bolt, and where its FMU has this; empty: the interface is
-    all that the FMU has."""
+    """Facts about the complete joint with a tension [N] of each bolt.
+
+    fmu_suffix : text that names the load of the same output of the FMU; empty: the FMU contains the interface
+                 only
+    """
     return _stiffnesses(found, attached, told) | _load(found, tension, attached) | _share(found, not told)
 
 
 def _stiffnesses(found: Compliances, attached: str, told: str) -> Facts:
-    """Of the whole joint, then of its members, in all directions."""
+    """Stiffnesses in all directions, first of the complete joint, then of its members."""
     rows, members = {}, {}
     for name, unit, (whole, interface, alone, _), parts in found.rows():
         shares = ", ".join(f"{share:.0%} {part}" for share, part in zip(parts, PARTS, strict=True))
@@ -230,7 +251,7 @@ def _stiffnesses(found: Compliances, attached: str, told: str) -> Facts:
 
 
 def _share(found: Compliances, alone: bool) -> Facts:
-    """Whether the interface matters for the whole."""
+    """Share of the interface in the compliance of the complete joint."""
     share = found.shares[0]
     rest = max(part for i, part in enumerate(share) if i != 2)
     text = f"part of the interface in the whole's compliance along z, at most {rest:.3g} in others; " + (
@@ -242,7 +263,7 @@ def _share(found: Compliances, alone: bool) -> Facts:
 
 
 def _load(found: Compliances, tension: float, attached: str) -> Facts:
-    """What an outer force along the axis does, without an eccentric one's bending."""
+    """Effect of an external force along z without bending: load factor, bolt share, opening load."""
     where = f"a force along z at {ATTACHED[attached]}"
     opens = found.opening_load(tension)
     free = f"{where}, other motions free"

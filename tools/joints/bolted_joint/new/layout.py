@@ -1,4 +1,4 @@
-"""Where the bolts of a drawing are."""
+"""Number, thread and positions of the bolts of a drawing."""
 
 import re
 from collections.abc import Sequence
@@ -16,7 +16,10 @@ _GRID = re.compile(r"(\d+)x(\d+)")
 
 
 def bolts(text: str) -> tuple[int, Thread]:
-    """Number and thread of 4xM12. Raises ValueError for another form or an unknown thread."""
+    """Parse number and thread of the bolts, as in 4xM12.
+
+    Raises ValueError for bad text or an unknown thread.
+    """
     match = _BOLTS.fullmatch(text.strip())
     if not match or match[1] == "0":
         raise ValueError(f"--bolts = {text!r} are no bolts; expected a number and a thread, as in 4xM12")
@@ -27,9 +30,9 @@ def bolts(text: str) -> tuple[int, Thread]:
 
 
 def positions(given: Given, count: int) -> Array:
-    """Places (count, 2) [m] of the bolts from the middle of the plate.
+    """Positions (count, 2) [m] of the bolts relative to the middle of the plate.
 
-    Raises ValueError, one line, for places that are not those of so many bolts.
+    Raises ValueError with a one-line message if the options do not give `count` positions.
     """
     at, circle = given["at"], given["circle"]
     if at and circle:
@@ -60,7 +63,7 @@ def _list(at: Sequence[str], count: int) -> Array:
 
 
 def _rectangle(spans: Sequence[float], count: int, grid: str | None) -> Array:
-    """A grid of bolts, all of it or its rim."""
+    """Positions (count, 2) [m] of bolts on a rectangular grid: on the full grid, or on its rim only."""
     if min(spans) < 0.0:
         raise ValueError(f"--at = {min(spans):g} m is outside [0, inf): distance of the outermost bolts")
     if count == 1 and max(spans) > 0.0:
@@ -78,7 +81,7 @@ def _rectangle(spans: Sequence[float], count: int, grid: str | None) -> Array:
 
 
 def _grid(spans: Sequence[float], count: int, grid: str | None) -> tuple[int, int]:
-    """Bolts along x and y."""
+    """Number of bolts along x and along y."""
     if grid:
         match = _GRID.fullmatch(grid)
         if not match or 0 in (sizes := (int(match[1]), int(match[2]))):

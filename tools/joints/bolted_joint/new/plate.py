@@ -1,4 +1,4 @@
-"""The parameters of a bolted joint from the drawing of its plates."""
+"""Parameters of a bolted joint from the drawing of its plates."""
 
 from dataclasses import dataclass
 
@@ -20,23 +20,28 @@ from . import computed, layout
 from .computed import Plates, with_computed_field
 
 REST = (0.0, 0.0, 0.0)
+"""Zero displacement [m] or rotation [rad] along x, y, z."""
 SAME = 1e-6
-"""How far the thicknesses may be from the grip [1]."""
+"""Relative difference [1] allowed between the grip and the sum of the thicknesses."""
 LONGEST = 50
-"""Most grip over the diameter of the thread: beyond it a bolt is a tie rod."""
+"""Largest grip over the diameter of the thread [1]: a longer bolt is a tie rod."""
 ENGAGED = 1.0
-"""Depth of a thread that holds the bolt over its diameter [1]: a usual one in steel."""
+"""Depth of a tapped thread over its diameter [1]: a usual value in steel."""
 
 
 @dataclass(frozen=True, slots=True)
 class Clamped:
-    """One bolt and what it clamps.
+    """One bolt with the parts that it clamps, by VDI 2230.
 
-    grip           : [m] thickness of the parts between head and nut, or above the thread
-    layers         : those parts with their moduli
-    hole, bearing  : [m] diameters; outer: [m] D_A of the parts
-    slope          : tan(phi) of the cone [1]; cone: [m] its diameter at the interface
-    bolt, members  : [N/m] stiffnesses
+    grip             : [m] clamped length between head and nut, or between head and tapped thread
+    layers           : clamped parts, thickness and modulus
+    hole_diameter    : [m]
+    bearing_diameter : [m] of the surface under head or nut
+    outer_diameter   : [m] D_A of the clamped parts
+    cone_slope       : tan(phi) of the deformation cone [1]
+    cone_diameter    : [m] of the deformation cone at the interface
+    bolt_stiffness   : [N/m] 1/delta_S
+    member_stiffness : [N/m] 1/delta_P
     """
 
     grip: float
@@ -51,7 +56,10 @@ class Clamped:
 
 
 def joint(given: Given) -> NewJoint:
-    """The joint of a drawing; ValueError, one line, for what does not fit."""
+    """Make the parameters of a bolted joint from the options of a drawing.
+
+    Raises ValueError with a one-line message for options that are invalid or contradict each other.
+    """
     length, width = numbers("plate", given["plate"], "mm", "m", by="x", count=2)
     count, thread = layout.bolts(given["bolts"])
     at = layout.positions(given, count)
@@ -120,7 +128,15 @@ def clamped(
     hole: float,
     moduli: tuple[float, float],
 ) -> Clamped:
-    """One bolt and what it clamps. Raises ValueError for thicknesses or diameters that do not fit."""
+    """Compute one bolt with its clamped parts by VDI 2230.
+
+    size      : length and width of the plate [m]
+    positions : (b, 2) [m] of the bolts
+    hole      : diameter [m]
+    moduli    : Young's moduli [Pa] of side 1 and side 2
+
+    Raises ValueError for thicknesses or diameters that contradict each other.
+    """
     head, tapped = given["head"] or "hexagon", bool(given["tapped"])
     bearing = getattr(thread, head)
     if given["bearing"] is not None:
@@ -155,7 +171,7 @@ def clamped(
 
 
 def _thicknesses(given: Given) -> list[float]:
-    """Of the plates [m], or of both together."""
+    """Thickness [m] of each plate, or one value for both plates together."""
     thick = [number("grip", text, "mm", "m") for text in given["grip"]]
     if given["thickness"] is None:
         return thick
@@ -183,17 +199,20 @@ def _each(given: Given) -> list[float]:
 
 
 def outer_diameter(size: tuple[float, float], at: Array) -> float:
-    """D_A [m]: twice a bolt's distance from the nearest edge, or that from the next bolt if less; on average.
+    """Outer diameter D_A [m] of the clamped parts, mean over the bolts.
 
-    Raises ValueError for a bolt beyond the edge.
+    For each bolt: twice the distance to the nearest edge, or the distance to the next bolt if this is
+    smaller.
+
+    Raises ValueError for a bolt outside the plate.
     """
     edge = np.min(np.array(size) - 2.0 * np.abs(at), axis=1)
     if np.min(edge) <= 0.0:
         i = int(np.argmin(edge))
         x, y = at[i] * 1e3
         raise ValueError(f"bolt {i + 1} at ({x:g}, {y:g}) mm leaves the plate")
-    apart = np.hypot(*np.moveaxis(at[:, None, :] - at, -1, 0)) + np.diag(np.full(len(at), np.inf))
-    return float(np.mean(np.minimum(edge, np.min(apart, axis=1))))
+    distance = np.hypot(*np.moveaxis(at[:, None, :] - at, -1, 0)) + np.diag(np.full(len(at), np.inf))
+    return float(np.mean(np.minimum(edge, np.min(distance, axis=1))))
 
 
 def _put_plate(sheet: Sheet, plate: BoltedPlate, one: Clamped, hole_source: tuple[str, str]) -> None:
@@ -219,7 +238,10 @@ def _put_bolts(sheet: Sheet, plate: BoltedPlate, one: Clamped, thread: Thread) -
 
 
 def _preload(sheet: Sheet, given: Given, thread: Thread) -> tuple[float, list[str]]:
-    """Put the preload; the warning if it is more than a bolt of the stated class bears."""
+    """Add the preload [N] to the sheet.
+
+    Returns the preload, and a warning if it exceeds the proof load of the bolt.
+    """
     name = given["property_class"] or "8.8"
     if given["preload"] is None:
         preload = vdi2230.assembly_preload(thread, strength(name, "yield", thread))
@@ -237,15 +259,15 @@ def _preload(sheet: Sheet, given: Given, thread: Thread) -> tuple[float, list[st
 
 
 def _embedding(sheet: Sheet, given: Given, one: Clamped, heights: faces.Heights) -> float:
-    """Put the preload [N] that a bolt loses by embedding."""
+    """Add the preload loss [N] by embedding to the sheet, and return it."""
     if given["embedding"] is not None:
         loss = number("embedding", given["embedding"], "N", "N", None)
         sheet.stated("embedding", loss)
         return loss
-    way = vdi2230.embedding(heights.Rz, 1, bool(given["tapped"]))
-    loss = way / (1.0 / one.bolt + 1.0 / one.members)
+    depth = vdi2230.embedding(heights.Rz, 1, bool(given["tapped"]))
+    loss = depth / (1.0 / one.bolt + 1.0 / one.members)
     text = (
-        f"VDI 2230: {way * 1e6:.3g} um (Table 5: thread, {'head' if given['tapped'] else 'head and nut'}, "
+        f"VDI 2230: {depth * 1e6:.3g} um (Table 5: thread, {'head' if given['tapped'] else 'head and nut'}, "
         f"one interface, Rz {heights.Rz * 1e6:.2g} um, load along the bolt) over delta_S + delta_P"
     )
     sheet.put("embedding", loss, "estimate", text)
@@ -253,7 +275,7 @@ def _embedding(sheet: Sheet, given: Given, one: Clamped, heights: faces.Heights)
 
 
 def _friction(file: ParameterFile, preload: float) -> dict[str, tuple[float, str, str]]:
-    """The shear at which all slips and the loss factor at a part of it, with the range of mu beside them."""
+    """Facts about friction: gross-slip force and loss factor, at mu and at both ends of its range."""
     shear, rows = friction_band(file, preload)
     slip = "shear force at which all of the interface slips"
     loss = f"loss factor of the interface between rigid sides at {shear:.3g} N of shear"
@@ -266,7 +288,10 @@ def _friction(file: ParameterFile, preload: float) -> dict[str, tuple[float, str
 
 
 def _alone(interface: float, one: Clamped) -> str:
-    """That the FMU is the interface alone, whose stiffness [N/m] for each bolt is this, and what it lacks."""
+    """Warning that the FMU contains the interface only, with its share of the compliance.
+
+    interface_stiffness : [N/m] normal stiffness of the interface per bolt
+    """
     share = one.members / (one.members + interface)
     return (
         f"the FMU is the interface alone ({share:.1%} of the compliance along z that it has in series with "
@@ -277,7 +302,7 @@ def _alone(interface: float, one: Clamped) -> str:
 def _facts(
     file: ParameterFile, one: Clamped, heights: faces.Heights, preload: float
 ) -> dict[str, tuple[float, str, str]]:
-    """What a designer wants to know of the joint, beside its parameters."""
+    """Facts for the designer: preload, pressures, stiffnesses, load factor, friction."""
     values = file.values
     state = BoltedJointSpring.of(values).motion(preload, 0.0, REST, REST)
     bolts = values.n_bolts * one.bolt

@@ -1,4 +1,4 @@
-"""The contact in the Modelica library: force over approach from first touch."""
+"""Gear contact in the Modelica library: table of the normal force over the approach from first contact."""
 
 from collections.abc import Sequence
 

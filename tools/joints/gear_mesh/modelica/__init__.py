@@ -1,4 +1,4 @@
-"""The mesh in the Modelica library: force and energy of a tooth pair over its deflection."""
+"""Gear mesh in the Modelica library: tables of force and energy of a tooth pair over its deflection."""
 
 from collections.abc import Sequence
 

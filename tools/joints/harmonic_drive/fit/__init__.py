@@ -1,4 +1,4 @@
-"""What fits the harmonic drive: a measured torque-angle curve, its loops, a robot's log, a catalogue row."""
+"""Fit procedures of the harmonic drive: torque-angle curve, loops, logs of a robot, row of a catalogue."""
 
 from ....fitting.procedure import Procedure, fit_of
 from ....joint_parts import Option

@@ -1,10 +1,11 @@
-"""A catalogue's torsional stiffness to the law of the three lines, or to that of the contact pair.
+"""Parameters of a drive from the torsional stiffness in a catalogue (K1, K2, K3, T1, T2).
 
-`fit_lines` takes the row as it stands, nothing is fitted; beside it the law of the contact pair is, and what
-it makes of the lines is told. `fit_pair` keeps the angle at T1, T2 and the rated torque; between them and up
-to max_torque it follows the polygon as well as a smooth curve can. The unknowns are those of a measured
-curve. `torque_smoothing`, the torque below which the pressure does not grow yet, is T1, where the catalogue's
-stiffness starts to rise; it becomes a fourth unknown if three do not keep the angles.
+Two laws. `catalogue` (`make_line_drive_from_row`): three lines, taken from the row without a fit; for
+comparison the law `hu2023` is fitted too. `hu2023` (`fit_pair`): smooth law of the contact pair. The fit
+meets the angle at T1, T2 and the rated torque, and approximates the lines elsewhere up to max_torque. Its
+unknowns are those of a fit to a measured curve. `torque_smoothing`, the torque below which the pressure does
+not yet grow, is T1, where the stiffness of the catalogue starts to rise. It becomes a fourth unknown if three
+unknowns do not meet the angles.
 """
 
 from collections.abc import Mapping, Sequence
@@ -26,16 +27,17 @@ from . import drive
 from .drive import Row, angle_picture, stiffness, stiffness_picture
 
 FREE = ("K_FTS0", "drive_scale", "zero_torque_pressure")
+"""Parameters of the law `hu2023` that are fitted."""
 FURTHER = "torque_smoothing"
-"""Fitted too if the others alone do not keep the angles."""
+"""Parameter that is fitted too if the others alone do not meet the angles."""
 AIMED = 0.009
-"""Largest relative miss of the angle at T1, T2 and the rated torque [1]: 1 % with a margin."""
+"""Largest relative error [1] of the angle at T1, T2 and the rated torque: 1 % with a margin."""
 TIGHT = (2e-2, 1e-2, 5e-3, 2e-3, 1e-3, 5e-4)
-"""Standard deviations of the angle at the three torques [1], taken in turn until it is kept."""
+"""Relative standard deviations [1] of the angle at these torques, tried in turn until the angles are met."""
 LOOSE = 0.2
-"""Standard deviation of the angle elsewhere [1]: the polygon's corners are no property of the drive."""
+"""Relative standard deviation [1] of the angle at other torques: real drives have no corners."""
 MAX_OVER_RATED = 4.0
-"""max_torque over rated torque [1]: about the repeated peak torque of catalogue drives."""
+"""max_torque over rated torque [1], about the repeated peak torque of catalogue drives."""
 
 
 def fit(
@@ -47,23 +49,33 @@ def fit(
     law: str,
     **row: float,
 ) -> FitResult:
-    """The law of a row, `catalogue` (`fit_lines`) or `hu2023` (`fit_pair`); its rated torque is T2 unless it
-    is stated."""
+    """Make the parameters of a drive from a row of a catalogue.
+
+    fitted_names : names to fit, with the law `hu2023` only; None: those of FITTED_PARAMETERS
+    rated_torque : [N.m]; None: T2
+    source       : where the row is published
+    ratio        : speed ratio [1]; None: that of `start`
+    law          : "catalogue" or "hu2023"
+    row          : K1, K2, K3 [N.m/rad], T1, T2 [N.m]
+
+    Raises ValueError for numbers outside their limits or a name that cannot be fitted, RuntimeError if no law
+    `hu2023` meets the angles.
+    """
     rated, kind = (row["T2"], "estimate") if rated_torque is None else (rated_torque, "catalogue")
-    stated = Row(**row, rated=rated)
-    printed = stated_numbers(stated, kind, ratio, source)
-    return (fit_lines if law == "catalogue" else fit_pair)(stated, start, free, printed, source)
+    catalogue_row = Row(**row, rated=rated)
+    printed = stated_numbers(catalogue_row, kind, ratio, source)
+    return (fit_lines if law == "catalogue" else fit_pair)(catalogue_row, start, free, printed, source)
 
 
 def stated_numbers(
     row: Row, rated_kind: str = "catalogue", ratio: float | None = None, source: str = "catalogue"
 ) -> dict[str, Printed]:
-    """{parameter: number} of a row that is printed in `source`, and of a ratio, if it is known."""
+    """Numbers of a catalogue row with their source: {parameter: number}; with the ratio, if it is known."""
     origin = f"{source} ({row})"
     rated = origin if rated_kind == "catalogue" else "no rated torque given; T2 of the catalogue"
-    found = {name: Printed(getattr(row, name), "catalogue", origin) for name in LINES}
-    found["rated_torque"] = Printed(row.rated, rated_kind, rated)
-    return found if ratio is None else found | {"ratio": Printed(ratio, "catalogue", origin)}
+    numbers = {name: Printed(getattr(row, name), "catalogue", origin) for name in LINES}
+    numbers["rated_torque"] = Printed(row.rated, rated_kind, rated)
+    return numbers if ratio is None else numbers | {"ratio": Printed(ratio, "catalogue", origin)}
 
 
 def fit_pair(
@@ -73,11 +85,13 @@ def fit_pair(
     printed: Mapping[str, Printed] | None = None,
     source: str = "catalogue",
 ) -> FitResult:
-    """The smooth law of a row; `free` None: FREE, and FURTHER if need be.
+    """Fit the smooth law of the contact pair to a row of a catalogue.
 
-    printed : of the row, as `stated_numbers` gives them;  source : where it is printed
+    fitted_names : names to fit; None: FITTED_PARAMETERS, and EXTRA_PARAMETER if the others do not suffice
+    numbers      : of the row, from `source_numbers`; None: those of `row`
+    source       : where the row is published
 
-    Raises ValueError for a name that cannot be fitted, RuntimeError if no law keeps the angles.
+    Raises ValueError for a name that cannot be fitted, RuntimeError if no law meets the angles.
     """
     printed = printed or stated_numbers(row)
     file, rated, origin = start or default("harmonic_drive"), printed["rated_torque"], printed["T1"].source
@@ -88,7 +102,7 @@ def fit_pair(
     torque, most = torques(row, file.values.max_torque), file.values.max_torque
     choices = [tuple(free)] if free else [FREE, (*FREE, FURTHER)]
     file = drive.scaled(file, choices[0], torque, row.angle(torque))
-    solution, tight = _solved(row, file, choices, torque)
+    solution, deviation = _solved(row, file, choices, torque)
     result = fitted(file, solution.values, "catalogue", origin, f"torque 0 to {most:g} N.m")
     result = replace(result, name=f"fitted to {source}")
     miss = drive.windup(result.values, torque) / row.angle(torque) - 1.0
@@ -97,7 +111,7 @@ def fit_pair(
     facts = _angle_errors(row, result.values, {})
     facts["angle_error_largest"] = float(miss[worst]), "1", text
     note = (
-        f"standard deviations: the angle known to {100 * tight:g} % at T1, T2 and rated torque, "
+        f"standard deviations: the angle known to {100 * deviation:g} % at T1, T2 and rated torque, "
         f"{100 * LOOSE:g} % elsewhere"
     )
     pictures = angle_picture(row, result.values, {}, torque), stiffness_picture(row, result.values, {}, most)
@@ -105,34 +119,37 @@ def fit_pair(
 
 
 def torques(row: Row, most: float) -> Array:
-    """The torques [N.m] at which law and polygon are compared: kept ones and some between."""
+    """Torques [N.m] at which the smooth law is compared with the lines, up to about `max_torque`."""
     ends = np.array([0.0, row.T1, row.T2, max(most, 1.5 * row.T2)])
-    between = [np.linspace(a, b, 7)[1:] for a, b in pairwise(ends)]
-    return np.unique(np.concatenate([row.kept, *between]))
+    samples = [np.linspace(a, b, 7)[1:] for a, b in pairwise(ends)]
+    return np.unique(np.concatenate([row.kept, *samples]))
 
 
 def _solved(
     row: Row, file: ParameterFile, choices: Sequence[Sequence[str]], torque: Array
 ) -> tuple[Solution, float]:
-    """The first and loosest of the weighted fits that keeps the angles, and its standard deviation there.
+    """Fit with increasing weight at T1, T2 and the rated torque, until the angles there are met.
 
-    `choices` are the unknowns to try in turn.
+    choices : sets of unknowns to try in turn
+
+    Returns the solution and its relative standard deviation [1] of these angles. Raises RuntimeError if no
+    fit meets them.
     """
-    kept, target = np.isin(torque, row.kept), row.angle(torque)
+    exact, target = np.isin(torque, row.kept), row.angle(torque)
     angles = model(file, lambda joint: drive.windup(joint, torque))
     limits = dict(drive.bounds(file)) | {"K_FTS0": (row.K2, np.inf)}
     best = np.inf
-    for free, tight in product(choices, TIGHT):
-        spread = np.where(kept, tight, LOOSE)
+    for names, deviation in product(choices, TIGHT):
+        scale = np.where(exact, deviation, LOOSE)
         solution = solve(
-            unknowns(file, free, limits),
-            lambda values, spread=spread: (angles(values) / target - 1.0) / spread,  # type: ignore[misc]
+            unknowns(file, names, limits),
+            lambda values, scale=scale: (angles(values) / target - 1.0) / scale,  # type: ignore[misc]
             noise=1.0,
             tolerance=1e-5,
         )
-        worst = float(np.max(np.abs(solution.residuals * spread)[kept]))
+        worst = float(np.max(np.abs(solution.residuals * scale)[exact]))
         if worst <= AIMED:
-            return solution, tight
+            return solution, deviation
         best = min(best, worst)
         file = file.with_values(
             {n: v for n, v in solution.values.items() if n not in solution.at_bound}, "catalogue", "start"
@@ -147,12 +164,12 @@ PAIR = "law of the contact pair"
 
 
 def made(name: str, printed: Mapping[str, Printed], start: ParameterFile | None = None) -> ParameterFile:
-    """The parameters of a catalogue drive.
+    """Make the parameters of a drive with the law `catalogue`.
 
-    printed : {parameter: number}; what is not there is that of `start`, where it has it
-    start   : of a drive with any law; None: the default
+    numbers : {parameter: number with source}; other parameters are those of `start`
+    start   : drive with any law; None: the default drive
 
-    Raises ValueError for a number outside its interval.
+    Raises ValueError for a number outside its limits.
     """
     file = start or default("harmonic_drive")
     kept = ["corner"] if isinstance(file.values, CatalogueDrive) else []
@@ -169,9 +186,9 @@ def fit_lines(
     printed: Mapping[str, Printed] | None = None,
     source: str = "catalogue",
 ) -> FitResult:
-    """The law of a row's lines; arguments as those of `fit_pair`, but that nothing is free.
+    """Make the drive with the three lines of a row. Arguments as for `fit_pair`, but no parameter is fitted.
 
-    Raises ValueError for a name to fit and for numbers outside their intervals.
+    Raises ValueError if `fitted_names` has a name, and for numbers outside their limits.
     """
     if free:
         raise ValueError("the law catalogue has nothing to fit; --free is allowed with --law hu2023")
@@ -191,7 +208,7 @@ def fit_lines(
 
 
 def _pair(row: Row, start: ParameterFile | None) -> tuple[Drive | None, list[str]]:
-    """The law of the contact pair that keeps the row's angles; None and why if none does."""
+    """Law of the contact pair that meets the angles of the row; if there is none, None and a note."""
     try:
         drive: Drive = fit_pair(row, start).parameters.values
     except RuntimeError as error:
@@ -200,7 +217,7 @@ def _pair(row: Row, start: ParameterFile | None) -> tuple[Drive | None, list[str
 
 
 def _angle_errors(row: Row, law: Drive, more: Mapping[str, float]) -> Facts:
-    """How far the law's angle is from the lines at the row's torques, and at more [N.m]."""
+    """Relative errors of the angle of a law at T1, T2, the rated torque, and extra torques [N.m]."""
     facts = {}
     for name, T in {"T1": row.T1, "T2": row.T2, "rated": row.rated, **more}.items():
         miss = float(drive.windup(law, np.array(T)) / row.angle(T)) - 1.0
@@ -214,7 +231,7 @@ def _most(row: Row, most: float) -> Facts:
 
 
 def _pair_facts(row: Row, pair: Drive, most: float) -> Facts:
-    """What the law of the contact pair, which is smooth, makes of the lines."""
+    """Largest angle error, and stiffness errors, of the law of the contact pair compared with the lines."""
     torque = np.linspace(0.0, most, 401)[1:]
     angle = drive.windup(pair, torque) / row.angle(torque) - 1.0
     i = int(np.argmax(np.abs(angle)))

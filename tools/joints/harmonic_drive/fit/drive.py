@@ -1,6 +1,6 @@
-"""What the fits of the drive share: the size of the start, bounds, the angle, and a catalogue's row.
+"""Functions shared by the fits of the drive: start parameters, bounds, wind-up, and the row of a catalogue.
 
-Catalogue practice is K1 up to T1, K2 up to T2, K3 beyond,
+Catalogues state three stiffnesses: K1 below the torque T1, K2 between T1 and T2, K3 above T2. The wind-up is
 
     theta(T) = T1/K1 + (T2 - T1)/K2 + (T - T2)/K3   for T > T2.
 """
@@ -24,33 +24,36 @@ from ....fitting.measurement import Heads
 from ....fitting.outcome import Picture
 
 LEVELS: Mapping[str, tuple[str, ...]] = {"hu2023": ("K_FTS0", "drive_scale"), "catalogue": ("K1", "K2", "K3")}
-"""{law: its stiffnesses}, the two of Eq. 46 or the lines': scaled together they scale K_WTS."""
+"""{law: parameters}; one factor on all of these scales K_WTS (Hu 2023, Eq. 46)."""
 LEAST_PRESSURE = 0.05
-"""Least peak pressure without torque over that at rated torque [1] that a fit may find."""
+"""Lower bound of the peak pressure at zero torque over that at rated torque [1] in a fit."""
 
 
 WINDUP = (1e-5, 0.1)
-"""Wind-up at rated torque [rad] that a drive may have: a hundredth to a hundred times the usual 1e-3."""
+"""Plausible wind-up [rad] at rated torque: from a hundredth to a hundred times the usual 1e-3."""
 
 
 COLUMNS: Mapping[str, Sizes] = {
     "torque": sizes("N.m", "mN.m", "kN.m"),
     "angle": sizes("rad", "mrad", "deg", "arcmin", "arcsec"),
 }
-"""Of a measured torque and wind-up."""
+"""{column: {unit: size in SI}} of measured torque and wind-up."""
 HEADS = Heads("torque", "angle", *COLUMNS.values())
 ARCMIN = COLUMNS["angle"]["arcmin"]
 
 
 def windup(drive: Drive, torque: Array) -> Array:
-    """phi (...) [rad] at torques (...) [N.m]: exactly the exported curve."""
+    """Wind-up (...) [rad] of the midline at torques (...) [N.m], equal to the one of the FMU."""
     return torque_curve(drive).odd_inverse(torque)
 
 
 def resized(start: ParameterFile, rated: float, factor: float, kind: str, source: str) -> ParameterFile:
-    """The drive with another rated torque [N.m]; max_torque = factor x rated, the smoothing in proportion.
+    """Change the rated torque [N.m]; torque_smoothing changes in proportion.
 
-    Raises ValueError if the torque is not positive and finite.
+    max_torque_ratio : new max_torque over the new rated torque [1]
+    origin, source   : of the new rated torque, for the parameter file
+
+    Raises ValueError if the rated torque is not positive and finite.
     """
     if not 0.0 < rated < np.inf:
         raise ValueError(f"rated torque = {rated:g} N.m is outside (0, inf): the drive's rated torque")
@@ -69,11 +72,14 @@ def resized(start: ParameterFile, rated: float, factor: float, kind: str, source
 
 
 def scaled(start: ParameterFile, names: tuple[str, ...], torque: Array, angle: Array) -> ParameterFile:
-    """The start with its stiffness brought to that of a curve, if all of its LEVELS are to be fitted."""
+    """Scale the stiffness of the start parameters to a measured curve, angles (n) [rad] at torques (n) [N.m].
+
+    Only if all STIFFNESS_PARAMETERS of the law are among the names to fit; else `start` is returned.
+    """
     ratio = float(np.sum(windup(start.values, torque) * angle) / np.sum(angle**2))
     level = {name: start.flat[name] * ratio for name in LEVELS.get(start.law, ()) if name in names}
-    whole = level and len(level) == len(LEVELS[start.law])
-    return start.with_values(level, "calibration", "start") if whole else start
+    is_complete = level and len(level) == len(LEVELS[start.law])
+    return start.with_values(level, "calibration", "start") if is_complete else start
 
 
 def with_law(
@@ -83,7 +89,13 @@ def with_law(
     printed: Mapping[str, Printed],
     kept: Sequence[str] = (),
 ) -> ParameterFile:
-    """The drive of `start` with another law, whose numbers are printed; `kept` are those of its own law."""
+    """Change the law of a drive.
+
+    law         : parameter class of the new law
+    name        : of the new parameter file
+    numbers     : {parameter: number with source} of the new law
+    copied_names : parameters of the law of `start` to copy, in addition to those of all drives
+    """
     shared = [label for label, _ in flat_fields(Drive) if label in start.flat] + [*kept]
     values = {label: start.flat[label] for label in shared} | {k: p.value for k, p in printed.items()}
     kinds = {k: v for k, v in start.origins.items() if k in shared} | {k: p.kind for k, p in printed.items()}
@@ -93,25 +105,25 @@ def with_law(
 
 
 def bounds(start: ParameterFile) -> Mapping[str, tuple[float, float]]:
-    """Intervals of the pressures that keep the pair in contact without torque."""
+    """Bounds {parameter: (low, high)} with which the contact pair stays closed at zero torque; else empty."""
     drive: Any = start.values
     if not isinstance(drive, PairDrive):
         return {}
     rated, loss = drive.rated_pressure, drive.pressure_loss
-    least = loss + LEAST_PRESSURE * rated
+    lowest = loss + LEAST_PRESSURE * rated
     return {
-        "zero_torque_pressure": (least, rated),
+        "zero_torque_pressure": (lowest, rated),
         "rated_pressure": (drive.zero_torque_pressure, np.inf),
         "torque_smoothing": (1e-3 * drive.rated_torque, drive.rated_torque),
     }
 
 
 PRINTED = ("1e4 N.m/rad", "N.m/arcmin", "kN.m/rad", "kgf.m/arcmin", "N.m/mrad", "N.mm/rad")
-"""Units in which catalogues print stiffness."""
+"""Units of the stiffness in catalogues."""
 
 
 def _likely(angle: float) -> str:
-    """The unit that brings the wind-up at T2 [rad] nearest to what is usual, the middle of WINDUP."""
+    """Hint which unit of the stiffness makes the wind-up at T2 [rad] closest to the usual one."""
     usual = np.sqrt(np.prod(WINDUP))
     sizes = {u: factor(u, "N.m/rad") for u in PRINTED}
     best = min(sizes, key=lambda u: abs(np.log(angle / sizes[u] / usual)))
@@ -122,7 +134,11 @@ def _likely(angle: float) -> str:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Row:
-    """A row of a catalogue."""
+    """Torsional stiffness and rated torque in a row of a catalogue.
+
+    Raises ValueError if K1, K2, K3 or T1, T2 are not ascending, or if the wind-up at rated torque is outside
+    WIND_UP_RANGE.
+    """
 
     K1: float = quantity("N.m/rad", "stiffness below T1", gt=0.0)
     K2: float = quantity("N.m/rad", "stiffness between T1 and T2", gt=0.0)
@@ -150,19 +166,19 @@ class Row:
             )
 
     def angle(self, torque: ArrayLike) -> Array:
-        """theta (...) [rad] at torques (...) >= 0 [N.m]."""
+        """Wind-up theta (...) [rad] at torques (...) >= 0 [N.m]."""
         T = np.asarray(torque, dtype=np.float64)
         first, second = np.minimum(T, self.T1), np.clip(T - self.T1, 0.0, self.T2 - self.T1)
         return np.asarray(first / self.K1 + second / self.K2 + np.maximum(T - self.T2, 0.0) / self.K3)
 
     def stiffness(self, torque: ArrayLike) -> Array:
-        """K (...) [N.m/rad] at torques (...) >= 0 [N.m]: the steps, that of the line below at a corner."""
+        """Stiffness K1, K2 or K3 (...) [N.m/rad] at torques (...) >= 0 [N.m]; at T1 and T2 the lower one."""
         T = np.asarray(torque, dtype=np.float64)
         return np.where(T <= self.T1, self.K1, np.where(T <= self.T2, self.K2, self.K3))
 
     @property
     def kept(self) -> Array:
-        """The torques [N.m], ascending, at which the law keeps the angle."""
+        """Torques T1, T2 and rated [N.m], ascending, at which a fitted law must meet the angle."""
         return np.unique([self.T1, self.T2, self.rated])
 
     def __str__(self) -> str:
@@ -173,16 +189,20 @@ class Row:
 
 
 _GRID = 400
+"""Points of a plotted curve."""
 
 
 def stiffness(drive: Drive, torque: Array) -> Array:
-    """K_WTS (...) [N.m/rad] of the exported midline at torques (...) >= 0 [N.m]."""
+    """Stiffness K_WTS (...) [N.m/rad] of the exported midline at torques (...) >= 0 [N.m]."""
     curve = torque_curve(drive)
     return curve.derivatives(curve.inverse(torque), 1)[1]
 
 
 def angle_picture(row: Row, law: Drive, also: Mapping[str, Drive], torque: Array) -> Picture:
-    """Wind-up at torques (n) [N.m], misfits of the law; `also` are further laws by name."""
+    """Picture of the wind-up at torques (n) [N.m], with the errors of a law.
+
+    other_laws : {name: further law to plot}
+    """
     grid, target = np.linspace(0.0, torque[-1], _GRID), row.angle(torque)
     return Picture(
         x=torque,
@@ -196,7 +216,10 @@ def angle_picture(row: Row, law: Drive, also: Mapping[str, Drive], torque: Array
 
 
 def stiffness_picture(row: Row, law: Drive, also: Mapping[str, Drive], most: float) -> Picture:
-    """Stiffness up to a torque [N.m] beside the steps of the catalogue, the corners left out."""
+    """Picture of the stiffness of a law and of the catalogue up to `max_torque` [N.m], without the corners.
+
+    other_laws : {name: further law to plot}
+    """
     grid = np.linspace(0.0, most, _GRID)
     torque = grid[1::2][~np.isin(grid[1::2], (row.T1, row.T2))]
     steps = row.stiffness(torque)

@@ -1,12 +1,12 @@
-"""Loops, decays, responses and logs to the hysteresis of the harmonic drive.
+"""Fit of the hysteresis of the harmonic drive to loops, decays, responses or logs.
 
-`fit` takes the midline of the parameters to start from (fit it with `torque-angle` first). Beside it acts the
-friction torque of the exported drive: how far the branches are apart without torque gives `hysteresis_loss`,
-how the torque turns round after a reversal `hysteresis_stiffness`.
+`fit` keeps the midline of the start parameters (fit it with `torque-angle` first). It adds the friction
+torque of the exported drive: the angle between the branches at zero torque determines `hysteresis_loss`, the
+change of the torque after a reversal determines `hysteresis_stiffness`.
 
-`fit_log` finds stiffness too, from a log whose motor has an angle of its own beside the joint's. The wind-up
-is the joint's angle less the motor's over the ratio, the torque that of the teeth. The friction torque
-follows the measured wind-up; where the drive has its zero is found beside.
+`fit_log` also determines the stiffness. It needs a log with the angles of both joint and motor. The wind-up
+is the joint angle minus the motor angle over the ratio; the torque is that of the teeth. The friction torque
+follows the measured wind-up. The zero of the wind-up is a further unknown.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -32,17 +32,19 @@ from .drive import ARCMIN, HEADS
 from .log_reading import Samples
 
 LOSS, STIFFNESS = FREE = ("hysteresis_loss", "hysteresis_stiffness")
+"""Parameters to fit."""
 FIRST = {LOSS: ARCMIN, STIFFNESS: 1.0}
-"""Where the fit starts if the file has no hysteresis: [rad], and over K_WTS without torque [1]."""
+"""Start values if the file has no hysteresis: loss [rad], and stiffness over K_WTS at zero torque [1]."""
 LOSSES = tuple(ARCMIN * np.geomspace(0.03, 10.0, 7))
+"""Further start values of the hysteresis loss [rad]."""
 STIFFNESSES = (0.3, 1.0, 3.0, 10.0)
-"""Where the fit looks for a start, beside the start file's values: [rad], and over K_WTS [1]."""
+"""Further start values of the hysteresis stiffness over K_WTS at zero torque [1]."""
 
 
 def law(drive: Drive) -> HysteresisLaw:
-    """Midline and friction torque of a drive: exactly the exported ones.
+    """Law of the loops of a drive: midline and friction torque, equal to those of the FMU.
 
-    Raises ValueError if there is no such hysteresis.
+    Raises ValueError if the parameters allow no such hysteresis.
     """
     spring = HarmonicDriveSpring.of(drive)
     stiffness, limit = spring.hysteresis.stiffness, spring.hysteresis.limit
@@ -69,23 +71,24 @@ def fit(
     free: Sequence[str] | None = None,
     inertia: float | None = None,
 ) -> FitResult:
-    """Fit a file of loops, decays, responses or frequency and damping over the amplitude (HEADS).
+    """Fit a file of loops, decays, responses, or frequency and damping over the amplitude (columns: HEADS).
 
     Parameters
     ----------
-    free    : names to fit; None: FREE
-    inertia : [kg.m2] what vibrates on the drive; needed unless the file has loops
+    start        : parameters to start from; None: the default drive
+    fitted_names : names to fit; None: FITTED_PARAMETERS
+    inertia      : [kg.m2] that vibrates on the drive; required unless the file has loops
 
-    Raises ValueError, one line: the file, its units, its values; a loop that creates energy; a name that
-    cannot be fitted. RuntimeError if the fit finds no end.
+    Raises ValueError with a one-line message for a bad file, unit or value, a loop that creates energy, or a
+    name that cannot be fitted. Raises RuntimeError if the fit does not converge.
     """
     data = measured(path, HEADS)
     names = list(free or FREE)
     begun = start or default("harmonic_drive")
     if isinstance(data.data, Loops):
         reach = 0.5 * float(np.ptp(data.data.force))
-        wound = float(drive.windup(begun.values, np.array(reach)))
-        HEADS.check_level(data.path, wound / data.amplitude, data.units, begun)
+        wind_up = float(drive.windup(begun.values, np.array(reach)))
+        HEADS.check_level(data.path, wind_up / data.amplitude, data.units, begun)
     file, rest = _begun(begun, names)
 
     def own(values: Mapping[str, float]) -> HysteresisLaw:
@@ -108,7 +111,10 @@ def fit(
 
 
 def _begun(file: ParameterFile, names: Sequence[str]) -> tuple[ParameterFile, float]:
-    """The start with some hysteresis, as a fit in logarithms needs it, and K_WTS [N.m/rad] without torque."""
+    """Start parameters with non-zero hysteresis, and K_WTS [N.m/rad] at zero torque.
+
+    The fit needs non-zero values, because its unknowns are logarithms.
+    """
     rest = float(HarmonicDriveSpring.of(file.values).curve.stiffness[0])
     first = {LOSS: FIRST[LOSS], STIFFNESS: FIRST[STIFFNESS] * rest}
     absent = {name: value for name, value in first.items() if name in names and file.flat[name] == 0.0}
@@ -116,21 +122,21 @@ def _begun(file: ParameterFile, names: Sequence[str]) -> tuple[ParameterFile, fl
 
 
 LINES = ("K1", "K2", "K3")
-"""Stiffnesses of the law `catalogue`; drives of other laws are fitted to loops."""
+"""Stiffnesses of the law `catalogue`. The fit to a log needs this law."""
 OWN = (*LINES, LOSS)
-"""What is fitted here."""
+"""Parameters that `fit_log` can fit."""
 ROTOR = "motor_inertia"
-"""Beside these, where nobody states it."""
+"""Further unknown if the user does not state it."""
 FIRST_LOSS = 0.3 * ARCMIN
-"""Where hysteresis_loss starts [rad] if the file has none."""
+"""Start value of hysteresis_loss [rad] if the file has no hysteresis."""
 LEAST_PART = 1e-2
-"""Of where the fit starts [1], below which hysteresis is none."""
+"""Lower bound of hysteresis loss and rotor inertia over a start value [1]."""
 SETTLED = 10
-"""First samples that are left out: the hysteresis has no history yet."""
+"""Number of first samples that are ignored, because the history of the hysteresis is unknown there."""
 
 
 def wind_up(samples: Samples, ratio: float) -> Array:
-    """Wind-up (n) [rad] of the joint against the motor, less its mean; the motor may turn either way."""
+    """Wind-up (n) [rad] between joint and motor, minus its mean. The motor angle may have either sign."""
     sense = np.sign(np.dot(samples.q - samples.q.mean(), samples.motor - samples.motor.mean()))
     angle = samples.q - sense * samples.motor / abs(ratio)
     return np.asarray(angle - angle.mean())
@@ -139,14 +145,14 @@ def wind_up(samples: Samples, ratio: float) -> Array:
 def rotor(
     file: ParameterFile, phi: Array, tau: Array, spread: Array, relief: Array, most: float
 ) -> tuple[float, float] | None:
-    """Inertia of the rotor and its standard deviation [kg.m2] by a path of wind-ups (n) [rad]; None if these
-    do not determine it.
+    """Fit the inertia of the rotor to measured wind-ups (n) [rad].
 
-    tau, spread : as in `fit`, if it were none
-    relief      : (n) [N.m/(kg.m2)] what of them it takes
-    most        : all of the inertia is the rotor's [kg.m2]
+    tau, torque_changes : as in `fit_log`, for a rotor without inertia
+    torque_per_inertia  : (n) [N.m/(kg.m2)] change of tau by the inertia of the rotor
+    max_inertia         : [kg.m2] upper bound: the total inertia belongs to the rotor
 
-    Raises RuntimeError if the fit finds no end.
+    Returns inertia and standard deviation [kg.m2]; None if the data do not determine them. Raises
+    RuntimeError if the fit does not converge.
     """
     own = [name for name in OWN if name in file.flat]
     wanted = Unknown(ROTOR, "kg.m2", 0.1 * most, LEAST_PART * most, most)
@@ -158,11 +164,13 @@ def rotor(
 def fit_log(
     file: ParameterFile, names: Sequence[str], phi: Array, tau: Array, spread: Array
 ) -> tuple[Solution, Picture]:
-    """Fit names of OWN to a path of wind-ups (n) [rad] under torques (n) [N.m].
+    """Fit stiffness and hysteresis to measured wind-ups phi (n) [rad] at torques tau (n) [N.m].
 
-    spread : (k, n) changes of the torques by k independent standard deviations; they widen the covariance
+    names          : of LOG_PARAMETERS
+    torque_changes : (k, n) [N.m] changes of tau by k independent standard deviations of the load; they are
+                     added to the covariance of the fit
 
-    Raises RuntimeError if the fit finds no end.
+    Raises RuntimeError if the fit does not converge.
     """
     solution, law = _solved(file, names, phi, lambda values: tau, spread)
     labels = "torque at the joint [N m]", "wind-up [arcmin]", "log - law [arcmin]"
@@ -177,13 +185,18 @@ def _solved(
     spread: Array,
     more: Sequence[Unknown] = (),
 ) -> tuple[Solution, Array]:
-    """The fit of names of OWN, and of what else decides the torque (n) [N.m]; and the law's wind-up (n)."""
+    """Fit stiffness and hysteresis to wind-ups. Returns the solution, and the wind-up (n) [rad] of the law.
+
+    torque         : {name: value} -> torque (n) [N.m]
+    torque_changes : as in `fit_log`
+    extra_unknowns : on which the torque depends
+    """
     begin = {LOSS: FIRST_LOSS} if file.flat[LOSS] == 0.0 else {}
     start = file.with_values({n: v for n, v in begin.items() if n in names}, "calibration", "start")
     path = phi - phi[0]
 
     def angle(values: Mapping[str, float], tau: Array) -> Array:
-        """Wind-up (n) [rad] by the law, less its mean."""
+        """Wind-up (n) [rad] of the law, shifted to the mean of the measured one."""
         own = {name: values[name] for name in names}
         spring = HarmonicDriveSpring.of(file.with_values(own, "calibration", "fit").values)
         found = spring.curve.odd_inverse(tau - _friction(spring, path))
@@ -201,7 +214,7 @@ def _solved(
 
 
 def _friction(spring: HarmonicDriveSpring, path: Array) -> Array:
-    """Friction torque (n) [N.m] of the hysteresis along a path of wind-ups (n) [rad] from rest."""
+    """Friction torque (n) [N.m] of the hysteresis along wind-ups (n) [rad], starting at rest."""
     sliders = spring.hysteresis
     if not sliders.acts:
         return np.zeros(path.size)
@@ -210,7 +223,10 @@ def _friction(spring: HarmonicDriveSpring, path: Array) -> Array:
 
 
 def _with_turns(path: Array) -> tuple[Array, NDArray[np.int_]]:
-    """A path (n) with the vertices of the parabolas where it turns between samples, and where these are."""
+    """Path (n) with its turning points inserted, and indices (n) of the samples in the longer path.
+
+    A turning point between samples is the vertex of a parabola.
+    """
     before, after = np.diff(path)[:-1], np.diff(path)[1:]
     turns = np.flatnonzero(before * after < 0.0)
     one, two = before[turns], after[turns]

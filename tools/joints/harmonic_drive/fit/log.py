@@ -1,6 +1,7 @@
-"""A robot's log to the friction of its drive: steady speeds, or motion with time; facts and pictures.
+"""Fit of the friction of a harmonic drive to logs of a robot: motion over time, or tables of steady speeds.
 
-The last 30 % of each log, or every third row of a table, are predicted by a fit to the rest.
+For validation the last 30 % of each log, or every third row of a table, are predicted by a fit to the other
+data.
 """
 
 from collections.abc import Iterator, Sequence
@@ -22,8 +23,10 @@ from .log_friction import FittedLog, LinearTerms, driven, fitted_to, wanted_of, 
 from .log_reading import ONE_SPEED, Samples, joined, named, read
 
 LEVEL = 0.95
+"""Confidence level of the intervals [1]."""
 WHOLE, SURE = 1.1, 4.0
-"""Share [1] of all inertia that a rotor may seem to be, and standard deviations [1] of it beyond that."""
+"""Bound of the stated rotor inertia: first value times the fitted total inertia, plus second value times the
+standard deviation of the total inertia [1]."""
 
 
 def fit(
@@ -39,15 +42,16 @@ def fit(
 
     Parameters
     ----------
-    start           : with the ratio of the drive; None: the default, with `ratio`
-    free            : names to fit; None: those of FREE that the logs can speak of
-    columns         : `NAME=HEADING` or `NAME=HEADING [UNIT]` for files with other headings
-    torque_constant : torque of the motor over its current [N.m/A]
-    motor_inertia   : of the rotor [kg.m2], which the teeth do not carry; None: found from the wind-up where
-        the motor has an angle of its own
+    start           : parameters to start from, with the ratio of the drive; None: the default, with `ratio`
+    fitted_names    : names to fit; None: the parameters that the logs can determine
+    columns         : `NAME=HEADING` or `NAME=HEADING [UNIT]`, for files with other headings
+    torque_constant : motor torque over motor current [N.m/A]
+    ratio           : speed ratio [1]; None: that of `start`
+    motor_inertia   : [kg.m2] of the rotor, whose inertia torque does not load the teeth; None: fitted to the
+                      wind-up, if the log has the motor angle
 
-    Raises ValueError, one line: a file, its units, its values; a name that cannot be fitted. RuntimeError if
-    the fit finds no end.
+    Raises ValueError with a one-line message for a bad file, unit or value, or a name that cannot be fitted.
+    Raises RuntimeError if the fit does not converge.
     """
     file = _begun(start, ratio)
     names = named(columns or ())
@@ -107,19 +111,19 @@ def fit(
 
 
 def _within(rotor: float, whole: FittedLog) -> None:
-    """Raise ValueError for a rotor [kg.m2] that is more than all inertia of the log."""
-    there = rotor * whole.drive.ratio**2
-    most = WHOLE * whole.inertia + SURE * float(np.sqrt(whole.covariance[0, 0]))
-    if there > most:
+    """Check the rotor inertia [kg.m2]. Raises ValueError if it exceeds the total inertia in the log."""
+    at_joint = rotor * whole.drive.ratio**2
+    limit = WHOLE * whole.inertia + SURE * float(np.sqrt(whole.covariance[0, 0]))
+    if at_joint > limit:
         hint = f"; stated at the joint, it is {rotor / whole.drive.ratio**2:.3g} kg.m2 of the rotor"
         raise ValueError(
-            f"--motor-inertia = {rotor:g} kg.m2 times ratio^2 is {there:.4g} kg.m2 at the joint, outside "
-            f"[0, {most:.4g}] kg.m2, of arm and rotor in the log{hint if rotor <= most else ''}"
+            f"--motor-inertia = {rotor:g} kg.m2 times ratio^2 is {at_joint:.4g} kg.m2 at the joint, outside "
+            f"[0, {limit:.4g}] kg.m2, of arm and rotor in the log{hint if rotor <= limit else ''}"
         )
 
 
 def _rotor(file: ParameterFile, log: Samples, whole: FittedLog) -> tuple[float, float] | None:
-    """Inertia of the rotor and its deviation [kg.m2], if a log with the motor's angle determines it."""
+    """Rotor inertia and its standard deviation [kg.m2]; None if the log does not determine them."""
     if file.law != "catalogue":
         return None
     square = whole.drive.ratio**2
@@ -130,7 +134,10 @@ def _rotor(file: ParameterFile, log: Samples, whole: FittedLog) -> tuple[float, 
 def _link(
     file: ParameterFile, log: Samples, whole: FittedLog, free: Sequence[str] | None
 ) -> tuple[tuple[Solution, Picture] | None, list[str]]:
-    """Stiffness and hysteresis of a log with the motor's angle, or why they are not found."""
+    """Fit stiffness and hysteresis to a log with the motor angle.
+
+    Returns solution and picture, or None if there is no such fit; and notes.
+    """
     if free and not any(name in hysteresis.OWN for name in free):
         return None, []
     names = [name for name in hysteresis.OWN if name in file.flat and (not free or name in free)]
@@ -145,7 +152,7 @@ def _link(
 
 
 def _both(one: Solution, other: Solution) -> Solution:
-    """Two fits of different unknowns to different data as one, in standard deviations of their noise."""
+    """Combine two independent fits to one solution; residuals are divided by the noise of each fit."""
     scaled = [(fit.residuals / fit.noise, fit.jacobian / fit.noise) for fit in (one, other)]
     return Solution(
         unknowns=(*one.unknowns, *other.unknowns),
@@ -160,7 +167,7 @@ def _both(one: Solution, other: Solution) -> Solution:
 
 
 def _begun(start: ParameterFile | None, ratio: float | None) -> ParameterFile:
-    """The file to start from, with its ratio."""
+    """Start parameters with the speed ratio. Raises ValueError if neither a file nor a ratio is given."""
     if start is None and ratio is None:
         raise ValueError("the log does not tell the ratio; expected --params FILE of the drive, or --ratio")
     file = start or default("harmonic_drive")
@@ -168,7 +175,7 @@ def _begun(start: ParameterFile | None, ratio: float | None) -> ParameterFile:
 
 
 def _speeds(label: str, samples: Samples) -> None:
-    """Raise ValueError unless the samples have several speeds."""
+    """Check that the samples have several speeds. Raises ValueError if not."""
     speed = np.abs(samples.dq)
     speed = speed[speed > 0.0]
     if speed.size == 0:
@@ -183,7 +190,10 @@ def _speeds(label: str, samples: Samples) -> None:
 
 
 def _intervals(solution: Solution) -> dict[str, tuple[float, float]]:
-    """{name: ends of the interval} by Student's t, in logarithms; of what is determined."""
+    """Confidence intervals {name: (low, high)} by Student's t over the logarithm.
+
+    Parameters that the data do not determine have none.
+    """
     spare = max(solution.residuals.size - len(solution.unknowns), 1)
     factor = float(stats.t.ppf(0.5 + 0.5 * LEVEL, spare))
     loose = undetermined(solution)
@@ -195,7 +205,7 @@ def _intervals(solution: Solution) -> dict[str, tuple[float, float]]:
 
 
 def _span(samples: Samples) -> str:
-    """Over which speeds and temperatures, in words."""
+    """Text with the ranges of speed and temperature."""
     speed = np.abs(samples.dq)
     text = f"speeds of the joint {speed.min():.3g} to {speed.max():.3g} rad/s"
     known = samples.temperature[np.isfinite(samples.temperature)]
@@ -203,14 +213,14 @@ def _span(samples: Samples) -> str:
 
 
 def facts(file: ParameterFile, samples: Samples, whole: FittedLog, wanted: Sequence[str]) -> Facts:
-    """Residual, what was found beside, and the held-out part beside a constant."""
+    """Facts about the fit: inertia, offset, gravity, residual, prediction error of held-out samples."""
     ratio = abs(whole.drive.ratio)
-    beside = LinearTerms.of(samples, ratio)
+    terms = LinearTerms.of(samples, ratio)
     units = {"inertia": "kg.m2", "offset": "N.m", "gravity_cos": "N.m", "gravity_sin": "N.m"}
     texts = {"inertia": "of arm and rotor at the joint", "offset": "of the motor's torque"}
     facts = {
         name: (float(value), units[name], texts.get(name, f"{name[8:]}(q) part of gravity at the joint"))
-        for name, value in zip(beside.names, whole.linear, strict=True)
+        for name, value in zip(terms.names, whole.linear, strict=True)
     }
     if whole.rotor_deviation:
         text = f"of the rotor, from the wind-up; standard deviation {whole.rotor_deviation:.2g}"
@@ -221,11 +231,11 @@ def facts(file: ParameterFile, samples: Samples, whole: FittedLog, wanted: Seque
         "root mean square, at the motor",
     )
     early, late = samples.part(~samples.later), samples.part(samples.later)
-    if late.dq.size and early.dq.size > len(wanted) + len(beside.names):
-        part = fitted_to(file, early, wanted, whole.rotor)
-        miss = _rms(late.torque - part.torque(late)[1])
+    if late.dq.size and early.dq.size > len(wanted) + len(terms.names):
+        early_fit = fitted_to(file, early, wanted, whole.rotor)
+        error = _rms(late.torque - early_fit.torque(late)[1])
         facts["held_out"] = (
-            miss,
+            error,
             "N.m",
             f"the same of {late.dq.size} samples that a fit to the rest predicts",
         )
@@ -235,15 +245,13 @@ def facts(file: ParameterFile, samples: Samples, whole: FittedLog, wanted: Seque
 
 
 def _constant(early: Samples, late: Samples, ratio: float) -> Array:
-    """Torque (n) [N.m] at later samples by what is linear and a constant, fitted to earlier ones."""
-    matrices = []
+    """Motor torque (n) [N.m] of later samples, by a model with constant friction fitted to earlier ones."""
+    models = []
     for samples in (early, late):
-        beside = LinearTerms.of(samples, ratio)
-        matrices.append(
-            (np.concatenate([np.ones((samples.dq.size, 1)), beside.matrix], axis=1), beside.known)
-        )
-    (first, known), (then, more) = matrices
-    return np.asarray(then @ np.linalg.lstsq(first, early.torque - known)[0] + more)
+        terms = LinearTerms.of(samples, ratio)
+        models.append((np.concatenate([np.ones((samples.dq.size, 1)), terms.matrix], axis=1), terms.known))
+    (early_matrix, early_known), (late_matrix, late_known) = models
+    return np.asarray(late_matrix @ np.linalg.lstsq(early_matrix, early.torque - early_known)[0] + late_known)
 
 
 def _rms(values: Array) -> float:
@@ -256,7 +264,7 @@ _UNLOADED, _WARMTH = "friction without load [mN m]", "temperature [degrees C]"
 
 
 def pictures(samples: Samples, law: FittedLog) -> Iterator[Picture]:
-    """Over the speed of the joint, the time, the temperature, as far as the log has them."""
+    """Pictures of the friction over speed, time and temperature, as far as the log has these columns."""
     braked, torque = law.torque(samples)
     misfit = samples.torque - torque
     measured = braked + misfit
@@ -273,7 +281,7 @@ def pictures(samples: Samples, law: FittedLog) -> Iterator[Picture]:
 
 
 def _over_speed(samples: Samples, law: FittedLog, misfit: Array) -> Picture:
-    """Without load, at the median of the temperatures; held-out rows of a table are marked."""
+    """Picture of the no-load friction over speed, at the median temperature; held-out rows are marked."""
     fastest = float(np.max(np.abs(samples.dq)))
     speed = np.linspace(-fastest, fastest, 400)
     known = samples.temperature[np.isfinite(samples.temperature)]
@@ -285,5 +293,5 @@ def _over_speed(samples: Samples, law: FittedLog, misfit: Array) -> Picture:
 
 
 def _picture(x: Array, y: Array, misfit: Array, line: tuple[Array, Array], label: str) -> Picture:
-    """Torques in mN m; a line through many samples in their order."""
+    """Picture of friction torques y (n) [N.m] over x (n), with errors (n) [N.m] and a curve of the law."""
     return Picture(x, MILLI * y, MILLI * misfit, (line[0], MILLI * line[1]), (label, _FRICTION, _MISFIT))

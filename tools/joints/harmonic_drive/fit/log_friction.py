@@ -1,11 +1,12 @@
-"""Friction of a drive from samples of a log, by least squares: the torque of the robot's motor is
+"""Least-squares fit of the friction of a drive to samples of logs. Model of the motor torque [N.m]:
 
-    torque = friction(|ratio| dq, load, temperature) + inertia ddq + gravity/|ratio| + offset
+    torque = friction(|ratio| dq, load, temperature) + inertia ddq/|ratio| + gravity/|ratio| + offset
 
-in the sense of the joint, so that the ratio has no sign. The inertia, an offset of the current and, where it
-is not measured, gravity = a cos(q) + b sin(q), are linear and eliminated; the load that the teeth carry is
-gravity and, of a rotor that is known, what its inertia leaves for the arm. The other parameters are fitted
-over their logarithms; the load, which some of them decide, is fixed in each of a few rounds.
+All torques are positive in the direction of the joint angle q, so that the ratio has no sign. Three terms are
+linear in their unknowns and are eliminated: the inertia at the joint, an offset of the current, and gravity =
+a cos(q) + b sin(q) if it is not measured. The load of the teeth is gravity plus the inertia torque of the
+arm, that is of the total inertia without the rotor. The other unknowns are fitted over their logarithms. The
+load depends on them: it is fixed during each fit, and updated for the next of ROUNDS fits.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -25,11 +26,11 @@ from .log_reading import Samples
 
 @dataclass(frozen=True, slots=True)
 class LinearTerms:
-    """What is linear in unknowns beside the friction.
+    """Terms of the motor torque that are linear in their unknowns: inertia, offset, gravity.
 
-    matrix : (n, k) torque of the motor [N.m] for each unknown
-    known  : (n) torque [N.m] for the gravity that is measured
-    names  : (k)
+    matrix           : (n, k) motor torque at the samples per unit of each unknown
+    measured_gravity : (n) [N.m] motor torque for the measured gravity; 0 if it is not measured
+    names            : (k) of the unknowns
     """
 
     matrix: Array
@@ -38,7 +39,7 @@ class LinearTerms:
 
     @classmethod
     def of(cls, samples: Samples, ratio: float) -> "LinearTerms":
-        """Of samples; ratio > 0."""
+        """Terms at samples of logs, for a speed ratio > 0."""
         columns: dict[str, Array] = {}
         dynamic = samples.dynamic.astype(float)
         measured = np.isfinite(samples.gravity)
@@ -56,22 +57,27 @@ class LinearTerms:
         return cls(matrix, known, tuple(columns))
 
     def found(self, rest: Array) -> Array:
-        """The unknowns (k) that leave least of a torque (n)."""
+        """Solve for the unknowns (k) by linear least squares, from the torque (n) [N.m] without friction."""
         return np.asarray(np.linalg.lstsq(self.matrix, rest)[0]) if self.names else np.zeros(0)
 
     def load(self, samples: Samples, unknowns: Array, ratio: float, rotor: float) -> Array:
-        """Torque (n) [N.m] at the joint that the teeth carry, positive where the motor holds it."""
-        parts = dict(zip(self.names, unknowns.tolist(), strict=True))
-        arm = max(parts.get("inertia", 0.0) - rotor * ratio**2, 0.0)
+        """Load (n) [N.m] of the teeth: torque of the drive on the arm, positive in the direction of q.
+
+        rotor_inertia : [kg.m2]
+        """
+        values = dict(zip(self.names, unknowns.tolist(), strict=True))
+        arm = max(values.get("inertia", 0.0) - rotor * ratio**2, 0.0)
         gravity = [n for n, name in enumerate(self.names) if name.startswith("gravity")]
-        swung = ratio * self.matrix[:, gravity] @ unknowns[gravity]
-        return np.asarray(arm * samples.ddq + swung + ratio * self.known)
+        fitted_gravity = ratio * self.matrix[:, gravity] @ unknowns[gravity]
+        return np.asarray(arm * samples.ddq + fitted_gravity + ratio * self.known)
 
 
 def friction(drive: Drive, dq: Array, temperature: Array, load: Array) -> Array:
-    """Torque (...) [N.m] against the motion, of a drive in motion that carries loads (...) [N.m].
+    """Friction torque (...) [N.m] at the motor, of a moving drive.
 
-    dq : (...) speed of the joint [rad/s];  temperature : (...) [K], NaN: that of the parameters
+    dq          : speed (...) [rad/s] of the joint
+    temperature : (...) [K] of the lubricant; NaN: reference temperature of the parameters
+    load        : (...) [N.m] of the teeth, at the joint
     """
     forward = replace(drive, ratio=abs(drive.ratio))
     warmth = np.where(np.isfinite(temperature), temperature, REFERENCE)
@@ -81,7 +87,7 @@ def friction(drive: Drive, dq: Array, temperature: Array, load: Array) -> Array:
 
 
 def filtered(drive: Drive, samples: Samples, load: Array) -> Array:
-    """The same (n) at samples, through their filter."""
+    """Friction torque (n) [N.m] at samples, smoothed by the filter of the log."""
     warmth, carried = samples.temperature[:, None], load[:, None]
     return np.asarray(np.sum(samples.weights * friction(drive, samples.speeds, warmth, carried), axis=1))
 
@@ -90,30 +96,35 @@ DRY, STRIBECK, VISCOUS = "friction_coulomb", "friction_stribeck", "friction_visc
 LOSS, BACK = "load_loss", "load_loss_back"
 WARM = ("viscous_temperature_coefficient", "dry_temperature_coefficient")
 FREE = (DRY, STRIBECK, VISCOUS, LOSS, BACK, *WARM)
+"""Parameters of the friction that can be fitted."""
 ROUNDS = 4
-"""Fits, each with the load of the one before."""
+"""Number of fits, each with the load that follows from the fit before."""
 WARMED = 5.0
-"""Range of temperatures [K] below which a log says nothing of its law."""
+"""Range of temperatures [K] that a log needs for a fit of the temperature coefficients."""
 LOADED = 0.02
-"""Largest load over rated torque [1] below which a log says nothing of the losses with load."""
+"""Largest load over rated torque [1] that a log needs for a fit of the load-dependent losses."""
 FIRST = {LOSS: 0.05, BACK: 0.05, WARM[0]: 0.02, WARM[1]: 0.01}
-"""Where the fit starts if the file has none [1], [1/K]."""
+"""Start values if the file has 0: losses [1], temperature coefficients [1/K]."""
 LEAST_PART = 1e-3
-"""Of where the fit starts [1], below which a parameter is none."""
+"""Lower bound of a parameter over its start value [1]."""
 BLIND, AS_WELL = 2.0, 2.0
-"""Factor [1] by which a parameter is left open that may stay as it is; standard deviations of the residual
-[1], for each of them, up to which the file's values fit as well."""
+"""Standard deviation of a parameter, as a factor [1], above which it may be undetermined; and increase of the
+residual, in standard deviations for each such parameter [1], up to which the values of the file fit as
+well."""
 SMALL = 1e-4
-"""Step in the logarithms [1] over which what follows from them is taken as straight."""
+"""Step of the logarithms of the parameters [1] for finite differences."""
 
 
 @dataclass(frozen=True, slots=True)
 class FittedLog:
-    """A fit to samples.
+    """Friction model fitted to the samples of logs.
 
-    linear     : (k) what is linear beside the drive's friction
-    covariance : (k, k) of these
-    rotor      : inertia [kg.m2] that the teeth do not carry, and its standard deviation
+    drive           : with the fitted friction
+    solution        : of the fit of the friction parameters
+    linear          : (k) unknowns of the linear terms: inertia [kg.m2], offset, gravity [N.m]
+    covariance      : (k, k) of `linear`
+    rotor_inertia   : [kg.m2]
+    rotor_deviation : [kg.m2] standard deviation of the rotor inertia
     """
 
     drive: Drive
@@ -125,50 +136,56 @@ class FittedLog:
 
     @property
     def inertia(self) -> float:
-        """Of arm and rotor at the joint [kg.m2], the first of what is linear in a log of motion."""
+        """Inertia [kg.m2] of arm and rotor at the joint; for logs with a time only."""
         return float(self.linear[0])
 
     def torque(self, samples: Samples) -> tuple[Array, Array]:
-        """Friction (n) and all of the motor's torque (n) [N.m] at samples."""
+        """Friction torque (n) [N.m] and total torque (n) [N.m] of the motor at samples."""
         ratio = abs(self.drive.ratio)
-        beside = LinearTerms.of(samples, ratio)
-        load = beside.load(samples, self.linear, ratio, self.rotor)
-        braked = filtered(self.drive, samples, load)
-        return braked, braked + beside.matrix @ self.linear + beside.known
+        terms = LinearTerms.of(samples, ratio)
+        load = terms.load(samples, self.linear, ratio, self.rotor)
+        friction_torque = filtered(self.drive, samples, load)
+        return friction_torque, friction_torque + terms.matrix @ self.linear + terms.known
 
     def load(self, samples: Samples) -> tuple[Array, Array]:
-        """Load (n) [N.m] of the teeth, and (k, n) its changes by k independent standard deviations."""
+        """Load (n) [N.m] of the teeth, and its changes (k, n) by k independent standard deviations."""
         ratio = abs(self.drive.ratio)
-        beside = LinearTerms.of(samples, ratio)
-        found = beside.load(samples, self.linear, ratio, self.rotor)
-        variances, ways = np.linalg.eigh(self.covariance)
-        ends = self.linear + np.sqrt(np.maximum(variances, 0.0))[:, None] * ways.T
-        ways_off = [*((end, self.rotor) for end in ends), (self.linear, self.rotor + self.rotor_deviation)]
-        changes = [beside.load(samples, end, ratio, rotor) - found for end, rotor in ways_off]
-        return found, np.reshape(changes, (len(changes), found.size))
+        terms = LinearTerms.of(samples, ratio)
+        load = terms.load(samples, self.linear, ratio, self.rotor)
+        variances, directions = np.linalg.eigh(self.covariance)
+        ends = self.linear + np.sqrt(np.maximum(variances, 0.0))[:, None] * directions.T
+        cases = [*((end, self.rotor) for end in ends), (self.linear, self.rotor + self.rotor_deviation)]
+        changes = [terms.load(samples, end, ratio, rotor) - load for end, rotor in cases]
+        return load, np.reshape(changes, (len(changes), load.size))
 
     def unloaded(self, dq: Array, temperature: float) -> Array:
-        """Friction (n) [N.m] without load at speeds of the joint [rad/s] and a temperature [K]."""
+        """No-load friction torque (n) [N.m] at joint speeds (n) [rad/s] and a temperature [K]."""
         return friction(self.drive, dq, np.full(dq.size, temperature), np.zeros(dq.size))
 
 
 def wanted_of(
     samples: Samples, drive: Drive, free: Sequence[str], rotor: float
 ) -> tuple[list[str], list[str]]:
-    """Names to fit, and why others of FREE are left as they are."""
+    """Select the parameters to fit: those that the samples can determine.
+
+    fitted_names  : names that the user states; empty: select from FITTED_PARAMETERS
+    rotor_inertia : [kg.m2]
+
+    Returns the names, and notes why other parameters are not fitted.
+    """
     if free:
         return list(free), []
     left: dict[str, str] = {}
-    beside, linear = _straight(samples, drive)
-    load = beside.load(samples, linear[2:], abs(drive.ratio), rotor)  # with constant dry and viscous friction
+    terms, linear = _straight(samples, drive)
+    load = terms.load(samples, linear[2:], abs(drive.ratio), rotor)  # with constant dry and viscous friction
     if np.max(np.abs(load)) < LOADED * drive.rated_torque:
         text = f"the load stays below {LOADED:g} times the rated torque"
         left |= {LOSS: text, BACK: text}
     else:
-        driven = load * samples.dq < -LOADED * drive.rated_torque * np.abs(samples.dq)
+        back_driven = load * samples.dq < -LOADED * drive.rated_torque * np.abs(samples.dq)
         if drive.load_loss_back < 0.0:
             left[BACK] = "it is that of load_loss in the start file"
-        elif not driven.any():
+        elif not back_driven.any():
             left[BACK] = "the load never drives the motor"
     known = samples.temperature[np.isfinite(samples.temperature)]
     if known.size == 0 or np.ptp(known) < WARMED:
@@ -182,71 +199,81 @@ def wanted_of(
 
 
 def _straight(samples: Samples, drive: Drive) -> tuple[LinearTerms, Array]:
-    """Dry and viscous friction and what is linear, by one linear least squares."""
+    """Estimate all terms by one linear fit, with constant dry friction and viscous friction.
+
+    Returns the linear terms, and dry friction [N.m], viscous coefficient [N.m.s/rad] and their unknowns.
+    """
     ratio = abs(drive.ratio)
-    beside = LinearTerms.of(samples, ratio)
-    steady = np.stack([np.sign(samples.dq), ratio * samples.dq], axis=1)
-    whole = np.concatenate([steady, beside.matrix], axis=1)
-    return beside, np.linalg.lstsq(whole, samples.torque - beside.known)[0]
+    terms = LinearTerms.of(samples, ratio)
+    friction_terms = np.stack([np.sign(samples.dq), ratio * samples.dq], axis=1)
+    matrix = np.concatenate([friction_terms, terms.matrix], axis=1)
+    return terms, np.linalg.lstsq(matrix, samples.torque - terms.known)[0]
 
 
 def fitted_to(file: ParameterFile, samples: Samples, wanted: Sequence[str], rotor: float) -> FittedLog:
-    """The fit of some parameters to samples."""
+    """Fit friction parameters and linear terms to samples.
+
+    names         : of the friction parameters to fit
+    rotor_inertia : [kg.m2]
+    """
     ratio = abs(file.values.ratio)
-    beside, linear = _straight(samples, file.values)
+    terms, linear = _straight(samples, file.values)
     begin, linear = _first(file, samples, linear), linear[2:]
     changed = file.with_values({n: v for n, v in begin.items() if n in wanted}, "calibration", "start")
     least = {name: (LEAST_PART * value, np.inf) for name, value in begin.items()}
     for _ in range(ROUNDS):
-        load = beside.load(samples, linear, ratio, rotor)
+        load = terms.load(samples, linear, ratio, rotor)
 
-        def rest(values: Mapping[str, float], load: Array = load) -> Array:
+        def net_torque(values: Mapping[str, float], load: Array = load) -> Array:
+            """Motor torque (n) [N.m] without friction and measured gravity."""
             drive = file.with_values(values, "calibration", "fit").values
-            braked = filtered(drive, samples, load)
-            return np.asarray(samples.torque - beside.known - braked)
+            return np.asarray(samples.torque - terms.known - filtered(drive, samples, load))
 
-        def residuals(values: Mapping[str, float], rest=rest) -> Array:  # type: ignore[no-untyped-def]
-            left = rest(values)
-            return np.asarray(left - beside.matrix @ beside.found(left))
+        def residuals(values: Mapping[str, float], torque=net_torque) -> Array:  # type: ignore[no-untyped-def]
+            remaining = torque(values)
+            return np.asarray(remaining - terms.matrix @ terms.found(remaining))
 
-        solution = solve(unknowns(changed, wanted, least), residuals, nuisances=len(beside.names))
-        linear = beside.found(rest(solution.values))
+        solution = solve(unknowns(changed, wanted, least), residuals, nuisances=len(terms.names))
+        linear = terms.found(net_torque(solution.values))
         changed = file.with_values(solution.values, "calibration", "fit")
-    own = solution.noise**2 * np.linalg.pinv(beside.matrix.T @ beside.matrix)
-    follows = _deviations(solution, lambda values: beside.found(rest(values)))
-    return FittedLog(changed.values, solution, linear, own + follows.T @ follows, rotor, 0.0)
+    direct = solution.noise**2 * np.linalg.pinv(terms.matrix.T @ terms.matrix)
+    indirect = _deviations(solution, lambda values: terms.found(net_torque(values)))
+    return FittedLog(changed.values, solution, linear, direct + indirect.T @ indirect, rotor, 0.0)
 
 
 def without_blind(
     file: ParameterFile, samples: Samples, fit: FittedLog, wanted: Sequence[str]
 ) -> tuple[FittedLog, list[str], list[str]]:
-    """The fit without those of FIRST that it leaves open by a factor of BLIND, if the file's own values fit
-    as well; names of what is fitted, and what to say of the others.
+    """Repeat the fit without the parameters that the log does not determine.
+
+    A parameter of START_VALUES is dropped if its standard deviation exceeds a factor of UNDETERMINED_FACTOR
+    and its value in the file fits as well. Returns the fit, names of the fitted parameters, and notes about
+    the others.
     """
-    open_ = [n for n in wanted if n in FIRST and fit.solution.deviations[n] > np.log(BLIND)]
-    kept = [name for name in wanted if name not in open_]
-    if open_ and kept:
-        other = fitted_to(file, samples, kept, fit.rotor)
-        more = np.sum(other.solution.residuals**2) - np.sum(fit.solution.residuals**2)
-        if more < len(open_) * (AS_WELL * fit.solution.noise) ** 2:
+    undetermined = [n for n in wanted if n in FIRST and fit.solution.deviations[n] > np.log(BLIND)]
+    determined = [name for name in wanted if name not in undetermined]
+    if undetermined and determined:
+        other = fitted_to(file, samples, determined, fit.rotor)
+        increase = np.sum(other.solution.residuals**2) - np.sum(fit.solution.residuals**2)
+        if increase < len(undetermined) * (AS_WELL * fit.solution.noise) ** 2:
             text = "the log does not determine {}, which stays as it is: that fits as well"
-            return other, kept, [text.format(name) for name in open_]
+            return other, determined, [text.format(name) for name in undetermined]
     return fit, list(wanted), []
 
 
 def driven(samples: Samples, drive: Drive) -> bool:
-    """Whether friction drives the motion, as it does where the torque's sign is the other one."""
-    beside, linear = _straight(samples, drive)
+    """Whether the fitted friction drives the motion: then the torque has the wrong sign in the log."""
+    terms, linear = _straight(samples, drive)
     w1 = abs(drive.ratio) * samples.dq
-    braked = linear[0] * np.sign(w1) + linear[1] * w1
-    rest = samples.torque - beside.known - braked - beside.matrix @ linear[2:]
-    return bool(braked @ w1 < 0.0 and np.sum(braked**2) > np.sum(rest**2))
+    friction_torque = linear[0] * np.sign(w1) + linear[1] * w1
+    residual = samples.torque - terms.known - friction_torque - terms.matrix @ linear[2:]
+    return bool(friction_torque @ w1 < 0.0 and np.sum(friction_torque**2) > np.sum(residual**2))
 
 
 def with_rotor(
     file: ParameterFile, samples: Samples, wanted: Sequence[str], rotor: float, deviation: float
 ) -> FittedLog:
-    """The fit with a rotor's inertia that is known up to a standard deviation [kg.m2]."""
+    """Fit with a rotor inertia and its standard deviation [kg.m2], which is added to the covariance."""
     fit = fitted_to(file, samples, wanted, rotor)
     other = fitted_to(file, samples, wanted, rotor + deviation).solution.values
     off = np.array([np.log(other[name] / value) for name, value in fit.solution.values.items()])
@@ -255,19 +282,26 @@ def with_rotor(
 
 
 def _deviations(solution: Solution, of: Callable[[Mapping[str, float]], Array]) -> Array:
-    """(k, m) how a function (m) of the values goes with each of their k independent standard deviations."""
-    variances, ways = np.linalg.eigh(solution.covariance)
-    rows, there = [], of(solution.values)
-    for deviation, way in zip(np.sqrt(np.maximum(variances, 0.0)), ways.T, strict=True):
-        moved = {
-            n: v * float(np.exp(SMALL * d)) for (n, v), d in zip(solution.values.items(), way, strict=True)
+    """Changes (k, m) of a function by each of the k independent standard deviations of a solution.
+
+    function : {name: value} -> (m)
+    """
+    variances, directions = np.linalg.eigh(solution.covariance)
+    rows, reference = [], of(solution.values)
+    for deviation, direction in zip(np.sqrt(np.maximum(variances, 0.0)), directions.T, strict=True):
+        changed = {
+            n: v * float(np.exp(SMALL * d))
+            for (n, v), d in zip(solution.values.items(), direction, strict=True)
         }
-        rows.append((of(moved) - there) * deviation / SMALL)
+        rows.append((of(changed) - reference) * deviation / SMALL)
     return np.array(rows)
 
 
 def _first(file: ParameterFile, samples: Samples, linear: Array) -> dict[str, float]:
-    """Where the fit starts: friction as straight least squares have it, the rest as in the file."""
+    """Start values {name: value}: dry and viscous friction from the linear fit, others from the file.
+
+    linear : result of `_fit_linear_model`
+    """
     size = float(np.median(np.abs(samples.torque))) or 1.0
     fastest = abs(file.values.ratio) * float(np.max(np.abs(samples.dq)))
     dry = max(float(linear[0]), 0.05 * size)

@@ -1,9 +1,9 @@
-"""A robot's logs: columns, checks, filtered samples.
+"""Logs of a robot: read and check the columns, filter them, select samples.
 
-A log with a time is dynamic: motion and torque pass one filter, a polynomial over WINDOW (Savitzky and Golay
-1964), which gives the derivatives too; kept are samples so far apart that their noise is independent, and
-marked are those where the drive has turned on since its last reversal. A log without one is a table of steady
-speeds, taken as it is.
+A log with the column time is dynamic. Motion and torque pass the same filter, a local polynomial over
+WINDOW (Savitzky and Golay 1964), which also gives the derivatives. One sample per window is kept, so that the
+noise of the samples is independent. Samples are marked if the drive has rotated far enough since its last
+reversal. A log without the column time is a table of steady speeds, and is not filtered.
 """
 
 from collections.abc import Mapping, Sequence
@@ -22,29 +22,34 @@ from jointfmu.quantity.units import KELVIN_AT_ZERO, Sizes, sizes
 from .... import columns
 
 Places: TypeAlias = NDArray[np.int_]
+"""Indices of samples."""
 WINDOW, ORDER = 0.04, 4
-"""Of the filter [s], and of its polynomial [1]."""
+"""Window of the filter [s], and degree of its polynomial [1]."""
 NODES = 9
-"""Speeds [1] within a window by which friction is filtered; fewest samples of a window."""
+"""Number of speeds in a window at which friction is evaluated and filtered; smallest number of samples of a
+window."""
 TURNED = 5.0
-"""Way of the motor since a reversal over `presliding` [1] after which friction has built up but for 1 %."""
+"""Rotation of the motor since a reversal over `presliding` [1] after which friction is developed to 99 %."""
 ONE_SPEED = 1.2
-"""Largest over smallest speed [1] below which a log has one speed only."""
+"""Ratio of largest to smallest speed [1] that a log must exceed."""
 
 
 @dataclass(frozen=True, slots=True)
 class Samples:
-    """Samples (n) of logs, SI; NaN where a log has no such column.
+    """Samples of logs; arrays (n) in SI units, NaN for columns that a log does not have.
 
-    dq, ddq  : speed and acceleration of the joint
-    speeds   : (n, NODES) of the joint within the filter's window
-    weights  : (n, NODES) [1] of the filter there: friction is filtered as the torque is
-    torque   : of the motor
-    gravity  : torque at the joint that holds the arm
-    motor, sensed : angle of the motor, torque at the joint
-    later    : of the last part of a log, which is held out
-    dynamic  : of a log with a time
-    built    : friction has built up
+    time          : [s]
+    q, dq, ddq    : angle [rad], speed [rad/s] and acceleration [rad/s2] of the joint
+    speeds        : (n, NODES) [rad/s] of the joint, within the window of the filter
+    weights       : (n, NODES) [1] of the filter at these speeds
+    torque        : [N.m] of the motor
+    gravity       : [N.m] torque at the joint that balances gravity
+    temperature   : [K]
+    motor_angle   : [rad]
+    sensor_torque : [N.m] of a sensor at the joint
+    is_held_out   : sample for validation
+    is_dynamic    : sample of a log with the column time
+    is_developed  : friction is fully developed
     """
 
     time: Array
@@ -63,16 +68,17 @@ class Samples:
     built: NDArray[np.bool_]
 
     def part(self, rows: NDArray[np.bool_] | Places) -> "Samples":
+        """Select rows, by a mask or by indices."""
         return Samples(*(getattr(self, field.name)[rows] for field in fields(self)))
 
 
 def joined(parts: Sequence[Samples]) -> Samples:
-    """The samples of several logs, one after the other."""
+    """Join the samples of several logs."""
     return Samples(*(np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(Samples)))
 
 
 def steady(have: Mapping[str, Array], torque: Array) -> Samples:
-    """Rows of steady speeds; every third one is held out."""
+    """Samples of a table of steady speeds; every third row is held out."""
     none = np.full(torque.size, np.nan)
     return Samples(
         time=none,
@@ -93,30 +99,30 @@ def steady(have: Mapping[str, Array], torque: Array) -> Samples:
 
 
 def window(step: float) -> int:
-    """Samples of the filter's window at a step [s]."""
+    """Number of samples in the window of the filter, at a time step [s]; odd."""
     return max(2 * round(0.5 * WINDOW / step) + 1, NODES)
 
 
 def smoothed(values: Array, step: float, derivative: int = 0) -> Array:
-    """Samples (n) at even steps [s] through the filter, or their derivative [1/s^derivative]."""
+    """Filter values (n) at a constant time step [s]; or their derivative of the order `derivative`."""
     return np.asarray(savgol_filter(values, window(step), ORDER, derivative, step))
 
 
 def moving(time: Array, step: float, have: Mapping[str, Array], drive: Drive) -> Samples:
-    """Filtered samples (n) at even times [s], marked where friction has built up."""
+    """Filtered samples of a dynamic log, at times (n) [s] with a constant step [s]."""
     none = np.full(time.size, np.nan)
 
     def smooth(name: str) -> Array:
         return smoothed(have[name], step) if name in have else none
 
-    of_q = "dq" not in have
-    dq = smoothed(have["q"], step, 1) if of_q else smooth("dq")
+    without_dq = "dq" not in have
+    dq = smoothed(have["q"], step, 1) if without_dq else smooth("dq")
     nodes, weights = _nodes(window(step))
     return Samples(
         time=time,
         q=smooth("q"),
         dq=dq,
-        ddq=smoothed(have["q"], step, 2) if of_q else smoothed(have["dq"], step, 1),
+        ddq=smoothed(have["q"], step, 2) if without_dq else smoothed(have["dq"], step, 1),
         speeds=dq[np.clip(np.arange(time.size)[:, None] + nodes, 0, time.size - 1)],
         weights=np.repeat(weights[None, :], time.size, axis=0),
         torque=smooth("tau"),
@@ -131,8 +137,9 @@ def moving(time: Array, step: float, have: Mapping[str, Array], drive: Drive) ->
 
 
 def _nodes(width: int) -> tuple[Places, Array]:
-    """Places (NODES) in the filter's window, in samples off its middle, and the filter's weights for what is
-    straight between them.
+    """Sample offsets (NODES) within the window of the filter, and the filter weights at these nodes.
+
+    The weights are those for values that are linear between the nodes.
     """
     half = width // 2
     nodes = np.round(np.linspace(-half, half, NODES)).astype(int)
@@ -141,16 +148,20 @@ def _nodes(width: int) -> tuple[Places, Array]:
 
 
 def _built_up(dq: Array, step: float, width: int, drive: Drive) -> NDArray[np.bool_]:
-    """Whether (n) the motor has turned on, by more than the filter and presliding blur."""
+    """Mask (n) of samples with fully developed friction.
+
+    The motor has rotated by ROTATION_RATIO times `presliding` since its last reversal, and no reversal lies
+    within the window of the filter (`width` samples).
+    """
     sign = np.sign(dq)
     run = np.concatenate([[0], np.cumsum(np.diff(sign) != 0.0)])
     first = np.concatenate([[0], np.flatnonzero(np.diff(run)) + 1])
     last = np.concatenate([first[1:], [dq.size]])
-    place = np.arange(dq.size)
-    way = np.concatenate([[0.0], np.cumsum(np.abs(dq[1:]))]) * step * abs(drive.ratio)
-    since, left = place - first[run], last[run] - 1 - place
-    turned = way - way[first[run]] > TURNED * drive.presliding
-    return np.asarray(turned & (since > width // 2) & (left > width // 2) & (sign != 0.0))
+    index = np.arange(dq.size)
+    rotation = np.concatenate([[0.0], np.cumsum(np.abs(dq[1:]))]) * step * abs(drive.ratio)
+    before, after = index - first[run], last[run] - 1 - index
+    developed = rotation - rotation[first[run]] > TURNED * drive.presliding
+    return np.asarray(developed & (before > width // 2) & (after > width // 2) & (sign != 0.0))
 
 
 COLUMNS: Mapping[str, Sizes] = {
@@ -164,8 +175,9 @@ COLUMNS: Mapping[str, Sizes] = {
     "link_torque": sizes("N.m", "mN.m"),
     "temperature": {"K": 1.0, "degC": 1.0, "°C": 1.0, "C": 1.0},
 }
-"""Angle and speed of the joint, current and torque of the motor, torque at the joint that holds the arm; the
-motor's own angle, and the torque at the joint that a sensor measures."""
+"""{column: {unit: size in SI}}: q, dq angle and speed of the joint; i, tau current and torque of the motor;
+gravity torque at the joint that balances gravity; q_motor motor angle; link_torque torque sensor at the
+joint."""
 OTHERS: Mapping[str, Sequence[str]] = {
     "time": ("t", "timestamp", "zeit"),
     "q": ("position", "angle", "actual_q", "joint_position"),
@@ -177,26 +189,28 @@ OTHERS: Mapping[str, Sequence[str]] = {
     "link_torque": ("joint_torque", "torque_sensor"),
     "temperature": ("temp", "motor_temperature", "joint_temperature"),
 }
+"""{column: other headings that are accepted}."""
 LEAST = 6
-"""Fewest rows of a log."""
+"""Required number of rows of a log."""
 MOST_SPEED = 2000.0
-"""Speed of a wave generator [rad/s] that none has: catalogues allow up to 14 000 rev/min."""
+"""Largest plausible speed of a wave generator [rad/s]: catalogues allow up to 14 000 rev/min."""
 MOST_CURRENT = 1e3
-"""Current [A] that no joint's motor takes."""
+"""Largest plausible motor current [A]."""
 MOST_TORQUE = 3.0
-"""Torque of a motor over that of the drive at max_torque [1] that none has."""
+"""Largest plausible motor torque over max_torque/ratio [1]."""
 STILL = 1e-3
-"""Speed of the motor [rad/s] that is no motion."""
+"""Motor speed [rad/s] below which a log has no motion."""
 EVEN, GAP = 0.2, 10.0
-"""Steps of time off their median [1] up to which a log is evenly sampled; step over it that is a gap."""
+"""Deviation of a time step from the median, over the median [1], up to which the sampling counts as even; and
+time step over the median [1] that counts as a gap."""
 SAME = (0.5, 2.0)
-"""dq over the derivative of q [1] between which they are of one motion."""
+"""Allowed range of dq over the derivative of q [1]."""
 
 
 def named(words: Sequence[str]) -> dict[str, tuple[str, str | None]]:
-    """{column: heading in the file and its unit, where it is stated} from `q=HEADING` or `q=HEADING [UNIT]`.
+    """Parse `NAME=HEADING` or `NAME=HEADING [UNIT]`: {column: (heading in the file, unit or None)}.
 
-    Raises ValueError for other words and columns.
+    Raises ValueError for other text and unknown columns.
     """
     found = {}
     for word in words:
@@ -210,12 +224,13 @@ def named(words: Sequence[str]) -> dict[str, tuple[str, str | None]]:
 def read(
     path: Path, names: Mapping[str, tuple[str, str | None]], constant: float | None, drive: Drive
 ) -> Samples:
-    """The samples of a file.
+    """Read the samples of a log.
 
-    constant : motor torque over current [N.m/A]
-    drive    : whose ratio and torques tell what cannot be
+    names           : {column: (heading, unit or None)} for other headings
+    torque_constant : motor torque over motor current [N.m/A]
+    drive           : for plausibility checks of speed and torque
 
-    Raises ValueError, one line that begins with the path.
+    Raises ValueError with a one-line message that begins with the path.
     """
     table = columns.read(path, COLUMNS, LEAST, OTHERS, names)
     have = dict(table.columns)
@@ -231,7 +246,7 @@ def read(
 
 
 def _torque(table: columns.Columns, constant: float | None) -> Array:
-    """Torque (n) of the motor [N.m]."""
+    """Motor torque (n) [N.m], from the column of the torque or of the current."""
     if "tau" in table.columns:
         return table.columns["tau"]
     if "i" not in table.columns:
@@ -249,7 +264,7 @@ def _torque(table: columns.Columns, constant: float | None) -> Array:
 
 
 def _of_motion(table: columns.Columns, have: Mapping[str, Array], torque: Array, drive: Drive) -> Samples:
-    """Filtered samples as far apart as the filter is wide."""
+    """Filtered samples of a dynamic log, one per window of the filter."""
     if "q" not in have and "dq" not in have:
         raise ValueError(f"{table.path}: has neither q nor dq; expected {columns.heading(COLUMNS)}")
     time, step = _clock(table)
@@ -268,7 +283,10 @@ def _of_motion(table: columns.Columns, have: Mapping[str, Array], torque: Array,
 
 
 def _clock(table: columns.Columns) -> tuple[Array, float]:
-    """Times (n) [s] and the even step between them."""
+    """Times (n) [s] of a log, and the time step [s] for resampling.
+
+    Raises ValueError for times that do not increase, and for gaps.
+    """
     time = table.columns["time"]
     steps = np.diff(time)
     if np.any(wrong := steps <= 0.0):
@@ -290,7 +308,7 @@ def _clock(table: columns.Columns) -> tuple[Array, float]:
 
 
 def _same_motion(table: columns.Columns, of_q: Array, dq: Array) -> None:
-    """Raise ValueError if dq is not the derivative of q."""
+    """Check that dq is the derivative of q. Raises ValueError if not."""
     most = float(np.max(np.abs(of_q)))
     scale = float(dq @ of_q / (of_q @ of_q)) if most else 0.0
     if np.max(np.abs(dq)) and not SAME[0] <= scale <= SAME[1]:
@@ -305,7 +323,7 @@ def _same_motion(table: columns.Columns, of_q: Array, dq: Array) -> None:
 
 
 def _check(path: Path, samples: Samples, drive: Drive) -> None:
-    """Raise ValueError for logs without motion, and for numbers that contradict their units."""
+    """Check speeds and torques of a log. Raises ValueError if nothing moves or a value is implausible."""
     ratio = abs(drive.ratio)
     fastest = ratio * float(np.max(np.abs(samples.dq)))
     if fastest > MOST_SPEED:

@@ -1,4 +1,4 @@
-"""A measured torque-angle curve to a law of the drive, or to the table of its mid-line."""
+"""Fit of a law of the drive to a measured torque-angle curve, or a table of the midline of this curve."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -23,15 +23,16 @@ from . import drive
 from .drive import ARCMIN, COLUMNS, HEADS
 
 FREE = ("K_FTS0", "drive_scale", "zero_torque_pressure")
+"""Parameters to fit; of the law `catalogue` they are K1, K2, K3."""
 LEAST = 10
-"""Fewest points of a curve."""
+"""Required number of points of a curve."""
 CREATED = 0.01
-"""Energy that a loop may create, as noise and drift do, over that of its box [1]."""
+"""Created energy of a loop, from noise or drift, over torque range times angle range [1] that is accepted."""
 
 
 @dataclass(frozen=True, slots=True)
 class Record:
-    """A file's mid-line and the drive to start from, of its size."""
+    """Measured curve: path of the file, its midline, and start parameters for a drive of this size."""
 
     path: Path
     line: loop.Backbone
@@ -47,12 +48,17 @@ def fit(
 ) -> FitResult:
     """Fit a file with the columns torque and angle (COLUMNS), in the order of measurement.
 
-    The angle may have an offset: it is a further unknown, found and taken off. `rated_torque` [N.m]
-    scales the start's torques (max_torque, smoothing) to another size of drive. `free` None: FREE, of lines
-    of a catalogue their stiffnesses. The law `table` takes the mid-line as it is, see `fit_table`.
+    An offset of the angle is a further unknown, which is fitted and subtracted.
 
-    Raises ValueError, one line: the file, its units, its shape; a torque beyond max_torque; a name
-    that cannot be fitted. RuntimeError if the fit finds no end.
+    Parameters
+    ----------
+    start        : parameters to start from; None: the default drive
+    fitted_names : names to fit; None: FITTED_PARAMETERS, or K1, K2, K3 for the law `catalogue`
+    rated_torque : [N.m]; max_torque and torque_smoothing of `start` are scaled with it; None: that of `start`
+    law          : "table": use the midline itself, see `fit_table`; None: fit the law of `start`
+
+    Raises ValueError with a one-line message for a bad file, unit or shape of the curve, a torque above
+    max_torque, or a name that cannot be fitted. Raises RuntimeError if the fit does not converge.
     """
     if law == "table":
         if free:
@@ -83,7 +89,7 @@ def fit(
 
 
 def read(path: str | Path, start: ParameterFile | None, rated_torque: float | None) -> Record:
-    """The mid-line of a file and the drive to start from; ValueError as `fit`."""
+    """Read the midline of a file and prepare the start parameters. Raises ValueError as `fit`."""
     table = columns.read(path, COLUMNS, LEAST, OTHERS)
     torque, angle = (table.require(name, COLUMNS) for name in COLUMNS)
     try:
@@ -100,14 +106,18 @@ def read(path: str | Path, start: ParameterFile | None, rated_torque: float | No
 
 
 def span(line: loop.Backbone) -> str:
-    """Over which torques, in words."""
+    """Text with the range of torques."""
     return f"torque {line.torque[0]:.4g} to {line.torque[-1]:.4g} N.m"
 
 
 def outcome(
     record: Record, result: ParameterFile, solution: Solution, shift: float, noise: float
 ) -> FitResult:
-    """What is told of a drive beside its mid-line; offset of the angle and noise of a sample in rad."""
+    """Result of a fit with facts, picture and notes.
+
+    offset : [rad] angle at zero torque
+    noise  : [rad] standard deviation of one sample
+    """
     line = record.line
     rest = line.angle - drive.windup(result.values, line.torque) - shift
     grid = np.linspace(line.torque[0], line.torque[-1], 400)
@@ -122,7 +132,10 @@ def outcome(
 
 
 def _sized(start: ParameterFile, torque: Array, rated: float | None, path: Path) -> ParameterFile:
-    """The start for a drive of this size; its table must reach the curve's end."""
+    """Start parameters for a drive of the stated rated torque [N.m].
+
+    Raises Refusal if the measured torque (n) [N.m] exceeds max_torque of the law.
+    """
     drive_, reach = start.values, float(np.max(np.abs(torque)))
     if rated is not None:
         factor = drive_.reach / drive_.rated_torque
@@ -137,7 +150,10 @@ def _sized(start: ParameterFile, torque: Array, rated: float | None, path: Path)
 
 
 def _check_size(line: loop.Backbone, start: ParameterFile, table: columns.Columns) -> None:
-    """Refuse a wind-up that no drive of this size has, before a long fit; and a loop that creates energy."""
+    """Check wind-up and loop energy before the fit.
+
+    Raises Refusal for a wind-up that is implausible for this size, ValueError for a loop that creates energy.
+    """
     turned, span = float(np.ptp(line.angle)), float(np.ptp(line.torque))
     rated = start.values.rated_torque
     low, high = drive.WINDUP
@@ -160,7 +176,7 @@ def _check_size(line: loop.Backbone, start: ParameterFile, table: columns.Column
 
 
 def _facts(line: loop.Backbone, shift: float, rest: Array, noise: float) -> Facts:
-    """What was read off the record beside the parameters."""
+    """Facts about the measured curve: offset, loop area, backlash, drift, noise, largest error."""
     facts = {
         "points": (float(np.sum(line.count)), "1", "samples used"),
         "branches": (float(line.branches), "1", "branches used"),
@@ -181,7 +197,7 @@ def _facts(line: loop.Backbone, shift: float, rest: Array, noise: float) -> Fact
 
 
 def _notes(line: loop.Backbone, rest: Array) -> list[str]:
-    """What was not determined by the record, and whether the law misses the curve systematically."""
+    """Notes about quantities that the curve does not determine, and about systematic errors of the law."""
     notes = []
     if line.loop_area is None:
         notes.append("one direction of loading only: loop area, backlash and drift cannot be told")
@@ -191,19 +207,19 @@ def _notes(line: loop.Backbone, rest: Array) -> list[str]:
 
 
 MOST, FEWEST = 24, 4
-"""Points of a table [1]: fewer where the curve would not rise from one to the next for its noise."""
+"""Largest and smallest number of points of a table; noise reduces it until the torques and angles ascend."""
 CROWDING = 1.5
-"""Power by which the points crowd towards zero torque [1], where the stiffness changes most."""
+"""Exponent of the spacing of the points [1]; above 1 they are closer near zero torque."""
 
 
 def fit_table(
     path: str | Path, start: ParameterFile | None = None, rated_torque: float | None = None
 ) -> FitResult:
-    """The table of a file with the columns torque and angle, as `torque_angle.fit` reads it.
+    """Make a drive with the law `table` from a file with the columns torque and angle, read as in `fit`.
 
-    Both directions of the torque are folded upon each other, the law is odd.
+    The law is odd: values at negative torques are averaged with those at positive torques.
 
-    Raises ValueError as `torque_angle.fit`, and for a curve that does not pass zero torque or does not rise.
+    Raises ValueError as `fit`, and for a curve that does not include zero torque or does not rise.
     """
     record = read(path, start, rated_torque)
     line, begun = record.line, record.start
@@ -223,9 +239,9 @@ def fit_table(
 
 
 def points(line: loop.Backbone) -> tuple[Array, Array, float]:
-    """Torques and angles (n) of a table, and the angle at zero torque that is taken off.
+    """Torques (n) [N.m] and angles (n) [rad] of a table, and the offset [rad]: the angle at zero torque.
 
-    Raises ValueError if the mid-line does not pass zero torque or does not rise.
+    Raises ValueError if the midline does not include zero torque or does not rise.
     """
     low, high = line.torque[0], line.torque[-1]
     if low * high > 0.0 and min(abs(low), abs(high)) > 0.05 * (high - low):

@@ -1,4 +1,4 @@
-"""The drive in the Modelica library: torque over wind-up, odd."""
+"""Harmonic drive in the Modelica library: table of the torque over the wind-up, an odd function."""
 
 from collections.abc import Sequence
 
@@ -24,34 +24,35 @@ from ....modelica.records import (
 )
 
 _SPRING = ("hysteresis_loss", "hysteresis_stiffness", "lost_motion", "inertia1", "inertia2")
-"""Parameters of the drive that are in the record's sliders and table, or of what only the FMU gives."""
+"""Parameters of the drive without a parameter of their own in the component: they are in the table and in the
+sliders of the record, or only the FMU uses them."""
 _OWN = tuple(name for name, _ in flat_fields(Drive) if name not in _SPRING)
-"""Parameters of the drive that the component has too."""
+"""Parameters of the drive that are parameters of the component, too."""
 
 
 def _records(file: ParameterFile, points: Sequence[WorkingPoint]) -> list[ModelicaRecord]:
     drive = file.values
     spring = HarmonicDriveSpring.of(drive)
-    own = given({name: getattr(drive, name) for name in _OWN})
-    own |= given({"T": file.start("temperature")})
-    found = computed({"K_FTS0": drive.K_FTS} | _hysteresis(spring))
+    stated = given({name: getattr(drive, name) for name in _OWN})
+    stated |= given({"T": file.start("temperature")})
+    derived = computed({"K_FTS0": drive.K_FTS} | _hysteresis(spring))
     sliders = np.array(shares(exponent(drive)), dtype=np.float64).T
     return [
         ModelicaRecord(
             name=identifier(file.name),
             title=file.name,
             table=thinned(spring.curve),
-            values=own | found | {"sliders": matrix(sliders)},
+            values=stated | derived | {"sliders": matrix(sliders)},
         )
     ]
 
 
 def _hysteresis(spring: HarmonicDriveSpring) -> dict[str, float]:
-    """Friction [N.m] and stiffness while all sliders stick [N.m/rad]."""
-    found = spring.hysteresis
+    """Total friction limit [N.m] of the hysteresis sliders, and their stiffness [N.m/rad] while all stick."""
+    sliders = spring.hysteresis
     return {
-        "hysteresis_friction": float(np.sum(found.limit)),
-        "hysteresis_stiffness": float(np.sum(found.stiffness)),
+        "hysteresis_friction": float(np.sum(sliders.limit)),
+        "hysteresis_stiffness": float(np.sum(sliders.stiffness)),
     }
 
 
