@@ -97,9 +97,7 @@ class JointSolution:
     def field(self) -> ContactField:
         """Contact pressure at the quadrature points, with area and total force of the finite elements."""
         interface = self.joint.interface
-        return ContactField(
-            area=interface.area, position=interface.position, pressure=self.contact.pressure
-        )
+        return ContactField(area=interface.area, position=interface.position, pressure=self.contact.pressure)
 
     @property
     def peak(self) -> float:
@@ -108,7 +106,7 @@ class JointSolution:
 
     @property
     def between(self) -> tuple[Array, Array]:
-        """Positions (k, 2) [m] in the contact midway between neighbouring bolts, and pressure (k) [Pa] there."""
+        """Pressure (k) [Pa] midway between neighbouring bolts, after its positions (k, 2) [m]."""
         positions = midway(self.joint.assembly.bolts.positions)
         sides = (self.joint.assembly.side1, self.joint.assembly.side2)
         solid = [side.layers()[0].solid(*positions.T) for side in sides]

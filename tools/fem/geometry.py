@@ -139,7 +139,7 @@ class TappedPlate(Plate):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BoxSection:
-    """A rectangular box, open towards the contact: a flange at the contact, four walls, a floor at the far end."""
+    """A rectangular box, open towards the contact: a flange there, four walls, a floor at the far end."""
 
     length: float = quantity("m", "outer length of the flange along x", gt=0.0)
     width: float = quantity("m", "outer width of the flange along y", gt=0.0)
@@ -249,7 +249,7 @@ class Assembly:
         return force
 
     def most_moment(self, preload: float) -> float:
-        """Moment [N.m] at which an outer row of bolts loses its force; 0 if there are no two matching rows."""
+        """Moment [N.m] at which an outer row of bolts loses its force; 0 without two matching rows."""
         rows = self.outer_rows()
         return 0.0 if rows is None else preload * self.row_distance * float(rows[0].sum())
 
@@ -272,8 +272,8 @@ def check_bolts(assembly: Assembly) -> None:
         distance = np.hypot(*(positions[:i] - positions[i]).T)
         if distance.size and distance.min() < 2.0 * head:
             raise ValueError(
-                f"heads of {2e3 * head:.4g} mm are outside (0, {1e3 * distance.min():.4g}] mm: those of bolts "
-                f"{distance.argmin() + 1} and {i + 1} overlap"
+                f"heads of {2e3 * head:.4g} mm are outside (0, {1e3 * distance.min():.4g}] mm: "
+                f"those of bolts {distance.argmin() + 1} and {i + 1} overlap"
             )
 
 

@@ -103,7 +103,7 @@ def plan_of(assembly: Assembly, refinement: float = 1.0) -> Plan:
 
 
 def _round(points: Array, assembly: Assembly) -> None:
-    """Move the corners of the hole polygons outward, in place, until each polygon has the area of its circle."""
+    """Move the corners of the hole polygons outward, in place: each polygon gets the area of its circle."""
     radius = 0.5 * assembly.bolts.hole_diameter
     for centre in assembly.bolts.positions:
         offset = points - centre[:, None]

@@ -15,7 +15,7 @@ from jointfmu.quantity import Array
 from .elasticity import Cholesky
 
 TOLERANCE = 1e-11
-"""Residual force over applied load [1], both as sums of magnitudes, at which Newton's method has converged."""
+"""Residual force over applied load [1], both as sums of magnitudes, at which Newton's method converges."""
 MOST_STEPS = 60
 ENOUGH = 0.1
 """Tightest tolerance of the linear solver over the tolerance of Newton's method [1]."""
@@ -95,7 +95,7 @@ class Energy:
         )
 
     def _tangent(self, spring: Array, u: Array) -> Array:
-        """Product of tangent and displacement: (K + T^T diag(spring) T) u, with contact stiffness (q) [N/m]."""
+        """Tangent times displacement: (K + T^T diag(spring) T) u, with contact stiffness (q) [N/m]."""
         return np.asarray(self.stiffness @ u + self.trace.T @ (spring * (self.trace @ u)))
 
     def _length(self, approach: Array, change: Array, linear: float, square: float) -> float:
