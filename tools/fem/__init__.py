@@ -6,9 +6,12 @@ from contextlib import contextmanager
 
 @contextmanager
 def installed(what: str) -> Iterator[None]:
-    """ValueError, one line, where a package, or a system library of gmsh, is missing inside.
+    """Context for finite elements: a missing package or system library of gmsh raises ValueError (one line).
 
-    BLAS has one thread there: more gain little, and spin for each other where other work shares the cores.
+    feature : names the calculation in the message
+
+    Inside, BLAS uses one thread. More threads gain little, and they wait for each other if other processes
+    share the cores.
     """
     try:
         from threadpoolctl import threadpool_limits

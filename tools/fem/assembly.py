@@ -1,4 +1,4 @@
-"""TOML files -> assemblies.
+"""Read the TOML file of a bolted assembly.
 
     schema = 1
     assembly = "bolted"
@@ -7,8 +7,8 @@
     body = "box"
     length = { value = 0.28, unit = "m", kind = "estimate", source = "..." }
 
-The entries are those of parameter files (jointfmu.parameters). `body` is one of BODIES, `layout` of
-the section [bolts] one of LAYOUTS.
+Entries have the format of parameter files (jointfmu.parameters). `body` is a key of BODY_TYPES. `layout` in
+the section [bolts] is a key of BOLT_LAYOUTS.
 """
 
 from collections.abc import Mapping
@@ -26,35 +26,35 @@ SECTIONS = {"side1": ("body", BODIES), "side2": ("body", BODIES), "bolts": ("lay
 
 
 def load(path: str | Path) -> Assembly:
-    """Read and check an assembly.
+    """Read and check the file of an assembly.
 
-    Raises ValueError with one line that names the file, the entry, its value and what is allowed.
+    Raises ValueError: one line with file, entry, value and allowed values.
     """
     path = Path(path)
     document = read_document(path, "an assembly")
     if document.get("assembly") != "bolted":
-        own = f"; it is of a {document['joint']}" if "joint" in document else ""
-        raise ValueError(f"{path}: assembly = {document.get('assembly')!r}, allowed is 'bolted'{own}")
+        joint = f"; it is of a {document['joint']}" if "joint" in document else ""
+        raise ValueError(f"{path}: assembly = {document.get('assembly')!r}, allowed is 'bolted'{joint}")
     if unknown := sorted(set(document) - {"schema", "assembly", "name", *SECTIONS}):
         raise ValueError(f"{path}: unknown entry {unknown[0]!r}, allowed are name, {', '.join(SECTIONS)}")
-    parts = {name: _part(path, document, name) for name in SECTIONS}
+    sections = {name: _part(path, document, name) for name in SECTIONS}
     try:
-        return Assembly(str(document.get("name", path.stem)), **parts)
+        return Assembly(str(document.get("name", path.stem)), **sections)
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from None
 
 
 def _part(path: Path, document: Mapping[str, Any], name: str) -> Any:
-    """One section of an assembly."""
-    word, classes = SECTIONS[name]
+    """Read the section `name` of an assembly file: a body, or the layout of the bolts."""
+    type_key, classes = SECTIONS[name]
     table = document.get(name)
     if not isinstance(table, Mapping):
         raise ValueError(f"{path}: the section [{name}] is missing")
-    shape = table.get(word)
+    shape = table.get(type_key)
     if not isinstance(shape, str) or shape not in classes:
-        raise ValueError(f"{path}: {name}.{word} = {shape!r}, allowed are {', '.join(classes)}")
-    body = {k: v for k, v in table.items() if k != word}
-    values, _, _ = entries(path, dict(flat_fields(classes[shape])), body)
+        raise ValueError(f"{path}: {name}.{type_key} = {shape!r}, allowed are {', '.join(classes)}")
+    dimensions = {k: v for k, v in table.items() if k != type_key}
+    values, _, _ = entries(path, dict(flat_fields(classes[shape])), dimensions)
     try:
         return build(classes[shape], {k: tuple(v) if isinstance(v, list) else v for k, v in values.items()})
     except ValueError as error:

@@ -1,9 +1,10 @@
-"""Whether bodies in contact have an equilibrium: their loads, supports and contact on rigid motions.
+"""Check that bodies in contact have an equilibrium: loads, supports and contact forces on rigid-body motions.
 
-The stiffness matrix of a body that moves freely is singular, and whether its factorisation breaks down is
-up to round-off. Rigid motions tell by numbers of order 1: a frictionless contact that only pushes balances
-the loads if they are a sum, with weights >= 0, of unit pressures; as the approach of rigid bodies is linear
-in the place, pressures at the corners of the contact's convex hull are enough (a linear programme).
+The stiffness matrix of an unsupported body is singular. Whether its factorisation fails depends on round-off.
+The check on rigid-body motions has numbers of order 1 instead. A frictionless contact can only push: it
+balances the loads if they are a sum, with weights >= 0, of unit pressures. The approach of rigid bodies is
+linear in the position, so pressures at the corners of the contact's convex hull are enough (a linear
+programme).
 """
 
 from collections.abc import Sequence
@@ -22,22 +23,24 @@ from .elasticity import ElasticBody, Index
 UNBALANCED = 1e-6
 """Largest unbalanced force over the sum of the loads' magnitudes [1].
 
-Newton's method ends with 1e-8 or less, factors leave 1e-9; loads without equilibrium leave the order of 1.
+Newton's method ends at 1e-8 or less, a factorisation leaves 1e-9. Loads without an equilibrium leave a value
+of order 1.
 """
 UNSEEN = 1e-6
-"""Displacement at the supports, or approach, over that of the whole body, both rms, below which a rigid
-motion is not held [1]: round-off is 1e-15, supports at a body's corners and its contact are of order 1."""
+"""Smallest ratio [1] at which supports or contact restrain a rigid-body motion: rms displacement at the
+supports, or rms approach, over the rms displacement of the body. Round-off gives 1e-15; supports at the
+corners of a body, and its contact, give values of order 1."""
 
 
 @dataclass(frozen=True)
 class RigidBalance:
-    """Forces of the loads and of the contact on the rigid motions of bodies (rms displacement 1 m).
+    """Generalised forces of loads and contact on the rigid-body motions (each of rms displacement 1 m).
 
-    force   : (m) [N] of the loads on the motions that nothing but the contact stops
-    closing : (q, m) [1] approach at the quadrature points by these motions
-    loose   : (q, k) [1] approach by the motions that the supports leave in the computation
-    scale   : [N] sum of the loads' magnitudes
-    corners : quadrature points on the convex hull of the contact
+    force                : (m) [N] of the loads on the motions that only the contact can stop
+    rigid_approach       : (q, m) [1] approach at the quadrature points for these motions
+    unsupported_approach : (q, k) [1] approach for the motions that no support stops in the computation
+    total_load           : [N] sum of the loads' magnitudes
+    corners              : indices of the quadrature points on the convex hull of the contact
     """
 
     force: Array
@@ -57,78 +60,84 @@ class RigidBalance:
         *,
         bearing: bool,
     ) -> "RigidBalance":
-        """Balance of bodies under loads (n) [N].
+        """Balance of bodies under loads (n) [N] on each body.
 
-        traces   : approach (q) at the quadrature points, at `position` (q, 2) [m], per displacement (n)
+        traces   : matrices (q, n) [1]: approach at the quadrature points per displacement of each body
         supports : unknowns of each body that stay zero
-        bearing  : whether supports may carry a load, or only stop motions that have none
+        position : (q, 2) [m] of the quadrature points
+        supports_carry_load : True: supports may carry load. False: they only stop motions that are not loaded
         """
         motions = [rigid_motions(body) for body in bodies]
         force = np.concatenate([m.T @ load for m, load in zip(motions, loads, strict=True)])
         closing = np.hstack([trace @ m for m, trace in zip(motions, traces, strict=True)])
-        held = [m[rows] for m, rows in zip(motions, supports, strict=True)]
-        left = block_diag(*[null_space(rows, rcond=UNSEEN) if rows.size else np.eye(6) for rows in held])
-        free = left if bearing else np.eye(force.size)
+        at_supports = [m[rows] for m, rows in zip(motions, supports, strict=True)]
+        unsupported = block_diag(
+            *[null_space(rows, rcond=UNSEEN) if rows.size else np.eye(6) for rows in at_supports]
+        )
+        balanced = unsupported if bearing else np.eye(force.size)
         scale = sum(float(np.abs(load).sum()) for load in loads)
         corners = np.asarray(ConvexHull(position).vertices, dtype=np.int64)
-        return cls(free.T @ force, closing @ free, closing @ left, scale, corners)
+        return cls(balanced.T @ force, closing @ balanced, closing @ unsupported, scale, corners)
 
     def check_loads(self) -> None:
-        """Raise RuntimeError if a contact that only pushes cannot balance the loads, or none closes it."""
+        """Raise RuntimeError if the contact cannot balance the loads by pushing, or if no load closes it."""
         if not _independent(self.loose):
             raise RuntimeError("supports and contact leave a rigid motion of a body free")
         if self.force.size == 0:
             return
         if not self.scale > 0.0:
             raise RuntimeError("no load presses the contact closed: all loads are 0 N")
-        pressed, left = self._pressed()
-        if left > UNBALANCED:
+        contact_force, imbalance = self._pressed()
+        if imbalance > UNBALANCED:
             raise RuntimeError(
-                f"the loads do not balance: a contact that only pushes leaves {left:.2g} of them over, "
+                f"the loads do not balance: a contact that only pushes leaves {imbalance:.2g} of them over, "
                 f"allowed is {UNBALANCED:g}"
             )
-        if pressed <= UNBALANCED:
+        if contact_force <= UNBALANCED:
             raise RuntimeError(
-                f"no load presses the contact closed: its force is {pressed:.2g} of the loads, needed is "
-                f"more than {UNBALANCED:g}"
+                f"no load presses the contact closed: its force is {contact_force:.2g} of the loads, needed "
+                f"is more than {UNBALANCED:g}"
             )
 
     def check_contact(self, force: Array) -> None:
-        """Raise RuntimeError if contact forces (q) [N] >= 0 do not hold the bodies in balance."""
+        """Raise RuntimeError if contact forces (q) [N] >= 0 do not balance the loads or leave a body free."""
         if not _independent(self.loose[force > 0.0]):
             raise RuntimeError(
                 f"the contact does not hold the bodies: it stays closed at {np.count_nonzero(force)} of "
                 f"{force.size} points"
             )
-        left = float(np.abs(self.force - self.closing.T @ force).sum())
-        if not left <= UNBALANCED * self.scale:
+        imbalance = float(np.abs(self.force - self.closing.T @ force).sum())
+        if not imbalance <= UNBALANCED * self.scale:
             raise RuntimeError(
-                f"the contact is not in balance: it leaves {left / self.scale:.2g} of the loads over, "
+                f"the contact is not in balance: it leaves {imbalance / self.scale:.2g} of the loads over, "
                 f"allowed is {UNBALANCED:g}"
             )
 
     def _pressed(self) -> tuple[float, float]:
-        """Sum of the corners' forces that balance the loads best, and what is left over, over the scale."""
-        push = self.closing[self.corners].T
-        rest = np.eye(self.force.size)
+        """Best balance of the loads by forces >= 0 at the corners of the contact (linear programme).
+
+        Returns the sum of these forces and the remaining imbalance, both over the total load [1].
+        """
+        corner_approach = self.closing[self.corners].T
+        slack = np.eye(self.force.size)
         cost = np.concatenate([np.zeros(self.corners.size), np.ones(2 * self.force.size)])
-        best = linprog(cost, A_eq=np.hstack([push, rest, -rest]), b_eq=self.force / self.scale)
+        best = linprog(cost, A_eq=np.hstack([corner_approach, slack, -slack]), b_eq=self.force / self.scale)
         if best.status != 0:
             raise RuntimeError(f"the balance of the loads was not found: {best.message}")
         return float(best.x[: self.corners.size].sum()), float(best.fun)
 
 
 def rigid_motions(body: ElasticBody) -> Array:
-    """Six independent rigid motions (n, 6) of a body, orthogonal, of rms displacement 1 m at its nodes."""
+    """Six orthogonal rigid-body motions (n, 6) of a body, each of rms displacement 1 m at its nodes."""
     motions: Array = qr(body.rigid_motions(), mode="economic")[0]
     return np.asarray(motions * np.sqrt(body.size / 3.0))
 
 
 def _independent(approach: Array) -> bool:
-    """Whether every combination of motions (columns) brings points (rows) together or apart."""
+    """Whether every combination of motions (columns) changes the approach of some points (rows)."""
     if approach.shape[1] == 0:
         return True
     if approach.shape[0] < approach.shape[1]:
         return False
-    least = np.linalg.svd(approach, compute_uv=False)[-1]
-    return bool(least > UNSEEN * np.sqrt(approach.shape[0]))
+    smallest = np.linalg.svd(approach, compute_uv=False)[-1]
+    return bool(smallest > UNSEEN * np.sqrt(approach.shape[0]))

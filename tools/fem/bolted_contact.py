@@ -1,4 +1,4 @@
-"""The bolted joint as a contact problem: from an assembly and a preload to the field, and a joint with it."""
+"""Contact pressure of a bolted assembly under preload by finite elements, and its use in a bolted joint."""
 
 from dataclasses import dataclass, replace
 
@@ -18,9 +18,10 @@ from .mesh import Plan, body_mesh, contact_cells, contact_mesh, plan_of
 
 @dataclass(frozen=True)
 class BoltedContact:
-    """An assembly, meshed; loads differ from solve to solve.
+    """Finite-element model of a bolted assembly: meshed bodies and interface, ready for any preload.
 
-    heads : for each body, load (n, bolts) [N per N] of each bolt along +z
+    bodies          : side 1 and side 2, or side 2 alone if side 1 is its mirror image
+    bolt_head_loads : for each body, nodal load (n, bolts) [N/N] of a unit force of each bolt along +z
     """
 
     assembly: Assembly
@@ -31,9 +32,11 @@ class BoltedContact:
 
     @classmethod
     def of(cls, assembly: Assembly, refinement: float = 1.0) -> "BoltedContact":
-        """Mesh an assembly; refinement [1] divides the sizes of all elements.
+        """Mesh an assembly.
 
-        Of two equal bodies only side 2 is meshed: side 1 is its mirror image.
+        refinement : [1] divides the sizes of all elements
+
+        If both bodies are equal, only side 2 is meshed: side 1 is its mirror image.
         """
         plan = plan_of(assembly, refinement)
         sides = (2,) if assembly.side1 == assembly.side2 else (1, 2)
@@ -60,52 +63,60 @@ class BoltedContact:
 
 
 def elastic_body(plan: Plan, assembly: Assembly, side: int, refinement: float = 1.0) -> ElasticBody:
-    """One body of an assembly on a plan."""
+    """Elastic body on side 1 or 2 of an assembly, extruded from a plan mesh."""
     body: Body = assembly.side1 if side == 1 else assembly.side2
     return ElasticBody(body_mesh(plan, assembly, side, refinement), body.E, body.nu, body.density)
 
 
 def head_loads(body: ElasticBody, assembly: Assembly) -> Array:
-    """Load (n, bolts) [N per N] of each bolt along +z on a body of an assembly."""
-    marked, count = body.mesh.boundaries, len(assembly.bolts.positions)
-    return np.stack([body.uniform_load(marked[f"head{i + 1}"]) for i in range(count)], axis=1)
+    """Nodal load (n, bolts) [N/N] on a body for a unit force of each bolt along +z."""
+    boundaries, count = body.mesh.boundaries, len(assembly.bolts.positions)
+    return np.stack([body.uniform_load(boundaries[f"head{i + 1}"]) for i in range(count)], axis=1)
 
 
 @dataclass(frozen=True)
 class JointSolution:
-    """Pressure of a bolted joint: `force` (bolts) [N] of each bolt, `contact` the equilibrium."""
+    """Equilibrium of a bolted joint under bolt forces.
+
+    bolt_force : (bolts) [N]
+    contact    : pressure and displacement
+    """
 
     joint: BoltedContact
     force: Array
     contact: ContactSolution
 
     def under(self, preload: float, moment: float = 0.0) -> "JointSolution":
-        """The same joint and law under another preload [N] per bolt and moment [N.m], found from here."""
+        """Equilibrium under another preload [N] per bolt and moment [N.m] about x.
+
+        Newton's method starts from this solution.
+        """
         return self.joint._solve(self.contact.model, preload, moment, self.contact)
 
     @property
     def field(self) -> ContactField:
-        """The contact at the quadrature points: areas and total force are those of the finite elements."""
-        at = self.joint.interface
-        return ContactField(area=at.area, position=at.position, pressure=self.contact.pressure)
+        """Contact pressure at the quadrature points, with area and total force of the finite elements."""
+        interface = self.joint.interface
+        return ContactField(area=interface.area, position=interface.position, pressure=self.contact.pressure)
 
     @property
     def peak(self) -> float:
-        """Greatest pressure [Pa], at a node: usually on the edge of a hole."""
+        """Largest nodal pressure [Pa], usually on the edge of a hole."""
         return float(self.contact.node_pressure.max())
 
     @property
     def between(self) -> tuple[Array, Array]:
-        """Places (k, 2) [m] of the contact midway between neighbouring bolts, their pressure (k) [Pa]."""
-        places = midway(self.joint.assembly.bolts.positions)
+        """Pressure (k) [Pa] midway between neighbouring bolts, after its positions (k, 2) [m]."""
+        positions = midway(self.joint.assembly.bolts.positions)
         sides = (self.joint.assembly.side1, self.joint.assembly.side2)
-        solid = [side.layers()[0].solid(*places.T) for side in sides]
-        places = places[solid[0] & solid[1]]
-        return places, self.contact.pressure_at(places) if len(places) else np.zeros(0)
+        solid = [side.layers()[0].solid(*positions.T) for side in sides]
+        positions = positions[solid[0] & solid[1]]
+        return positions, self.contact.pressure_at(positions) if len(positions) else np.zeros(0)
 
     @property
     def stiffness(self) -> dict[str, float]:
-        """Normal stiffness [N/m] of the interface, and [N.m/rad] about x and y through its centroid."""
+        """Normal stiffness K_N [N/m] of the interface, bending stiffness K_rx, K_ry [N.m/rad] about x and y
+        through its centroid."""
         field = self.field
         k = field.area * self.contact.stiffness
         x, y = (field.position - field.centroid).T
@@ -113,27 +124,32 @@ class JointSolution:
 
 
 def midway(bolts: Array) -> Array:
-    """Middles (k, 2) [m] of neighbouring bolts: no third one lies in the circle on their connection."""
-    middles = []
+    """Midpoints (k, 2) [m] of neighbouring bolts at (n, 2) [m].
+
+    Two bolts are neighbours if no third bolt lies in the circle whose diameter is the line between them.
+    """
+    midpoints = []
     for i in range(len(bolts)):
         for j in range(i):
-            middle = 0.5 * (bolts[i] + bolts[j])
-            apart = np.hypot(*(bolts - middle).T)
-            if np.sum(apart < 0.5 * np.hypot(*(bolts[i] - bolts[j])) * (1.0 + 1e-9)) == 2:
-                middles.append(middle)
-    return np.array(middles).reshape(-1, 2)
+            midpoint = 0.5 * (bolts[i] + bolts[j])
+            distance = np.hypot(*(bolts - midpoint).T)
+            if np.sum(distance < 0.5 * np.hypot(*(bolts[i] - bolts[j])) * (1.0 + 1e-9)) == 2:
+                midpoints.append(midpoint)
+    return np.array(midpoints).reshape(-1, 2)
 
 
 TILT = 1.0 / 3.0
-"""Moment of the second field, over the one that unloads a row of bolts [1]: that of Zhao 2018."""
+"""Moment of the second pressure field over the moment that unloads a row of bolts [1], as in Zhao 2018."""
 
 
 def with_solution(
     file: ParameterFile, solution: JointSolution, preload: float, moment: float = 0.0
 ) -> tuple[ParameterFile, PressureShape]:
-    """The joint with the field at a preload [N] per bolt, what a moment adds from a second one; all nodes.
+    """Parameters of the joint with the computed pressure field, and the field at all nodes.
 
-    solution : at that preload and moment [N.m]; what is missing is solved from there
+    A second field gives the change of pressure with a moment about x.
+
+    solution : equilibrium at this preload [N] per bolt and moment [N.m]; the other field is solved from it
     """
     joint = solution.joint
     tilting = moment or TILT * joint.assembly.most_moment(preload)

@@ -1,13 +1,13 @@
-"""Two elastic bodies pressed together over a rough interface: frictionless unilateral contact.
+"""Frictionless unilateral contact of two elastic bodies over a rough interface.
 
-The interface resists the approach delta of the two faces with the pressure p(delta) >= 0 of its law
-and cannot pull. The displacement u minimises the convex energy
+The pressure p(delta) >= 0 of the interface depends on the approach delta of the two faces; it cannot pull.
+The displacement u minimises the convex energy
 
     sum over the bodies (u K u / 2 - f u) + integral of V(delta) dA,   V' = p,
     delta = offset + u_z(side 1) - u_z(side 2) - gap,
 
-found by Newton's method with an exact line search. Loads and contact balance on each body, so the few
-supports that stop rigid motions carry nothing; loads that the contact cannot balance are refused.
+with Newton's method and an exact line search. Loads and contact pressure balance on each body, so the few
+supports that stop rigid-body motions carry no force. Loads that the contact cannot balance are an error.
 """
 
 from collections.abc import Callable, Sequence
@@ -27,11 +27,11 @@ from .elasticity import ElasticBody, Index
 from .newton import Energy, Minimum
 
 QUADRATURE = 4
-"""Degree that the quadrature of the contact integrates exactly: 3 x 3 points in an element."""
+"""Polynomial degree that the quadrature of the contact integrates exactly: 3 x 3 points in an element."""
 
 
 class PressureLaw(Protocol):
-    """Pressure over approach: a curve of jointfmu.mechanics.curve, or anything of the same kind."""
+    """Pressure as a function of the approach, for example a curve of jointfmu.mechanics.curve."""
 
     def derivatives(self, x: Array, order: int = 1) -> list[Array]:
         """Pressure [Pa] and its derivatives [Pa/m] at approaches x [m]; 0 where the contact is open."""
@@ -42,12 +42,13 @@ class PressureLaw(Protocol):
 
 @dataclass(frozen=True)
 class Interface:
-    """The plane contact: quadrature points and their interpolation from the nodes.
+    """Quadrature of the plane contact area.
 
-    basis   : of scikit-fem on a plane mesh [m]
-    nodes   : (2, n) [m]; the corners of the mesh come first
-    values  : (q, n) [1] interpolation from the nodes to the quadrature points
-    area    : (q) [m2] weight of a quadrature point, `position` (q, 2) [m] its place
+    basis         : finite-element basis of scikit-fem on a plane mesh [m]
+    nodes         : (2, n) [m]; the corners of the mesh come first
+    interpolation : (q, n) [1] matrix from nodal values to values at the quadrature points
+    area          : (q) [m2] weight of each quadrature point
+    position      : (q, 2) [m] of the quadrature points
     """
 
     basis: Basis
@@ -58,17 +59,20 @@ class Interface:
 
     @property
     def centroid(self) -> Array:
-        """Of the contact (2) [m]."""
+        """Centroid of the contact area (2) [m]."""
         return np.asarray(self.area @ self.position / self.area.sum())
 
     @property
     def centred(self) -> Array:
-        """Places (q, 2) [m] of the quadrature points from the centroid."""
+        """Positions (q, 2) [m] of the quadrature points relative to the centroid."""
         return self.position - self.centroid
 
     @classmethod
     def of(cls, mesh: MeshQuad, element: Element | None = None) -> "Interface":
-        """Quadrature of a plane mesh; the element is the trace of the bodies' element."""
+        """Interface on a plane mesh.
+
+        element : restriction of the bodies' element to the contact plane; None: quadratic, of ElementHexS2
+        """
         basis = Basis(mesh, element or ElementQuadS2(), intorder=QUADRATURE)
         count, points = basis.dx.shape
         rows = np.arange(basis.dx.size).reshape(count, points)
@@ -76,19 +80,20 @@ class Interface:
         columns = [np.broadcast_to(basis.element_dofs[i][:, None], rows.shape) for i in range(basis.Nbfun)]
         index = (np.tile(rows.ravel(), basis.Nbfun), np.ravel(columns))
         values = sp.csr_matrix((np.ravel(shape), index), shape=(rows.size, basis.N))
-        places = np.asarray(basis.global_coordinates()).reshape(2, -1).T
-        return cls(basis, basis.doflocs, values, basis.dx.ravel(), places)
+        position = np.asarray(basis.global_coordinates()).reshape(2, -1).T
+        return cls(basis, basis.doflocs, values, basis.dx.ravel(), position)
 
 
 @dataclass(frozen=True)
 class ContactModel:
-    """A contact ready to be solved.
+    """Contact problem of two elastic bodies, for any loads.
 
-    bodies : side 1 (below z = 0) and side 2; or side 2 alone if side 1 is its mirror image, loads too
-    interface, law : the contact
-    gap    : distance [m] of the unloaded faces at places x, y (...) [m]; None: they are plane
-    held   : unknowns of each body that stay zero and may carry a load; None: as few as stop its rigid
-             motions, and the loads need none of them
+    bodies    : side 1 (below z = 0) and side 2; side 2 alone if side 1 and its loads are the mirror image
+    interface : quadrature of the contact area
+    law       : pressure as a function of the approach
+    gap       : distance [m] of the unloaded faces at positions x, y (...) [m]; None: the faces are plane
+    fixed_unknowns : unknowns of each body that stay zero and may carry load. None: the fewest that stop its
+                rigid-body motions; the loads must balance without them
     """
 
     bodies: tuple[ElasticBody, ...]
@@ -103,12 +108,12 @@ class ContactModel:
         return len(self.bodies) == 1
 
     def traces(self) -> list[sp.csr_matrix]:
-        """Approach at the nodes of the contact per displacement (n) of each body."""
+        """Matrices (contact nodes, n) [1] of each body: approach at the contact nodes per displacement."""
         signs = (-2.0,) if self.mirrored else (1.0, -1.0)
         return [s * node_trace(body, self.interface) for s, body in zip(signs, self.bodies, strict=True)]
 
     def opening(self, x: Array, y: Array) -> Array:
-        """Distance [m] of the unloaded faces at places (...) [m]."""
+        """Distance [m] of the unloaded faces at positions x, y (...) [m]."""
         return np.zeros(np.shape(x)) if self.gap is None else self.gap(x, y)
 
     def supports(self) -> tuple[Index, ...]:
@@ -121,18 +126,18 @@ class ContactModel:
 
     @cached_property
     def _free(self) -> tuple[Index, ...]:
-        """Unknowns of each body that move."""
+        """Unknowns of each body that are not fixed."""
         pairs = zip(self.bodies, self.supports(), strict=True)
         return tuple(np.setdiff1d(np.arange(body.size), fixed) for body, fixed in pairs)
 
     @cached_property
     def _unloaded(self) -> Energy:
-        """The energy in the unknowns that move, without loads."""
-        blocks = [body.stiffness[part][:, part] for body, part in zip(self.bodies, self._free, strict=True)]
-        traces = [trace[:, part] for trace, part in zip(self.traces(), self._free, strict=True)]
+        """Energy in the free unknowns, without loads."""
+        blocks = [body.stiffness[free][:, free] for body, free in zip(self.bodies, self._free, strict=True)]
+        traces = [trace[:, free] for trace, free in zip(self.traces(), self._free, strict=True)]
         return Energy(
             stiffness=blocks[0] if self.mirrored else sp.block_diag(blocks, format="csr"),
-            load=np.zeros(sum(part.size for part in self._free)),
+            load=np.zeros(sum(free.size for free in self._free)),
             trace=(self.interface.values @ sp.hstack(traces)).tocsr(),
             weight=self.interface.area * (0.5 if self.mirrored else 1.0),
             law=self.law.derivatives,
@@ -141,13 +146,14 @@ class ContactModel:
     def solve(
         self, loads: Sequence[Array], start: float, near: "ContactSolution | None" = None
     ) -> "ContactSolution":
-        """Equilibrium under loads (n) [N] on each body, from a start with a pressure [Pa] > 0 everywhere.
+        """Solve for the equilibrium under loads (n) [N] on each body.
 
-        near : equilibrium of this model under other loads, to start from instead
+        initial_pressure : [Pa] > 0, uniform, from which Newton's method starts
+        initial_solution : equilibrium of this model under other loads; if given, Newton's method starts there
 
         Raises
         ------
-        RuntimeError : no equilibrium: loads that the contact cannot balance, or bodies that nothing holds
+        RuntimeError : there is no equilibrium: the contact cannot balance the loads, or a body is not held
         """
         balance = self.balance(loads)
         balance.check_loads()
@@ -155,41 +161,41 @@ class ContactModel:
         offset = (
             float(self.law.inverse(np.asarray(start))) + float(gap.max()) if near is None else near.offset
         )
-        given = np.concatenate([load[part] for load, part in zip(loads, self._free, strict=True)])
-        energy = replace(self._unloaded, load=given)
-        found = energy.minimise(offset - gap, None if near is None else near.minimum)
-        balance.check_contact(energy.weight * self.law.derivatives(found.approach, 1)[0])
-        return ContactSolution(self, tuple(loads), self._whole(found.displacement), offset, found)
+        free_load = np.concatenate([load[free] for load, free in zip(loads, self._free, strict=True)])
+        energy = replace(self._unloaded, load=free_load)
+        minimum = energy.minimise(offset - gap, None if near is None else near.minimum)
+        balance.check_contact(energy.weight * self.law.derivatives(minimum.approach, 1)[0])
+        return ContactSolution(self, tuple(loads), self._whole(minimum.displacement), offset, minimum)
 
     def _whole(self, moving: Array) -> tuple[Array, ...]:
-        """Displacement (n) of each body, from that of the unknowns that move."""
-        parts = np.split(moving, np.cumsum([part.size for part in self._free])[:-1])
+        """Displacement (n) [m] of each body, from the displacement of the free unknowns of all bodies."""
+        pieces = np.split(moving, np.cumsum([free.size for free in self._free])[:-1])
         displacement = tuple(np.zeros(body.size) for body in self.bodies)
-        for whole, free, values in zip(displacement, self._free, parts, strict=True):
-            whole[free] = values
+        for all_unknowns, free, values in zip(displacement, self._free, pieces, strict=True):
+            all_unknowns[free] = values
         return displacement
 
     def balance(self, loads: Sequence[Array]) -> RigidBalance:
-        """Forces of loads (n) [N] on the rigid motions of the bodies."""
-        at = self.interface
+        """Balance of loads (n) [N] and contact on the rigid-body motions of the bodies."""
+        interface = self.interface
         return RigidBalance.of(
             self.bodies,
-            [at.values @ trace for trace in self.traces()],
+            [interface.values @ trace for trace in self.traces()],
             loads,
             self.supports(),
-            at.position,
+            interface.position,
             bearing=self.held is not None,
         )
 
 
 @dataclass(frozen=True)
 class ContactSolution:
-    """Equilibrium of a contact.
+    """Equilibrium of two bodies in contact.
 
-    loads    : (n) [N] on each body
+    loads        : (n) [N] on each body
     displacement : (n) [m] of each body, three values per node
-    offset   : [m] approach at zero displacement where the gap is zero
-    minimum  : of the energy
+    offset       : [m] approach at zero displacement where the gap is zero
+    minimum      : minimum of the energy
     """
 
     model: ContactModel
@@ -200,7 +206,7 @@ class ContactSolution:
 
     @property
     def approach(self) -> Array:
-        """(q) [m] in equilibrium."""
+        """Approach (q) [m] at the quadrature points."""
         return self.minimum.approach
 
     @property
@@ -215,36 +221,40 @@ class ContactSolution:
 
     @property
     def stiffness(self) -> Array:
-        """(q) [Pa/m] of the interface at the quadrature points."""
+        """Stiffness dp/d(approach) (q) [Pa/m] of the interface at the quadrature points."""
         return self.model.law.derivatives(self.approach, 1)[1]
 
     @cached_property
     def at_nodes(self) -> Array:
-        """Approach [m] at the nodes of the contact."""
-        parts = zip(self.model.traces(), self.displacement, strict=True)
-        moved = sum((trace @ u for trace, u in parts), start=np.zeros(self.model.interface.nodes.shape[1]))
-        return np.asarray(self.offset - self.model.opening(*self.model.interface.nodes) + moved)
+        """Approach (contact nodes) [m] at the nodes of the contact."""
+        nodes = self.model.interface.nodes
+        pairs = zip(self.model.traces(), self.displacement, strict=True)
+        elastic_approach = sum((trace @ u for trace, u in pairs), start=np.zeros(nodes.shape[1]))
+        return np.asarray(self.offset - self.model.opening(*nodes) + elastic_approach)
 
     @property
     def node_pressure(self) -> Array:
-        """[Pa] at the nodes of the contact, which reach to its edges."""
+        """Pressure [Pa] at the nodes of the contact; some of them lie on its edges."""
         return self.model.law.derivatives(self.at_nodes, 1)[0]
 
     def pressure_at(self, places: Array) -> Array:
-        """Pressure (k) [Pa] at places (k, 2) [m] of the contact."""
+        """Pressure (k) [Pa] at positions (k, 2) [m] in the contact."""
         approach = self.model.interface.basis.interpolator(self.at_nodes)(np.asarray(places).T)
         return self.model.law.derivatives(approach, 1)[0]
 
 
 def trace(body: ElasticBody, interface: Interface, axis: int = 2) -> sp.csr_matrix:
-    """Displacement along an axis at the quadrature points (q) per unknown (n) of a body."""
+    """Matrix (q, n) [1]: displacement along an axis at the quadrature points per unknown of a body."""
     return (interface.values @ node_trace(body, interface, axis)).tocsr()
 
 
 def node_trace(body: ElasticBody, interface: Interface, axis: int = 2) -> sp.csr_matrix:
-    """Displacement along an axis at the nodes of the contact per unknown (n) of a body."""
-    flat = np.vstack([interface.nodes, np.zeros((1, interface.nodes.shape[1]))])
-    distance, node = cKDTree(body.nodes.T).query(flat.T)
+    """Matrix (contact nodes, n) [1]: displacement along an axis at the contact nodes per unknown of a body.
+
+    Raises RuntimeError if a node of the contact is no node of the body.
+    """
+    contact_nodes = np.vstack([interface.nodes, np.zeros((1, interface.nodes.shape[1]))])
+    distance, node = cKDTree(body.nodes.T).query(contact_nodes.T)
     if distance.max() > 1e-9:
         raise RuntimeError(f"a node of the contact lies {distance.max():g} m beside the body's nodes")
     ones = np.ones(node.size)
@@ -252,10 +262,10 @@ def node_trace(body: ElasticBody, interface: Interface, axis: int = 2) -> sp.csr
 
 
 def _supports(body: ElasticBody, fully: bool) -> Index:
-    """Unknowns that stop the rigid motions of a body in the plane, three of them.
+    """Three unknowns of a body that stop its rigid-body motions in the contact plane.
 
-    `fully`: with three more, against motion along z and rotations out of the plane; a body without
-    these rests on the contact.
+    stop_all_motions : add three unknowns that stop the motion along z and the rotations about x and y.
+        Without them, the body rests on the contact.
     """
     x, y, z = body.nodes
     corner, along, across = (int(np.argmin(a * x + b * y + 1e-3 * z)) for a, b in ((1, 1), (-1, 1), (1, -1)))

@@ -1,5 +1,7 @@
-"""How far the contact of a bolted joint still depends on the mesh: from mesh to mesh, and where bolts that
-symmetry makes alike show unlike pressures, which a mesh that is too coarse breaks first.
+"""Mesh convergence of the contact of a bolted joint.
+
+Results are compared from mesh to mesh. The peak pressures around bolts that are equivalent by symmetry are
+compared too: a mesh that is too coarse breaks this symmetry first.
 """
 
 import math
@@ -19,18 +21,20 @@ from .contact import PressureLaw
 from .geometry import Assembly
 
 RATIO = math.sqrt(2.0)
-"""Between the element sizes of two meshes [1]."""
+"""Ratio of the element sizes of two successive meshes [1]."""
 COLUMNS = {"peak": "Pa", "between": "Pa", "K_N": "N/m", "K_rx": "N.m/rad", "K_ry": "N.m/rad"}
-"""What is followed, with its unit: greatest pressure, mean midway between bolts, stiffness sums."""
+"""Results that are compared, with their units: peak pressure, mean pressure midway between neighbouring
+bolts, normal stiffness and bending stiffness about x and y."""
 
 
 @dataclass(frozen=True, slots=True)
 class MeshResult:
-    """One mesh: how fine it is and what comes out.
+    """Size of one mesh, and results on it.
 
     refinement : [1] divides all element sizes
-    elements   : on the contact; `unknowns` of all bodies
-    values     : {name of COLUMNS: value}; `between` is nan where no two bolts are neighbours
+    elements   : number of elements on the contact
+    unknowns   : number of unknowns of all meshed bodies
+    values     : {name in RESULT_UNITS: value}; `between` is nan if no two bolts are neighbours
     """
 
     refinement: float
@@ -40,29 +44,33 @@ class MeshResult:
 
 
 def refinements(count: int, middle: float = 1.0) -> list[float]:
-    """Of `count` meshes, each finer by RATIO; the second, or the only one, has the refinement `middle`."""
+    """Refinements [1] of `count` meshes, each REFINEMENT_RATIO times finer than the one before.
+
+    base : refinement [1] of the second mesh, or of the only one
+    """
     return [middle * RATIO**k for k in range(-1, count - 1)] if count > 1 else [middle]
 
 
 def study(
     assembly: Assembly, law: PressureLaw, preload: float, moment: float, levels: Sequence[float]
 ) -> tuple[list[MeshResult], JointSolution]:
-    """Results on meshes of rising refinement [1], and the solution on the last of them.
+    """Solve the contact on meshes of increasing refinement [1]; return all results and the last solution.
 
-    preload : [N] per bolt; moment : [N.m]
+    preload : [N] per bolt
+    moment  : [N.m] about x
     """
 
     def solved(refinement: float) -> JointSolution:
         return BoltedContact.of(assembly, refinement).solve(law, preload, moment)
 
-    *before, last = levels
-    rows = [result(solved(refinement), refinement) for refinement in track(before, "meshes")]
-    solution = solved(last)
-    return [*rows, result(solution, last)], solution
+    *coarser, finest = levels
+    rows = [result(solved(refinement), refinement) for refinement in track(coarser, "meshes")]
+    solution = solved(finest)
+    return [*rows, result(solution, finest)], solution
 
 
 def result(solution: JointSolution, refinement: float) -> MeshResult:
-    """What is followed of a solution."""
+    """Size of the mesh and compared results of a solution."""
     between = solution.between[1]
     values = {"peak": solution.peak, "between": float(between.mean()) if between.size else math.nan}
     joint = solution.joint
@@ -75,7 +83,7 @@ def result(solution: JointSolution, refinement: float) -> MeshResult:
 
 
 def changes(rows: Sequence[MeshResult]) -> list[dict[str, float]]:
-    """Relative change [1] of every value from each mesh to the next."""
+    """Relative change [1] of each result from each mesh to the next."""
     return [
         {name: fine.values[name] / coarse.values[name] - 1.0 for name in COLUMNS}
         for coarse, fine in pairwise(rows)
@@ -83,51 +91,61 @@ def changes(rows: Sequence[MeshResult]) -> list[dict[str, float]]:
 
 
 def orders(rows: Sequence[MeshResult]) -> dict[str, float]:
-    """Observed order [1] of every value from the last three meshes; nan if its changes do not fall."""
+    """Observed order of convergence [1] of each result from the last three meshes.
+
+    nan if the changes do not decrease. Fewer than three meshes give an empty dict.
+    """
     if len(rows) < 3:
         return {}
-    before, after = changes(rows)[-2:]
+    previous, latest = changes(rows)[-2:]
     ratio = math.log(rows[-1].refinement / rows[-2].refinement)
     observed = {}
     for name in COLUMNS:
-        falls = 0.0 < abs(after[name]) < abs(before[name])
-        observed[name] = math.log(abs(before[name] / after[name])) / ratio if falls else math.nan
+        decreases = 0.0 < abs(latest[name]) < abs(previous[name])
+        observed[name] = math.log(abs(previous[name] / latest[name])) / ratio if decreases else math.nan
     return observed
 
 
 UNLIKE = 0.1
-"""Relative difference of the greatest pressures around alike bolts, which a fine mesh stays below [1]."""
+"""Largest relative difference of the peak pressures around equivalent bolts [1] on a mesh that is fine
+enough."""
 _SAME = 1e-6
-"""Distance [m] within which a mirrored bolt lies on another one."""
+"""Distance [m] below which a mirrored bolt coincides with another bolt."""
 
 
 def alike(bolts: Array, moment: bool) -> NDArray[np.int64]:
-    """The first bolt (n) that each one equals by a mirror in x = 0 and, without a moment about x, in y = 0.
+    """For each bolt, index (n) of the first bolt that is its mirror image.
 
-    bolts : (n, 2) [m]. The bodies are symmetric to both planes; a mirror counts if it maps bolts on bolts.
+    Mirror planes are x = 0 and, without a moment about x, y = 0. The bodies are symmetric about both planes.
+    A mirror plane counts only if it maps all bolts onto bolts.
+
+    bolts : (n, 2) [m]
     """
     first = np.arange(len(bolts))
     for mirror in ((-1.0, 1.0),) if moment else ((-1.0, 1.0), (1.0, -1.0)):
-        far = np.hypot(*(bolts[:, None] * mirror - bolts[None]).T).T
-        image = far.argmin(axis=1)
-        if np.all(far[np.arange(len(bolts)), image] < _SAME):
+        distance = np.hypot(*(bolts[:, None] * mirror - bolts[None]).T).T
+        image = distance.argmin(axis=1)
+        if np.all(distance[np.arange(len(bolts)), image] < _SAME):
             first = np.minimum(first, first[image])
     return first
 
 
 def unlike_holes(field: ContactField, bolts: Array, moment: bool) -> list[str]:
-    """The warning if the greatest pressures around alike bolts differ by more than UNLIKE."""
+    """Warning if the peak pressures around equivalent bolts differ by more than MAX_PEAK_DIFFERENCE.
+
+    Returns a list of one message, or an empty list.
+    """
     if not len(bolts):
         return []
-    near = np.hypot(*(field.position[:, None] - bolts[None]).T).argmin(axis=0)
-    peak = np.array([np.max(field.pressure[near == i], initial=0.0) for i in range(len(bolts))])
-    first = alike(bolts, moment)
-    spread = peak / np.array([np.min(peak[first == one]) for one in first]).clip(1e-9)
-    worst = int(np.argmax(spread))
-    if not spread[worst] > 1.0 + UNLIKE:
+    nearest_bolt = np.hypot(*(field.position[:, None] - bolts[None]).T).argmin(axis=0)
+    peak = np.array([np.max(field.pressure[nearest_bolt == i], initial=0.0) for i in range(len(bolts))])
+    group = alike(bolts, moment)
+    ratio = peak / np.array([np.min(peak[group == first]) for first in group]).clip(1e-9)
+    worst = int(np.argmax(ratio))
+    if not ratio[worst] > 1.0 + UNLIKE:
         return []
     x, y = bolts[worst]
     return [
-        f"the pressure around the bolt at ({x:g}, {y:g}) m is {spread[worst]:.3g} times that around a bolt "
+        f"the pressure around the bolt at ({x:g}, {y:g}) m is {ratio[worst]:.3g} times that around a bolt "
         "that symmetry makes alike: the mesh is too coarse around the holes, take a larger --refinement"
     ]

@@ -1,5 +1,5 @@
-"""Linear elasticity of a body on quadratic hexahedra (scikit-fem), and the factor of its large symmetric
-positive definite matrices (CHOLMOD, by way of CVXOPT).
+"""Linear elasticity of a body on quadratic hexahedra (scikit-fem), and the sparse Cholesky factorisation of
+its stiffness matrices (CHOLMOD, called through CVXOPT).
 """
 
 from dataclasses import dataclass, field
@@ -18,7 +18,7 @@ from jointfmu.quantity import Array
 class Cholesky:
     """Supernodal Cholesky factor of a sparse symmetric positive definite matrix.
 
-    matrix : (n, n) scipy.sparse, its lower triangle is read
+    matrix : (n, n) scipy.sparse; only its lower triangle is read
 
     Raises
     ------
@@ -39,18 +39,18 @@ class Cholesky:
             ) from None
 
     def solve(self, right: Array | sp.spmatrix) -> Array:
-        """Solution (n) or (n, k) of `matrix @ x = right`.
+        """Solve `matrix @ x = right_side` for x (n) or (n, k).
 
-        Sparse right sides go through the factor by four, in half the time of dense ones, which CVXOPT takes
-        one by one.
+        Sparse right-hand sides take half the time of dense ones: CVXOPT solves four sparse columns at once,
+        but dense columns one by one.
         """
         from cvxopt import cholmod
         from cvxopt import matrix as dense
 
         if sp.issparse(right):
-            parts = (right[:, first : first + COLUMNS] for first in range(0, right.shape[1], COLUMNS))
+            blocks = (right[:, first : first + COLUMNS] for first in range(0, right.shape[1], COLUMNS))
             return np.hstack(
-                [np.array(dense(cholmod.spsolve(self._factor, _packed(part)))) for part in parts]
+                [np.array(dense(cholmod.spsolve(self._factor, _packed(block)))) for block in blocks]
             )
         x = dense(np.asfortranarray(right, dtype=np.float64))
         cholmod.solve(self._factor, x)
@@ -58,35 +58,36 @@ class Cholesky:
 
 
 COLUMNS = 32
-"""Sparse right sides that are solved at once: their solutions are in memory twice."""
+"""Largest number of sparse right-hand sides in one call: their solutions are in memory twice."""
 
 
 def _packed(matrix: sp.spmatrix) -> Any:
-    """A matrix (n, k) as CVXOPT's sparse one."""
+    """Convert a sparse matrix (n, k) from scipy to CVXOPT."""
     from cvxopt import matrix as dense
     from cvxopt import spmatrix
 
     entries = matrix.tocoo()
-    rows, columns = (dense(part.astype(np.int64)) for part in (entries.row, entries.col))
+    rows, columns = (dense(indices.astype(np.int64)) for indices in (entries.row, entries.col))
     return spmatrix(dense(entries.data), rows, columns, entries.shape)
 
 
 Index = NDArray[np.int64]
 
 ORDER = 4
-"""Degree that the quadrature integrates exactly: 3 x 3 x 3 points in an element."""
+"""Polynomial degree that the quadrature integrates exactly: 3 x 3 x 3 points in an element."""
 BLOCK = 4096
-"""Elements whose matrices are computed at once."""
+"""Number of elements whose matrices are computed in one array operation."""
 
 
 @dataclass(frozen=True)
 class ElasticBody:
-    """Displacement of a body, three values at every node of serendipity hexahedra (20 nodes).
+    """Finite-element model of an elastic body: serendipity hexahedra (20 nodes), three unknowns per node.
 
-    mesh    : of scikit-fem, [m]
-    E, nu   : [Pa], [1] Young's modulus and Poisson's ratio
+    mesh    : mesh of scikit-fem [m]
+    E       : Young's modulus [Pa]
+    nu      : Poisson's ratio [1]
     density : [kg/m3]
-    element : scalar element of scikit-fem, with nodal values
+    element : scalar nodal element of scikit-fem
     """
 
     mesh: MeshHex
@@ -97,12 +98,12 @@ class ElasticBody:
 
     @cached_property
     def basis(self) -> Basis:
-        """The scalar basis; component k of node i is unknown 3 i + k."""
+        """Scalar finite-element basis. The displacement component k at node i is unknown 3 i + k."""
         return Basis(self.mesh, self.element, intorder=ORDER)
 
     @property
     def size(self) -> int:
-        """Number of unknowns."""
+        """Number of unknowns (three per node)."""
         return 3 * int(self.basis.N)
 
     @property
@@ -112,10 +113,10 @@ class ElasticBody:
 
     @cached_property
     def stiffness(self) -> sp.csr_matrix:
-        """Stiffness matrix [N/m] of the free body.
+        """Stiffness matrix (n, n) [N/m] of the unsupported body.
 
-        The integrals of skfem.models.elasticity.linear_elasticity, all entries of an element in one
-        matrix product: 35 times as fast as form by form.
+        The integrals are those of skfem.models.elasticity.linear_elasticity. One matrix product gives all
+        entries of an element matrix: 35 times faster than the assembly of that form.
         """
         lame, shear = lame_parameters(self.E, self.nu)
         count = self.mesh.nelements
@@ -124,7 +125,7 @@ class ElasticBody:
         )
 
     def _blocks(self, part: slice, lame: float, shear: float) -> Array:
-        """Element matrices (m, 20, 20, 3, 3) [N/m]."""
+        """Stiffness matrices (m, 20, 20, 3, 3) [N/m] of the selected elements."""
         functions = range(self.basis.Nbfun)
         gradient = np.stack([self.basis.basis[i][0].grad[:, part] for i in functions])
         n, _, m, _ = gradient.shape
@@ -139,7 +140,7 @@ class ElasticBody:
 
     @cached_property
     def mass(self) -> sp.csr_matrix:
-        """Mass matrix [kg]."""
+        """Consistent mass matrix (n, n) [kg]."""
         functions = np.stack(
             [
                 np.broadcast_to(np.asarray(self.basis.basis[i][0]), self.basis.dx.shape)
@@ -151,7 +152,7 @@ class ElasticBody:
         return sp.kron(_assembled(self.basis, [scalar[..., None, None]]), np.eye(3), format="csr")
 
     def uniform_load(self, facets: Index) -> Array:
-        """Load (n) [N per N] along z of a unit force spread uniformly over facets, in all unknowns."""
+        """Nodal load (n) [N/N] of a unit force along z, distributed uniformly over facets."""
         basis = FacetBasis(self.mesh, self.element, facets=facets, intorder=ORDER)
         share = LinearForm(lambda v, w: v).assemble(basis)
         load = np.zeros(self.size)
@@ -159,9 +160,9 @@ class ElasticBody:
         return load
 
     def rigid_motions(self, centre: tuple[float, float] = (0.0, 0.0)) -> Array:
-        """Displacements (n, 6) of unit translations [m/m] along and rotations [m/rad] about x, y, z.
+        """Displacements (n, 6) of unit translations [m/m] along, and unit rotations [m/rad] about, x, y, z.
 
-        centre : (x, y) [m] where z = 0, about which it turns
+        centre : (x, y) [m] of the centre of rotation, which lies in the plane z = 0
         """
         x, y, z = self.nodes - np.array([[*centre, 0.0]]).T
         unit, zero = np.ones_like(x), np.zeros_like(x)
@@ -177,7 +178,7 @@ class ElasticBody:
 
 
 def _assembled(basis: Basis, blocks: list[Array]) -> sp.csr_matrix:
-    """Sum element matrices (m, n, n, k, k) into one of k x k blocks."""
+    """Assemble element matrices (m, n, n, k, k) to a global sparse matrix with k x k blocks."""
     dofs = np.asarray(basis.element_dofs.T, dtype=np.int64)
     key = (dofs[:, :, None] * basis.N + dofs[:, None, :]).ravel()
     order = np.argsort(key, kind="stable")

@@ -1,7 +1,7 @@
-"""Two bodies bolted together on a plane: their parametric shapes and the bolts between them.
+"""Parametric geometry of a bolted assembly: two bodies in contact on a plane, and their bolts.
 
-The contact lies in the plane z = 0, side 1 below and side 2 above it. A body is a stack of layers, each a
-rectangle with an optional rectangular opening, all centred on the z axis.
+The contact lies in the plane z = 0, with side 1 below and side 2 above. A body is a stack of layers. Each
+layer is a rectangle with an optional rectangular opening. All rectangles are centred on the z axis.
 """
 
 from collections.abc import Iterator
@@ -23,7 +23,7 @@ class BoltGrid:
     column_spacing: float = quantity("m", "distance of the outermost bolts of a row", ge=0.0)
     inside: bool = choice(False, True, doc="whether there are bolts inside the outer frame of the grid")
     hole_diameter: float = quantity("m", "clearance hole", gt=0.0)
-    head_diameter: float = quantity("m", "outer diameter of what presses on the bodies", gt=0.0)
+    head_diameter: float = quantity("m", "outer diameter of the bolt head or washer", gt=0.0)
 
     def __post_init__(self) -> None:
         check(self)
@@ -39,19 +39,18 @@ class BoltGrid:
         x = 0.5 * self.column_spacing * _spread(columns)
         edge = np.zeros((rows, columns), dtype=bool)
         edge[[0, -1], :], edge[:, [0, -1]] = True, True
-        keep = edge | self.inside
-        row, column = np.nonzero(keep)
+        row, column = np.nonzero(edge | self.inside)
         return np.stack([x[column], y[row]], axis=1)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BoltList:
-    """Bolts at given places."""
+    """Bolts at listed positions."""
 
     x: tuple[float, ...] = series("m", "positions along x")
     y: tuple[float, ...] = series("m", "positions along y")
     hole_diameter: float = quantity("m", "clearance hole", gt=0.0)
-    head_diameter: float = quantity("m", "outer diameter of what presses on the bodies", gt=0.0)
+    head_diameter: float = quantity("m", "outer diameter of the bolt head or washer", gt=0.0)
 
     def __post_init__(self) -> None:
         check(self)
@@ -68,21 +67,22 @@ Bolts = BoltGrid | BoltList
 
 
 def _spread(count: int) -> Array:
-    """`count` places from -1 to 1; the middle for one."""
+    """`count` equidistant coordinates from -1 to 1; 0 for a single one."""
     return np.linspace(-1.0, 1.0, count) if count > 1 else np.zeros(1)
 
 
 SAME = 1e-9
-"""Lengths [m] that differ by less are equal."""
+"""Difference [m] below which two lengths are equal."""
 
 
 @dataclass(frozen=True, slots=True)
 class Layer:
-    """A slab of a body.
+    """Layer of a body: a rectangular slab with an optional opening.
 
-    bottom, top   : [m] distances from the contact plane
-    outer, inner  : (2) [m] half lengths along x and y of its outline and of its opening (0: none)
-    drilled       : whether the holes of the bolts pass through it
+    bottom, top    : distances from the contact plane [m]
+    outline        : half lengths (2) of the outer rectangle along x and y [m]
+    opening        : half lengths (2) of the rectangular opening along x and y [m]; 0: no opening
+    has_bolt_holes : whether the bolt holes pass through the layer
     """
 
     bottom: float
@@ -92,14 +92,14 @@ class Layer:
     drilled: bool = False
 
     def solid(self, x: Array, y: Array) -> NDArray[np.bool_]:
-        """Whether the layer is solid at points (...) [m] of the plan, holes of bolts apart."""
+        """Whether points (...) [m] of the plan view lie in the material of the layer; ignores bolt holes."""
         inside = (np.abs(x) < self.outer[0]) & (np.abs(y) < self.outer[1])
         return np.asarray(inside & ~((np.abs(x) < self.inner[0]) & (np.abs(y) < self.inner[1])))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Plate(Checked):
-    """A rectangular plate; all of it but the holes is in contact."""
+    """A rectangular plate. Its whole face, without the bolt holes, is in contact."""
 
     length: float = quantity("m", "length along x", gt=0.0)
     width: float = quantity("m", "width along y", gt=0.0)
@@ -120,7 +120,7 @@ class Plate(Checked):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TappedPlate(Plate):
-    """A plate with blind holes as deep as the threads that hold the bolts."""
+    """A plate with blind tapped holes: the bolts are screwed into it."""
 
     depth: float = quantity("m", "depth of the threads from the contact", gt=0.0)
 
@@ -139,7 +139,7 @@ class TappedPlate(Plate):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BoxSection:
-    """A rectangular box open at the contact: a flange there, four walls, a floor at the far end."""
+    """A rectangular box, open towards the contact: a flange there, four walls, a floor at the far end."""
 
     length: float = quantity("m", "outer length of the flange along x", gt=0.0)
     width: float = quantity("m", "outer width of the flange along y", gt=0.0)
@@ -155,10 +155,10 @@ class BoxSection:
 
     def __post_init__(self) -> None:
         check(self)
-        least, most = self.wall_inset + self.wall, 0.5 * min(self.length, self.width)
-        if not least - SAME <= self.flange_width < most:
+        low, high = self.wall_inset + self.wall, 0.5 * min(self.length, self.width)
+        if not low - SAME <= self.flange_width < high:
             raise ValueError(
-                f"flange_width = {self.flange_width:g} m is outside [{least:g}, {most:g}): "
+                f"flange_width = {self.flange_width:g} m is outside [{low:g}, {high:g}): "
                 "the walls stand on the flange, and the flange leaves the middle open"
             )
         if not self.flange_thickness < self.height - self.floor:
@@ -190,7 +190,7 @@ Body = Plate | TappedPlate | BoxSection
 
 @dataclass(frozen=True, slots=True)
 class Assembly:
-    """Two bodies and their bolts. A body that cannot take the bolts is refused with ValueError."""
+    """Two bodies and their bolts. Raises ValueError if the bolts do not fit on the bodies."""
 
     name: str
     side1: Body
@@ -206,14 +206,17 @@ class Assembly:
         return float(np.ptp(self.bolts.positions[:, 1]))
 
     def outer_rows(self) -> tuple[NDArray[np.bool_], NDArray[np.bool_]] | None:
-        """Which bolts (n) make up the outermost row y > 0 and the opposite one; None if they are no pair."""
+        """Masks (n) of the bolts in the outermost row at y > 0 and in the opposite row.
+
+        None if there is only one row, or if the two rows have different numbers of bolts.
+        """
         y, size = self.bolts.positions[:, 1], self.row_distance
         high, low = (np.abs(y - end) < SAME + 1e-6 * size for end in (y.max(), y.min()))
         return (high, low) if size > 0.0 and high.sum() == low.sum() else None
 
     @property
     def contact_area(self) -> float:
-        """Area [m2] where the bodies touch, the holes cut out."""
+        """Nominal contact area [m2] of the two bodies, without the bolt holes."""
         layers = [body.layers()[0] for body in (self.side1, self.side2)]
         outer = np.min([layer.outer for layer in layers], axis=0)
         inner1, inner2 = (np.minimum(layer.inner, outer) for layer in layers)
@@ -224,69 +227,72 @@ class Assembly:
     def bolt_forces(self, preload: float, moment: float = 0.0) -> Array:
         """Force (n) [N] of each bolt for a preload [N] per bolt and a moment [N.m] about x.
 
-        The moment raises the outermost row y > 0 by M/(L_a N_b) and lowers the opposite one, N_b
-        bolts in each (Zhao 2018, section 3). ValueError if a bolt would lose its force.
+        The moment M adds M/(L_a N_b) to the force of each bolt in the outermost row at y > 0 and subtracts it
+        in the opposite row: L_a distance of the rows, N_b bolts in each (Zhao 2018, section 3).
+
+        Raises ValueError if the preload is not positive, if the two outer rows do not match, or if a row of
+        bolts would lose its force.
         """
         if not (np.isfinite(preload) and preload > 0.0):
             raise ValueError(f"preload = {preload:g} N is outside (0, inf): force of each bolt")
         force = np.full(len(self.bolts.positions), float(preload))
         if moment == 0.0:
             return force
-        rows, most = self.outer_rows(), self.most_moment(preload)
+        rows, limit = self.outer_rows(), self.most_moment(preload)
         if rows is None:
             raise ValueError(f"moment = {moment:g} N.m needs two outer rows with as many bolts each")
-        if not abs(moment) < most:
-            why = "a row of bolts would lose its force"
-            raise ValueError(f"moment = {moment:g} N.m is outside ({-most:g}, {most:g}): {why}")
+        if not abs(moment) < limit:
+            reason = "a row of bolts would lose its force"
+            raise ValueError(f"moment = {moment:g} N.m is outside ({-limit:g}, {limit:g}): {reason}")
         for row, sign in zip(rows, (1.0, -1.0), strict=True):
-            force[row] += sign * preload * moment / most
+            force[row] += sign * preload * moment / limit
         return force
 
     def most_moment(self, preload: float) -> float:
-        """Moment [N.m] that takes all force of a row of bolts; 0 if there are no two rows."""
+        """Moment [N.m] at which an outer row of bolts loses its force; 0 without two matching rows."""
         rows = self.outer_rows()
         return 0.0 if rows is None else preload * self.row_distance * float(rows[0].sum())
 
 
 def check_bolts(assembly: Assembly) -> None:
-    """Raise ValueError if a head does not lie flat on its body, or if two heads overlap."""
+    """Raise ValueError if a bolt head does not lie flat on its body, or if two heads overlap."""
     bolts = assembly.bolts
-    hole, head, at = 0.5 * bolts.hole_diameter, 0.5 * bolts.head_diameter, bolts.positions
+    hole, head, positions = 0.5 * bolts.hole_diameter, 0.5 * bolts.head_diameter, bolts.positions
     if hole >= head:
         raise ValueError(
             f"hole_diameter = {2 * hole:g} m is outside (0, {2 * head:g}): the head covers the hole"
         )
-    for i, (x, y) in enumerate(at):
+    for i, (x, y) in enumerate(positions):
         for side in ("side1", "side2"):
             if text := _obstacle(getattr(assembly, side), x, y, head):
                 raise ValueError(
                     f"bolt {i + 1} at ({1e3 * x:.4g}, {1e3 * y:.4g}) mm with a head of {2e3 * head:.4g} mm "
                     f"{text} of {side}"
                 )
-        near = np.hypot(*(at[:i] - at[i]).T)
-        if near.size and near.min() < 2.0 * head:
+        distance = np.hypot(*(positions[:i] - positions[i]).T)
+        if distance.size and distance.min() < 2.0 * head:
             raise ValueError(
-                f"heads of {2e3 * head:.4g} mm are outside (0, {1e3 * near.min():.4g}] mm: those of bolts "
-                f"{near.argmin() + 1} and {i + 1} overlap"
+                f"heads of {2e3 * head:.4g} mm are outside (0, {1e3 * distance.min():.4g}] mm: "
+                f"those of bolts {distance.argmin() + 1} and {i + 1} overlap"
             )
 
 
 def check_thickness(assembly: Assembly) -> None:
-    """Raise ValueError for a body thinner than the ring that a head presses on is wide."""
-    least = 0.5 * (assembly.bolts.head_diameter - assembly.bolts.hole_diameter)
+    """Raise ValueError if a body under a bolt head is thinner than the bearing ring of the head is wide."""
+    min_thickness = 0.5 * (assembly.bolts.head_diameter - assembly.bolts.hole_diameter)
     for name, body in (("side1", assembly.side1), ("side2", assembly.side2)):
-        if not body.clamped >= least:
+        if not body.clamped >= min_thickness:
             raise ValueError(
-                f"{name} is {1e3 * body.clamped:.4g} mm thick, expected at least {1e3 * least:.4g} mm: the "
-                "width of the ring under a head, which would punch through"
+                f"{name} is {1e3 * body.clamped:.4g} mm thick, expected at least {1e3 * min_thickness:.4g} "
+                "mm: the width of the ring under a head, which would punch through"
             )
 
 
 def _obstacle(body: Body, x: float, y: float, radius: float) -> str | None:
-    """What keeps a disc on the flange from lying flat; None if nothing does."""
+    """Reason why a bolt head (a disc) does not lie flat on a body; None if it does."""
     flange, *rest = body.layers()
     if isinstance(body, TappedPlate):
-        return None  # nothing lies on it
+        return None  # no head lies on a tapped plate
     if not _within(x, y, radius, flange.outer) or _meets(x, y, radius, flange.inner):
         return f"reaches beyond the {'plate' if isinstance(body, Plate) else 'flange'}"
     if rest and _meets(x, y, radius, rest[0].outer) and not _within(x, y, radius, rest[0].inner):
@@ -295,18 +301,18 @@ def _obstacle(body: Body, x: float, y: float, radius: float) -> str | None:
 
 
 def _within(x: float, y: float, radius: float, half: tuple[float, float]) -> bool:
-    """Whether a disc lies inside the rectangle; touching is inside."""
+    """Whether a disc lies inside a rectangle of these half lengths [m]; touching counts as inside."""
     return abs(x) + radius <= half[0] + SAME and abs(y) + radius <= half[1] + SAME
 
 
 def _meets(x: float, y: float, radius: float, half: tuple[float, float]) -> bool:
-    """Whether a disc and the inside of the rectangle have a point in common."""
+    """Whether a disc overlaps the interior of a rectangle of these half lengths [m]."""
     gap = np.hypot(max(abs(x) - half[0], 0.0), max(abs(y) - half[1], 0.0))
     return min(half) > 0.0 and bool(gap < radius - SAME)
 
 
 def rectangles(assembly: Assembly) -> Iterator[tuple[float, float]]:
-    """Half lengths [m] of every rectangle on which a body has an edge, each once."""
+    """Half lengths (2) [m] of all outlines and openings of the layers of both bodies, without duplicates."""
     seen: set[tuple[float, float]] = set()
     for body in (assembly.side1, assembly.side2):
         for layer in body.layers():

@@ -1,7 +1,7 @@
-"""Hexahedra for two bolted bodies: one plan of quadrilaterals (gmsh), extruded layer by layer.
+"""Hexahedral meshes of two bolted bodies, extruded layer by layer from one plan mesh (gmsh).
 
-Both bodies share the plan, so their nodes coincide on the contact. Edges are straight: a hole is a
-polygon with the area of the circle.
+Both bodies share the plan mesh of quadrilaterals, so their nodes coincide on the contact. Edges are straight:
+a hole is a polygon with the area of the circle.
 """
 
 from dataclasses import dataclass
@@ -16,22 +16,22 @@ from .elasticity import Index
 from .geometry import Assembly, Body, Layer, TappedPlate, rectangles
 
 SIZE_AT_HOLES = 1.0 / 10.0
-"""Edge of an element at a hole over the hole's circumference [1], at refinement 1."""
+"""Edge length of an element at a hole over the circumference of the hole [1], at refinement 1."""
 ELEMENTS_ACROSS = 4
-"""Elements across the narrowest strip of the contact at refinement 1."""
+"""Number of elements across the narrowest strip of the contact, at refinement 1."""
 WALL = 1.02
-"""Diameter around the walls of a hole over its own [1]."""
+"""Diameter within which a facet counts as wall of a hole, over the diameter of the hole [1]."""
 LAYERS = 2
-"""Layers of elements through the thickness under a bolt's head at refinement 1."""
+"""Number of elements through the thickness of the layer at the contact, at refinement 1."""
 
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """Quadrilaterals of the plan view.
+    """Quadrilateral mesh of the plan view of both bodies.
 
-    points : (2, n) [m]
-    cells  : (4, m) corners of a cell
-    drilled : (m) whether a cell lies in a hole
+    points       : (2, n) [m]
+    cells        : (4, m) indices of the corners of each cell
+    in_bolt_hole : (m) whether a cell lies in a bolt hole
     """
 
     points: Array
@@ -39,49 +39,50 @@ class Plan:
     drilled: NDArray[np.bool_]
 
     def solid(self, layer: Layer) -> NDArray[np.bool_]:
-        """(m) whether a cell is solid in a layer of a body."""
+        """Whether each cell (m) lies in the material of a layer."""
         x, y = self.points[:, self.cells].mean(axis=1)
         return layer.solid(x, y) & ~(self.drilled & layer.drilled)
 
 
 def contact_cells(plan: Plan, assembly: Assembly) -> NDArray[np.bool_]:
-    """(m) cells where the two bodies touch."""
+    """Whether the two bodies touch in each cell (m) of the plan."""
     cells1, cells2 = (plan.solid(body.layers()[0]) for body in (assembly.side1, assembly.side2))
     return cells1 & cells2
 
 
 def contact_mesh(plan: Plan, touching: NDArray[np.bool_]) -> MeshQuad:
-    """The contact as a plane mesh."""
+    """Plane mesh of the cells (m) in contact."""
     used, cells = np.unique(plan.cells[:, touching], return_inverse=True)
     return MeshQuad(np.ascontiguousarray(plan.points[:, used]), np.ascontiguousarray(cells.reshape(4, -1)))
 
 
 def sizes(assembly: Assembly, refinement: float) -> tuple[float, float]:
-    """Edge length [m] of elements at the holes and far from them."""
+    """Edge lengths [m] of elements at the holes, and far from them."""
     strips = [_strip(body) for body in (assembly.side1, assembly.side2)]
-    near = np.pi * assembly.bolts.hole_diameter * SIZE_AT_HOLES
-    return near / refinement, max(min(strips) / ELEMENTS_ACROSS, near) / refinement
+    at_holes = np.pi * assembly.bolts.hole_diameter * SIZE_AT_HOLES
+    return at_holes / refinement, max(min(strips) / ELEMENTS_ACROSS, at_holes) / refinement
 
 
 def _strip(body: Body) -> float:
+    """Width [m] of the narrowest strip of the contact face of a body."""
     contact = body.layers()[0]
     widths = [o - i for o, i in zip(contact.outer, contact.inner, strict=True)]
     return float(min(widths))
 
 
 def plan_of(assembly: Assembly, refinement: float = 1.0) -> Plan:
-    """Mesh the plan with quadrilaterals that respect every edge, hole and head.
+    """Mesh the plan view with quadrilaterals whose edges follow all body edges, holes and bolt heads.
 
     refinement : [1] divides all element sizes
     """
     import gmsh
 
-    near, far = sizes(assembly, refinement)
+    size_at_holes, max_size = sizes(assembly, refinement)
     gmsh.initialize(interruptible=False)
     try:
         gmsh.option.setNumber("General.Terminal", 0)
         _draw(gmsh.model, assembly)
-        _grade(gmsh.model, assembly, near, far)
+        _grade(gmsh.model, assembly, size_at_holes, max_size)
         for name, value in (
             ("Algorithm", 8),
             ("RecombineAll", 1),
@@ -102,18 +103,18 @@ def plan_of(assembly: Assembly, refinement: float = 1.0) -> Plan:
 
 
 def _round(points: Array, assembly: Assembly) -> None:
-    """Move the corners of the holes outward, so that each polygon has the area of its circle."""
+    """Move the corners of the hole polygons outward, in place: each polygon gets the area of its circle."""
     radius = 0.5 * assembly.bolts.hole_diameter
-    for at in assembly.bolts.positions:
-        away = points - at[:, None]
-        rim = np.flatnonzero(np.abs(np.hypot(*away) - radius) < 1e-6 * radius)
-        x, y = away[:, rim[np.argsort(np.arctan2(*away[::-1, rim]))]]
+    for centre in assembly.bolts.positions:
+        offset = points - centre[:, None]
+        rim = np.flatnonzero(np.abs(np.hypot(*offset) - radius) < 1e-6 * radius)
+        x, y = offset[:, rim[np.argsort(np.arctan2(*offset[::-1, rim]))]]
         area = 0.5 * np.sum(x * np.roll(y, -1) - y * np.roll(x, -1))
-        points[:, rim] += (radius * np.sqrt(np.pi / area) - 1.0) * away[:, rim]
+        points[:, rim] += (radius * np.sqrt(np.pi / area) - 1.0) * offset[:, rim]
 
 
 def _draw(model: object, assembly: Assembly) -> None:
-    """Rectangles, holes and heads, cut into faces that meet edge to edge."""
+    """Draw rectangles, holes and heads in gmsh, and split them into faces with common edges."""
     occ = model.occ  # type: ignore[attr-defined]
     faces = [(2, occ.addRectangle(-x, -y, 0.0, 2 * x, 2 * y)) for x, y in rectangles(assembly)]
     for x, y in assembly.bolts.positions:
@@ -124,9 +125,9 @@ def _draw(model: object, assembly: Assembly) -> None:
 
 
 def _grade(model: object, assembly: Assembly, near: float, far: float) -> None:
-    """Element sizes growing with the distance from the rims of the holes."""
+    """Set the element size in gmsh: smallest at the rims of the holes, growing with the distance to them."""
     field = model.mesh.field  # type: ignore[attr-defined]
-    # subdivision halves what is asked for
+    # the subdivision of gmsh halves the element size, so twice the size is set
     circles = []
     hole = 0.5 * assembly.bolts.hole_diameter
     for x, y in assembly.bolts.positions:
@@ -135,11 +136,11 @@ def _grade(model: object, assembly: Assembly, near: float, far: float) -> None:
         rim = field.add("MathEval")
         field.setString(rim, "F", size)
         circles.append(rim)
-    flat = field.add("MathEval")
-    field.setString(flat, "F", f"{2 * far:.12g}")
-    least = field.add("Min")
-    field.setNumbers(least, "FieldsList", [*circles, flat])
-    field.setAsBackgroundMesh(least)
+    uniform = field.add("MathEval")
+    field.setString(uniform, "F", f"{2 * far:.12g}")
+    smallest = field.add("Min")
+    field.setNumbers(smallest, "FieldsList", [*circles, uniform])
+    field.setAsBackgroundMesh(smallest)
     import gmsh
 
     for name in ("MeshSizeExtendFromBoundary", "MeshSizeFromPoints", "MeshSizeFromCurvature"):
@@ -147,6 +148,7 @@ def _grade(model: object, assembly: Assembly, near: float, far: float) -> None:
 
 
 def _quadrilaterals(model: object) -> tuple[Array, Index]:
+    """Read points (2, n) [m] and counter-clockwise cells (4, m) of the mesh from gmsh."""
     mesh = model.mesh  # type: ignore[attr-defined]
     tags, coordinates, _ = mesh.getNodes()
     kinds, _, nodes = mesh.getElements(2)
@@ -154,9 +156,9 @@ def _quadrilaterals(model: object) -> tuple[Array, Index]:
         raise RuntimeError(
             f"the plan has elements of the gmsh types {list(kinds)}, expected quadrilaterals (3)"
         )
-    place = np.zeros(int(tags.max()) + 1, dtype=np.int64)
-    place[tags.astype(np.int64)] = np.arange(tags.size)
-    cells = place[nodes[0].astype(np.int64)].reshape(-1, 4).T
+    index = np.zeros(int(tags.max()) + 1, dtype=np.int64)
+    index[tags.astype(np.int64)] = np.arange(tags.size)
+    cells = index[nodes[0].astype(np.int64)].reshape(-1, 4).T
     points = coordinates.reshape(-1, 3)[:, :2].T
     used, cells = np.unique(cells, return_inverse=True)
     cells = cells.reshape(4, -1)
@@ -167,17 +169,17 @@ def _quadrilaterals(model: object) -> tuple[Array, Index]:
 
 
 def body_mesh(plan: Plan, assembly: Assembly, side: int, refinement: float = 1.0) -> MeshHex:
-    """Extrude the plan into one body: side 1 towards -z, side 2 towards +z.
+    """Extrude the plan mesh to the mesh of one body: side 1 towards -z, side 2 towards +z.
 
-    Its named boundaries are `contact`, all of its face on z = 0, and `head1`, `head2`, ... under the
-    heads of the bolts, or the walls of their threads.
+    Named boundaries: `contact` is the whole face at z = 0; `head1`, `head2`, ... are the faces under the bolt
+    heads or, in a tapped plate, the walls of the threaded holes.
     """
     body = assembly.side1 if side == 1 else assembly.side2
     heights, owner = levels(body, refinement, 2.0 * sizes(assembly, refinement)[1])
     count, layers = plan.points.shape[1], body.layers()
     lower, upper = [], []
-    for k, which in enumerate(owner):
-        cells = plan.cells[:, plan.solid(layers[which])]
+    for k, layer_index in enumerate(owner):
+        cells = plan.cells[:, plan.solid(layers[layer_index])]
         lower.append(cells + k * count)
         upper.append(cells + (k + 1) * count)
     if side == 1:
@@ -190,39 +192,44 @@ def body_mesh(plan: Plan, assembly: Assembly, side: int, refinement: float = 1.0
 
 
 def levels(body: Body, refinement: float, tall: float) -> tuple[Array, list[int]]:
-    """Distances (k + 1) [m] of the levels from the contact, and the layer of each of the k slabs.
+    """Subdivision of a body along z: k rows of elements between k + 1 levels.
 
-    tall : [m] greatest height of an element outside the layer under the heads
+    Returns the distances (k + 1) [m] of the levels from the contact, and for each row the index of its layer.
+
+    max_height : [m] largest height of an element
     """
     heights, owner = [0.0], []
-    for which, layer in enumerate(body.layers()):
-        thick = layer.top - layer.bottom
-        least = LAYERS if which == 0 else 1
-        slabs = max(round(least * refinement), int(np.ceil(thick / tall - 1e-9)), 1)
-        heights += list(layer.bottom + thick * np.arange(1, slabs + 1) / slabs)
-        owner += [which] * slabs
+    for layer_index, layer in enumerate(body.layers()):
+        thickness = layer.top - layer.bottom
+        min_rows = LAYERS if layer_index == 0 else 1
+        rows = max(round(min_rows * refinement), int(np.ceil(thickness / tall - 1e-9)), 1)
+        heights += list(layer.bottom + thickness * np.arange(1, rows + 1) / rows)
+        owner += [layer_index] * rows
     return np.array(heights), owner
 
 
 def _hexahedra(lower: Index, upper: Index) -> Index:
-    """Corners (8, m) in the order of scikit-fem from those (4, m) of the lower and upper faces."""
+    """Corner indices (8, m) in the order of scikit-fem, from the corners (4, m) of lower and upper faces."""
     (a, b, c, d), (e, f, g, h) = lower, upper
     return np.stack([g, c, f, h, b, d, e, a])
 
 
 def _boundaries(mesh: MeshHex, assembly: Assembly, side: int) -> dict[str, Index]:
+    """Named boundaries of a body mesh (see `body_mesh`), each as indices of facets."""
     bolts, body = assembly.bolts, assembly.side1 if side == 1 else assembly.side2
-    heads_at = body.clamped if side == 2 else -body.clamped
+    head_level = body.clamped if side == 2 else -body.clamped
     x, y, z = mesh.p[:, mesh.facets].mean(axis=1)
-    free = np.zeros(z.size, dtype=bool)
-    free[mesh.boundary_facets()] = True
-    slack = 1e-9 + 1e-6 * abs(heads_at)
-    boundaries = {"contact": np.flatnonzero(free & (np.abs(z) < slack))}
-    flat = free & (np.abs(mesh.p[2, mesh.facets] - heads_at).max(axis=0) < slack)
-    reach = bolts.head_diameter
+    outer = np.zeros(z.size, dtype=bool)
+    outer[mesh.boundary_facets()] = True
+    tolerance = 1e-9 + 1e-6 * abs(head_level)
+    boundaries = {"contact": np.flatnonzero(outer & (np.abs(z) < tolerance))}
     if isinstance(body, TappedPlate):
-        flat, reach = free & (np.ptp(mesh.p[2, mesh.facets], axis=0) > slack), WALL * bolts.hole_diameter
-    for i, at in enumerate(bolts.positions):
-        under = np.hypot(x - at[0], y - at[1]) < 0.5 * reach
-        boundaries[f"head{i + 1}"] = np.flatnonzero(flat & under)
+        candidates = outer & (np.ptp(mesh.p[2, mesh.facets], axis=0) > tolerance)
+        diameter = WALL * bolts.hole_diameter
+    else:
+        candidates = outer & (np.abs(mesh.p[2, mesh.facets] - head_level).max(axis=0) < tolerance)
+        diameter = bolts.head_diameter
+    for i, (x_bolt, y_bolt) in enumerate(bolts.positions):
+        near_bolt = np.hypot(x - x_bolt, y - y_bolt) < 0.5 * diameter
+        boundaries[f"head{i + 1}"] = np.flatnonzero(candidates & near_bolt)
     return boundaries

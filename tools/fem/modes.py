@@ -1,5 +1,6 @@
-"""Natural frequencies of two bodies that float freely, held together by the stiffness of their contact:
-with given stiffnesses, and of a bolted assembly with those of its pressure.
+"""Natural modes of two free-free bodies that are coupled by the stiffness of their contact.
+
+The contact stiffness is prescribed, or follows from the contact pressure of a bolted assembly.
 """
 
 from collections.abc import Mapping, Sequence
@@ -19,22 +20,22 @@ from .elasticity import Cholesky, ElasticBody
 from .geometry import Assembly
 
 RIGID = 6
-"""Motions without strain of an assembly that floats freely."""
+"""Number of rigid-body modes of a free assembly."""
 SHIFT = 100.0
-"""Frequency [Hz] at whose negative square the eigensolver looks; far below the elastic modes."""
+"""Frequency f [Hz] of the shift -(2 pi f)^2 of the eigensolver; far below the elastic modes."""
 ACCURATE = 1e-8
-"""Of shapes [1]; frequencies are so to its square."""
+"""Relative tolerance of the eigensolver for mode shapes [1]; the error of frequencies is its square."""
 LEAST = 1.0
-"""Frequency [Hz] below which a motion counts as rigid."""
+"""Frequency [Hz] below which a mode counts as rigid-body mode."""
 
 
 @dataclass(frozen=True, slots=True)
 class NaturalModes:
-    """Modes with strain, by rising frequency.
+    """Elastic natural modes of an assembly, in order of increasing frequency.
 
     frequency : (k) [Hz]
-    shape     : k times the displacement (n, 3) of the nodes of each body, of modal mass 1 kg [1]
-    mass      : [kg] of the assembly
+    shape     : for each mode, displacement (n, 3) [1] of the nodes of each body, of modal mass 1 kg
+    mass      : mass of the assembly [kg]
     """
 
     frequency: Array
@@ -45,13 +46,14 @@ class NaturalModes:
 def modes(
     bodies: tuple[ElasticBody, ...], interface: Interface, normal: Array, tangential: Array, count: int = 6
 ) -> NaturalModes:
-    """The lowest modes with strain of the assembly, free on all sides.
+    """The lowest elastic modes of an assembly without supports.
 
     bodies     : side 1 and side 2, or side 2 alone if side 1 is its mirror image
-    normal, tangential : (q) [N/m3] stiffness per area at the quadrature points of the interface
-    count      : of modes
+    normal     : normal stiffness per area (q) [N/m3] at the quadrature points of the interface
+    tangential : tangential stiffness per area (q) [N/m3] there
+    count      : number of modes
 
-    Raises RuntimeError if the contact does not hold the bodies together.
+    Raises RuntimeError if the contact stiffness leaves more than six rigid-body modes.
     """
     if len(bodies) == 2:
         springs = _springs(bodies, interface, {0: tangential, 1: tangential, 2: normal})
@@ -73,7 +75,10 @@ def modes(
 def _springs(
     bodies: tuple[ElasticBody, ...], interface: Interface, stiffness: Mapping[int, Array]
 ) -> sp.csr_matrix:
-    """Stiffness matrix [N/m] of the interface; stiffness per area (q) [N/m3] along some of the axes."""
+    """Stiffness matrix (n, n) [N/m] of the interface.
+
+    stiffness : {axis 0, 1 or 2: stiffness per area (q) [N/m3]}; axes that are missing have none
+    """
     signs = (1.0, -1.0)[: len(bodies)]
     total: sp.csr_matrix | float = 0.0
     for axis, density in stiffness.items():
@@ -85,7 +90,10 @@ def _springs(
 def _lowest(
     bodies: tuple[ElasticBody, ...], springs: sp.csr_matrix, count: int
 ) -> list[tuple[float, tuple[Array, ...]]]:
-    """Frequencies [Hz] and shapes: Lanczos on the inverse, shifted so that rigid motions do no harm."""
+    """Lowest frequencies [Hz] and mode shapes, by shift-invert Lanczos.
+
+    The shift makes the matrix positive definite in spite of the rigid-body modes.
+    """
     mass = sp.block_diag([body.mass for body in bodies], format="csr")
     stiffness = sp.block_diag([body.stiffness for body in bodies], format="csr") + springs
     shift = -((2.0 * np.pi * SHIFT) ** 2)
@@ -94,26 +102,29 @@ def _lowest(
     start = np.random.default_rng(1).standard_normal(stiffness.shape[0])
     squares, shapes = eigsh(stiffness, k=count, M=mass, sigma=shift, OPinv=inverse, v0=start, tol=ACCURATE)
     ends = np.cumsum([body.size for body in bodies])[:-1]
-    parts = [tuple(part.reshape(-1, 3) for part in np.split(shape, ends)) for shape in shapes.T]
-    return list(zip(np.sqrt(np.maximum(squares, 0.0)) / (2.0 * np.pi), parts, strict=True))
+    by_body = [tuple(block.reshape(-1, 3) for block in np.split(shape, ends)) for shape in shapes.T]
+    return list(zip(np.sqrt(np.maximum(squares, 0.0)) / (2.0 * np.pi), by_body, strict=True))
 
 
 def _both(shape: Array, sign: float) -> tuple[Array, Array]:
-    """Side 1, the mirror image in z = 0 (its opposite for sign -1), and side 2, together of mass 1 kg."""
-    above = np.sqrt(0.5) * shape
-    return sign * above * np.array([1.0, 1.0, -1.0]), above
+    """Mode shapes (n, 3) of both bodies, of modal mass 1 kg, from the shape of side 2.
+
+    Side 1 is the mirror image of side 2 in the plane z = 0, times `sign` (1 or -1).
+    """
+    side2 = np.sqrt(0.5) * shape
+    return sign * side2 * np.array([1.0, 1.0, -1.0]), side2
 
 
 REFINEMENT = 0.5
-"""Of the meshes for frequencies of many states [1]; twice as fine ones lower those of the box specimen by
-less than 1 % (docs/finite_elements.md)."""
+"""Refinement [1] of the meshes for frequencies in many load states. Twice this refinement lowers the
+frequencies of the box specimen by less than 1 % (docs/finite_elements.md)."""
 
 
 def computed(solution: JointSolution, shear: float, count: int = 6) -> NaturalModes:
-    """Modes about the tightened state: every place of the contact has the stiffness of its pressure.
+    """Natural modes of a preloaded joint: the contact stiffness at each point follows from its pressure.
 
-    shear : [1] tangential over normal stiffness of the interface
-    count : of modes
+    tangential_stiffness_ratio : [1] tangential over normal stiffness of the interface
+    count : number of modes
     """
     return _on(solution.joint, solution.contact.stiffness, shear, count)
 
@@ -121,7 +132,11 @@ def computed(solution: JointSolution, shear: float, count: int = 6) -> NaturalMo
 def uniform(
     joint: BoltedContact, law: PressureLaw, force: float, shear: float, count: int = 6
 ) -> NaturalModes:
-    """Modes if the total force [N] of the bolts were spread evenly over the contact."""
+    """Natural modes for a uniform contact pressure: the total bolt force [N] over the contact area.
+
+    tangential_stiffness_ratio : [1] tangential over normal stiffness of the interface
+    count : number of modes
+    """
     area = joint.interface.area
     approach = law.inverse(np.asarray(force / area.sum()))
     stiffness = float(law.derivatives(approach, 1)[1])
@@ -137,12 +152,12 @@ def frequencies(
     count: int = 6,
     even: bool = False,
 ) -> Array:
-    """Natural frequencies (states, count) [Hz] of an assembly.
+    """Natural frequencies (states, count) [Hz] of an assembly in several load states.
 
-    joint  : gives the interface law; its area is that of the assembly
-    shear  : [1] tangential over normal stiffness of the interface
-    states : preloads [N] per bolt and moments [N.m]
-    even   : with the bolts' force spread evenly over the contact, instead of the computed field
+    joint  : gives the interface law; its contact area is replaced by that of the assembly
+    tangential_stiffness_ratio : [1] tangential over normal stiffness of the interface
+    states : preload [N] per bolt and moment [N.m] about x of each load state
+    uniform_pressure : distribute the bolt force uniformly over the contact, instead of computing the pressure
     """
     law = approach_curve(replace(joint, A_0=assembly.contact_area))
     contact = BoltedContact.of(assembly, refinement)

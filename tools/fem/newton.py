@@ -1,4 +1,4 @@
-"""Newton's method for elastic bodies on a nonlinear interface."""
+"""Newton's method for elastic bodies in contact through a nonlinear interface."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -15,21 +15,22 @@ from jointfmu.quantity import Array
 from .elasticity import Cholesky
 
 TOLERANCE = 1e-11
-"""Residual force over the force of the loads [1], as sums of magnitudes, at which Newton's method ends."""
+"""Residual force over applied load [1], both as sums of magnitudes, at which Newton's method converges."""
 MOST_STEPS = 60
 ENOUGH = 0.1
-"""Part of TOLERANCE [1] that a system is solved to at most."""
+"""Tightest tolerance of the linear solver over the tolerance of Newton's method [1]."""
 PATIENCE = 12
-"""Steps of the conjugate gradients after which the factor is renewed."""
+"""Number of conjugate-gradient iterations above which the tangent is factorised anew."""
 
 
 @dataclass(frozen=True)
 class Minimum:
-    """Where an energy is least.
+    """Minimum of the energy.
 
-    displacement : u (n); `approach` (q) [m]
-    steps        : of Newton's method
-    factor       : of a tangent on the way
+    displacement : u (n) [m]
+    approach     : (q) [m] at the quadrature points
+    steps        : number of steps of Newton's method
+    factor       : Cholesky factor of the tangent of an earlier step, used as preconditioner
     """
 
     displacement: Array
@@ -40,13 +41,13 @@ class Minimum:
 
 @dataclass(frozen=True)
 class Energy:
-    """u K u / 2 - f u + sum weight V(offset + T u) with V' = p, convex in u (n).
+    """Energy u K u / 2 - f u + sum over points of weight V(offset + T u), with V' = p; convex in u (n) [m].
 
-    stiffness : K [N/m]
-    load      : f (n) [N]
-    trace     : T (q, n) [1]
-    weight    : (q) [m2]
-    law       : approach (q) [m] -> pressure [Pa] and its derivative [Pa/m]
+    stiffness       : K (n, n) [N/m]
+    load            : f (n) [N]
+    approach_matrix : T (q, n) [1] approach at the quadrature points per displacement
+    weight          : area (q) [m2] of each quadrature point
+    law             : function of the approach (q) [m]: pressure [Pa] and its derivative [Pa/m]
     """
 
     stiffness: sp.csr_matrix
@@ -56,22 +57,25 @@ class Energy:
     law: Callable[[Array], list[Array]]
 
     def minimise(self, offset: Array, near: Minimum | None = None) -> Minimum:
-        """The minimum, found from u = 0 or from that of the same energy under another load.
+        """Find the minimum by Newton's method.
 
-        The tangent is factorised at the start; the systems of the later steps are solved by conjugate
-        gradients with this factor, renewed when they need more than PATIENCE steps.
+        offset          : (q) [m] approach at zero displacement
+        initial_minimum : minimum of the same energy under another load, to start from; None: start at u = 0
+
+        The tangent is factorised in the first step. Later steps use conjugate gradients with this factor as
+        preconditioner. If they need more than MAX_CG_ITERATIONS, the tangent is factorised anew.
 
         Raises RuntimeError if there is no equilibrium.
         """
         K, T = self.stiffness, self.trace
         u = np.zeros(self.load.size) if near is None else near.displacement
         inner, approach = K @ u, offset + T @ u
-        scale = float(np.abs(self.load).sum())
+        total_load = float(np.abs(self.load).sum())
         factor, slow, last = None if near is None else near.factor, False, np.inf
         for step in track(range(MOST_STEPS), "contact"):
             p, k = self.law(approach)[:2]
             residual = self.load - inner - T.T @ (self.weight * p)
-            size = float(np.abs(residual).sum()) / scale
+            size = float(np.abs(residual).sum()) / total_load
             if size <= TOLERANCE or (size <= 1e3 * TOLERANCE and size > 0.5 * last):
                 return Minimum(u, approach, step, factor)
             last = size
@@ -91,11 +95,18 @@ class Energy:
         )
 
     def _tangent(self, spring: Array, u: Array) -> Array:
-        """(K + T' spring T) u, with the contact's stiffness (q) [N/m]."""
+        """Tangent times displacement: (K + T^T diag(spring) T) u, with contact stiffness (q) [N/m]."""
         return np.asarray(self.stiffness @ u + self.trace.T @ (spring * (self.trace @ u)))
 
     def _length(self, approach: Array, change: Array, linear: float, square: float) -> float:
-        """Length of the step, at most 1: where the energy's slope along it vanishes, to a tenth."""
+        """Exact line search: step length <= 1 at which the slope of the energy along the step vanishes.
+
+        A full step is taken if its final slope is at most a tenth of the initial one.
+
+        approach : (q) [m], at the start of the step
+        change   : (q) [m] of the approach by the full step
+        linear, square : [J] linear and quadratic coefficients of the elastic energy and the work of the loads
+        """
 
         def slope(length: float) -> float:
             p = self.law(approach + length * change)[0]
@@ -108,7 +119,10 @@ class Energy:
 
 
 def _solve(matrix: LinearOperator, right: Array, factor: Cholesky, accuracy: float) -> tuple[Array, int]:
-    """Solution of a system to a relative accuracy, and the steps it took."""
+    """Solve a linear system by preconditioned conjugate gradients to a relative tolerance.
+
+    Returns the solution and the number of iterations.
+    """
     count = 0
 
     def counted(_: Array) -> None:

@@ -1,4 +1,4 @@
-"""Measured natural frequencies beside those of finite elements."""
+"""Comparison of measured natural frequencies with frequencies from finite elements."""
 
 from dataclasses import dataclass
 from importlib.resources import files
@@ -15,11 +15,11 @@ from ..published.validation import ValidatedPoint, compare
 
 @dataclass(frozen=True, slots=True)
 class MeasuredFrequencies:
-    """Frequencies of a bolted assembly: `FREQUENCIES` of a clamped joint's folder.
+    """Measured natural frequencies of a bolted assembly: constant `FREQUENCIES` of a kind of joint.
 
-    points   : file of published numbers in models/reference/; `where` of each has `preload` [N] per bolt,
-               `moment` [N.m] and `mode`, from 1
-    assembly : file in models/assemblies/
+    points   : file of published numbers in models/reference/; `where` of each number gives `preload` [N] per
+               bolt, `moment` [N.m] about x and `mode`, counted from 1
+    assembly : file of the assembly in models/assemblies/
     """
 
     points: str
@@ -27,27 +27,30 @@ class MeasuredFrequencies:
 
     @property
     def path(self) -> Path:
-        """Of the assembly's file."""
+        """Path of the assembly file."""
         return Path(str(files("jointfmu_models") / "assemblies" / f"{self.assembly}.toml"))
 
 
 def natural_frequencies() -> list[ValidatedPoint]:
-    """Measured frequencies of assemblies beside those of finite elements: half a minute each.
+    """Compare measured frequencies of all assemblies with finite elements: half a minute for each assembly.
 
     Raises ImportError without the extra `fem`.
     """
-    parts = {name: part(kind, "frequencies") for name, kind in KINDS.items()}
-    return [row for name, own in parts.items() if own for row in _frequencies(name, own.FREQUENCIES)]
+    modules = {name: part(kind, "frequencies") for name, kind in KINDS.items()}
+    return [
+        row for name, module in modules.items() if module for row in _frequencies(name, module.FREQUENCIES)
+    ]
 
 
 def _frequencies(joint: str, measured: MeasuredFrequencies) -> list[ValidatedPoint]:
+    """Compare the measured frequencies of one assembly with finite elements."""
     from . import assembly, modes
 
     published, values = points(measured.points), default(joint).values
     states = list(dict.fromkeys((p.where["preload"], p.where["moment"]) for p in published))
     shear = float(clamping(joint).shear_ratio(values))
     computed = modes.frequencies(assembly.load(measured.path), values, shear, states)
-    at = dict(zip(states, computed.tolist(), strict=True))
-    found = [at[p.where["preload"], p.where["moment"]][p.where["mode"] - 1] for p in published]
+    by_state = dict(zip(states, computed.tolist(), strict=True))
+    matching = [by_state[p.where["preload"], p.where["moment"]][p.where["mode"] - 1] for p in published]
     guessed = guesses(published)
-    return [compare(p, value, guessed.get(p.id)) for p, value in zip(published, found, strict=True)]
+    return [compare(p, value, guessed.get(p.id)) for p, value in zip(published, matching, strict=True)]

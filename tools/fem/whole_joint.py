@@ -1,8 +1,8 @@
-"""Stiffness of a whole bolted joint between two rigid attachments: members, interface and bolts together.
+"""Linear stiffness of a complete bolted joint between two rigid attachments: members, interface and bolts.
 
-Linear, about the tightened state: both bodies by finite elements, the interface as springs between them, each
-bolt a spring between its bearing areas. An attachment is a part of a body that moves as one: it has the
-motion of what the joint is screwed to.
+The model is linearised about the preloaded state. The bodies are finite elements, the interface is a layer of
+springs between them, each bolt is a spring between its bearing areas. An attachment is a set of nodes of a
+body that moves like a rigid body, with the structure to which the joint is fixed.
 """
 
 from collections.abc import Callable, Mapping
@@ -23,26 +23,29 @@ from .mesh import contact_cells, contact_mesh, plan_of
 
 AXES = (0, 1, 2)
 MIRROR = np.array([1.0, 1.0, -1.0])
-"""Of displacements and places in the plane of the contact."""
+"""Factors of x, y, z for the mirror image in the contact plane."""
 SLACK = 1e-6
-"""Distance from a face over the body's size [1] at which a node lies on it."""
+"""Distance of a node from a face over the size of the body [1], below which the node lies on the face."""
 
 
 def _faces(body: ElasticBody, side: int) -> NDArray[np.bool_]:
+    """Whether each node lies on the outer face, opposite to the contact."""
     return _at(np.abs(body.nodes[2]), float(np.abs(body.nodes[2]).max()))
 
 
 def _edge(body: ElasticBody, side: int) -> NDArray[np.bool_]:
+    """Whether each node lies on the end face of the body: at +x for side 2, at -x for side 1."""
     x = body.nodes[0] if side == 2 else -body.nodes[0]
     return _at(x, float(x.max()))
 
 
 def _heads(body: ElasticBody, side: int) -> NDArray[np.bool_]:
-    held = np.zeros(body.nodes.shape[1], dtype=bool)
+    """Whether each node lies under a bolt head."""
+    under_head = np.zeros(body.nodes.shape[1], dtype=bool)
     for name, facets in body.mesh.boundaries.items():
         if name.startswith("head"):
-            held[body.basis.get_dofs(facets).flatten()] = True
-    return held
+            under_head[body.basis.get_dofs(facets).flatten()] = True
+    return under_head
 
 
 def _at(place: Array, end: float) -> NDArray[np.bool_]:
@@ -54,18 +57,20 @@ ATTACHED: Mapping[str, Callable[[ElasticBody, int], NDArray[np.bool_]]] = {
     "edge": _edge,
     "heads": _heads,
 }
-"""Nodes that move as one: of the outer face, of the edge (side 1 at -x, side 2 at +x), or under the heads."""
+"""Kinds of attachment, each with a function (body, side) that gives the mask (nodes) of the rigid nodes:
+the outer face, the end face (side 1 at -x, side 2 at +x), or the areas under the bolt heads."""
 
 
 @dataclass(frozen=True)
 class WholeJoint:
-    """Two meshed bodies between their attachments.
+    """Finite-element model of both bodies of a joint between their attachments.
 
-    bodies    : side 1 and 2
-    held      : unknowns of each that the attachment moves
-    interface : points of the contact
-    heads     : for each body, mean displacement (n, bolts) along z of what a bolt presses on
-    bolts     : (bolts, 2) [m] their places
+    bodies              : side 1 and side 2
+    attachment_unknowns : for each body, unknowns whose displacement the attachment prescribes
+    interface           : quadrature of the contact area
+    bolt_head_loads     : for each body, nodal load (n, bolts) [N/N] of a unit bolt force along +z; the same
+                          weights give the mean displacement along z under a bolt head
+    bolts               : positions (bolts, 2) [m]
     """
 
     bodies: tuple[ElasticBody, ElasticBody]
@@ -76,21 +81,25 @@ class WholeJoint:
 
     @classmethod
     def of(cls, assembly: Assembly, attached: str, refinement: float = 1.0) -> "WholeJoint":
-        """Mesh an assembly; attached is one of ATTACHED, refinement [1] divides the sizes of all elements."""
+        """Mesh an assembly.
+
+        attached   : kind of attachment, a key of ATTACHMENT_NODES
+        refinement : [1] divides the sizes of all elements
+        """
         plan = plan_of(assembly, refinement)
         first, second = (elastic_body(plan, assembly, side, refinement) for side in (1, 2))
-        held, heads = [], []
+        attachments, heads = [], []
         for side, body in enumerate((first, second), start=1):
             nodes = np.flatnonzero(ATTACHED[attached](body, side))
-            held.append((3 * nodes[:, None] + np.arange(3)).ravel())
+            attachments.append((3 * nodes[:, None] + np.arange(3)).ravel())
             heads.append(head_loads(body, assembly))
         interface = Interface.of(contact_mesh(plan, contact_cells(plan, assembly)))
         bolts = assembly.bolts.positions
-        return cls((first, second), (held[0], held[1]), interface, (heads[0], heads[1]), bolts)
+        return cls((first, second), (attachments[0], attachments[1]), interface, (heads[0], heads[1]), bolts)
 
     @property
     def mirrored(self) -> bool:
-        """Whether side 2 is the mirror image of side 1, with its attachment and what its bolts press on."""
+        """Whether side 2 is the mirror image of side 1: body, mesh, attachment and bolt bearing areas."""
         first, second = self.bodies
         return (
             (first.E, first.nu) == (second.E, second.nu)
@@ -101,14 +110,19 @@ class WholeJoint:
         )
 
     def apart(self, axis: int) -> sp.csr_matrix:
-        """Displacement (points, n) of side 2 against side 1 along an axis."""
+        """Matrix (q, n) [1]: displacement of side 2 relative to side 1 along an axis, per unknown.
+
+        The displacement along z (axis 2) is the opening of the contact.
+        """
         return sp.hstack(
             [s * trace(b, self.interface, axis) for s, b in zip((-1.0, 1.0), self.bodies, strict=True)]
         ).tocsr()
 
     def compliances(self, springs: Array, bolt: float) -> Compliances:
-        """Of the whole joint; springs (points, 3) [N/m3] of the interface along x, y, z,
-        bolt [N/m] the stiffness of each.
+        """Compliances of the complete joint.
+
+        springs        : stiffness per area (q, 3) [N/m3] of the interface along x, y, z
+        bolt_stiffness : of each bolt [N/m]
 
         Raises RuntimeError if a body can move freely.
         """
@@ -116,11 +130,14 @@ class WholeJoint:
 
     @property
     def stretch(self) -> Array:
-        """Of each bolt (n, bolts) by the displacement of both bodies."""
+        """Matrix (n, bolts) [1]: elongation of each bolt per unknown of both bodies."""
         return np.concatenate([-self.heads[0], self.heads[1]])
 
     def linear(self, springs: Array, bolt: float) -> "Linear":
-        """The joint with springs in place of its interface, see `compliances`."""
+        """Linear joint with springs as interface, solved for unit motions. Parameters as for `compliances`.
+
+        Raises RuntimeError if a body can move freely.
+        """
         bodies = sp.block_diag([body.stiffness for body in self.bodies], format="csr")
         opening = [self.apart(axis) for axis in AXES]
         weights = [sp.diags(self.interface.area * springs[:, axis]) for axis in AXES]
@@ -129,47 +146,62 @@ class WholeJoint:
         return Linear(self, bodies, contact, shanks, bolt, *self._solved(bodies + contact + shanks))
 
     def _solved(self, stiffness: sp.csr_matrix) -> tuple[Array, Array, Index, "Cholesky | Halves"]:
-        """Displacements (n, 6) under unit motions of side 2's attachment about the centroid of the contact,
-        and those of rigid sides; unknowns that are free, factors of their stiffness."""
+        """Solve for unit translations and rotations of side 2's attachment about the centroid of the contact.
+
+        Returns the displacement (n, 6) of the elastic bodies, the displacement (n, 6) of rigid bodies, the
+        free unknowns, and the factorisation of their stiffness matrix.
+        """
         first, second = self.bodies
         x, y = self.interface.centroid
         rigid = np.concatenate([np.zeros((first.size, 6)), second.rigid_motions((float(x), float(y)))])
-        held = np.concatenate([self.held[0], first.size + self.held[1]])
-        free = np.setdiff1d(np.arange(rigid.shape[0]), held)
-        moved = np.zeros_like(rigid)
-        moved[held] = rigid[held]
-        own = stiffness[free][:, free]
-        factor = Halves(own, MIRROR[free[: len(free) // 2] % 3]) if self.mirrored else Cholesky(own)
-        moved[free] = -factor.solve(stiffness[free][:, held] @ rigid[held])
-        return moved, rigid, free, factor
+        prescribed = np.concatenate([self.held[0], first.size + self.held[1]])
+        free = np.setdiff1d(np.arange(rigid.shape[0]), prescribed)
+        displacement = np.zeros_like(rigid)
+        displacement[prescribed] = rigid[prescribed]
+        free_stiffness = stiffness[free][:, free]
+        if self.mirrored:
+            factor: Cholesky | Halves = Halves(free_stiffness, MIRROR[free[: len(free) // 2] % 3])
+        else:
+            factor = Cholesky(free_stiffness)
+        displacement[free] = -factor.solve(stiffness[free][:, prescribed] @ rigid[prescribed])
+        return displacement, rigid, free, factor
 
 
 class Halves:
-    """Factors of the stiffness (2 n, 2 n) of two bodies that mirror each other, by what they do alike and
-    oppositely; mirror (n): its sign for each unknown of the first one."""
+    """Factorisation of the stiffness (2 n, 2 n) of two bodies that are mirror images of each other.
+
+    Symmetric and antisymmetric displacements decouple: each has its own matrix (n, n).
+
+    mirror : (n) sign of each unknown of the first body in the mirror image
+    """
 
     def __init__(self, matrix: sp.csr_matrix, mirror: Array) -> None:
         n = len(mirror)
-        own, other = matrix[n:, n:], matrix[n:, :n] @ sp.diags(mirror)
-        self._mirror, self._alike, self._opposite = mirror, Cholesky(own + other), Cholesky(own - other)
+        diagonal, coupling = matrix[n:, n:], matrix[n:, :n] @ sp.diags(mirror)
+        self._mirror = mirror
+        self._symmetric, self._antisymmetric = Cholesky(diagonal + coupling), Cholesky(diagonal - coupling)
 
     def solve(self, right: Array) -> Array:
-        """Solution (2 n, k) of `matrix @ x = right`."""
+        """Solve `matrix @ x = right_side` for x (2 n, k)."""
         first, second = np.split(right, 2)
         first = self._mirror[:, None] * first
-        alike = self._alike.solve(0.5 * (second + first))
-        opposite = self._opposite.solve(0.5 * (second - first))
-        return np.concatenate([self._mirror[:, None] * (alike - opposite), alike + opposite])
+        symmetric = self._symmetric.solve(0.5 * (second + first))
+        antisymmetric = self._antisymmetric.solve(0.5 * (second - first))
+        return np.concatenate(
+            [self._mirror[:, None] * (symmetric - antisymmetric), symmetric + antisymmetric]
+        )
 
 
 @dataclass(frozen=True)
 class Linear:
-    """A joint whose interface is springs: stiffness matrices (n, n) [N/m] of bodies, contact and bolts.
+    """Linear model of a joint: the interface is a layer of springs.
 
-    bolt         : [N/m] stiffness of each bolt
-    moved, rigid : (n, 6) displacement under unit motions of side 2's attachment about the centroid of the
-        contact, and without deformation
-    free, factor : unknowns that no attachment holds, and factors of their stiffness
+    bodies, contact, shanks : stiffness matrices (n, n) [N/m] of bodies, interface and bolts
+    bolt_stiffness     : of each bolt [N/m]
+    displacement       : (n, 6) for unit motions of side 2's attachment, about the centroid of the contact
+    rigid_displacement : (n, 6) for the same motions if the bodies were rigid
+    free_unknowns      : unknowns that no attachment prescribes
+    factor             : factorisation of the stiffness matrix of the free unknowns
     """
 
     joint: WholeJoint
@@ -183,20 +215,22 @@ class Linear:
     factor: Cholesky | Halves
 
     def solve(self, loads: Array) -> Array:
-        """Displacements (n, s) [m] under loads (n, s) [N] while the attachments rest."""
-        moved = np.zeros_like(loads)
-        moved[self.free] = self.factor.solve(loads[self.free])
-        return moved
+        """Solve for displacements (n, s) [m] under loads (n, s) [N], with both attachments fixed."""
+        displacement = np.zeros_like(loads)
+        displacement[self.free] = self.factor.solve(loads[self.free])
+        return displacement
 
     @property
     def stiffness(self) -> Array:
-        """Of the joint (6, 6) [N/m, N, N.m] about the centroid of its contact."""
+        """Stiffness matrix (6, 6) [N/m, N, N.m] of the joint about the centroid of its contact."""
         return np.asarray(self.moved.T @ ((self.contact + self.bodies + self.shanks) @ self.moved))
 
     def compliances(self) -> Compliances:
-        """Of the joint about the centroid of its contact."""
-        parts, held = (self.contact, self.bodies, self.shanks), np.diag(self.stiffness)
-        stored = np.stack([np.sum(self.moved * (part @ self.moved), axis=0) for part in parts])
-        contact, bolts = (np.diag(self.rigid.T @ (part @ self.rigid)) for part in (parts[0], parts[2]))
-        force = self.bolt * (self.joint.stretch.T @ self.moved) @ np.linalg.inv(self.stiffness)
-        return Compliances(stored / held**2, 1.0 / contact, bolts, force)
+        """Compliances of the joint, by their sources, about the centroid of its contact."""
+        sources, total = (self.contact, self.bodies, self.shanks), np.diag(self.stiffness)
+        stored = np.stack([np.sum(self.moved * (matrix @ self.moved), axis=0) for matrix in sources])
+        contact, bolts = (
+            np.diag(self.rigid.T @ (matrix @ self.rigid)) for matrix in (self.contact, self.shanks)
+        )
+        bolt_force = self.bolt * (self.joint.stretch.T @ self.moved) @ np.linalg.inv(self.stiffness)
+        return Compliances(stored / total**2, 1.0 / contact, bolts, bolt_force)

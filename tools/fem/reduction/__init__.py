@@ -1,1 +1,1 @@
-"""The bodies of a whole joint reduced to modes, for `BoltedJoint` with elastic sides."""
+"""Modal reduction of the bodies of a bolted joint, for `BoltedJoint` with elastic sides."""

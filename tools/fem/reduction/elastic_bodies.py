@@ -1,10 +1,11 @@
-"""Both bodies of a joint between their attachments, reduced to the modes that friction and opening need.
+"""Modal reduction of both bodies of a joint between their attachments.
 
-The modes are the deformations that the `states` of the joint need most, by their energy (proper orthogonal
-decomposition). What a mode does at a point of the joint is its mean over the point's cell, by the stiffness
-there. Few points miss what it does inside the cells; their means are changed in common, so that the tightened
-interface is as stiff against all modes as that of the finite elements. At the patches they are then fitted to
-the work of friction (`patch_work`).
+The modes come from a proper orthogonal decomposition, in the energy norm, of computed load steps of the joint
+(`states`). The opening or tangential displacement of a mode at a point of the reduced joint is its mean over
+the cell of the point, weighted by the interface stiffness. A mean misses the variation inside of the cell. So
+the means are corrected in common: the preloaded interface gets the same stiffness against all modes as in the
+finite-element model. At the friction patches, the displacements are then fitted to the work of friction
+(`patch_work`).
 """
 
 from typing import Any
@@ -33,111 +34,135 @@ from .patch_work import (
 from .states import cell_means, closed_by, states
 
 LEAST = 1e-3
-"""Amplitude of the least mode over that of the largest [1], of states with as much energy each."""
+"""Smallest singular value of a mode over the largest [1], for states of equal energy."""
 OPENING = 0.5
-"""Amplitude of states that open the contact, over that of those that shear it alone [1], where modes are
-found: the loss in partial slip needs finer ones."""
+"""Weight of states with opening over the weight of states in shear alone [1], in the decomposition: the
+loss in partial slip needs more accurate modes."""
 STIFFNESS_DIGITS = 6
-"""Digits of the stiffness of a mode [1]: more than those of what it moves, fewer than processors agree in."""
+"""Significant digits of the stiffness of a mode: more than for its displacements, fewer than those in which
+different processors agree."""
 GAIN = 10.0
-"""Most by which what a mode does at the points is changed [1]."""
+"""Largest factor [1] of the correction of modal displacements at the points, and of its inverse."""
 
 
 def elastic_bodies(linear: Linear, spring: BoltedJointSpring, normal: Array, preload: float) -> ElasticBodies:
-    """The bodies' modes at the points, patches and bolts of a joint under a preload [N] of each bolt.
+    """Modes of the bodies at the points, patches and bolts of a joint, for a preload [N] per bolt.
 
-    linear : by finite elements
-    normal : (q) [Pa/m] stiffness of the tightened interface at the points of the finite elements
+    linear           : linear finite-element model of the joint
+    spring           : the reduced joint
+    normal_stiffness : (q) [Pa/m] of the preloaded interface at the quadrature points
 
     Raises RuntimeError if a body can move freely.
     """
     joint = linear.joint
-    at = joint.interface
-    bolts = joint.bolts - at.centroid
+    interface = joint.interface
+    bolts = joint.bolts - interface.centroid
     motions, deformed = states(linear, spring, normal, preload)
     fields = _modes(linear, deformed, motions)
     stretch = joint.stretch.T @ fields
     patches = spring.patches
     start = spring.tightened(preload, 0.0)
-    tight, few = spring.curve.derivatives(start, 1)[1], spring.pressed(start)
+    point_stiffness, patch_approach = spring.curve.derivatives(start, 1)[1], spring.pressed(start)
     ratio = spring.foundation().ratio
-    shear = ratio * spring.curve.derivatives(few, 1)[1]
+    patch_shear = ratio * spring.curve.derivatives(patch_approach, 1)[1]
     x, y = patches.position.T
     traces = [joint.apart(axis) @ fields for axis in AXES]
-    area, weight = at.area * normal, spring.joint.A_0
+    springs, area = interface.area * normal, spring.joint.A_0
     opening = _matched(
         cell_means(joint, spring.shape.position, normal) @ traces[2],
         _planes(spring.shape.position),
-        weight * spring.shape.share * tight,
-        _planes(at.centred),
+        area * spring.shape.share * point_stiffness,
+        _planes(interface.centred),
         traces[2],
-        area,
+        springs,
     )
-    slip = into_slip(motions)
-    bent = -(deformed @ slip.T)
-    shears = Shears((slip @ motions)[:, (0, 1, 5)], (fields.T @ (linear.bodies @ bent)).T)
-    law, closed = spring.foundation(), closed_by(spring, normal)
-    every, along = Surface(at.area, closed, rigid_shifts(at.centred)), np.concatenate(traces[:2])
-    aim = work_of(law, shears, every, along)
+    combinations = into_slip(motions)
+    deformation = -(deformed @ combinations.T)
+    shears = Shears((combinations @ motions)[:, (0, 1, 5)], (fields.T @ (linear.bodies @ deformation)).T)
+    law, approach = spring.foundation(), closed_by(spring, normal)
+    surface = Surface(interface.area, approach, rigid_shifts(interface.centred))
+    tangential = np.concatenate(traces[:2])
+    target_work = work_of(law, shears, surface, tangential)
     means = cell_means(joint, patches.position, normal)
-    both = _matched(
+    patch_rows = _matched(
         np.concatenate([means @ traces[0], means @ traces[1]]),
         rigid_shifts(patches.position),
-        np.tile(weight * patches.share * shear, 2),
-        every.rigid,
-        along,
-        np.tile(ratio * area, 2),
+        np.tile(area * patches.share * patch_shear, 2),
+        surface.rigid,
+        tangential,
+        np.tile(ratio * springs, 2),
     )
-    turns = turned(at.centred, patches, means, traces)
+    rotations = turned(interface.centred, patches, means, traces)
     unit = Shears(np.eye(6)[:, (0, 1, 5)], ((linear.bodies @ (linear.moved - linear.rigid)).T @ fields))
-    tightened = LinearContact(
-        unit, stiffness(moved(law, unit, every, along)[1], at.area), linear.stiffness.diagonal()
+    linear_contact = LinearContact(
+        unit,
+        stiffness(moved(law, unit, surface, tangential)[1], interface.area),
+        linear.stiffness.diagonal(),
     )
-    both = PatchWork(law, shears, *on_circles(patches, weight, few, turns), aim, tightened).fitted(both)
-    moves = {"opening": opening, "stretch": stretch}
-    moves |= dict(zip(("patch_x", "patch_y"), np.split(both, 2), strict=True))
-    moves["patch_around"] = patches.radius[:, None] * turns
-    most, listed = _rounded(moves)
-    places = {"x": x, "y": y, "bolt_x": bolts[:, 0], "bolt_y": bolts[:, 1]}
-    listed |= {name: _listed(each) for name, each in places.items()}
-    stiffness_of_each = tuple(float(f"{each:.{STIFFNESS_DIGITS}g}") for each in 1.0 / most**2)
-    return ElasticBodies(stiffness=stiffness_of_each, **listed)
+    sliders = on_circles(patches, area, patch_approach, rotations)
+    patch_rows = PatchWork(law, shears, *sliders, target_work, linear_contact).fitted(patch_rows)
+    displacements = {"opening": opening, "stretch": stretch}
+    displacements |= dict(zip(("patch_x", "patch_y"), np.split(patch_rows, 2), strict=True))
+    displacements["patch_around"] = patches.radius[:, None] * rotations
+    largest, values = _rounded(displacements)
+    positions = {"x": x, "y": y, "bolt_x": bolts[:, 0], "bolt_y": bolts[:, 1]}
+    values |= {name: _listed(coordinates) for name, coordinates in positions.items()}
+    modal_stiffness = tuple(float(f"{k:.{STIFFNESS_DIGITS}g}") for k in 1.0 / largest**2)
+    return ElasticBodies(stiffness=modal_stiffness, **values)
 
 
 def _rounded(moves: dict[str, Array]) -> tuple[Array, dict[str, Any]]:
-    """The most (k) that each mode moves, and what it moves over it, rounded: the first that is most is 1, as
-    a mode and its opposite are alike, and a processor's last bits would choose between them."""
-    most = np.max(np.abs(np.concatenate(list(moves.values()))), axis=0)
-    rounded = {name: np.round(rows / most, DIGITS) for name, rows in moves.items()}
-    every = np.concatenate(list(rounded.values()))
-    first = np.argmax(np.abs(every), axis=0)
-    sign = np.sign(every[first, np.arange(len(first))])
-    return most, {name: _listed((sign * rows).ravel()) for name, rows in rounded.items()}
+    """Normalise the modes to a largest displacement of 1 and round them.
+
+    The sign makes the first largest displacement positive: otherwise the last bits of a processor would
+    choose between a mode and its opposite.
+
+    displacements : {name: rows (n, k) of all modes}
+
+    Returns the largest displacement (k) of each mode, and the normalised rows as flat tuples.
+    """
+    largest = np.max(np.abs(np.concatenate(list(moves.values()))), axis=0)
+    rounded = {name: np.round(rows / largest, DIGITS) for name, rows in moves.items()}
+    all_rows = np.concatenate(list(rounded.values()))
+    first = np.argmax(np.abs(all_rows), axis=0)
+    sign = np.sign(all_rows[first, np.arange(len(first))])
+    return largest, {name: _listed((sign * rows).ravel()) for name, rows in rounded.items()}
 
 
 def _listed(values: Array) -> tuple[float, ...]:
+    """Convert an array (n) to a tuple, with 0.0 for -0.0."""
     return tuple((values + 0.0).tolist())
 
 
 def _modes(linear: Linear, states: Array, motions: Array) -> Array:
-    """Displacements (n, k) of unit energy: those of the linear joint, and what states (n, s) need most, which
-    moved by (s, 6) [m, rad]."""
-    first = _unit(_of_unit_energy(linear.moved - linear.rigid, linear), linear)
+    """Modes (n, k), orthonormal in the energy norm.
+
+    The first modes span the response of the linear joint to unit motions; the others come from the proper
+    orthogonal decomposition of the remaining deformation.
+
+    states  : (n, s) [m] deformation of the bodies
+    motions : (s, 6) [m, rad] of side 2 in these states
+    """
+    linear_modes = _unit(_of_unit_energy(linear.moved - linear.rigid, linear), linear)
     states = _of_unit_energy(states, linear)
-    for _ in range(2):  # twice is enough
-        states = states - first @ (first.T @ (linear.bodies @ states))
+    for _ in range(2):  # repeated Gram-Schmidt: two passes are enough
+        states = states - linear_modes @ (linear_modes.T @ (linear.bodies @ states))
     weight = np.where(np.any(motions[:, 2:5], axis=1), OPENING, 1.0)
-    rest = _unit(weight * states, linear)[:, : MODES - first.shape[1]]
-    return np.concatenate([first, rest], axis=1)
+    other_modes = _unit(weight * states, linear)[:, : MODES - linear_modes.shape[1]]
+    return np.concatenate([linear_modes, other_modes], axis=1)
 
 
 def _of_unit_energy(fields: Array, linear: Linear) -> Array:
-    """Displacements (n, s) [m] over the root of twice their energy."""
+    """Scale displacements (n, s) [m] to unit energy norm, u K u = 1."""
     return np.asarray(fields / np.sqrt(np.sum(fields * (linear.bodies @ fields), axis=0)))
 
 
 def _unit(fields: Array, linear: Linear) -> Array:
-    """Displacements (n, k) of unit energy norm that span fields (n, s), those that they need most first."""
+    """Proper orthogonal decomposition of fields (n, s) in the energy norm.
+
+    Returns orthonormal modes (n, k), the largest singular value first, without those below
+    MIN_SINGULAR_VALUE_RATIO.
+    """
     energy, vectors = np.linalg.eigh(fields.T @ (linear.bodies @ fields))
     energy, vectors = energy[::-1], vectors[:, ::-1]
     count = int(np.sum(energy > LEAST**2 * energy[0]))
@@ -145,7 +170,7 @@ def _unit(fields: Array, linear: Linear) -> Array:
 
 
 def _planes(place: Array) -> Array:
-    """Openings (n, 3) of places (n, 2) under motions without deformation."""
+    """Opening (n, 3) at positions (n, 2) [m] by rigid-body motions: along z, about x and about y."""
     x, y = place.T
     return np.stack([np.ones_like(x), y, -x], axis=1)
 
@@ -153,18 +178,22 @@ def _planes(place: Array) -> Array:
 def _matched(
     means: Array, rigid: Array, weight: Array, all_rigid: Array, trace: Array, springs: Array
 ) -> Array:
-    """Means (n, k) of modes, changed in common: springs of weight (n) [N/m] become as stiff as all springs.
+    """Correct the modal displacements (n, k) of few springs until they are as stiff as all springs.
 
-    rigid     : (n, 3) motion of the points without deformation; all_rigid (q, 3) of all springs
-    trace     : (q, k) motion of all springs by the modes, which have a stiffness (q) [N/m]
+    means          : (n, k) mean displacement of each of the few springs by the modes
+    rigid          : (n, 3) displacement of the few springs by rigid-body motions
+    mean_stiffness : (n) [N/m] of the few springs
+    all_rigid      : (q, 3) displacement of all springs by rigid-body motions
+    trace          : (q, k) displacement of all springs by the modes
+    stiffness      : (q) [N/m] of all springs
     """
-    along = np.linalg.solve(rigid.T @ (weight[:, None] * rigid), rigid.T @ (weight[:, None] * means))
-    given = np.linalg.solve(
+    few_rigid_part = np.linalg.solve(rigid.T @ (weight[:, None] * rigid), rigid.T @ (weight[:, None] * means))
+    all_rigid_part = np.linalg.solve(
         all_rigid.T @ (springs[:, None] * all_rigid), all_rigid.T @ (springs[:, None] * trace)
     )
-    rest, bent = means - rigid @ along, trace - all_rigid @ given
-    target = bent.T @ (springs[:, None] * bent)
+    few_bending, all_bending = means - rigid @ few_rigid_part, trace - all_rigid @ all_rigid_part
+    target = all_bending.T @ (springs[:, None] * all_bending)
     target += 1e-6 * np.trace(target) / len(target) * np.eye(len(target))
-    has, vectors = la.eigh(rest.T @ (weight[:, None] * rest), target)
-    gain = np.minimum(1.0 / np.sqrt(np.maximum(has, GAIN**-2)), GAIN)
-    return np.asarray(rigid @ given + rest @ (vectors * gain) @ vectors.T @ target)
+    ratio, vectors = la.eigh(few_bending.T @ (weight[:, None] * few_bending), target)
+    gain = np.minimum(1.0 / np.sqrt(np.maximum(ratio, GAIN**-2)), GAIN)
+    return np.asarray(rigid @ all_rigid_part + few_bending @ (vectors * gain) @ vectors.T @ target)

@@ -1,10 +1,11 @@
-"""What modes of the bodies do at few patches, so that friction works on them as on the whole contact.
+"""Fit of the modal displacements of few friction patches to the work of friction of the complete contact.
 
-The shift of elastic sides is uneven within a patch: it rises towards the edge of a pressed disc, where slip
-begins. At the mean of its place a patch slips too late and loses too little, by a fifth in partial slip. So
-what each mode does at each patch is fitted, from the mean of its place on: on ways of the joint into slip,
-at the pressure of tightening, friction has the forces on motions and modes, and loses as much in a cycle, as
-at all points of the finite elements. That is a cubature of the work of friction; it costs the joint nothing.
+The tangential displacement of elastic sides varies within a patch: it increases towards the edge of the
+contact disc, where slip begins. With its mean displacement, a patch slips too late and dissipates too little,
+by a fifth in partial slip. So the displacement of each patch by each mode is fitted, from the mean on. The
+target is the friction at all quadrature points under the preload pressure, in states of the joint in partial
+slip: generalised forces on motions and modes, and the loss per cycle. This is a cubature (hyper-reduction) of
+the friction work. It adds no cost to the joint model.
 """
 
 from dataclasses import dataclass
@@ -20,38 +21,47 @@ from jointfmu.mechanics.sliders import Foundation
 from jointfmu.quantity import Array
 
 PART = np.sqrt(0.5)
-"""Part of each of two motions that are taken together [1]."""
+"""Weight of each of two motions that are combined [1]."""
 STAY = 0.1
-"""Weight of staying where the patches are beside the forces [1]."""
+"""Weight of the change of the patch displacements (regularisation) over the weight of the forces [1]."""
 STEPS = 10
-"""Of Levenberg and Marquardt's method [1]."""
+"""Largest number of steps of the Levenberg-Marquardt method."""
 FIRST_DAMPING, LESS, MORE, MOST_DAMPING = 1e-3, 0.2, 5.0, 1e6
-"""Damping over the diagonal of the equations [1], its factors after a step that is better and one that is
-not, and where it ends."""
+"""Levenberg-Marquardt damping over the diagonal of the normal equations [1]: initial value, factor after a
+successful step, factor after a failed step, largest value."""
 EXACT = 300.0
-"""Weight of the tightened stiffness, as part of the joint's, beside that of forces and losses [1]: so much
-that it is missed by 2e-4 at most; with more the steps keep to a valley too narrow."""
+"""Weight of the error of the stick stiffness, relative to the joint stiffness, over the weight of forces and
+losses [1]. The stiffness error stays below 2e-4. A larger weight makes the valley of the objective too narrow
+for the steps."""
 TINY = 1e-15
-"""Shift [m] that counts as one, and other least numbers."""
+"""Smallest tangential displacement in divisions [m]; also the smallest relative loss in scales [1]."""
 LEAST = 0.03
-"""Motion of patches by a mode, over that by the one that moves them most [1], from which changes count."""
+"""Displacement of the patches by a mode over that by the most effective mode [1]: lower limit for scales."""
 
 
 def into_slip(motion: Array) -> Array:
-    """Ways into slip (w, s) as sums of states (s) that moved by (s, 6) [m, rad]: those along x, along y and
-    about z alone, as many each, and of these two at once."""
-    alone = np.flatnonzero(~np.any(motion[:, 2:5], axis=1))
-    alone = alone[np.count_nonzero(motion[alone], axis=1) == 1]
-    one = np.eye(len(motion))
-    axes = [one[alone[motion[alone][:, axis] != 0.0]] for axis in (0, 1, 5)]
+    """Coefficients (w, s) that combine s states to w states in shear.
+
+    The combinations are the states along x, along y and about z alone (the same number for each axis), then
+    sums and differences of two of these axes.
+
+    motion : (s, 6) [m, rad] of the states
+    """
+    single = np.flatnonzero(~np.any(motion[:, 2:5], axis=1))
+    single = single[np.count_nonzero(motion[single], axis=1) == 1]
+    identity = np.eye(len(motion))
+    axes = [identity[single[motion[single][:, axis] != 0.0]] for axis in (0, 1, 5)]
     pairs = [(axes[i], axes[j], sign) for i, j in ((0, 1), (0, 2), (1, 2)) for sign in (1.0, -1.0)]
     return np.concatenate([*axes, *(PART * (a + sign * b) for a, b, sign in pairs)])
 
 
 @dataclass(frozen=True)
 class Shears:
-    """Ways of the joint into slip: motion (s, 3) [m, rad] of side 2 along x, y and about z, amplitudes (s, k)
-    [m] of the modes."""
+    """States of the joint in shear.
+
+    motion            : (s, 3) [m, rad] of side 2 along x, along y and about z
+    modal_coordinates : (s, k) [m]
+    """
 
     motion: Array
     amplitude: Array
@@ -59,11 +69,12 @@ class Shears:
 
 @dataclass(frozen=True)
 class Surface:
-    """Points or patches (n) that carry friction.
+    """Points (n) with friction: quadrature points of the contact, or sliders of the patches.
 
-    area     : (n) [m2]
-    approach : (n) [m] at tightening
-    rigid    : (2 n, 3) shift along x, then along y, by motions along x, y and about z without deformation
+    area               : (n) [m2]
+    approach           : (n) [m] in the preloaded joint
+    rigid_displacement : (2 n, 3) displacement along x (n), then along y (n), by rigid-body motions along x,
+                         along y and about z
     """
 
     area: Array
@@ -73,10 +84,11 @@ class Surface:
 
 @dataclass(frozen=True)
 class Work:
-    """Of friction on ways (s).
+    """Friction forces and loss in s states in shear.
 
-    forces : (s, 3 + k) [N, N.m] on motions and modes; stuck: the same if nothing slipped
-    loss   : (s) [J] of a cycle as wide
+    forces       : generalised friction forces (s, 3 + k) [N, N.m] on three motions and k modes
+    stick_forces : the same (s, 3 + k) if no point slipped
+    loss         : (s) [J] per cycle with this amplitude
     """
 
     forces: Array
@@ -85,23 +97,31 @@ class Work:
 
     @cached_property
     def scale(self) -> tuple[Array, Array, Array]:
-        """What counts as one of each: all of a way's forces on motions, of those on modes, its loss."""
+        """Scales of forces, stick forces (s, 3 + k) and losses (s): their relative errors count alike."""
         return _size(self.forces), _size(self.stuck), np.maximum(self.loss, TINY * np.max(self.loss))
 
 
 def _size(forces: Array) -> Array:
-    """(s, 3 + k), alike for both directions, for the moment, and for all modes."""
-    along, turn, modes = (np.linalg.norm(f, axis=1) for f in (forces[:, :2], forces[:, 2:3], forces[:, 3:]))
-    arm = np.max(turn) / np.max(along)
-    along = np.hypot(along, turn / arm)
-    modes = np.maximum(modes, LEAST * np.max(modes / along) * along)
-    return np.stack([along, along, arm * along, *[modes] * (forces.shape[1] - 3)], axis=1)
+    """Scale (s, 3 + k) of generalised forces: in each state one for x and y, one for moment, one for modes."""
+    force, moment, modes = (np.linalg.norm(f, axis=1) for f in (forces[:, :2], forces[:, 2:3], forces[:, 3:]))
+    lever_arm = np.max(moment) / np.max(force)
+    force = np.hypot(force, moment / lever_arm)
+    modes = np.maximum(modes, LEAST * np.max(modes / force) * force)
+    return np.stack([force, force, lever_arm * force, *[modes] * (forces.shape[1] - 3)], axis=1)
 
 
 @dataclass(frozen=True)
 class Friction:
-    """Law of the contact from rest, at shifts (s, n): secant and tangent [Pa/m] of the traction, stiffness
-    [Pa/m] without slip, loss [J/m2] of a cycle and its derivative [Pa] in the shift; size [m], u, v [m]."""
+    """Friction law in monotonic loading at s states and n points; all arrays (s, n).
+
+    u, v              : tangential displacement along x and y [m]
+    magnitude         : of the tangential displacement [m]
+    secant_stiffness  : traction over displacement [Pa/m]
+    tangent_stiffness : derivative of the traction [Pa/m]
+    stick_stiffness   : stiffness without slip [Pa/m]
+    loss              : per cycle with this amplitude [J/m2]
+    loss_derivative   : with respect to the magnitude [Pa]
+    """
 
     u: Array
     v: Array
@@ -114,7 +134,7 @@ class Friction:
 
     @classmethod
     def of(cls, law: Foundation, approach: Array, shift: Array) -> "Friction":
-        """Under approaches (n) [m] and shifts (s, 2 n) [m]."""
+        """Friction at approaches (n) [m] and tangential displacements (s, 2 n) [m]: along x, then along y."""
         u, v = np.split(shift, 2, axis=1)
         size = np.maximum(np.hypot(u, v), TINY)
         stick, tangent = (
@@ -129,11 +149,11 @@ class Friction:
 
 @dataclass(frozen=True)
 class LinearContact:
-    """What the contact of the linear joint stores: nothing slips.
+    """Tangential stiffness of the contact in the linear joint, where no point slips.
 
-    ways  : (w) of the linear joint, each motion alone
-    shear : (w, w) [N/m, N, N.m] twice the energy that the contact stores on any two of these ways
-    joint : (w) [N/m, N.m] stiffness of the joint along each motion
+    unit_states       : w = 3 states of the linear joint, a unit motion along x, along y and about z
+    contact_stiffness : (w, w) [N/m, N, N.m] twice the strain energy of the contact for each pair of states
+    joint_stiffness   : (w) [N/m, N.m] of the joint along each motion
     """
 
     ways: Shears
@@ -142,20 +162,20 @@ class LinearContact:
 
     @cached_property
     def size(self) -> Array:
-        """(w, w) what counts as one."""
+        """Scale (w, w) [N/m, N, N.m] of stiffness errors: geometric mean of the joint stiffnesses."""
         return np.sqrt(np.outer(self.joint, self.joint))
 
 
 @dataclass(frozen=True)
 class PatchWork:
-    """What all points (q) do on ways of the joint, and patches (m) that are to do the same.
+    """Least-squares problem: friction of m patches that equals the friction of all quadrature points.
 
-    law    : of the interface
-    shears : the ways
-    places : that carry the friction, several of each patch: all first ones, all second ones ...
-    turned : (2 c m, k) what these c m places shift as modes turn the patches
-    aim    : work of all points
-    tight  : what they are to be while nothing slips
+    law            : friction law of the interface
+    states         : states in shear in which the friction is compared
+    sliders        : c sliders of each patch: the first of all patches, then the second of all patches, ...
+    rotation_displacement : (2 c m, k) [1] displacement of the sliders by the modal rotation of the patches
+    target_work    : friction at all quadrature points
+    linear_contact : stick stiffness of the complete contact, which the patches keep
     """
 
     law: Foundation
@@ -166,149 +186,190 @@ class PatchWork:
     tight: LinearContact
 
     def moved(self, shears: Shears, rows: Array) -> tuple[Array, Friction]:
-        """Shift (2 c m, 3 + k) of the places by motions and modes, those of the patches by modes (2 m, k)
-        given; friction on ways of the joint."""
-        times = len(self.turned) // len(rows)
-        by_modes = np.concatenate([np.tile(half, (times, 1)) for half in np.split(rows, 2)]) + self.turned
+        """Evaluate the friction of all sliders in states of the joint.
+
+        patch_displacement : (2 m, k) [1] displacement of the patches along x, then along y, by the modes
+
+        Returns the displacement (2 c m, 3 + k) of the sliders by motions and modes, and their friction.
+        """
+        count = len(self.turned) // len(rows)
+        by_modes = np.concatenate([np.tile(half, (count, 1)) for half in np.split(rows, 2)]) + self.turned
         return moved(self.law, shears, self.places, by_modes)
 
     def fitted(self, rows: Array) -> Array:
-        """Rows (2 m, k) near given ones, by Levenberg and Marquardt's method.
+        """Fit the patch displacements (2 m, k) by the Levenberg-Marquardt method, from given initial values.
 
-        The tightened joint stays as stiff as its finite elements: at the equilibrium of the linear joint the
-        contact stores as much. Forces on the modes count there in second order only.
+        The preloaded joint keeps the stiffness of its finite elements: in the equilibrium of the linear
+        joint, the contact stores the same energy. There, forces on modes have only an effect of second order.
         """
         typical = np.sqrt(np.mean(rows**2, axis=0))
-        still = STAY * np.sqrt(len(self.aim.loss) / rows.size) / np.maximum(typical, LEAST * typical.max())
-        still, begin, damping = np.broadcast_to(still, rows.shape), rows, FIRST_DAMPING
-        missed, apart = self._missed(rows, still * (rows - begin)), self._tightened(rows)
+        weight = STAY * np.sqrt(len(self.aim.loss) / rows.size) / np.maximum(typical, LEAST * typical.max())
+        weight, initial, damping = np.broadcast_to(weight, rows.shape), rows, FIRST_DAMPING
+        work_residual = self._missed(rows, weight * (rows - initial))
+        stiffness_residual = self._tightened(rows)
         for _ in range(STEPS):
-            slope = np.concatenate([self._slopes(rows), np.diag(still.ravel())])
-            square, stiff = slope.T @ slope, self._tightened_slopes(rows)
-            gradient, before = slope.T @ missed + stiff.T @ apart, missed @ missed + apart @ apart
+            work_jacobian = np.concatenate([self._slopes(rows), np.diag(weight.ravel())])
+            stiffness_jacobian = self._tightened_slopes(rows)
+            hessian = work_jacobian.T @ work_jacobian
+            gradient = work_jacobian.T @ work_residual + stiffness_jacobian.T @ stiffness_residual
+            objective = work_residual @ work_residual + stiffness_residual @ stiffness_residual
             while damping < MOST_DAMPING:
-                damped = square + stiff.T @ stiff + damping * np.diag(np.diag(square))
-                there = rows + np.linalg.solve(damped, -gradient).reshape(rows.shape)
-                trial = self._missed(there, still * (there - begin)), self._tightened(there)
-                if sum(part @ part for part in trial) < before:
+                damped = hessian + stiffness_jacobian.T @ stiffness_jacobian
+                damped += damping * np.diag(np.diag(hessian))
+                trial = rows + np.linalg.solve(damped, -gradient).reshape(rows.shape)
+                residuals = self._missed(trial, weight * (trial - initial)), self._tightened(trial)
+                if sum(residual @ residual for residual in residuals) < objective:
                     break
                 damping *= MORE
             else:
                 return rows
-            rows, (missed, apart), damping = there, trial, LESS * damping
+            rows, (work_residual, stiffness_residual), damping = trial, residuals, LESS * damping
         return rows
 
     def _tightened(self, rows: Array) -> Array:
-        """What the patches miss of the tightened stiffness."""
-        _, at = self.moved(self.tight.ways, rows)
-        missed = (stiffness(at, self.places.area) - self.tight.shear) / self.tight.size
-        return np.asarray(EXACT * missed[np.triu_indices(len(missed))])
+        """Weighted relative error (w (w + 1) / 2) [1] of the stick stiffness of the patches."""
+        _, friction = self.moved(self.tight.ways, rows)
+        error = (stiffness(friction, self.places.area) - self.tight.shear) / self.tight.size
+        return np.asarray(EXACT * error[np.triu_indices(len(error))])
 
     def _tightened_slopes(self, rows: Array) -> Array:
-        """Derivatives of what is missed of the tightened stiffness by the rows."""
-        _, at = self.moved(self.tight.ways, rows)
-        force = (self.places.area * at.stick * np.stack([at.u, at.v])).swapaxes(0, 1)
+        """Derivative of the stiffness residual with respect to the patch displacements."""
+        _, friction = self.moved(self.tight.ways, rows)
+        force = (self.places.area * friction.stick * np.stack([friction.u, friction.v])).swapaxes(0, 1)
         force = force.reshape(len(force), 2, -1, len(rows) // 2).sum(axis=2).reshape(len(force), -1)
         half = np.einsum("im,jk->ijmk", force, self.tight.ways.amplitude)
         slope = (half + half.swapaxes(0, 1)) / self.tight.size[:, :, None, None]
         return np.asarray(EXACT * slope[np.triu_indices(len(slope))].reshape(-1, rows.size))
 
     def _missed(self, rows: Array, change: Array) -> Array:
-        """What the patches miss of forces and loss, and their change."""
-        every, at = self.moved(self.shears, rows)
-        found, aim = work(at, self.places.area, every), self.aim
-        pairs = ((found.forces, aim.forces), (found.stuck, aim.stuck), (found.loss, aim.loss))
-        parts = [((a - b) / size).ravel() for (a, b), size in zip(pairs, aim.scale, strict=True)]
-        return np.concatenate([*parts, change.ravel()])
+        """Relative errors [1] of forces, stick forces and loss of the patches, then their weighted change."""
+        displacement, friction = self.moved(self.shears, rows)
+        actual, target = work(friction, self.places.area, displacement), self.aim
+        pairs = (
+            (actual.forces, target.forces),
+            (actual.stuck, target.stuck),
+            (actual.loss, target.loss),
+        )
+        errors = [((a - b) / size).ravel() for (a, b), size in zip(pairs, target.scale, strict=True)]
+        return np.concatenate([*errors, change.ravel()])
 
     def _slopes(self, rows: Array) -> Array:
-        """Derivatives of what is missed of forces and loss by the rows."""
-        all_rows, at = self.moved(self.shears, rows)
+        """Derivative of the relative errors of forces and loss with respect to the patch displacements."""
+        displacement, friction = self.moved(self.shears, rows)
         area, amplitude = self.places.area, self.shears.amplitude
-        (ways, modes), count = amplitude.shape, len(rows) // 2
-        unit, halves = (at.u / at.size, at.v / at.size), np.split(all_rows, 2)
+        (n_states, modes), count = amplitude.shape, len(rows) // 2
+        u, v, size = friction.u, friction.v, friction.size
+        direction, halves = (u / size, v / size), np.split(displacement, 2)
+        secant, tangent = friction.secant, friction.tangent
 
         def of_patches(slope: Array, half: Array) -> Array:
-            """Sums (s, 3 + k, m) over the places of each patch."""
-            parts = slope.reshape(ways, -1, count), half.reshape(-1, count, 3 + modes)
-            return np.einsum("scm,cmh->shm", *parts)
+            """Product of tangent and displacement (s, 3 + k, m), summed over the sliders of each patch."""
+            factors = slope.reshape(n_states, -1, count), half.reshape(-1, count, 3 + modes)
+            return np.einsum("scm,cmh->shm", *factors)
 
         def sums(each: Array) -> Array:
-            return each.reshape(ways, -1, count).sum(axis=1)
+            """Sum (s, m) over the sliders of each patch."""
+            return each.reshape(n_states, -1, count).sum(axis=1)
 
-        forces, loss = np.zeros((2, ways, 3 + modes, 2, count)), np.zeros((ways, 2, count))
-        pulls, springs = np.zeros((2, ways, 2, count)), area * at.stick
-        for i, (shift, along) in enumerate(zip((at.u, at.v), unit, strict=True)):
+        forces, loss = np.zeros((2, n_states, 3 + modes, 2, count)), np.zeros((n_states, 2, count))
+        patch_forces, springs = np.zeros((2, n_states, 2, count)), area * friction.stick
+        for i, shift in enumerate((u, v)):
             for j in range(2):
-                slope = area * ((i == j) * at.secant + (at.tangent - at.secant) * along * unit[j])
+                slope = area * ((i == j) * secant + (tangent - secant) * direction[i] * direction[j])
                 forces[0, :, :, i] += of_patches(slope, halves[j])
             forces[1, :, :, i] = of_patches(springs, halves[i])
-            pulls[:, :, i] = sums(area * at.secant * shift), sums(springs * shift)
-            loss[:, i] = sums(area * at.rate * along)
-        by_rows, own = forces[..., None] * amplitude[:, None, None, None], np.arange(modes)
-        by_rows[:, :, 3 + own, :, :, own] += pulls
-        each = *by_rows, loss[..., None] * amplitude[:, None, None]
-        parts = zip(each, self.aim.scale, strict=True)
-        return np.concatenate([(x / s.reshape(s.shape + (1,) * 3)).reshape(-1, rows.size) for x, s in parts])
+            patch_forces[:, :, i] = sums(area * secant * shift), sums(springs * shift)
+            loss[:, i] = sums(area * friction.rate * direction[i])
+        force_derivative, mode = forces[..., None] * amplitude[:, None, None, None], np.arange(modes)
+        force_derivative[:, :, 3 + mode, :, :, mode] += patch_forces
+        derivatives = *force_derivative, loss[..., None] * amplitude[:, None, None]
+        pairs = zip(derivatives, self.aim.scale, strict=True)
+        return np.concatenate([(x / s.reshape(s.shape + (1,) * 3)).reshape(-1, rows.size) for x, s in pairs])
 
 
 def rigid_shifts(place: Array) -> Array:
-    """Shifts (2 n, 3) of places (n, 2), along x, then along y, by motions along x, y and about z."""
+    """Displacement (2 n, 3) of positions (n, 2) [m] by unit motions along x, along y and about z.
+
+    The first n rows are the displacement along x, the others along y.
+    """
     x, y = place.T
-    one, zero = np.ones_like(x), np.zeros_like(x)
-    return np.concatenate([np.stack([one, zero, -y], axis=1), np.stack([zero, one, x], axis=1)])
+    unit, zero = np.ones_like(x), np.zeros_like(x)
+    return np.concatenate([np.stack([unit, zero, -y], axis=1), np.stack([zero, unit, x], axis=1)])
 
 
 def turned(place: Array, patches: FrictionPatches, means: sp.csr_matrix, traces: list[Array]) -> Array:
-    """Turns (m, k) [1/m] of the patches about their centres by modes that shift the contact at
-    places (q, 2) [m] by traces (q, k).
+    """Rotation (m, k) [1/m] of the patches about their centres by the modes.
 
-    Of each the mean over its cell, by the weights of means (m, q) there and the square of the distance.
+    The rotation is a mean over the cell of each patch, weighted by the averaging matrix and the squared
+    distance from the centre.
+
+    position : (q, 2) [m] of the quadrature points
+    means    : averaging matrix (m, q) [1]
+    traces   : displacement (q, k) [1] of the quadrature points along x and y by the modes
     """
     cell = cKDTree(patches.position).query(place)[1]
     x, y = (place - (means @ place)[cell]).T
     lever, square = x[:, None] * traces[1] - y[:, None] * traces[0], means @ (x * x + y * y)
-    some = square > 0.0
-    return np.asarray(np.where(some, 1.0 / np.where(some, square, 1.0), 0.0)[:, None] * (means @ lever))
+    extended = square > 0.0
+    inverse = np.where(extended, 1.0 / np.where(extended, square, 1.0), 0.0)
+    return np.asarray(inverse[:, None] * (means @ lever))
 
 
 def on_circles(patches: FrictionPatches, area: float, approach: Array, turns: Array) -> tuple[Surface, Array]:
-    """Places of the sliders of patches on a nominal area [m2] at approaches (m) [m], and what they shift by
-    turns (m, k) [1/m]."""
-    places = CIRCLE if np.any(patches.radius) else 0.0 * CIRCLE[:1]
-    away = places[:, None] * patches.radius[:, None]
-    count, (x, y) = len(places), away.reshape(-1, 2).T[:, :, None]
-    each = np.tile(turns, (count, 1))
-    there = Surface(
+    """Sliders of the patches: c = 1 at the centre, or c on a circle around it if patches have a radius.
+
+    area      : nominal contact area [m2]
+    approach  : (m) [m] of the patches in the preloaded joint
+    rotations : (m, k) [1/m] of the patches by the modes
+
+    Returns the sliders (c m), and their displacement (2 c m, k) [1] by the rotation of the patches.
+    """
+    circle = CIRCLE if np.any(patches.radius) else 0.0 * CIRCLE[:1]
+    offset = circle[:, None] * patches.radius[:, None]
+    count, (x, y) = len(circle), offset.reshape(-1, 2).T[:, :, None]
+    slider_rotations = np.tile(turns, (count, 1))
+    sliders = Surface(
         np.tile(area * patches.share / count, count),
         np.tile(approach, count),
-        rigid_shifts((patches.position + away).reshape(-1, 2)),
+        rigid_shifts((patches.position + offset).reshape(-1, 2)),
     )
-    return there, np.concatenate([-y * each, x * each])
+    return sliders, np.concatenate([-y * slider_rotations, x * slider_rotations])
 
 
 def moved(law: Foundation, shears: Shears, surface: Surface, rows: Array) -> tuple[Array, Friction]:
-    """Shift (2 n, 3 + k) of a surface by motions and modes, and its friction on ways of the joint."""
-    every = np.concatenate([surface.rigid, rows], axis=1)
-    amount = np.concatenate([shears.motion, shears.amplitude], axis=1)
-    return every, Friction.of(law, surface.approach, amount @ every.T)
+    """Evaluate the friction of n points in states of the joint.
+
+    modal_displacement : (2 n, k) [1] of the points along x, then along y, by the modes
+
+    Returns the displacement (2 n, 3 + k) of the points by motions and modes, and their friction.
+    """
+    displacement = np.concatenate([surface.rigid, rows], axis=1)
+    coordinates = np.concatenate([shears.motion, shears.amplitude], axis=1)
+    return displacement, Friction.of(law, surface.approach, coordinates @ displacement.T)
 
 
 def work(at: Friction, area: Array, every: Array) -> Work:
-    """Of the friction of areas (n) [m2] which motions and modes shift by (2 n, 3 + k)."""
-    forces, stuck = (
+    """Generalised forces and loss of the friction of n points.
+
+    area         : (n) [m2]
+    displacement : (2 n, 3 + k) of the points by motions and modes
+    """
+    forces, stick_forces = (
         np.concatenate([area * slope * shift for shift in (at.u, at.v)], axis=1) @ every
         for slope in (at.secant, at.stick)
     )
-    return Work(forces, stuck, at.loss @ area)
+    return Work(forces, stick_forces, at.loss @ area)
 
 
 def stiffness(at: Friction, area: Array) -> Array:
-    """Of springs of areas (n) [m2] on ways (w) while nothing slips (w, w) [N/m, N, N.m]."""
+    """Stick stiffness (w, w) [N/m, N, N.m] of points with areas (n) [m2] for each pair of w states."""
     return np.asarray(sum((area * at.stick * shift) @ shift.T for shift in (at.u, at.v)))
 
 
 def work_of(law: Foundation, shears: Shears, surface: Surface, rows: Array) -> Work:
-    """Of the friction of a surface that modes shift by rows (2 n, k), on ways of the joint."""
-    every, at = moved(law, shears, surface, rows)
-    return work(at, surface.area, every)
+    """Generalised forces and loss of the friction of n points in states of the joint.
+
+    modal_displacement : (2 n, k) [1] of the points along x, then along y, by the modes
+    """
+    displacement, friction = moved(law, shears, surface, rows)
+    return work(friction, surface.area, displacement)
