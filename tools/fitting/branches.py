@@ -21,7 +21,7 @@ from .hysteresis import HysteresisLaw
 PROMINENCE = 0.02
 """Smallest reversal of the motion that counts as a turning point, over the range of the motion [1]."""
 NOISE = 8.0
-"""Smallest reversal of the motion that counts as a turning point, in standard deviations of its noise [1]."""
+"""Smallest reversal that counts as a turning point, over the standard deviation of the noise [1]."""
 AROUND = 5.0
 """Deviation from the motion at a turning point, over the standard deviation of the noise [1], up to which
 samples enter the parabola of the turning point."""
@@ -38,7 +38,7 @@ a closed loop."""
 _GRID = 200
 """Points of the integration grid for the area between two branches."""
 _SEARCH, _WIDTH = 6, 1e-4
-"""Gauss-Newton iterations for the rest position, and half the difference step over the range of motion [1]."""
+"""Gauss-Newton iterations for the rest position, and half the difference step over the motion's range [1]."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -78,8 +78,8 @@ def points(time: Array, motion: Array, name: str = "") -> Points:
     windows = list(_windows(time, motion, 2.0 * np.pi * frequency))
     if len(windows) < LEAST_WINDOWS:
         raise ValueError(
-            f"{name}{len(windows)} windows of a few periods of {1.0 / frequency:.3g} s stand out of the noise, "
-            f"at least {LEAST_WINDOWS} are needed"
+            f"{name}{len(windows)} windows of a few periods of {1.0 / frequency:.3g} s stand out of the "
+            f"noise, at least {LEAST_WINDOWS} are needed"
         )
     amplitude, w, s, w_deviation, s_deviation, length = np.array(windows).T
     undamped = np.hypot(w, s)
