@@ -1,7 +1,7 @@
 """Importers that execute an experiment: fmpy, ecos and libcosim; each in a process of its own, see `worker`.
 
-In co-simulation the inputs are constant during a step, with their values at the start of the step. Outputs are
-read at the end of the step.
+In co-simulation the inputs are constant during a step, with their values at its start. Outputs are read at
+the end of the step.
 """
 
 from collections.abc import Mapping

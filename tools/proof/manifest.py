@@ -1,6 +1,6 @@
-"""Experiments in an FMU by the layered standard FMI-LS-REF: manifest, MA-LS-Experiments, SSV and CSV files.
+"""Experiments in an FMU by the layered standard FMI-LS-REF: manifest, MA-HS-Experiments, SSV and CSV files.
 
-Older drafts of the standard state the times of an experiment as attributes of `Experiment`. These are read, too.
+Older drafts of the standard state the times of experiments as attributes of `Experiment`; they are read, too.
 """
 
 import posixpath

@@ -106,7 +106,7 @@ class Proof:
 
     @property
     def worst(self) -> WorstPoint | None:
-        """Point with the largest ratio of error to tolerance, of all outcomes; None if nothing was compared."""
+        """Point with the largest error over tolerance, of all outcomes; None if nothing was compared."""
         points = [outcome.worst for outcome in self.outcomes if outcome.worst]
         return max(points, key=lambda point: point.share, default=None)
 

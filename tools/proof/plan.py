@@ -127,8 +127,8 @@ def _with_corners(times: Array, corners: Array) -> Array:
 def _times(experiment: Experiment, description: "ModelDescription") -> Array:
     """Communication points (n) [s] of an experiment.
 
-    Times that the experiment does not state are taken from its reference results, or from the default experiment
-    of the FMU.
+    Times that the experiment does not state are taken from its reference results, or from the default
+    experiment of the FMU.
     """
     default = description.defaultExperiment
     results = experiment.references or experiment.stimuli
