@@ -1,1 +1,1 @@
-"""From measured curves and catalogue rows to parameters, by least squares in logarithms."""
+"""Fits of joint parameters to measured curves and catalogue values, by least squares in logarithms."""

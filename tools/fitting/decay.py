@@ -1,11 +1,12 @@
-"""A measured free decay to frequency and damping over the amplitude.
+"""Frequency and damping as functions of the amplitude, from a measured free decay.
 
-The record is cut into windows of a few periods. In each, a decaying oscillation about an offset,
+The record is cut into windows of a few periods. In each window a decaying oscillation is fitted by least
+squares:
 
-    u = c + d t + exp(-s t) (A cos(w t) + B sin(w t)),
+    u = c + d t + exp(-s t) (A cos(w t) + B sin(w t))
 
-whose w and s change at constant rates is fitted by least squares; t is zero in the middle of the window,
-where w and s are taken. What the fit leaves gives the standard deviations.
+The angular frequency w and the decay rate s change linearly with time. They are reported for the middle of
+the window, t = 0. Standard deviations follow from the residuals of the fit.
 """
 
 from collections.abc import Iterator
@@ -17,31 +18,33 @@ import scipy.optimize
 from jointfmu.quantity import Array
 
 PERIODS = (2, 5)
-"""Fewest and most periods of a window."""
+"""Minimum and maximum number of periods of a window."""
 DECAY = 0.3
-"""Decay of the amplitude's logarithm within a window [1], where that leaves whole periods."""
+"""Logarithmic decrement of the amplitude over a window [1] that is aimed at, within PERIODS."""
 STEEPEST = 1.0
-"""The same [1] beyond which a window is left out: its two periods are too different."""
+"""Logarithmic decrement over a window [1], from which the window is left out: the two periods of the window
+are too different."""
 LEAST_SAMPLES = 10
-"""Fewest samples of a period."""
+"""Minimum number of samples of a period."""
 LEAST_WINDOWS = 4
-"""Fewest windows of a measurement."""
+"""Minimum number of windows of a measurement."""
 SEEN = 4.0
-"""Amplitude over what a window's fit leaves [1] down to which it is used."""
+"""Amplitude over the standard deviation of the residuals [1], below which a window is not used."""
 FREQUENCY_ERROR, DAMPING_ERROR = 8e-3, 1e-1
-"""What a window misses without noise, relative and over the square of the decay of its logarithm [1]: from
-decays whose law is known."""
+"""Relative error of frequency and damping of a window without noise, over the square of the logarithmic
+decrement over the window [1]. Source: simulated decays of known laws."""
 GROWING = 0.2
-"""Last part of a record [1] in which no decay is largest."""
+"""Last fraction of a record [1]: if the motion is largest there, the record is no decay."""
 
 
 @dataclass(frozen=True, slots=True)
 class Points:
-    """Free vibration at amplitudes (n) [m or rad].
+    """Frequency and damping of a free vibration at amplitudes (n) [m or rad].
 
-    frequency : (n) [Hz], without damping;  damping : (n) ratio [1]
-    frequency_spread : (n) relative standard deviation of the frequency up to a factor [1]
-    damping_spread : (n) that of the damping ratio up to a factor [1]
+    frequency : undamped natural frequency (n) [Hz]
+    damping   : damping ratio (n) [1]
+    frequency_spread : relative standard deviation (n) [1] of the frequency, up to a common factor
+    damping_spread : standard deviation (n) [1] of the damping ratio, up to a common factor
     """
 
     amplitude: Array
@@ -52,10 +55,10 @@ class Points:
 
 
 def points(time: Array, motion: Array, name: str = "") -> Points:
-    """Frequency and damping over the amplitude from a record (n) [s], (n) [m or rad].
+    """Frequency and damping as functions of the amplitude, from time (n) [s] and motion (n) [m or rad].
 
-    Raises ValueError, beginning with `name`: time does not rise, too few samples or periods, or a motion
-    that grows.
+    Raises ValueError, with `name` as the prefix of its message: time does not rise, too few samples or
+    periods, or a growing motion.
     """
     if np.any(np.diff(time) <= 0.0):
         row = int(np.argmax(np.diff(time) <= 0.0)) + 1
@@ -72,26 +75,26 @@ def points(time: Array, motion: Array, name: str = "") -> Points:
             f"{name}the motion is largest at {largest:.3g} s, near its end: the joint creates energy, "
             "expected is a decay; reverse the order of the rows if they run back in time"
         )
-    found = list(_windows(time, motion, 2.0 * np.pi * frequency))
-    if len(found) < LEAST_WINDOWS:
+    windows = list(_windows(time, motion, 2.0 * np.pi * frequency))
+    if len(windows) < LEAST_WINDOWS:
         raise ValueError(
-            f"{name}{len(found)} windows of a few periods of {1.0 / frequency:.3g} s stand out of the noise, "
-            f"at least {LEAST_WINDOWS} are needed"
+            f"{name}{len(windows)} windows of a few periods of {1.0 / frequency:.3g} s stand out of the "
+            f"noise, at least {LEAST_WINDOWS} are needed"
         )
-    amplitude, w, s, w_spread, s_spread, length = np.array(found).T
-    whole = np.hypot(w, s)
-    damping, decay = s / whole, s * length
+    amplitude, w, s, w_deviation, s_deviation, length = np.array(windows).T
+    undamped = np.hypot(w, s)
+    damping, decrement = s / undamped, s * length
     return Points(
         amplitude,
-        whole / (2.0 * np.pi),
+        undamped / (2.0 * np.pi),
         damping,
-        np.hypot(w_spread / w, FREQUENCY_ERROR * decay**2),
-        np.hypot(s_spread / whole, DAMPING_ERROR * damping * decay**2),
+        np.hypot(w_deviation / w, FREQUENCY_ERROR * decrement**2),
+        np.hypot(s_deviation / undamped, DAMPING_ERROR * damping * decrement**2),
     )
 
 
 def _main_frequency(time: Array, motion: Array) -> float:
-    """Frequency [Hz] of the highest peak of the spectrum."""
+    """Frequency [Hz] of the highest peak in the spectrum of the motion."""
     n = motion.size
     even = np.interp(np.linspace(time[0], time[-1], n), time, motion)
     spectrum = np.abs(np.fft.rfft((even - even.mean()) * np.hanning(n), 8 * n))
@@ -100,7 +103,10 @@ def _main_frequency(time: Array, motion: Array) -> float:
 
 
 def _windows(time: Array, motion: Array, w: float) -> Iterator[tuple[float, ...]]:
-    """Amplitude, w and s [rad/s], the standard deviations of both, and length [s] of window after window."""
+    """Yield for each window: amplitude, w and s [1/s], their standard deviations [1/s], length [s].
+
+    w : angular frequency [rad/s] with which the first window is chosen
+    """
     size, s = float(np.ptp(motion)), 0.02 * w
     begin = time[int(np.argmax(np.abs(motion - np.median(motion))))]
     while True:
@@ -112,44 +118,55 @@ def _windows(time: Array, motion: Array, w: float) -> Iterator[tuple[float, ...]
         if begin > time[-1] or t.size < LEAST_SAMPLES:
             return
         shape = _fitted(np.array([w * length, s * length]), t, u)
-        left = _left(shape, t, u)
+        residual = _left(shape, t, u)
         *_, A, B = np.linalg.lstsq(_shapes(shape, t), u)[0]
-        amplitude, noise = float(np.hypot(A, B)), float(np.sqrt(left @ left / max(t.size - 8, 1)))
+        amplitude, noise = float(np.hypot(A, B)), float(np.sqrt(residual @ residual / max(t.size - 8, 1)))
         if not amplitude > SEEN * noise:
             return
         w, s = float(shape[0]) / length, float(shape[1]) / length
-        spreads = (x / length for x in _spreads(shape, A, B, t, noise))
+        deviations = (x / length for x in _spreads(shape, A, B, t, noise))
         if s * length < STEEPEST:
-            yield size * amplitude, w, s, *spreads, length
+            yield size * amplitude, w, s, *deviations, length
 
 
 def _fitted(first: Array, t: Array, u: Array) -> Array:
-    """w, s and their rates over times in windows: first without rates, then with them."""
-    even = scipy.optimize.least_squares(lambda x: _left(np.append(x, [0.0, 0.0]), t, u), first).x
-    start = np.append(even, [0.0, 0.0])
+    """Fit w, s and their rates (4) in one window; `first` (2) are the start values of w and s.
+
+    Times t (n) and all results are made dimensionless with the length of the window. w and s are first fitted
+    with zero rates, then all four together.
+    """
+    constant = scipy.optimize.least_squares(lambda x: _left(np.append(x, [0.0, 0.0]), t, u), first).x
+    start = np.append(constant, [0.0, 0.0])
     return np.asarray(scipy.optimize.least_squares(lambda x: _left(x, t, u), start).x)
 
 
 def _left(shape: Array, t: Array, u: Array) -> Array:
-    """What the best amplitudes of a shape leave of a signal."""
-    shapes = _shapes(shape, t)
-    return np.asarray(u - shapes @ np.linalg.lstsq(shapes, u)[0])
+    """Residuals (n) of the linear fit of c, d, A, B to a signal u (n); shape (4): w, s and their rates."""
+    matrix = _shapes(shape, t)
+    return np.asarray(u - matrix @ np.linalg.lstsq(matrix, u)[0])
 
 
 def _shapes(shape: Array, t: Array) -> Array:
-    """Columns (n, 4): one, time, and the two decaying oscillations."""
+    """Design matrix (n, 4) of c, d, A, B: ones, time, decaying cosine, decaying sine.
+
+    shape : w, s and their rates (4)
+    """
     w, s, w_rate, s_rate = shape
     angle, decay = (w + 0.5 * w_rate * t) * t, np.exp(-(s + 0.5 * s_rate * t) * t)
     return np.stack([np.ones_like(t), t, decay * np.cos(angle), decay * np.sin(angle)], axis=1)
 
 
 def _spreads(shape: Array, A: float, B: float, t: Array, noise: float) -> tuple[float, float]:
-    """Standard deviations of w and s [rad/s]."""
-    one, _, cos, sin = _shapes(shape, t).T
-    turned, decayed = B * cos - A * sin, -(A * cos + B * sin)
-    columns = [one, t, cos, sin, t * turned, t * decayed, t**2 * turned, t**2 * decayed]
+    """Standard deviations of w and s, dimensionless with the length of the window.
+
+    A, B  : amplitudes of cosine and sine
+    noise : standard deviation of the residuals
+    """
+    ones, _, cos, sin = _shapes(shape, t).T
+    d_angle, d_decay = B * cos - A * sin, -(A * cos + B * sin)  # derivatives of u in angle and decay
+    columns = [ones, t, cos, sin, t * d_angle, t * d_decay, t**2 * d_angle, t**2 * d_decay]
     jacobian = np.stack(columns, axis=1)
     size = np.linalg.norm(jacobian, axis=0)
     covariance = noise**2 * np.linalg.pinv((jacobian / size).T @ (jacobian / size))
-    w_spread, s_spread = np.sqrt(np.diag(covariance))[4:6] / size[4:6]
-    return float(w_spread), float(s_spread)
+    w_deviation, s_deviation = np.sqrt(np.diag(covariance))[4:6] / size[4:6]
+    return float(w_deviation), float(s_deviation)

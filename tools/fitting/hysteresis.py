@@ -1,21 +1,21 @@
-"""A spring with friction that remembers, and one mass on it, against what was measured.
+"""Hysteresis law of Masing type, and an oscillator of one mass on it; residuals against measured vibrations.
 
 At a constant normal load the friction of elastically similar bodies follows Masing's rule (Jäger 1995,
 Ciavarella 1998). After a turning point u_k the force changes by
 
     F - F_k = E(u) - E(u_k) + 2 sign(u - u_k) B(|u - u_k|/2)
 
-with the elastic force E and the first loading B of the friction, until the motion passes the turning point
-before: there the smaller loop closes.
+with the elastic force E, and the friction force B in first loading. The rule holds until the motion passes
+the previous turning point: there the smaller loop closes.
 
-A free vibration follows the law from turning point to turning point (`HysteresisLaw.decay`). A response is
-that of the first harmonic: at the amplitude a the joint is a spring K(a) with the loss factor eta(a) of its
-loop,
+A free vibration follows the law from turning point to turning point (`HysteresisLaw.decay`). A forced
+vibration uses the first harmonic (harmonic balance): at the amplitude a the joint is a spring K(a) with the
+loss factor eta(a) of its loop,
 
-    F = a |K (1 + i eta) + i d w + 2 i own w sqrt(K M) - M w^2|,
+    F = a |K (1 + i eta) + i d w + 2 i D w sqrt(K M) - M w^2|
 
-d the joint's viscous damping and `own` the damping ratio of a structure beside it, which add to the damping
-of the loop in a free vibration.
+with the viscous damping d of the joint, the damping ratio D of the structure and the mass M. In a free
+vibration, too, the damping ratio D is added to the damping of the joint.
 """
 
 from collections.abc import Callable
@@ -32,14 +32,14 @@ from .decay import Points
 Force = Callable[[Array], Array]
 _ANGLE, _WEIGHT = np.polynomial.legendre.leggauss(64)
 _ANGLE, _WEIGHT = 0.5 * np.pi * (1.0 + _ANGLE), 0.5 * np.pi * _WEIGHT
-"""Nodes of half an oscillation, cos(angle) from one turning point to the other."""
+"""Gauss-Legendre angles (64) [rad] from 0 to pi, and their weights: half an oscillation u = a cos(angle)."""
 _SECANTS, _STEEPEST = 12, 3.0
-"""Steps to a decrement, and the largest one [1]."""
+"""Secant iterations for the logarithmic decrement of half a period, and its upper limit [1]."""
 
 
 @dataclass(frozen=True, slots=True)
 class NonlinearSpring:
-    """A spring without memory: force E and energy V at motions (...); E odd, V even."""
+    """Nonlinear elastic spring: force E(u), an odd function, and energy V(u), an even function."""
 
     force: Force
     energy: Force
@@ -47,12 +47,12 @@ class NonlinearSpring:
 
 @dataclass(frozen=True, slots=True)
 class HysteresisLaw:
-    """The law of a loop.
+    """Force as a function of the motion and its turning points: Masing friction and a parallel spring.
 
-    friction : B (...), force or torque of first loading from rest at motions (...) >= 0
-    work     : integral of B from 0 to motions (...) >= 0
-    elastic  : what acts beside; None: nothing
-    viscous  : force or torque over the rate of the motion, SI; in a vibration alone
+    friction : B(u), friction force or torque in first loading from rest, for motions u (...) >= 0
+    friction_work : integral [J] of B from 0 to u, for motions u (...) >= 0
+    elastic  : parallel nonlinear spring; None: no spring
+    viscous  : viscous damping [N.s/m or N.m.s/rad]; acts in vibrations only
     """
 
     friction: Force
@@ -61,25 +61,26 @@ class HysteresisLaw:
     viscous: float = 0.0
 
     def change(self, motion: Array, start: Array) -> Array:
-        """Change (...) of the force from turning points `start` (...) to motions (...)."""
-        way = motion - start
-        change = np.copysign(2.0 * self.friction(0.5 * np.abs(way)), way)
+        """Change (...) of the force from turning points `start` (...) to motions (...), by Masing's rule."""
+        distance = motion - start
+        change = np.copysign(2.0 * self.friction(0.5 * np.abs(distance)), distance)
         if self.elastic is None:
             return change
         return np.asarray(change + self.elastic.force(motion) - self.elastic.force(start))
 
     def about(self, rest: float) -> "HysteresisLaw":
-        """The same with the elastic force at rest at another motion."""
+        """Copy of the law whose elastic force is zero at the motion `rest`."""
         if self.elastic is None:
             return self
         force, energy = self.elastic.force, self.elastic.energy
         return replace(self, elastic=NonlinearSpring(lambda u: force(u - rest), lambda u: energy(u - rest)))
 
     def equivalent(self, amplitude: Array) -> tuple[Array, Array]:
-        """Stiffness (n) and loss factor (n) [1] of the loops about rest with amplitudes (n).
+        """Equivalent stiffness (n) and loss factor (n) [1] of closed loops about rest with amplitudes (n).
 
-        First harmonic of the force under u = a cos(angle): K = 1/(pi a) times the integral of F cos over a
-        period, eta = W/(pi K a^2), W the loop's area. Both branches of a loop give the same.
+        First harmonic of the force under u = a cos(angle): K = 1/(pi a) times the integral of F cos(angle)
+        over a period, eta = W/(pi K a^2), with the area W of the loop. The integral is taken over one branch,
+        because both branches contribute equally.
         """
         a = amplitude[:, None]
         motion = a * np.cos(_ANGLE)
@@ -88,39 +89,46 @@ class HysteresisLaw:
         return stiffness, self.area(amplitude) / (np.pi * stiffness * amplitude**2)
 
     def area(self, amplitude: Array) -> Array:
-        """Work (n) [J] that closed loops of amplitudes (n) about rest turn into heat: 8 (work - B a/2)."""
+        """Dissipated energy (n) [J] of closed loops about rest with amplitudes a (n): 8 (w(a) - B(a) a/2).
+
+        w : `friction_work`
+        """
         return np.asarray(8.0 * (self.work(amplitude) - 0.5 * amplitude * self.friction(amplitude)))
 
     def decay(self, half: Array, inertia: float) -> tuple[Array, Array]:
-        """Free vibration of an inertia: angular frequency (n) [rad/s] and decrement of half a period (n) [1].
+        """Free decay: angular frequency (n) [rad/s], logarithmic decrement of half a period (n) [1].
 
-        half : (n) half the way between two turning points, in the middle of a decay
+        half_distance : h (n), half the distance between two consecutive turning points
+        inertia       : mass [kg] or moment of inertia [kg.m2] on the joint
 
-        From one turning point to the next no energy is left or missing. With F_k the friction force at the
-        first, h half the way between them, w = `work` and the viscous work pi d omega h^2/2,
+        Energy balance from one turning point to the next, with the friction force F_k at the first, w =
+        `friction_work` and the viscous work pi d omega h^2/2:
 
             V(a_k) - V(a_k+1) + 2 h F_k - 2 h G(h) = 0,   G(h) = 2 w(h)/h + pi d omega h/4,
-            F_k+1 = 2 B(h) - F_k,
+            F_k+1 = 2 B(h) - F_k
 
-        so that with the decrement b of two neighbouring ways h exp(+-b/2)
+        Two consecutive half distances are h exp(+-b/2), with the decrement b. Eliminating F_k gives
 
-            G(h_k) + G(h_k+1) - 2 B(h_k) = D_k + D_k+1,   D_k = (V(a_k) - V(a_k+1))/(2 h_k).
+            G(h_k) + G(h_k+1) - 2 B(h_k) = D_k + D_k+1,   D_k = (V(a_k) - V(a_k+1))/(2 h_k)
 
-        The time is the integral of du over the speed, without viscous damping.
+        Half a period is the integral of du over the speed; viscous damping is neglected in the speed.
         """
         omega = self._frequency(half, self._decrement(half, 0.0 * half)) / np.sqrt(inertia)
         return omega, self._decrement(half, 0.25 * np.pi * self.viscous * omega)
 
     def _decrement(self, half: Array, viscous: Array) -> Array:
-        """b (n), `viscous` the part of G over h."""
+        """Logarithmic decrement b (n) [1] of half a period, by the secant method.
+
+        viscous : viscous part (n) of G over h, pi d omega/4
+        """
 
         def held(way: Array) -> Array:
             return np.asarray(2.0 * self.work(way) / way + viscous * way)
 
         def left(b: Array) -> Array:
             first, second = half * np.exp(0.5 * b), half * np.exp(-0.5 * b)
-            rest = held(first) + held(second) - 2.0 * self.friction(first)
-            return np.asarray(rest - self._released(first, b) - self._released(second, b))
+            dissipated = held(first) + held(second) - 2.0 * self.friction(first)
+            return np.asarray(dissipated - self._released(first, b) - self._released(second, b))
 
         low, high = np.zeros_like(half), np.full_like(half, 1e-3)
         at_low, at_high = left(low), left(high)
@@ -131,19 +139,19 @@ class HysteresisLaw:
         return high
 
     def _frequency(self, half: Array, b: Array) -> Array:
-        """Angular frequency (n) [rad/s] of a unit inertia."""
+        """Angular frequency (n) [rad/s] of free vibration with a unit inertia, at the decrement b (n) [1]."""
         start = 2.0 * half / (1.0 + np.exp(-b))
-        way = half[:, None] * (1.0 - np.cos(_ANGLE))
+        distance = half[:, None] * (1.0 - np.cos(_ANGLE))
         force = 2.0 * self.work(half) / half - self._released(half, b)
-        square = 2.0 * (force[:, None] * way - 4.0 * self.work(0.5 * way))
+        speed_squared = 2.0 * (force[:, None] * distance - 4.0 * self.work(0.5 * distance))
         if self.elastic is not None:
             V = self.elastic.energy
-            square += 2.0 * (V(start)[:, None] - V(start[:, None] - way))
-        speed = np.sqrt(np.maximum(square, 1e-300))
+            speed_squared += 2.0 * (V(start)[:, None] - V(start[:, None] - distance))
+        speed = np.sqrt(np.maximum(speed_squared, 1e-300))
         return np.asarray(np.pi / ((half[:, None] * np.sin(_ANGLE) / speed) @ _WEIGHT))
 
     def _released(self, half: Array, b: Array) -> Array:
-        """D: elastic energy released on a way over the way."""
+        """Elastic energy released between two turning points over their distance 2 h: D (n) [N or N.m]."""
         if self.elastic is None:
             return np.zeros_like(half)
         start = 2.0 * half / (1.0 + np.exp(-b))
@@ -152,25 +160,30 @@ class HysteresisLaw:
 
 
 REACH = 30.0
-"""How far beyond the measured amplitudes, as a factor [1], a response is looked for."""
+"""Factor [1] below the smallest and above the largest measured amplitude: range in which amplitudes of forced
+vibration are searched."""
 _TABLE, _HALVINGS = 80, 50
+"""Amplitudes at which the equivalent spring is tabulated, and bisections for the amplitude."""
 
 
 @dataclass(frozen=True, slots=True)
 class Oscillator:
-    """The law of a loop, the mass or inertia on it, and the damping ratio [1] beside it."""
+    """Oscillator of one degree of freedom: hysteresis law, mass or inertia, structural damping ratio [1]."""
 
     law: HysteresisLaw
     inertia: float
     damping: float = 0.0
 
     def free(self, amplitude: Array) -> tuple[Array, Array]:
-        """Frequency (n) [Hz] and damping ratio (n) [1] of free vibration."""
+        """Frequency (n) [Hz] and damping ratio (n) [1] of free vibration at amplitudes (n)."""
         omega, decrement = self.law.decay(amplitude, self.inertia)
         return omega / (2.0 * np.pi), decrement / np.hypot(np.pi, decrement) + self.damping
 
     def response(self, frequency: Array, force: Array, near: Array) -> Array:
-        """Amplitude (n) under forces (n) at frequencies (n) [Hz], within REACH of amplitudes `near`."""
+        """Amplitude (n) of forced vibration under force amplitudes (n) at frequencies (n) [Hz].
+
+        measured_amplitude : amplitudes; the result is searched within a factor of AMPLITUDE_SEARCH_FACTOR
+        """
         ends = float(np.log(near.min() / REACH)), float(np.log(near.max() * REACH))
         grid = np.linspace(ends[0], ends[1], _TABLE)
         stiffness, loss = self.law.equivalent(np.exp(grid))
@@ -180,15 +193,17 @@ class Oscillator:
         for _ in range(_HALVINGS):
             middle = 0.5 * (low + high)
             K, eta = table(middle).T
-            own = self.law.viscous * w + 2.0 * self.damping * w * np.sqrt(np.maximum(K, 0.0) * self.inertia)
-            needed = np.exp(middle) * np.hypot(K - self.inertia * w**2, K * eta + own)
-            low, high = np.where(needed < force, middle, low), np.where(needed < force, high, middle)
+            linear = self.law.viscous * w + 2.0 * self.damping * w * np.sqrt(
+                np.maximum(K, 0.0) * self.inertia
+            )  # viscous damping and structural damping, as a stiffness in phase with the velocity
+            required = np.exp(middle) * np.hypot(K - self.inertia * w**2, K * eta + linear)
+            low, high = np.where(required < force, middle, low), np.where(required < force, high, middle)
         return np.asarray(np.exp(0.5 * (low + high)))
 
 
 @dataclass(frozen=True, slots=True)
 class Free:
-    """Measured frequency and damping over the amplitude."""
+    """Measured frequency and damping ratio of free vibration as functions of the amplitude."""
 
     points: Points
 
@@ -196,27 +211,30 @@ class Free:
 
     @property
     def groups(self) -> NDArray[np.int64]:
-        """Frequencies and dampings have their own noise."""
+        """Index (2 n) of the noise group of each residual: 0 for frequencies, 1 for damping ratios."""
         return np.repeat([0, 1], self.points.amplitude.size)
 
     @property
     def scale(self) -> Array:
-        """Standard deviations (2 n) of the misfit up to a factor for each group [1]."""
+        """Standard deviations (2 n) [1] of `misfit`, up to a factor for each noise group."""
         return np.concatenate([self.points.frequency_spread, self.points.damping_spread])
 
     def misfit(self, model: Oscillator) -> Array:
-        """Frequencies of the data over the model's minus 1, then differences of the damping ratios (2 n)."""
+        """Relative errors of the frequencies (data over model minus 1), then data minus model of the damping
+        ratios; (2 n) [1].
+        """
         frequency, damping = model.free(self.points.amplitude)
         data = self.points
         return np.concatenate([data.frequency / frequency - 1.0, data.damping - damping])
 
     def residuals(self, model: Oscillator, scale: Array) -> Array:
+        """`misfit` over its standard deviations `scale`, both of the same shape."""
         return self.misfit(model) / scale
 
 
 @dataclass(frozen=True, slots=True)
 class Response:
-    """Measured amplitudes under forces at frequencies (n)."""
+    """Measured amplitudes (n) of forced vibration at force amplitudes (n) and frequencies (n) [Hz]."""
 
     frequency: Array
     force: Array
@@ -226,17 +244,18 @@ class Response:
 
     @property
     def groups(self) -> NDArray[np.int64]:
-        """All have the same noise."""
+        """Index (n) of the noise group of each amplitude: 0, all have the same noise."""
         return np.zeros(self.amplitude.size, dtype=np.int64)
 
     @property
     def scale(self) -> Array:
-        """Standard deviations (n) of the misfit up to a factor [1]."""
+        """Standard deviations (n) [1] of `misfit`, up to a common factor."""
         return np.ones(self.amplitude.size)
 
     def misfit(self, model: Oscillator) -> Array:
-        """Logarithm of the amplitude over the model's (n)."""
+        """Logarithm (n) [1] of the ratio of measured to modelled amplitude."""
         return np.log(self.amplitude / model.response(self.frequency, self.force, self.amplitude))
 
     def residuals(self, model: Oscillator, scale: Array) -> Array:
+        """`misfit` over its standard deviations `scale`, both of the same shape."""
         return self.misfit(model) / scale

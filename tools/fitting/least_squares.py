@@ -1,13 +1,13 @@
-"""Least squares over the logarithms of positive parameters, with bounds and covariance.
+"""Nonlinear least squares for positive parameters, in their logarithms, with bounds and covariance.
 
-A thin layer over `scipy.optimize.least_squares` (trust region reflective): parameters move in logarithms, a
-parameter set that the model refuses is stepped back from, and the Jacobian at the solution gives the
-covariance.
+A thin layer over `scipy.optimize.least_squares` (trust region reflective). The unknowns are the logarithms of
+the parameters. Residuals are infinite at parameters that the model refuses, so the search steps back. The
+covariance follows from the Jacobian at the solution.
 
-A parameter may be exchanged for what the data see of it while a fit searches. Where a law's level and
-exponent together make a stiffness that the data know a thousand times better than either, steps in the two
-parameters leave the narrow curved valley of that stiffness at once. With the stiffness as an unknown instead
-of the level the valley is straight.
+During the search a parameter may be replaced by a derived quantity (`Exchange`). Example: level and exponent
+of a law together give a stiffness, which the data determine a thousand times better than level or exponent
+alone. Steps in level and exponent leave the narrow curved valley of the cost at once. With the stiffness as
+unknown instead of the level, the valley is straight.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -19,23 +19,27 @@ import numpy as np
 from jointfmu.quantity import Array
 
 Residuals = Callable[[Mapping[str, float]], Array]
-"""Residuals (n) [1] at {name: value}; ValueError or RuntimeError where the model refuses the values."""
+"""Function {name: value} -> residuals (n) [1]; ValueError or RuntimeError if the model refuses values."""
 
 STEP = 1e-4
-"""Step of the central differences in a logarithm [1]: the tables' errors of 1e-8 give 1e-4 of slope."""
+"""Step of the central differences, in the logarithm of a parameter [1].
+
+Tabulated laws have errors of 1e-8; with this step they cause errors of 1e-4 of the derivatives.
+"""
 TOLERANCE = 1e-8
 """Relative change of cost or parameters at which a fit ends [1]."""
 MOST_STEPS = 300
+"""Maximum number of function evaluations of one fit, without those for the Jacobian."""
 RIDGE = 0.01
-"""Pull towards the start, in residuals' standard deviations per unit of a logarithm [1]: too weak to
-move what the data determine, enough to hold what they do not."""
+"""Weight of the regularisation towards the start: standard deviations of a residual per unit of a logarithm
+[1]. Too weak to move determined parameters, strong enough to hold undetermined parameters."""
 EDGE = 1e-6
-"""Distance from a bound, in logarithms [1], at which a parameter is said to sit on it."""
+"""Distance to a bound, in the logarithm [1], below which a parameter counts as being on the bound."""
 
 
 @dataclass(frozen=True, slots=True)
 class Unknown:
-    """A positive parameter to find, between open bounds in its SI unit."""
+    """Positive parameter to be fitted: start value and open bounds (`low`, `high`) in its SI unit."""
 
     name: str
     unit: str
@@ -54,15 +58,16 @@ class Unknown:
 
 @dataclass(frozen=True, slots=True)
 class Solution:
-    """The best values and how well the data determine them.
+    """Least-squares solution and its uncertainty.
 
     values     : {name: value} [SI]
-    residuals  : (n) at the solution, on the scale of the residual function
-    noise      : standard deviation of one residual
-    jacobian   : (n, k) derivatives of the residuals in the logarithms
-    covariance : (k, k) [1] of the logarithms
-    at_bound   : names whose value sits on a bound
-    limit      : what the model refused beside the solution, if that is where the fit ended
+    residuals  : residuals (n) [1] at the solution
+    noise      : standard deviation of one residual [1]
+    jacobian   : derivatives (n, k) [1] of the residuals with respect to the logarithms
+    covariance : covariance (k, k) [1] of the logarithms
+    at_bound   : names of the parameters on a bound
+    limit      : error message of the model next to the solution, if the fit ended where the model refuses
+        values; else None
     """
 
     unknowns: tuple[Unknown, ...]
@@ -76,19 +81,19 @@ class Solution:
 
     @property
     def deviations(self) -> dict[str, float]:
-        """Relative standard deviation [1] of each parameter: that of its logarithm."""
+        """{name: relative standard deviation [1]}, equal to the standard deviation of the logarithm."""
         root = np.sqrt(np.diag(self.covariance))
         return {u.name: float(d) for u, d in zip(self.unknowns, root, strict=True)}
 
     @property
     def correlation(self) -> Array:
-        """Correlation (k, k) [1] of the logarithms."""
+        """Correlation matrix (k, k) [1] of the logarithms of the parameters."""
         root = np.sqrt(np.diag(self.covariance))
         return np.asarray(self.covariance / np.outer(root, root))
 
 
 NOTHING = Solution((), {}, np.zeros(0), 1.0, np.zeros((0, 0)), np.zeros((0, 0)), (), None)
-"""No unknowns."""
+"""Solution of a fit without unknowns."""
 
 
 def solve(
@@ -99,36 +104,38 @@ def solve(
     nuisances: int = 0,
     tolerance: float = TOLERANCE,
 ) -> Solution:
-    """The values with the least sum of squared residuals.
+    """Minimise the sum of squared residuals over the unknowns.
 
     Parameters
     ----------
-    residuals : model against data, all with the same standard deviation
-    noise     : standard deviation of a residual; estimated from the residuals if None
-    nuisances : parameters that the residual function itself eliminates (an offset, say)
+    unknowns  : parameters to be fitted
+    residuals : residual function; all residuals have the same standard deviation
+    noise     : standard deviation of a residual [1]; estimated from the residuals if None
+    nuisances : number of parameters that the residual function itself eliminates (for example an offset)
+    tolerance : relative change of cost or parameters at which the fit ends [1]
 
     Raises
     ------
     ValueError   : the model refuses the starting values, or there are too few data
-    RuntimeError : no solution after MOST_STEPS steps
+    RuntimeError : no solution after MAX_EVALUATIONS evaluations
     """
     from scipy.optimize import least_squares
 
     model = _Model(tuple(unknowns), residuals)
-    place = model.start
-    first = residuals(model.named(place))
-    spare = first.size - place.size - nuisances
-    if spare < 1 and noise is None:
+    logs = model.start
+    first = residuals(model.named(logs))
+    degrees_of_freedom = first.size - logs.size - nuisances
+    if degrees_of_freedom < 1 and noise is None:
         raise ValueError(
-            f"{first.size} data points are too few for {place.size + nuisances} unknowns "
-            f"({', '.join(model.names)}): at least {place.size + nuisances + 1} are needed"
+            f"{first.size} data points are too few for {logs.size + nuisances} unknowns "
+            f"({', '.join(model.names)}): at least {logs.size + nuisances + 1} are needed"
         )
-    rest = first
-    for _ in range(2 if noise is None else 1):  # the noise is known after the first
-        model.ridge = RIDGE * (_spread(rest) if noise is None else noise)
+    current = first
+    for _ in range(2 if noise is None else 1):  # the first fit estimates the noise
+        model.ridge = RIDGE * (_spread(current) if noise is None else noise)
         result = least_squares(
             model,
-            place,
+            logs,
             jac=model.jacobian,
             bounds=(model.low, model.high),
             x_scale="jac",
@@ -139,19 +146,19 @@ def solve(
         )
         if result.status == 0:
             raise RuntimeError(f"the fit of {', '.join(model.names)} found no end within {MOST_STEPS} steps")
-        place, rest = result.x, result.fun[: first.size]
+        logs, current = result.x, result.fun[: first.size]
     jacobian = result.jac[: first.size]
     if noise is None:
-        noise = float(np.sqrt(rest @ rest / spare))
-    edge = np.minimum(place - model.low, model.high - place) < EDGE
+        noise = float(np.sqrt(current @ current / degrees_of_freedom))
+    at_bound = np.minimum(logs - model.low, model.high - logs) < EDGE
     return Solution(
         unknowns=tuple(unknowns),
-        values=model.named(place),
-        residuals=rest,
+        values=model.named(logs),
+        residuals=current,
         noise=noise,
         jacobian=jacobian,
         covariance=covariance(jacobian, noise),
-        at_bound=tuple(name for name, there in zip(model.names, edge, strict=True) if there),
+        at_bound=tuple(name for name, on_bound in zip(model.names, at_bound, strict=True) if on_bound),
         limit=model.refusal if model.retreated else None,
     )
 
@@ -161,10 +168,12 @@ def best_start(
     starts: Mapping[str, Sequence[float]],
     tried: Callable[[dict[str, float]], tuple[Mapping[str, float], float]],
 ) -> Sequence[Unknown]:
-    """The unknowns at the best of the starting points; at their own starts where the model refuses all.
+    """Select the starting point with the lowest cost: the unknowns, with their start values there.
 
-    starts : {name: values beside the start's}
-    tried  : starting point -> the values there, which it may move, and their cost
+    starts : {name: alternative start values}; all combinations with the unknowns' own starts are tried
+    evaluate_start : function: starting point -> values, which it may adjust, and their cost
+
+    If the model refuses all points, the unknowns keep their own starts.
     """
     best, least = unknowns, np.inf
     for point in product(*((u.start, *starts.get(u.name, ())) for u in unknowns)):
@@ -178,12 +187,12 @@ def best_start(
 
 
 def _spread(residuals: Array) -> float:
-    """Root mean square [1]."""
+    """Root mean square [1] of residuals (n)."""
     return float(np.sqrt(np.mean(residuals**2)))
 
 
 class _Model:
-    """Residuals and ridge over an array of logarithms, infinite where the model refuses."""
+    """Residuals and regularisation as function of the logarithms (k); infinite if the model refuses them."""
 
     def __init__(self, unknowns: tuple[Unknown, ...], residuals: Residuals) -> None:
         self.names = [u.name for u in unknowns]
@@ -198,6 +207,7 @@ class _Model:
         self.retreated = False
 
     def named(self, logs: Array) -> dict[str, float]:
+        """{name: value} of logarithms (k)."""
         with np.errstate(over="ignore"):
             return dict(zip(self.names, np.exp(logs).tolist(), strict=True))
 
@@ -214,7 +224,7 @@ class _Model:
         return value
 
     def jacobian(self, logs: Array) -> Array:
-        """Central differences; one-sided where a side is refused or out of bounds."""
+        """Jacobian by central differences; one-sided if one side is refused by the model or out of bounds."""
         middle = self(logs)
         self.retreated = False
         columns = []
@@ -222,20 +232,20 @@ class _Model:
             ends = np.clip(logs[k] + np.array([-STEP, STEP]), self.low[k], self.high[k])
             sides = []
             for end in ends:
-                there = logs.copy()
-                there[k] = end
-                sides.append(self(there) if end != logs[k] else middle)
-            fine = [bool(np.all(np.isfinite(side))) for side in sides]
-            self.retreated |= not all(fine)
-            places = [end if good else logs[k] for end, good in zip(ends, fine, strict=True)]
-            low, high = (side if good else middle for side, good in zip(sides, fine, strict=True))
-            width = places[1] - places[0]
+                shifted = logs.copy()
+                shifted[k] = end
+                sides.append(self(shifted) if end != logs[k] else middle)
+            finite = [bool(np.all(np.isfinite(side))) for side in sides]
+            self.retreated |= not all(finite)
+            used_ends = [end if good else logs[k] for end, good in zip(ends, finite, strict=True)]
+            low, high = (side if good else middle for side, good in zip(sides, finite, strict=True))
+            width = used_ends[1] - used_ends[0]
             columns.append((high - low) / width if width > 0.0 else np.zeros_like(middle))
         return np.stack(columns, axis=1)
 
 
 def covariance(jacobian: Array, noise: float) -> Array:
-    """noise^2 (J^T J)^-1 by singular values; directions without any effect get a huge variance."""
+    """Covariance noise^2 (J^T J)^-1 by singular values; directions without effect get a huge variance."""
     _, s, rows = np.linalg.svd(jacobian, full_matrices=False)
     s = np.maximum(s, 1e-12 * max(float(s[0]), 1e-300))
     half = rows.T / s
@@ -243,17 +253,17 @@ def covariance(jacobian: Array, noise: float) -> Array:
 
 
 EXACT, SECANTS = 1e-10, 40
-"""Relative accuracy with which the quantity is met [1], and the steps for that."""
+"""Relative tolerance [1] of the quantity of an `Exchange`, and maximum number of secant steps to meet it."""
 
 
 @dataclass(frozen=True, slots=True)
 class Exchange:
-    """What takes the place of an unknown.
+    """Replacement of an unknown by a derived quantity during a fit.
 
-    name     : of the unknown
-    quantity : what takes its place; a positive function of the values, monotone in the unknown
-    unit     : of the quantity
-    label    : its name
+    name     : name of the unknown that is replaced
+    quantity : function {name: value} -> derived quantity; positive, and monotone in the replaced unknown
+    unit     : unit of the quantity
+    label    : name of the quantity
     """
 
     name: str
@@ -262,14 +272,14 @@ class Exchange:
     label: str
 
     def unknown(self, unknowns: Mapping[str, Unknown]) -> Unknown:
-        """The quantity as an unknown, at the start of the others."""
+        """The derived quantity as an unknown, which starts at its value for the starts of `unknowns`."""
         start = self.quantity({name: u.start for name, u in unknowns.items()})
         return Unknown(self.label, self.unit, start, 0.0, np.inf)
 
     def values(self, found: Mapping[str, float], near: float) -> dict[str, float]:
-        """The values of the unknowns in which the quantity stands for its own; the search begins at `near`.
+        """Values of the original unknowns from values with the derived quantity; secant method from `start`.
 
-        Raises ValueError if the quantity cannot be met.
+        Raises ValueError if no value of the replaced unknown gives the quantity.
         """
         rest = {name: value for name, value in found.items() if name != self.label}
         target = float(np.log(found[self.label]))
@@ -290,13 +300,13 @@ class Exchange:
         return {**rest, self.name: float(np.exp(high))}
 
     def back(self, solution: Solution, unknowns: Mapping[str, Unknown]) -> Solution:
-        """A solution over the quantity as one over the unknowns."""
-        found = self.values(solution.values, unknowns[self.name].start)
-        values = {name: found[name] for name in unknowns}
-        turn = np.eye(len(values))
-        own = [u.name for u in solution.unknowns].index(self.label)
-        turn[own] = self._slopes(values)
-        jacobian = solution.jacobian @ turn
+        """Transform a solution with the derived quantity into a solution with the original unknowns."""
+        restored = self.values(solution.values, unknowns[self.name].start)
+        values = {name: restored[name] for name in unknowns}
+        transformation = np.eye(len(values))
+        index = [u.name for u in solution.unknowns].index(self.label)
+        transformation[index] = self._slopes(values)
+        jacobian = solution.jacobian @ transformation
         return replace(
             solution,
             unknowns=tuple(unknowns.values()),
@@ -306,7 +316,7 @@ class Exchange:
         )
 
     def _slopes(self, values: Mapping[str, float]) -> Array:
-        """Derivatives of the quantity in the values, all in logarithms."""
+        """Derivatives (k) [1] of the quantity with respect to the values, all in logarithms."""
 
         def moved(name: str, by: float) -> float:
             return float(np.log(self.quantity({**values, name: values[name] * float(np.exp(by))})))

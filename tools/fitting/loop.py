@@ -1,18 +1,19 @@
-"""A measured torque-angle record, loops and all, to its mid-line.
+"""Backbone curve of a measured torque-angle record, without hysteresis, friction and drift.
 
-Rising and falling branches are told apart at the turning points of the torque. One linear least
-squares then finds, as piecewise linear functions of the torque, the mid-line m(T) and half the gap
-h(T) of the branches, and a drift of the angle that is linear in the order of the samples,
+The record is cut into rising and falling branches at the turning points of the torque. One linear
+least-squares problem then gives the mean curve m(T) and half the gap h(T) of the branches, piecewise linear
+in the torque T, and a drift of the angle, linear in the order of the samples:
 
-    angle_i = m(T_i) + s_i h(T_i) + drift t_i,   s = +1 rising, -1 falling,   t from -1/2 to 1/2,
+    angle_i = m(T_i) + s_i h(T_i) + drift t_i,   s = +1 rising, -1 falling,   t from -1/2 to 1/2
 
-with h = 0 where the torque turns around: the branches meet there. The drift is left out where the
-record does not determine it (a single loop that is not closed).
+At turning points h = 0, because the branches meet. The drift is left out if the record does not determine it
+(a single loop that is not closed).
 
-The mid-line is not m: friction M is against the motion on both branches. After a reversal it turns round, and
-has done so on the way to the middle of the range. There M is half the torque between the branches at the same
-angle; on the half of a branch that leads away from the middle the spring carries T -+ M. These halves are the
-mid-line. At the tips, where the branches meet, m is M/K off.
+The backbone is not m, because the friction torque M opposes the motion on both branches. After a reversal M
+changes its sign, and has its full value again before the middle of the range. There M is half the torque
+difference between the branches at equal angles. On the half of a branch that leads away from the middle the
+spring carries T - M (rising) or T + M (falling): these halves are the backbone. At the tips, where the
+branches meet, m is off by M/K, K the stiffness.
 """
 
 from dataclasses import dataclass
@@ -28,29 +29,34 @@ from jointfmu.quantity import Array
 from .branches import extremes
 
 PROMINENCE = 0.1
-"""Least reversal of the torque, over its range [1], that counts as a turning point."""
+"""Smallest reversal of the torque that counts as a turning point, over the range of the torque [1]."""
 CENTRAL = 0.25
-"""Part of the range [1] about its middle in which the friction has turned round on both branches."""
+"""Central fraction of the torque range [1], in which friction is fully reversed on both branches."""
 FULL = 0.9
-"""Part of the range [1] that a whole branch spans."""
+"""Fraction of the torque range [1], from which a branch counts as covering the full range."""
 MOST_KNOTS, POINTS_PER_KNOT = 41, 20
+"""Maximum number of knots of the piecewise linear curves, and samples for each knot."""
 MOST_POINTS = 400
-"""Points of the backbone at most; more samples are averaged in groups of neighbouring torque."""
+"""Maximum number of points of the backbone; more samples are averaged in groups of neighbouring torque."""
 SEEN = 0.05
-"""Least part of the drift column [1] that the other columns must leave for a drift to be told."""
+"""Fraction of the drift column of the design matrix [1] that is linearly independent of the other columns,
+above which the drift counts as determined."""
 TENTHS = 10
+"""Number of equal torque intervals in which the backbone is checked to be monotonic."""
 
 
 @dataclass(frozen=True, slots=True)
 class Backbone:
-    """The mid-line of a record and what was taken off.
+    """Backbone curve of a torque-angle record, and the hysteresis and drift that were separated from it.
 
-    torque, angle : (n) [N.m], [rad], ascending in torque
-    count         : (n) samples in each point
+    torque, angle : (n) [N.m], (n) [rad], ascending in torque
+    count         : number of samples (n) averaged in each point
     branches      : number of branches used
-    loop_area     : [J] dissipated per loop;  backlash : [rad] between the branches at zero torque;
-    drift         : [rad] over the whole record; each with its standard deviation, None if the record
-                    does not determine it
+    loop_area     : energy dissipated in one loop [J]
+    backlash      : angle between the branches at zero torque [rad]
+    drift         : drift of the angle over the whole record [rad]
+
+    Loop area, backlash and drift are (value, standard deviation); None if the record does not determine them.
     """
 
     torque: Array
@@ -64,6 +70,8 @@ class Backbone:
 
 @dataclass(frozen=True, slots=True)
 class _Branch:
+    """Samples between two turning points: their indices, and lowest and highest torque [N.m]."""
+
     places: NDArray[np.int64]
     rising: bool
     low: float
@@ -71,127 +79,142 @@ class _Branch:
 
 
 def backbone(torque: Array, angle: Array) -> Backbone:
-    """The mid-line of a record (n) [N.m], (n) [rad] in the order it was measured.
+    """Backbone curve of a record: torque (n) [N.m] and angle (n) [rad], in the order of the measurement.
 
-    Raises ValueError: no torque range, no complete branch, or the angle falls somewhere as the
-    torque rises.
+    Raises ValueError: constant torque, branches without a common range, or an angle that falls with rising
+    torque.
     """
     if not np.ptp(torque) > 0.0:
         raise ValueError(f"torque is {torque[0]:g} N.m throughout; expected a range of torques")
-    used = _whole(_branches(torque))
-    if len({b.rising for b in used}) == 1:
-        places = np.concatenate([b.places for b in used])
-        line = _grouped(torque[places], angle[places])
-        return _monotone(Backbone(*line, len(used), None, None, None))
+    branches = _whole(_branches(torque))
+    if len({b.rising for b in branches}) == 1:
+        indices = np.concatenate([b.places for b in branches])
+        line = _grouped(torque[indices], angle[indices])
+        return _monotone(Backbone(*line, len(branches), None, None, None))
     low, high = (
-        pick(side(getattr(b, name) for b in used if b.rising is way) for way in (True, False))
-        for pick, side, name in ((max, min, "low"), (min, max, "high"))
+        inner(outer(getattr(b, name) for b in branches if b.rising is rising) for rising in (True, False))
+        for inner, outer, name in ((max, min, "low"), (min, max, "high"))
     )
     if not high - low >= 0.5 * np.ptp(torque):
         raise ValueError(
             f"rising and falling branch share {low:g} to {high:g} N.m of {np.min(torque):g} to "
             f"{np.max(torque):g} N.m; expected loops over the whole range"
         )
-    return _monotone(_separated(torque, angle, used, float(low), float(high)))
+    return _monotone(_separated(torque, angle, branches, float(low), float(high)))
 
 
 def _branches(torque: Array) -> list[_Branch]:
-    """All branches between turning points, in order."""
+    """All branches between the turning points of the torque, in the order of the measurement."""
     turns = extremes(torque, PROMINENCE * float(np.ptp(torque)))
     ends = np.concatenate([[0], turns, [torque.size - 1]])
     branches = []
     for first, last in pairwise(ends):
-        places = np.arange(first, last + 1)
-        part = torque[places]
-        branches.append(_Branch(places, bool(part[-1] > part[0]), float(np.min(part)), float(np.max(part))))
+        indices = np.arange(first, last + 1)
+        T = torque[indices]
+        branches.append(_Branch(indices, bool(T[-1] > T[0]), float(np.min(T)), float(np.max(T))))
     return branches
 
 
 def _whole(branches: list[_Branch]) -> list[_Branch]:
-    """The branches over the whole range; of a direction that has none, all."""
+    """Select the branches that cover the full torque range; if a direction has none, all its branches."""
     span = max(b.high for b in branches) - min(b.low for b in branches)
-    whole = []
+    selected = []
     for rising in (True, False):
         same = [b for b in branches if b.rising is rising]
-        whole += [b for b in same if b.high - b.low >= FULL * span] or same
-    return sorted(whole, key=lambda b: int(b.places[0]))
+        selected += [b for b in same if b.high - b.low >= FULL * span] or same
+    return sorted(selected, key=lambda b: int(b.places[0]))
 
 
 def _separated(torque: Array, angle: Array, used: list[_Branch], low: float, high: float) -> Backbone:
-    """Mid-line, gap and drift by one linear least squares."""
-    places = np.concatenate([b.places for b in used])
-    way = np.concatenate([np.where(b.rising, 1.0, -1.0) * np.ones(b.places.size) for b in used])
-    inside = (torque[places] >= low) & (torque[places] <= high)
-    places, way = places[inside], way[inside]
-    T, phi, time = torque[places], angle[places], places / (torque.size - 1.0) - 0.5
-    knots = int(np.clip(places.size // POINTS_PER_KNOT, 5, MOST_KNOTS))
+    """Separate backbone, hysteresis and drift by one linear least-squares problem.
+
+    low, high : torque range [N.m] common to rising and falling branches
+    """
+    indices = np.concatenate([b.places for b in used])
+    direction = np.concatenate([np.where(b.rising, 1.0, -1.0) * np.ones(b.places.size) for b in used])
+    inside = (torque[indices] >= low) & (torque[indices] <= high)
+    indices, direction = indices[inside], direction[inside]
+    T, phi, time = torque[indices], angle[indices], indices / (torque.size - 1.0) - 0.5
+    knots = int(np.clip(indices.size // POINTS_PER_KNOT, 5, MOST_KNOTS))
     grid = np.linspace(low, high, knots)
     hats = _hats(T, grid)
-    free = np.ones(knots, dtype=bool)
-    free[[0, -1]] = [not _turns(used, low, span := high - low, 0), not _turns(used, high, span, -1)]
-    gap = scipy.sparse.diags(way) @ hats
-    design = scipy.sparse.hstack([hats, gap[:, np.flatnonzero(free)], scipy.sparse.csr_matrix(time[:, None])])
+    open_gap = np.ones(knots, dtype=bool)  # knots whose gap is unknown; at turning points it is zero
+    open_gap[[0, -1]] = [not _turns(used, low, span := high - low, 0), not _turns(used, high, span, -1)]
+    gap = scipy.sparse.diags(direction) @ hats
+    design = scipy.sparse.hstack(
+        [hats, gap[:, np.flatnonzero(open_gap)], scipy.sparse.csr_matrix(time[:, None])]
+    )
     design = design.tocsr()
-    drifts = _seen(design)
-    if not drifts:
+    has_drift = _seen(design)
+    if not has_drift:
         design = design[:, :-1]
     normal = np.linalg.pinv((design.T @ design).toarray(), hermitian=True)
     values = normal @ (design.T @ phi)
-    rest = phi - design @ values
-    covariance = normal * float(rest @ rest) / max(places.size - values.size, 1)
-    half = slice(knots, knots + int(np.sum(free)))
+    residual = phi - design @ values
+    covariance = normal * float(residual @ residual) / max(indices.size - values.size, 1)
+    gap_values = slice(knots, knots + int(np.sum(open_gap)))
 
-    def measure(weights: Array) -> tuple[float, float]:
-        row = weights[free]
-        return float(row @ values[half]), float(np.sqrt(row @ covariance[half, half] @ row))
+    def weighted_gap(weights: Array) -> tuple[float, float]:
+        """Weighted sum of the half gaps at the knots, and its standard deviation."""
+        row = weights[open_gap]
+        return float(row @ values[gap_values]), float(np.sqrt(row @ covariance[gap_values, gap_values] @ row))
 
-    area = np.gradient(grid)
-    area[[0, -1]] = 0.5 * (grid[1] - grid[0])
-    zero = measure(-2.0 * _hats(np.zeros(1), grid).toarray()[0]) if low <= 0.0 <= high else None
-    drift = (float(values[-1]), float(np.sqrt(covariance[-1, -1]))) if drifts else None
-    clean = phi - (drift[0] * time if drift else 0.0)
-    part = (T - 0.5 * (low + high)) / (0.5 * (high - low))
-    central = np.abs(part) <= CENTRAL
-    friction = _friction(T[central], clean[central], way[central])
-    loading = way * part >= 0.0
-    line = _grouped((T - friction * way)[loading], clean[loading])
-    return Backbone(*line, len(used), measure(-2.0 * area), zero, drift)
+    lengths = np.gradient(grid)
+    lengths[[0, -1]] = 0.5 * (grid[1] - grid[0])
+    backlash = weighted_gap(-2.0 * _hats(np.zeros(1), grid).toarray()[0]) if low <= 0.0 <= high else None
+    drift = (float(values[-1]), float(np.sqrt(covariance[-1, -1]))) if has_drift else None
+    driftless = phi - (drift[0] * time if drift else 0.0)
+    position = (T - 0.5 * (low + high)) / (0.5 * (high - low))  # in the range of the torque, from -1 to 1
+    central = np.abs(position) <= CENTRAL
+    friction = _friction(T[central], driftless[central], direction[central])
+    loading = direction * position >= 0.0
+    line = _grouped((T - friction * direction)[loading], driftless[loading])
+    return Backbone(*line, len(used), weighted_gap(-2.0 * lengths), backlash, drift)
 
 
 def _friction(torque: Array, angle: Array, way: Array) -> float:
-    """Half of the torque between branches (n) at equal angles: it is the same for all of these."""
+    """Friction torque [N.m]: half the torque difference of rising and falling branches at equal angles.
+
+    direction : +1 (rising) or -1 (falling) for each sample (n)
+
+    The friction torque is assumed constant over the samples.
+    """
     grid = np.linspace(np.min(angle), np.max(angle), max(angle.size // POINTS_PER_KNOT, 2))
     design = np.column_stack([_hats(angle, grid).toarray(), way])
     return float(np.linalg.lstsq(design, torque)[0][-1])
 
 
 def _hats(T: Array, grid: Array) -> scipy.sparse.csr_matrix:
-    """Piecewise linear basis (n, k) at torques (n)."""
+    """Piecewise linear basis functions (n, k) at torques (n), for knots `grid` (k)."""
     return scipy.sparse.csr_matrix(BSpline.design_matrix(T, np.pad(grid, 1, mode="edge"), 1))
 
 
 def _turns(used: list[_Branch], end: float, span: float, side: int) -> bool:
-    """Whether a falling and a rising branch meet at an end of the range."""
-    following = pairwise(used)
+    """Whether a rising and a falling branch meet at an end of the torque range.
+
+    end, span : torque of that end, and length of the range [N.m]
+    side      : 0: lower end, -1: upper end
+    """
+    pairs = pairwise(used)
     return any(
         branch.rising is not next_branch.rising
         and branch.places[-1] == next_branch.places[0]
         and branch.rising is (side == -1)
         and abs((branch.high if branch.rising else branch.low) - end) < (1.0 - FULL) * span
-        for branch, next_branch in following
+        for branch, next_branch in pairs
     )
 
 
 def _seen(design: scipy.sparse.csr_matrix) -> bool:
-    """Whether the last column stands out of the span of the others."""
+    """Whether the last column (drift) of a design matrix is linearly independent of the other columns."""
     columns, last = design[:, :-1], design[:, -1].toarray()[:, 0]
     normal = np.linalg.pinv((columns.T @ columns).toarray(), hermitian=True)
-    left = last - columns @ (normal @ (columns.T @ last))
-    return bool(np.linalg.norm(left) > SEEN * np.linalg.norm(last))
+    independent = last - columns @ (normal @ (columns.T @ last))
+    return bool(np.linalg.norm(independent) > SEEN * np.linalg.norm(last))
 
 
 def _grouped(torque: Array, angle: Array) -> tuple[Array, Array, Array]:
-    """Means of groups of neighbouring torque, and their sizes."""
+    """Average samples in at most MAX_POINTS groups of neighbouring torque: torque, angle, group size."""
     order = np.argsort(torque, kind="stable")
     starts = np.linspace(0, order.size, min(order.size, MOST_POINTS) + 1).astype(int)[:-1]
     count = np.diff(np.append(starts, order.size)).astype(float)
@@ -201,15 +224,15 @@ def _grouped(torque: Array, angle: Array) -> tuple[Array, Array, Array]:
 
 
 def _monotone(line: Backbone) -> Backbone:
-    """The same; ValueError if the angle does not rise from tenth to tenth of the torque's range."""
+    """Return the backbone; ValueError if its angle falls between neighbouring tenths of the torque range."""
     edges = np.linspace(line.torque[0], line.torque[-1], TENTHS + 1)
-    part = np.clip(np.searchsorted(edges, line.torque, side="right") - 1, 0, TENTHS - 1)
-    there = [k for k in range(TENTHS) if np.any(part == k)]
-    means = np.array([np.average(line.angle[part == k], weights=line.count[part == k]) for k in there])
+    tenth = np.clip(np.searchsorted(edges, line.torque, side="right") - 1, 0, TENTHS - 1)
+    nonempty = [k for k in range(TENTHS) if np.any(tenth == k)]
+    means = np.array([np.average(line.angle[tenth == k], weights=line.count[tenth == k]) for k in nonempty])
     if np.all(np.diff(means) < 0.0):
         raise ValueError("the angle falls as the torque rises; reverse the sign of one column")
     if np.any(falling := np.diff(means) <= 0.0):
-        k = there[int(np.argmax(falling))]
+        k = nonempty[int(np.argmax(falling))]
         raise ValueError(
             f"the mid-line of the angle does not rise with the torque between {edges[k]:.4g} and "
             f"{edges[min(k + 2, TENTHS)]:.4g} N.m; expected one loop or curve of a spring"

@@ -1,4 +1,4 @@
-"""A file's measurement of a joint with memory: loops, free vibration or a response; its columns."""
+"""Measurement files of joints with hysteresis: loops, free vibration or forced vibration."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -18,9 +18,9 @@ from .decay import Points, points
 from .hysteresis import Free, Response
 
 LEAST = 8
-"""Fewest rows of a file."""
+"""Minimum number of rows of a file."""
 RUN = "run"
-"""Column that tells measurements apart: one number for all rows of one."""
+"""Column with the number of the run, if a file holds several runs."""
 OTHERS = {
     "displacement": ("x", "s", "u", "weg", "verschiebung"),
     "force": ("kraft", "load", "f"),
@@ -30,17 +30,22 @@ OTHERS = {
     "frequency": ("freq", "frequenz", "f"),
     "damping": ("zeta", "dämpfung", "dämpfungsgrad"),
 }
-"""{column: other names of it, in lower case}."""
+"""{column: accepted synonyms, in lower case}."""
 FAR = 50.0
-"""Stiffness of a measurement over the start's [1], either way, from which on a wrong unit is likelier than
-such a joint: less than degrees in the place of radians make, 57."""
+"""Ratio [1] of measured stiffness to stiffness of the start values, or its inverse, from which a wrong unit
+is assumed. Degrees read as radians give 57."""
 NEAR = 5.0
-"""The same [1] within which another unit explains it."""
+"""Ratio [1] of measured stiffness to stiffness of the start values, or its inverse, up to which another unit
+counts as the explanation of a wrong ratio."""
 
 
 @dataclass(frozen=True, slots=True)
 class Heads:
-    """Names and units of force and motion of a joint: force or torque, displacement or angle."""
+    """Names and units of the columns for force (or torque) and motion (displacement or angle) of a joint.
+
+    force, motion   : names of the columns
+    forces, motions : {unit: size in SI units} allowed for each, SI unit first
+    """
 
     force: str
     motion: str
@@ -49,6 +54,7 @@ class Heads:
 
     @property
     def columns(self) -> Mapping[str, Sizes]:
+        """{column: {unit: size in SI units}} of all columns that a measurement file may have."""
         return {
             self.motion: self.motions,
             self.force: self.forces,
@@ -60,13 +66,17 @@ class Heads:
 
     @property
     def unit(self) -> tuple[str, str]:
-        """SI units of force and motion."""
+        """SI unit of the force and SI unit of the motion."""
         return next(iter(self.forces)), next(iter(self.motions))
 
     def check_level(self, path: Path, ratio: float, units: Mapping[str, str], start: ParameterFile) -> None:
-        """Refuse a measurement whose stiffness is `ratio` times the start's, if that is FAR off.
+        """Refuse a measurement whose stiffness is far from that of the start values.
 
+        ratio : measured stiffness over stiffness of the start values [1]
         units : {column: unit in the heading}
+        start : parameter file with the start values
+
+        Raises Refusal, with a likely unit error, if the ratio or its inverse reaches WRONG_UNIT_RATIO.
         """
         if 1.0 / FAR < ratio < FAR:
             return
@@ -78,66 +88,70 @@ class Heads:
         )
 
     def likely_unit(self, ratio: float, units: Mapping[str, str]) -> str:
-        """Which unit of a column, or of either where both do as well, would bring a stiffness that is `ratio`
-        times what it should be to its place."""
-        found = []
+        """Text that names the unit error which best explains a stiffness `ratio` times too large [1].
+
+        units : {column: unit in the heading}
+
+        If a wrong unit of either column explains the ratio equally well, the text names both.
+        """
+        explanations = []
         for column, power, own in ((self.motion, -1.0, self.motions), (self.force, 1.0, self.forces)):
-            said, text = measured_in(units[column], own), f"where the heading says {units[column]}"
-            left = {unit: abs(np.log(ratio * (size / said) ** power)) for unit, size in own.items()}
-            unit = min(left, key=left.__getitem__)
-            found.append((float(left[unit]), f"the {column} is in {unit}, {text}"))
-        least = min(found)[0]
-        if not least < np.log(NEAR):
+            stated, text = measured_in(units[column], own), f"where the heading says {units[column]}"
+            errors = {unit: abs(np.log(ratio * (size / stated) ** power)) for unit, size in own.items()}
+            unit = min(errors, key=errors.__getitem__)
+            explanations.append((float(errors[unit]), f"the {column} is in {unit}, {text}"))
+        smallest = min(explanations)[0]
+        if not smallest < np.log(NEAR):
             return "check the units of both columns, no usual one explains it"
-        return "likely " + ", or ".join(text for left, text in found if left < least + 1e-6)
+        return "likely " + ", or ".join(text for error, text in explanations if error < smallest + 1e-6)
 
 
 def read(path: str | Path, heads: Heads) -> tuple[str, columns.Columns]:
-    """One of "loops", "response", "backbone", "decay" and the columns of the file.
+    """Read a measurement file: its kind, recognised by its columns, and the columns.
 
-    loops    : motion, force
-    response : motion (amplitude), force (amplitude), frequency
-    backbone : motion (amplitude), frequency, damping
-    decay    : motion, time
+    kind "loops"    : columns motion, force
+    kind "response" : columns motion (amplitude), force (amplitude), frequency
+    kind "backbone" : columns motion (amplitude), frequency, damping
+    kind "decay"    : columns motion, time
 
-    Raises ValueError, one line, for anything else.
+    Raises ValueError, one line, for any other set of columns.
     """
     table = columns.read(path, heads.columns, LEAST, OTHERS)
     table.require(heads.motion, heads.columns)
-    have = set(table.columns)
-    if {"frequency", heads.force} <= have:
+    present = set(table.columns)
+    if {"frequency", heads.force} <= present:
         return "response", table.positive((heads.motion, "frequency", heads.force), heads.columns)
-    if {"frequency", "damping"} <= have:
+    if {"frequency", "damping"} <= present:
         return "backbone", table.positive((heads.motion, "frequency", "damping"), heads.columns)
-    if "frequency" not in have and heads.force in have:
+    if "frequency" not in present and heads.force in present:
         return "loops", table
-    if "frequency" not in have and "time" in have:
+    if "frequency" not in present and "time" in present:
         return "decay", table
-    beside = (heads.force,), ("time",), ("frequency", heads.force), ("frequency", "damping")
+    expected = (heads.force,), ("time",), ("frequency", heads.force), ("frequency", "damping")
     raise ValueError(
         f"{table.path}: has {', '.join(table.columns)} alone; expected {heads.motion} with "
-        f"{', or with '.join(' and '.join(names) for names in beside)}"
+        f"{', or with '.join(' and '.join(names) for names in expected)}"
     )
 
 
 def runs(table: columns.Columns) -> list[tuple[str, dict[str, Array]]]:
-    """The measurements of a file, told apart by the column `run`: how a message calls each, its columns."""
+    """Split a table by the column `run`: (prefix of error messages, {name: column}) of each run."""
     if RUN not in table.columns:
         return [("", dict(table.columns))]
-    number = table.columns[RUN]
-    parts = []
-    for each in dict.fromkeys(number.tolist()):
-        rows = number == each
-        parts.append((f"run {each:g}: ", {name: column[rows] for name, column in table.columns.items()}))
-    return parts
+    run_numbers = table.columns[RUN]
+    result = []
+    for number in dict.fromkeys(run_numbers.tolist()):
+        rows = run_numbers == number
+        result.append((f"run {number:g}: ", {name: column[rows] for name, column in table.columns.items()}))
+    return result
 
 
 @dataclass(frozen=True, slots=True)
 class Measurement:
-    """A file's measurement.
+    """Measurement of a joint, read from a file.
 
-    kind : one of those of `heads.read`
-    span : over which motions, in words
+    kind  : "loops", "response", "backbone" or "decay", see `read_columns`
+    heads : names and units of the columns
     units : {column: unit in the heading}
     """
 
@@ -149,7 +163,7 @@ class Measurement:
 
     @property
     def motion(self) -> Array:
-        """Motions (n): of the samples, or amplitudes."""
+        """Motion (n) of all samples of loops; amplitudes (n) of a vibration."""
         match self.data:
             case Loops():
                 return self.data.motion
@@ -160,36 +174,43 @@ class Measurement:
 
     @property
     def amplitude(self) -> float:
-        """Largest amplitude: half the range of loops."""
+        """Largest amplitude of the motion; of loops, half the range of the motion."""
         return float(0.5 * np.ptp(self.motion) if self.kind == "loops" else np.max(self.motion))
 
     def rest_stiffness(self, inertia: float | None) -> float:
-        """Stiffness [N/m or N.m/rad] of tiny motions, roughly; what vibrates is needed unless it is loops."""
+        """Approximate stiffness [N/m or N.m/rad] at small motions.
+
+        inertia : vibrating mass [kg] or moment of inertia [kg.m2]; not used for loops, required otherwise
+        """
         if isinstance(self.data, Loops):
             return self.data.rest_stiffness
         if isinstance(self.data, Free):
             frequency = self.data.points.frequency[np.argmin(self.data.points.amplitude)]
         else:
-            least = np.where(self.data.force == self.data.force.min(), self.data.amplitude, 0.0)
-            frequency = self.data.frequency[np.argmax(least)]
+            amplitude = np.where(self.data.force == self.data.force.min(), self.data.amplitude, 0.0)
+            frequency = self.data.frequency[np.argmax(amplitude)]  # resonance at the smallest force
         assert inertia is not None
         return float(inertia * (2.0 * np.pi * frequency) ** 2)
 
     @property
     def span(self) -> str:
+        """Kind of the measurement and largest amplitude, as text."""
         return f"{self.kind} up to {self.heads.motion} {self.amplitude:.4g} {self.heads.unit[1]}"
 
 
 def measured(path: str | Path, columns: Heads) -> Measurement:
-    """Read and check a file, see `heads.read`; ValueError, one line, beginning with the path."""
+    """Read a measurement file and evaluate it; see `read_columns` for its columns.
+
+    Raises ValueError, one line that begins with the path.
+    """
     kind, table = read(path, columns)
-    parts = runs(table)
+    records = runs(table)
     data: Loops | Free | Response
     try:
         if kind == "loops":
-            data = cut([(name, run[columns.motion], run[columns.force]) for name, run in parts])
+            data = cut([(name, run[columns.motion], run[columns.force]) for name, run in records])
         elif kind == "decay":
-            data = Free(_joined([points(run["time"], run[columns.motion], name) for name, run in parts]))
+            data = Free(_joined([points(run["time"], run[columns.motion], name) for name, run in records]))
         elif kind == "backbone":
             a, f, damping = (table.columns[name] for name in (columns.motion, "frequency", "damping"))
             data = Free(Points(a, f, damping, np.ones_like(f), damping))
@@ -201,6 +222,7 @@ def measured(path: str | Path, columns: Heads) -> Measurement:
 
 
 def _joined(parts: Sequence[Points]) -> Points:
+    """Concatenate the decay points of several records."""
     return Points(
-        *(np.concatenate([getattr(part, name) for part in parts]) for name in Points.__dataclass_fields__)
+        *(np.concatenate([getattr(record, name) for record in parts]) for name in Points.__dataclass_fields__)
     )

@@ -1,4 +1,7 @@
-"""What the fits of joints with memory share: model of a measurement, search, facts, notes, pictures."""
+"""Fit of hysteresis laws to measurements: model, search, derived facts, notes and plots.
+
+Common to the fits of all joints with hysteresis.
+"""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -16,26 +19,27 @@ from .measurement import Measurement
 from .outcome import Facts, Picture, systematic
 
 DAMPING = "damping_ratio"
-"""Unknown that is no parameter of the joint: the damping ratio of the structure beside it [1]."""
+"""Name of an unknown that is no parameter of the joint: the damping ratio of the structure [1]."""
 MOST_DAMPING = 0.3
+"""Upper limit of the damping ratio of the structure [1]."""
 DAMPING_UNKNOWN = Unknown(DAMPING, "1", 1e-3, 1e-9, MOST_DAMPING)
 ROUGH, TOLERANCE = 1e-3, 1e-6
 """Relative change of cost or parameters at which the first and the second fit end [1]."""
 ROUGH_NOISE = 0.01
-"""Noise of the first fit over the size of the data [1]; it holds the search back only."""
+"""Noise assumed in the first fit, over the size of the data [1]; it only sets the regularisation."""
 QUIET = 1e-9
-"""Least noise over the largest [1]: data without any are made by a program."""
+"""Lower limit of the noise of a group, over the largest noise of all groups [1]; for data without noise."""
 
 Law = Callable[[Mapping[str, float]], HysteresisLaw]
 
 
 @dataclass(frozen=True, slots=True)
 class MeasurementModel:
-    """A measurement's model: the law over the unknowns, and what vibrates.
+    """Model of a measurement: hysteresis law as a function of the unknowns, and the vibrating inertia.
 
-    law     : {name: value} of the unknowns -> law of the loop
-    inertia : mass or inertia on the joint, None with loops
-    damping : damping ratio of the structure beside the joint [1], if it is not an unknown
+    law     : function {name: value} of the unknowns -> hysteresis law
+    inertia : mass [kg] or moment of inertia [kg.m2] on the joint; None for loops
+    damping : damping ratio of the structure [1], if it is not an unknown
     """
 
     law: Law
@@ -43,15 +47,18 @@ class MeasurementModel:
     damping: float
 
     def of(self, values: Mapping[str, float]) -> HysteresisLaw:
+        """Hysteresis law at values of the unknowns."""
         return self.law({name: value for name, value in values.items() if name != DAMPING})
 
     def residuals(self, data: Loops | Free | Response, values: Mapping[str, float], scale: Array) -> Array:
+        """Residuals of the data at values of the unknowns, over the standard deviations `scale` (n)."""
         law = self.of(values)
         if isinstance(data, Loops):
             return data.residuals(law, scale)
         return data.residuals(self.oscillator(law, values), scale)
 
     def oscillator(self, law: HysteresisLaw, values: Mapping[str, float]) -> Oscillator:
+        """Oscillator with a hysteresis law; its damping ratio is taken from `values` if it is an unknown."""
         assert self.inertia is not None
         return Oscillator(law, self.inertia, values.get(DAMPING, self.damping))
 
@@ -59,18 +66,21 @@ class MeasurementModel:
 def model(
     measurement: Measurement, law: Law, setting: str, inertia: float | None, damping: float
 ) -> MeasurementModel:
-    """The model of a measurement; `setting` is the option of the inertia.
+    """Build the model of a measurement.
 
-    Raises ValueError if what vibrates is stated with loops, is missing otherwise, or is out of its range.
+    setting : name of the option for the inertia, used in error messages
+
+    Raises ValueError if the inertia is stated for loops, is missing for a vibration, or if inertia or damping
+    ratio are out of range.
     """
-    what = setting.replace("_", " ")
+    name = setting.replace("_", " ")
     if measurement.kind == "loops":
         if inertia is not None:
-            raise ValueError(f"{measurement.path}: has loops, nothing vibrates; allowed is no {what}")
+            raise ValueError(f"{measurement.path}: has loops, nothing vibrates; allowed is no {name}")
     elif inertia is None:
-        raise Refusal(f"{measurement.path}: has a vibration ({measurement.kind}); state the {what}", setting)
+        raise Refusal(f"{measurement.path}: has a vibration ({measurement.kind}); state the {name}", setting)
     elif not 0.0 < inertia < np.inf:
-        raise ValueError(f"{what} = {inertia:g} is outside (0, inf)")
+        raise ValueError(f"{name} = {inertia:g} is outside (0, inf)")
     if not 0.0 <= damping < MOST_DAMPING:
         raise ValueError(f"damping ratio = {damping:g} is outside [0, {MOST_DAMPING:g})")
     return MeasurementModel(law, inertia, damping)
@@ -85,14 +95,14 @@ def search(
     moved: bool = False,
     corrected: Callable[[Mapping[str, float]], Measurement] | None = None,
 ) -> tuple[Solution, Array, Measurement]:
-    """The best values; each group of data is weighted by its own noise, which a first fit finds.
+    """Fit the unknowns twice: the first fit estimates the noise of each group of data, the second uses it.
 
-    starts : {name: values beside the start's} at which the search may begin
-    level  : the stiffness at rest and the unknown that carries it, which begins where the data have it
-    moved  : whether the search moves that stiffness instead of the unknown
-    corrected : values that the first fit found -> the measurement as the law would have it
+    starts : {name: alternative start values} of the search
+    level  : stiffness at rest, and the unknown that is adjusted at each start to the measured stiffness
+    moved  : whether the stiffness at rest replaces that unknown during the search (`Exchange`)
+    corrected : function: values of the first fit -> corrected measurement, used in the second fit
 
-    Returns the solution, the noise (n) of the data, and the measurement that it was fitted to.
+    Returns the solution, the noise (n) of the data, and the measurement of the second fit.
 
     Raises ValueError and RuntimeError as `solve`; ValueError if the law allows none of the starts.
     """
@@ -104,78 +114,88 @@ def search(
     def exchanged(of: Residuals) -> Residuals:
         if exchange is None:
             return of
-        swap, near = exchange, own[exchange.name].start
-        return lambda values: of(swap.values(values, near))
+        current, start = exchange, original[exchange.name].start
+        return lambda values: of(current.values(values, start))
 
-    rough = data.scale
-    seen = None if level is None else measurement.rest_stiffness(model.inertia)
+    first_scale = data.scale
+    measured_stiffness = None if level is None else measurement.rest_stiffness(model.inertia)
 
     def tried(values: dict[str, float]) -> tuple[Mapping[str, float], float]:
-        """At the stiffness that the data have, whatever else the point has."""
-        if level is not None and seen is not None:
-            rest = {name: value for name, value in values.items() if name != level.name}
-            values |= level.values(rest | {level.label: seen}, values[level.name])
+        """Values of a starting point and their cost; the level is adjusted to the measured stiffness."""
+        if level is not None and measured_stiffness is not None:
+            others = {name: value for name, value in values.items() if name != level.name}
+            values |= level.values(others | {level.label: measured_stiffness}, values[level.name])
         if any(not u.low < values[u.name] < u.high for u in unknowns):
             return values, np.inf
-        return values, float(np.sum(residuals(rough)(values) ** 2))
+        return values, float(np.sum(residuals(first_scale)(values) ** 2))
 
-    own = {u.name: u for u in best_start(unknowns, starts, tried)}
+    original = {u.name: u for u in best_start(unknowns, starts, tried)}
     exchange = level if moved else None
-    found = [exchange.unknown(own) if exchange and u.name == exchange.name else u for u in own.values()]
-    first = solve(found, exchanged(residuals(rough)), noise=ROUGH_NOISE, tolerance=ROUGH)
-    rest = first.residuals
+    free = [
+        exchange.unknown(original) if exchange and u.name == exchange.name else u for u in original.values()
+    ]
+    first = solve(free, exchanged(residuals(first_scale)), noise=ROUGH_NOISE, tolerance=ROUGH)
+    first_residuals = first.residuals
     if corrected is not None:
         measurement = corrected(first.values)
         data = measurement.data
-        rest = residuals(rough)(first.values)
-    square = np.bincount(data.groups, rest[: rough.size] ** 2) / np.bincount(data.groups)
-    scale = rough * np.sqrt(np.maximum(square, QUIET**2 * np.max(square)))[data.groups]
-    found = [replace(u, start=_inside(u, first.values[u.name])) for u in found]
-    solution = solve(found, exchanged(residuals(scale)), nuisances=data.nuisances, tolerance=TOLERANCE)
-    return (exchange.back(solution, own) if exchange else solution), scale, measurement
+        first_residuals = residuals(first_scale)(first.values)
+    square = np.bincount(data.groups, first_residuals[: first_scale.size] ** 2) / np.bincount(data.groups)
+    scale = first_scale * np.sqrt(np.maximum(square, QUIET**2 * np.max(square)))[data.groups]
+    free = [replace(u, start=_inside(u, first.values[u.name])) for u in free]
+    solution = solve(free, exchanged(residuals(scale)), nuisances=data.nuisances, tolerance=TOLERANCE)
+    return (exchange.back(solution, original) if exchange else solution), scale, measurement
 
 
 def _inside(unknown: Unknown, value: float) -> float:
-    """A value kept off the bounds."""
+    """Clip a value to slightly inside of the bounds of an unknown."""
     low = max(unknown.low * (1.0 + 1e-6), 1e-300)
     return float(min(max(value, low), unknown.high * (1.0 - 1e-6)))
 
 
 def facts(measurement: Measurement, solution: Solution, law: HysteresisLaw, scale: Array) -> Facts:
-    """What was read off the data beside the parameters; `scale` (n), the noise of the data."""
+    """Facts of a fit apart from its parameters: points, amplitude, offset, loop area, loss factor, noise.
+
+    scale : noise (n) of the data
+    """
     data, (_, unit) = measurement.data, measurement.heads.unit
-    found = {
+    result = {
         "points": (float(data.scale.size), "1", "data points used"),
         "amplitude": (measurement.amplitude, unit, f"largest {measurement.heads.motion}"),
     }
     if isinstance(data, Loops) and law.elastic:
-        found["offset"] = (data.rest(law, scale), unit, f"{measurement.heads.motion} at rest, taken off")
+        result["offset"] = (data.rest(law, scale), unit, f"{measurement.heads.motion} at rest, taken off")
     if isinstance(data, Loops) and data.areas:
         area, size = max(data.areas, key=lambda loop: loop[1])
-        found["loop_area"] = (area, "J", "measured, of the widest loop")
-        found["loop_area_law"] = (float(law.area(np.array([0.5 * size]))[0]), "J", "of the fitted law there")
+        result["loop_area"] = (area, "J", "measured, of the widest loop")
+        result["loop_area_law"] = (float(law.area(np.array([0.5 * size]))[0]), "J", "of the fitted law there")
     _, loss = law.equivalent(np.array([measurement.amplitude]))
-    found["loss_factor"] = (float(loss[0]), "1", "of the fitted law at the largest amplitude")
-    found["noise"] = (solution.noise, "1", "of a residual over what its group has")
-    return found
+    result["loss_factor"] = (float(loss[0]), "1", "of the fitted law at the largest amplitude")
+    result["noise"] = (solution.noise, "1", "of a residual over what its group has")
+    return result
 
 
 def notes(measurement: Measurement, solution: Solution) -> list[str]:
-    """Whether the law misses the data systematically."""
+    """Note for the user if the residuals show that the law misses the data systematically; else empty."""
     if measurement.kind == "response":
         return []
-    rest = solution.residuals[: measurement.data.groups.size]
-    same = np.diff(measurement.data.groups) == 0
-    return systematic(rest, "data", same)
+    residuals = solution.residuals[: measurement.data.groups.size]
+    same_group = np.diff(measurement.data.groups) == 0
+    return systematic(residuals, "data", same_group)
 
 
 _LINE = 120
+"""Points of a plotted curve of the law."""
 
 
 def pictures(
     measurement: Measurement, model: MeasurementModel, values: Mapping[str, float], scale: Array
 ) -> Sequence[Picture]:
-    """Loops, or amplitudes over the frequency; or frequency and, beside it, damping over the amplitude."""
+    """Plots of data and fitted law, by the kind of the measurement.
+
+    Loops: force over motion. Forced vibration: amplitude over frequency. Free vibration: frequency over
+    amplitude, and damping ratio over amplitude.
+    """
     law = model.of(values)
     match measurement.data:
         case Loops() as loops:
@@ -187,7 +207,8 @@ def pictures(
 
 
 def _loops(measurement: Measurement, loops: Loops, law: HysteresisLaw, scale: Array) -> Picture:
-    (force_unit, by), (motion_unit, size) = (
+    """Plot of measured loops: force over motion."""
+    (force_unit, force_scale), (motion_unit, motion_scale) = (
         shown(unit, values)
         for unit, values in zip(measurement.heads.unit, (loops.force, loops.motion), strict=True)
     )
@@ -195,16 +216,16 @@ def _loops(measurement: Measurement, loops: Loops, law: HysteresisLaw, scale: Ar
     law = law.about(loops.rest(law, scale))
     forces, starts, misfit = loops.fitted(law, scale)
     for k, (force, start) in enumerate(zip(forces, starts, strict=True)):
-        motion = np.linspace(start, loops.motion[loops.branch == k][-1], _LINE)
+        motion = np.linspace(start, loops.motion[loops.branch == k][-1], _LINE)  # NaN separates the branches
         branch = force + law.change(motion, np.full(_LINE, start))
         lines.append(np.append(np.stack([motion, branch]), [[np.nan], [np.nan]], axis=1))
     line = np.concatenate(lines, axis=1)
     names = measurement.heads
     return Picture(
-        x=size * loops.motion,
-        y=by * loops.force,
-        misfit=by * misfit,
-        line=(size * line[0], by * line[1]),
+        x=motion_scale * loops.motion,
+        y=force_scale * loops.force,
+        misfit=force_scale * misfit,
+        line=(motion_scale * line[0], force_scale * line[1]),
         labels=(
             f"{names.motion} [{motion_unit}]",
             f"{names.force} [{force_unit}]",
@@ -214,13 +235,14 @@ def _loops(measurement: Measurement, loops: Loops, law: HysteresisLaw, scale: Ar
 
 
 def _response(measurement: Measurement, data: Response, oscillator: Oscillator) -> Picture:
+    """Plot of a forced vibration: amplitude over frequency, one curve for each force amplitude."""
     unit, size = shown(measurement.heads.unit[1], data.amplitude)
     lines = []
     for force in np.unique(data.force):
         inside = data.force == force
         f = np.linspace(data.frequency[inside].min(), data.frequency[inside].max(), 4 * _LINE)
-        near = np.interp(f, *ordered(data.frequency[inside], data.amplitude[inside]))
-        amplitude = oscillator.response(f, np.full_like(f, force), near)
+        measured = np.interp(f, *ordered(data.frequency[inside], data.amplitude[inside]))
+        amplitude = oscillator.response(f, np.full_like(f, force), measured)
         lines.append(np.append(np.stack([f, amplitude]), [[np.nan], [np.nan]], axis=1))
     line = np.concatenate(lines, axis=1)
     return Picture(
@@ -233,6 +255,7 @@ def _response(measurement: Measurement, data: Response, oscillator: Oscillator) 
 
 
 def _free(measurement: Measurement, data: Free, oscillator: Oscillator) -> tuple[Picture, Picture]:
+    """Plots of a free vibration: frequency and damping ratio over amplitude."""
     unit, size = shown(measurement.heads.unit[1], data.points.amplitude)
     a = data.points.amplitude
     grid = np.linspace(a.min(), a.max(), _LINE)

@@ -1,9 +1,9 @@
-"""What every fit hands back: the parameter file, how well it is determined, and the plotted data.
+"""Result of a fit: parameter file, identifiability of the parameters, warnings, plots.
 
-The singular values of the Jacobian in the logarithms, over the noise, are the reciprocal standard deviations
-of independent combinations `prod name^exponent`. A parameter or combination counts as determined if its
-standard deviation is at most its limit: LOOSEST, or a tenth of the parameter's interval where that is
-narrower (both in logarithms).
+The singular values of the Jacobian (in the logarithms) over the noise are the reciprocal standard deviations
+of independent combinations `prod name^exponent`. A parameter or combination counts as determined
+if its standard deviation does not exceed its limit. The limit is MAX_DEVIATION, or a tenth of the interval of
+the parameter if that is smaller (both in logarithms).
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -26,19 +26,23 @@ if TYPE_CHECKING:
 
 
 LOOSEST = 0.2
-"""Standard deviation of a logarithm [1] up to which a parameter counts as determined: about 20 %."""
+"""Standard deviation of the logarithm of a parameter [1], up to which it counts as determined: about 20 %."""
 PART_OF_INTERVAL = 0.1
+"""Standard deviation over the length of the parameter's interval, both in logarithms [1], up to which a
+parameter counts as determined."""
 SIGNIFICANT = 0.01
-"""Least exponent of a combination, over its largest, that is named [1]."""
+"""Exponent over the largest exponent of a combination [1], below which the parameter is not named in it."""
 NUMERICAL = 1e-5
-"""Least singular value over the largest that is told from zero [1]: the accuracy of the differences."""
+"""Singular value over the largest [1], below which it counts as zero: accuracy of the finite differences."""
 
 
 @dataclass(frozen=True, slots=True)
 class Combination:
-    """An independent combination of parameters, prod name^exponent, largest exponent 1.
+    """Combination prod name^exponent of parameters, statistically independent of the other combinations.
 
-    deviation : relative standard deviation [1]; infinite if the data say nothing about it
+    exponents  : {name: exponent}, the largest is 1
+    deviation  : relative standard deviation [1]; infinite if the data contain no information about it
+    determined : whether the standard deviation is within the limit
     """
 
     exponents: Mapping[str, float]
@@ -52,63 +56,67 @@ class Combination:
 
 
 def limit(unknown: Unknown) -> float:
-    """Standard deviation of the logarithm [1] up to which a parameter counts as determined."""
+    """Standard deviation of the logarithm [1], up to which a parameter counts as determined."""
     if unknown.low <= 0.0 or not np.isfinite(unknown.high):
         return LOOSEST
     return min(LOOSEST, PART_OF_INTERVAL * float(np.log(unknown.high / unknown.low)))
 
 
 def combinations(solution: Solution) -> list[Combination]:
-    """The independent combinations, best determined first."""
+    """Statistically independent combinations of the parameters of a solution, best determined first."""
     limits = np.array([limit(u) for u in solution.unknowns])
     _, s, rows = np.linalg.svd(solution.jacobian * limits, full_matrices=False)
     independent = []
     for value, row in zip(s, rows, strict=True):
         powers = row / limits  # ln of the combination is row . (ln x / limits)
-        top = powers[np.argmax(np.abs(row))]
-        named = np.abs(row) >= SIGNIFICANT * np.max(np.abs(row))
+        largest = powers[np.argmax(np.abs(row))]
+        significant = np.abs(row) >= SIGNIFICANT * np.max(np.abs(row))
         exponents = {
-            u.name: float(p / top)
-            for u, p, keep in zip(solution.unknowns, powers, named, strict=True)
-            if keep
+            u.name: float(p / largest)
+            for u, p, is_named in zip(solution.unknowns, powers, significant, strict=True)
+            if is_named
         }
-        blind = value <= NUMERICAL * s[0]
-        deviation = np.inf if blind else solution.noise / value
-        independent.append(Combination(exponents, float(deviation / abs(top)), bool(deviation <= 1.0)))
+        has_no_effect = value <= NUMERICAL * s[0]
+        deviation = np.inf if has_no_effect else solution.noise / value
+        independent.append(Combination(exponents, float(deviation / abs(largest)), bool(deviation <= 1.0)))
     return independent
 
 
 def undetermined(solution: Solution) -> list[str]:
-    """Names of the parameters that the data do not determine, or that sit on a bound."""
-    blind = {name for c in combinations(solution) if not np.isfinite(c.deviation) for name in c.exponents}
+    """Names of the parameters that the data do not determine, or that are on a bound."""
+    without_effect = {
+        name for c in combinations(solution) if not np.isfinite(c.deviation) for name in c.exponents
+    }
     return [
         u.name
         for u in solution.unknowns
-        if solution.deviations[u.name] > limit(u) or u.name in solution.at_bound or u.name in blind
+        if solution.deviations[u.name] > limit(u) or u.name in solution.at_bound or u.name in without_effect
     ]
 
 
 ALIKE = 0.5
-"""Correlation of neighbouring residuals [1] above which the law itself misses the data."""
+"""Correlation of neighbouring residuals [1], above which the misfit is systematic and not noise."""
 
 WORST_AREA = 2.0
-"""Factor between measured and fitted area of the widest loop beyond which a law is none of these data."""
+"""Ratio of measured to fitted area of the widest loop [1], or its inverse, above which a fit is rejected."""
 
 HEIGHT = "h"
-"""Rms height [m] of laws that have one."""
+"""Name of the parameter rms roughness height [m], in laws that have it."""
 
 LEAST_GAIN = 0.95
-"""Residual of a held-out part over that of a constant [1] from which on a fit says nothing."""
+"""Residual of the law over residual of a constant, for held-out data [1], above which a fit is rejected."""
 
 
 @dataclass(frozen=True, slots=True)
 class Picture:
-    """Data, fitted curve and misfit over one abscissa, in the units of the labels.
+    """Plot of data, fitted curve and misfit over one abscissa, in the units of the labels.
 
-    x, y      : (n) data;  misfit : (n) data minus law
-    line      : (m), (m) the law
-    marks     : (n) bool, points to stand out
-    also      : {name: as line} of further laws
+    x, y   : data (n)
+    misfit : data minus law (n)
+    line   : x (m) and y (m) of the fitted law
+    labels : axis labels of x, y and misfit
+    marks  : mask (n) of the points to be highlighted
+    also   : {name: (x, y)} of other laws for comparison
     """
 
     x: Array
@@ -126,12 +134,12 @@ Facts = dict[str, tuple[float, str, str]]
 
 @dataclass(frozen=True, slots=True)
 class FitResult:
-    """A fit.
+    """Result of a fit: fitted parameter file, solution, facts, plots, notes.
 
-    facts : {name: (value, unit, meaning)} beside the parameters
-    notes : what the user should know, one line each
-    pictures : drawn beside each other
-    intervals : {name: ends of its 95 % interval}, where they are told
+    facts    : {name: (value, unit, meaning)} of results that are no parameters
+    pictures : plots, drawn side by side
+    notes    : messages for the user, one line each
+    intervals : {name: ends of the 95 % confidence interval}, if they are known
     """
 
     parameters: ParameterFile
@@ -142,22 +150,22 @@ class FitResult:
     intervals: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
     def rows(self) -> list[dict[str, Any]]:
-        """Every unknown with value, unit, relative standard deviation and whether it is determined."""
-        loose, deviations = undetermined(self.solution), self.solution.deviations
+        """Table of the unknowns: name, value, unit, relative standard deviation, whether it is determined."""
+        undetermined_names, deviations = undetermined(self.solution), self.solution.deviations
         return [
             {
                 "name": u.name,
                 "value": self.solution.values[u.name],
                 "unit": u.unit,
                 "relative_deviation": _finite(deviations[u.name]),
-                "determined": u.name not in loose,
+                "determined": u.name not in undetermined_names,
                 **({"interval": list(self.intervals[u.name])} if u.name in self.intervals else {}),
             }
             for u in self.solution.unknowns
         ]
 
     def doubt(self) -> str | None:
-        """Why the fit says nothing of the joint; None if it says something."""
+        """Reason to reject the fit, as text; None if the fit is accepted."""
         names = [u.name for u in self.solution.unknowns]
         if names and {*names} == {*self.solution.at_bound}:
             return f"{', '.join(names)} ended on a bound, nothing else was fitted"
@@ -166,8 +174,8 @@ class FitResult:
                 f"{HEIGHT} = {1e6 * height:.3g} um is outside (0, {1e6 * ROUGHEST:g}] um: no roughness is as "
                 "high; what lies in series with the joint may be missing (--series-stiffness)"
             )
-        loose = undetermined(self.solution)
-        if names and len(loose) == len(names) and not any(c.determined for c in combinations(self.solution)):
+        count = len(undetermined(self.solution))
+        if names and count == len(names) and not any(c.determined for c in combinations(self.solution)):
             return f"the data determine none of {', '.join(names)}, nor a combination of them"
         if "loop_area_law" in self.facts:
             measured, law = self.facts["loop_area"][0], self.facts["loop_area_law"][0]
@@ -186,10 +194,12 @@ class FitResult:
         return None
 
     def warnings(self) -> list[str]:
-        """What the data do not determine, by name, and where the fit stopped; one line each."""
+        """Warnings, one line each: undetermined parameters, parameters on bounds, model limits, notes."""
         lines = []
-        if loose := undetermined(self.solution):
-            lines.append(f"the data do not determine {', '.join(loose)}: other values fit as well")
+        if undetermined_names := undetermined(self.solution):
+            lines.append(
+                f"the data do not determine {', '.join(undetermined_names)}: other values fit as well"
+            )
             ranked = combinations(self.solution)
             for combination in ranked:
                 if combination.determined:
@@ -206,6 +216,7 @@ class FitResult:
         return lines + list(self.notes)
 
     def document(self) -> dict[str, Any]:
+        """Result of the fit as one JSON object."""
         return {
             "joint": self.parameters.joint,
             "unknowns": self.rows(),
@@ -225,35 +236,45 @@ class FitResult:
 
 
 def systematic(rest: Array, what: str, same: NDArray[np.bool_] | slice = slice(None)) -> list[str]:
-    """The note where residuals (n) of `what` show that the law itself misses it, by neighbours `same`."""
-    alike = float(np.sum((rest[1:] * rest[:-1])[same]) / np.sum(rest**2)) if np.any(rest) else 0.0
-    if alike <= ALIKE:
+    """Note for the user if neighbouring residuals are correlated: the law misses the data systematically.
+
+    residuals  : (n), in the order of the measurement
+    quantity   : name of the data in the note
+    neighbours : mask (n - 1) of the pairs of consecutive residuals that count as neighbours
+
+    Returns a list of one line, or an empty list.
+    """
+    correlation = float(np.sum((rest[1:] * rest[:-1])[same]) / np.sum(rest**2)) if np.any(rest) else 0.0
+    if correlation <= ALIKE:
         return []
     return [
-        f"neighbouring residuals are alike (correlation {alike:.2f}): the law misses the {what} "
+        f"neighbouring residuals are alike (correlation {correlation:.2f}): the law misses the {what} "
         "systematically, the standard deviations are too small"
     ]
 
 
 def percent(part: float) -> str:
-    """A relative standard deviation as text."""
+    """Format a relative standard deviation [1]: in percent, as a factor, or as "orders of magnitude"."""
     if part < 1.0:
         return f"{100.0 * part:.2g} %"
     return f"{np.exp(part):.2g} times more or less" if part < 5.0 else "orders of magnitude"
 
 
 def _finite(value: float) -> float | None:
+    """The value, or None (JSON null) if it is not finite."""
     return float(value) if np.isfinite(value) else None
 
 
 def unknowns(
     start: ParameterFile, names: Sequence[str], bounds: Mapping[str, tuple[float, float]]
 ) -> list[Unknown]:
-    """The named parameters with their declared intervals, narrowed by `bounds`.
+    """Unknowns of a fit: the named parameters, with the values of `start` and their declared intervals.
+
+    bounds : {name: (low, high)} that narrow the declared intervals
 
     Raises ValueError for a name that the joint lacks, that is no number, or that is given twice.
     """
-    values, wanted = start.flat, []
+    values, result = start.flat, []
     declared = {n: f for n, f in flat_fields(type(start.values)) if isinstance(values.get(n), float)}
     for name in names:
         if name not in declared:
@@ -261,23 +282,30 @@ def unknowns(
         if names.count(name) > 1:
             raise ValueError(f"{name!r} is given twice; allowed is once")
         meta = declared[name].metadata
-        narrow = meta["interval"].intersection(Interval(*bounds.get(name, ())))
-        wanted.append(Unknown(name, meta["unit"], float(values[name]), narrow.low, narrow.high))
-    return wanted
+        interval = meta["interval"].intersection(Interval(*bounds.get(name, ())))
+        result.append(Unknown(name, meta["unit"], float(values[name]), interval.low, interval.high))
+    return result
 
 
 def model(start: ParameterFile, predict: Callable[[Any], Array]) -> Callable[[Mapping[str, float]], Array]:
-    """`predict` over {name: value} of the unknowns, the other parameters as in `start`."""
+    """Function {name: value} of the unknowns -> predictions; all other parameters as in `start`.
+
+    predict : function of the parameter set
+    """
     return lambda values: predict(start.with_values(values, "calibration", "fit").values)
 
 
 def fitted(
     start: ParameterFile, values: Mapping[str, float], origin: str, data: str, span: str
 ) -> ParameterFile:
-    """The file with fitted values; their source says from what, over which range and when: today, or at
-    SOURCE_DATE_EPOCH where that is set, for files that repeat.
+    """Copy of a parameter file with fitted values; their source states data, range and date.
 
-    Raises ValueError if that variable is no number of seconds.
+    data, span : data file and range of the data, as text
+    origin     : kind of the source
+
+    The date is today, or SOURCE_DATE_EPOCH if that environment variable is set (reproducible files).
+
+    Raises ValueError if SOURCE_DATE_EPOCH is no number of seconds.
     """
     today = build_time().date().isoformat()
     file = start.with_values(values, origin, f"fitted to {data}, {today}, {span}")
@@ -285,15 +313,15 @@ def fitted(
 
 
 def size(outcome: FitResult) -> tuple[float, float]:
-    """Of the figure [inch]."""
+    """Width and height of the figure [inch]."""
     return 3.6 * (1 + len(outcome.pictures)), 5.6
 
 
 def draw(figure: "Figure", outcome: FitResult) -> None:
-    """Data and law above, residuals below; pictures side by side."""
+    """Draw the plots of a fit side by side: data and law above, misfit below."""
     pictures = outcome.pictures
-    every = figure.subplots(2, len(pictures), sharex="col", height_ratios=(2.4, 1.0), squeeze=False)
-    for (above, below), picture in zip(every.T, pictures, strict=True):
+    all_axes = figure.subplots(2, len(pictures), sharex="col", height_ratios=(2.4, 1.0), squeeze=False)
+    for (above, below), picture in zip(all_axes.T, pictures, strict=True):
         x, y = picture.x, picture.y
         above.plot(*picture.line, color=plots.BLUE, label="fitted law")
         for (name, line), color in zip(picture.also.items(), (plots.GREEN, plots.GREY), strict=False):

@@ -1,4 +1,4 @@
-"""What a joint's part `fit` says: FITS, its procedures, each of them data and options to parameters."""
+"""Fit procedures of the joints, declared as FITS in the module `fit` of each joint in tools/joints."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -15,17 +15,18 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Procedure:
-    """A way to fit a joint's parameters.
+    """Procedure that fits parameters of a joint to data.
 
-    name    : what is fitted, with hyphens
-    text    : what is fitted to which joint, in words
-    file    : whether the data are a measured file
-    many    : whether they may be several, which `run` gets as a list
-    column  : one that all its files have, and those of other joints' procedures of this name have not
-    options : what it takes beside
-    run     : ([path of the file, or paths,] ParameterFile to start from or None, names to fit or None,
-              **options by name) -> Outcome; a module of the joint's is loaded only then.
-              ValueError: bad input, RuntimeError: the fit finds no end
+    name    : name of the procedure, with hyphens
+    text    : description: which parameters, which joint
+    file    : whether the data are a measurement file
+    takes_several_files : whether `run` takes a list of paths instead of one path
+    column  : a column that all files of this procedure have; files of procedures with the same name for other
+        joints do not have it
+    options : further options of the command
+    run     : function ([path or paths,] parameter file with the start values or None, names of the parameters
+        to be fitted or None, **options) -> FitResult; it loads the module of the joint only when called.
+        Raises ValueError for bad input, RuntimeError if the fit does not converge.
     """
 
     name: str
@@ -38,23 +39,23 @@ class Procedure:
 
 
 def fit_of(module: str) -> "Callable[..., FitResult]":
-    """The function `fit` of a module, which is loaded when it is called."""
+    """Function that loads a module when called, and calls the function `fit` of this module."""
 
-    def run(*given: object, **options: object) -> "FitResult":
-        found: FitResult = import_module(module).fit(*given, **options)
-        return found
+    def run(*arguments: object, **options: object) -> "FitResult":
+        result: FitResult = import_module(module).fit(*arguments, **options)
+        return result
 
     return run
 
 
 def procedures() -> dict[str, dict[str, Procedure]]:
-    """{name: {joint: procedure}}; procedures of several joints may share a name."""
-    found: dict[str, dict[str, Procedure]] = {}
+    """Fit procedures of all joints: {name: {joint: procedure}}; several joints may share a name."""
+    result: dict[str, dict[str, Procedure]] = {}
     for kind in KINDS.values():
-        own = part(kind, "fit")
-        for procedure in own.FITS if own else ():
-            found.setdefault(procedure.name, {})[kind.name] = procedure
-    return found
+        module = part(kind, "fit")
+        for procedure in module.FITS if module else ():
+            result.setdefault(procedure.name, {})[kind.name] = procedure
+    return result
 
 
 DAMPING_RATIO = Option(
@@ -63,4 +64,4 @@ DAMPING_RATIO = Option(
     default=0.0,
     number=True,
 )
-"""What procedures with a vibration take beside."""
+"""Option of fit procedures for vibrations: damping ratio of the structure [1]."""

@@ -1,1 +1,1 @@
-"""The proof of an FMU, executed: its experiments run by importers, and what becomes of them."""
+"""Proof of an FMU: execute the experiments that the FMU contains, and compare with its reference results."""

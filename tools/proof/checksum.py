@@ -1,21 +1,24 @@
-"""Checksums of related files: the attributes `checksum` and `checksumType` of FMI-LS-REF."""
+"""Checksums of related files of an FMU: attributes `checksum` and `checksumType` of FMI-LS-REF."""
 
 import hashlib
 from xml.etree.ElementTree import Element
 
 DEFAULT = "SHA3-256"
+"""checksumType if a related file states none."""
 ALGORITHMS = {
     f"{family}-{bits}": f"{name}{bits}"
     for family, name in (("SHA3", "sha3_"), ("SHA", "sha"))
     for bits in (224, 256, 384, 512)
 }
-"""{checksumType: its name in hashlib}."""
+"""{checksumType: name of the algorithm in hashlib}."""
 
 
 def check(related: Element, content: bytes) -> None:
-    """Compare a file with the checksum that the manifest states of it, if it does.
+    """Compare the content of a related file with its checksum in the manifest, if one is stated.
 
-    Raises ValueError where they differ, or the algorithm is none of ALGORITHMS.
+    related : element of the manifest
+
+    Raises ValueError if the checksums differ, or the algorithm is not in ALGORITHMS.
     """
     if (stated := related.get("checksum")) is None:
         return

@@ -1,7 +1,8 @@
-"""Model exchange in fmpy: its CVode leads an FMU through continuous time, with events of all kinds.
+"""Model exchange with fmpy: integrate an FMU with CVode, including time, state, step and input events.
 
-Between two communication points inputs go along straight lines. An event is where one jumps, at a time that
-the FMU announces, where an indicator changes its sign, and where a completed step asks for it.
+Between two communication points continuous inputs are interpolated linearly. Events are: an input that jumps,
+a time announced by the FMU, an event indicator that changes its sign, and a completed integrator step after
+which the FMU requests an event.
 """
 
 import ctypes
@@ -16,13 +17,14 @@ from ..host import Instance, description, opened
 from .task import Rows, Task, reader
 
 MOST_STEPS = 100_000
-"""Of the solver between two communication points."""
+"""Maximum number of solver steps between two communication points."""
 NEAR = 1e-9
-"""Part of an interval [1] by which an event may differ from a communication point that it meets."""
+"""Distance of an event from a communication point, over the communication interval [1], below which both
+coincide."""
 
 
 def available() -> bool:
-    """Whether fmpy has its solver for this platform."""
+    """Whether fmpy contains its solver CVode for this platform."""
     from fmpy import __file__ as package
     from fmpy import platform_tuple
 
@@ -30,7 +32,10 @@ def available() -> bool:
 
 
 def fmpy(task: Task, messages: list[str]) -> Rows:
-    """By fmpy and CVode, FMI 2.0 and 3.0."""
+    """Execute an experiment for model exchange in fmpy with CVode (FMI 2.0 and 3.0).
+
+    messages : list to which the warnings and errors of the FMU are appended
+    """
     with opened(task.folder, description(task.fmu), task.fmu, messages, exchange=True) as instance:
         instance.begin(task.times[0])
         instance.set({**task.settings, **task.given(0)})
@@ -45,7 +50,13 @@ def fmpy(task: Task, messages: list[str]) -> Rows:
 
 
 class _Motion:
-    """An FMU in continuous time."""
+    """Simulation of an FMU for model exchange between communication points.
+
+    interval : index of the current communication interval
+    time     : current time [s]
+    event    : time of the next event announced by the FMU [s], or infinity
+    failure  : first exception in a call by the solver, or None
+    """
 
     def __init__(self, instance: Instance, task: Task) -> None:
         from fmpy.sundials import CVodeSolver
@@ -78,67 +89,73 @@ class _Motion:
         )
 
     def over(self, interval: int) -> None:
-        """From a communication point to the next one, and over the events there."""
+        """Integrate one communication interval, and handle the events up to and at its end."""
         self.interval = interval
         begin, end = self.task.times[interval : interval + 2]
-        near = NEAR * (end - begin)
-        while end - self.time > near:
+        time_tolerance = NEAR * (end - begin)
+        while end - self.time > time_tolerance:
             if self.event <= self.time:
                 raise RuntimeError(f"announces an event at {self.event:g} s when it is {self.time:g} s")
-            until = self.event if self.event < end + near else end
-            _stop_at(self.solver, until)
-            _, roots, self.time = self.solver.step(self.time, until)
+            stop = self.event if self.event < end + time_tolerance else end
+            _stop_at(self.solver, stop)
+            _, roots, self.time = self.solver.step(self.time, stop)
             if self.failure:
                 raise self.failure
             self._at(self.time)
-            wanted, ends = self.fmu.completedIntegratorStep() if self.accepts else (False, False)
-            self._check(ends)
-            jumps = end - self.time <= near and self._jumps(interval + 1)
-            if wanted or jumps or np.any(roots) or self.time >= self.event:
+            step_event, terminates = self.fmu.completedIntegratorStep() if self.accepts else (False, False)
+            self._check(terminates)
+            input_event = end - self.time <= time_tolerance and self._jumps(interval + 1)
+            if step_event or input_event or np.any(roots) or self.time >= self.event:
                 self.fmu.enterEventMode()
-                if jumps:
+                if input_event:
                     self.instance.set(self.task.given(interval + 1))
                 self._settle()
                 self.solver.reset(self.time)
 
     def _check(self, ends: bool) -> None:
+        """Raise RuntimeError if the FMU requests the end of the simulation."""
         if ends:
             raise RuntimeError(f"the FMU ends the simulation at {self.time:g} s")
 
     def _settle(self) -> None:
-        """Iterate an event until nothing changes, and go on in continuous time."""
-        again = True
-        while again:
-            again, ends, *_, announced, event = self.instance.update()
-            self._check(ends)
-        self.event = float(event) if announced else np.inf
+        """Iterate an event until the FMU needs no further iteration, then enter continuous-time mode."""
+        iterate = True
+        while iterate:
+            iterate, terminates, *_, has_next_event, next_event = self.instance.update()
+            self._check(terminates)
+        self.event = float(next_event) if has_next_event else np.inf
         self.fmu.enterContinuousTimeMode()
 
     def _jumps(self, i: int) -> bool:
-        """Whether an input that moves in events only has another value, or any one jumps."""
-        old, new = self.task.given(i - 1), self.task.given(i)
-        before = {**old, **{name: self.task.before[name][i] for name in self.continuous}}
-        return before != new
+        """Whether an input jumps, or a discrete input changes, at communication point i."""
+        previous, new = self.task.given(i - 1), self.task.given(i)
+        left_limits = {**previous, **{name: self.task.before[name][i] for name in self.continuous}}
+        return left_limits != new
 
     def _at(self, time: float) -> None:
-        """Set time and continuous inputs."""
+        """Set the time [s] and the continuous inputs of the FMU."""
         self.fmu.setTime(time)
         i = self.interval
         begin, end = self.task.times[i : i + 2]
-        part = (time - begin) / (end - begin)
+        fraction = (time - begin) / (end - begin)
         for name in self.continuous:
             first, last = self.task.inputs[name][i], self.task.before[name][i + 1]
-            value = first if first == last else (1.0 - part) * first + part * last
+            value = first if first == last else (1.0 - fraction) * first + fraction * last
             self.instance.set({name: value})
 
     def _nominals(self, values: object, count: int) -> None:
-        """Sizes below which round-off counts, as for what is compared."""
+        """Write the nominal values of the states times FLOOR: sizes below which the tolerance is absolute.
+
+        values, count : array of the solver, and its length
+        """
         self.fmu.getNominalsOfContinuousStates(values, count)
         np.ctypeslib.as_array(values, (count,))[:] *= FLOOR
 
     def _direct(self, name: str) -> Callable[..., None]:
-        """A function of the FMU itself: fmpy's way there takes longer than most laws. Its first failure is
-        kept, as below."""
+        """C function of the FMU as a callback of the solver; its first failure is kept in `failure`.
+
+        The function is called directly, because fmpy's wrapper takes longer than most laws.
+        """
         from fmpy.fmi1 import FMICallException, fmi1Warning
 
         name = f"fmi{self.instance.version}{name}"
@@ -152,19 +169,22 @@ class _Motion:
         return call
 
     def _kept(self, call: Callable[..., object]) -> Callable[..., None]:
-        """A call whose first failure is kept: C, which calls it, does not hand on exceptions."""
+        """Python function as a callback of the solver; its first exception is kept in `failure`.
 
-        def kept(*arguments: object) -> None:
+        The solver is C code and does not pass exceptions on.
+        """
+
+        def callback(*arguments: object) -> None:
             try:
                 call(*arguments)
             except Exception as failure:  # fmpy raises bare Exception
                 self.failure = self.failure or failure
 
-        return kept
+        return callback
 
 
 class _Nothing:
-    """Inputs are set together with the time."""
+    """Input object for fmpy's solver without effect: the inputs are set together with the time."""
 
     @staticmethod
     def apply(time: float) -> None:
@@ -172,7 +192,7 @@ class _Nothing:
 
 
 def _stop_at(solver: Any, time: float) -> None:
-    """Let the solver not go beyond a time: there the inputs are others."""
+    """Limit the integration of a solver to a time [s]; the inputs change there."""
     from fmpy.sundials.libraries import sundials_cvode
 
     set_stop = sundials_cvode.CVodeSetStopTime

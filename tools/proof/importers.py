@@ -1,6 +1,7 @@
-"""The importers that execute an experiment: fmpy, ecos, libcosim; each in a process of its own, see `worker`.
+"""Importers that execute an experiment: fmpy, ecos and libcosim; each in a process of its own, see `worker`.
 
-In co-simulation a step holds the inputs of its begin; outputs are read at its end.
+In co-simulation the inputs are constant during a step, with their values at its start. Outputs are read at
+the end of the step.
 """
 
 from collections.abc import Mapping
@@ -14,7 +15,10 @@ from .task import Execute, Rows, Task, reader
 
 
 def fmpy(task: Task, messages: list[str]) -> Rows:
-    """By fmpy, FMI 2.0 and 3.0."""
+    """Execute an experiment for co-simulation in fmpy (FMI 2.0 and 3.0).
+
+    messages : list to which the warnings and errors of the FMU are appended
+    """
     with opened(task.folder, description(task.fmu), task.fmu, messages) as slave:
         slave.begin(task.times[0])
         slave.set({**task.settings, **task.given(0)})
@@ -29,7 +33,7 @@ def fmpy(task: Task, messages: list[str]) -> Rows:
 
 
 def start_values(task: Task, messages: list[str]) -> list[list[Any]]:
-    """What the FMU starts the variables `task.outputs` of any type with, by fmpy; one row."""
+    """Read the start values of the variables `task.outputs`, of any type, in fmpy: one row."""
     exchanged = task.interface == MODEL_EXCHANGE
     with opened(task.folder, description(task.fmu), task.fmu, messages, exchanged) as slave:
         slave.begin()
@@ -37,7 +41,10 @@ def start_values(task: Task, messages: list[str]) -> list[list[Any]]:
 
 
 def ecos(task: Task, messages: list[str]) -> Rows:
-    """By ecos, FMI 2.0 and 3.0; what an FMU refuses stands in its log only, see `worker`."""
+    """Execute an experiment for co-simulation in ecos (FMI 2.0 and 3.0).
+
+    Errors of the FMU appear only in the log of ecos, see `worker`.
+    """
     from ecospy import EcosLib, EcosSimulation, EcosSimulationStructure
     from ecospy.EcosParameterSet import EcosParameterSet
 
@@ -53,23 +60,27 @@ def ecos(task: Task, messages: list[str]) -> Rows:
         add(f"fmu::{name}", value)
     structure.add_parameter_set("start", start)
     with EcosSimulation(structure=structure, step_size=size) as simulation:
-        short = {"real": "real", "integer": "integer", "boolean": "bool"}
-        give = {name: getattr(simulation, f"set_{short[task.kinds[name]]}") for name in task.inputs}
-        read = {name: getattr(simulation, f"get_{short[task.kinds[name]]}") for name in task.outputs}
+        suffixes = {"real": "real", "integer": "integer", "boolean": "bool"}
+        setters = {name: getattr(simulation, f"set_{suffixes[task.kinds[name]]}") for name in task.inputs}
+        getters = {name: getattr(simulation, f"get_{suffixes[task.kinds[name]]}") for name in task.outputs}
         if not simulation.init(parameter_set="start"):
             raise RuntimeError(EcosLib.get_last_error())
-        rows: Rows = [[float(get(f"fmu::{name}")) for name, get in read.items()]]
+        rows: Rows = [[float(get(f"fmu::{name}")) for name, get in getters.items()]]
         for i in range(len(task.times) - 1):
             for name, value in task.given(i).items():
-                give[name](f"fmu::{name}", value)
+                setters[name](f"fmu::{name}", value)
             simulation.step(1)
-            rows.append([float(get(f"fmu::{name}")) for name, get in read.items()])
+            rows.append([float(get(f"fmu::{name}")) for name, get in getters.items()])
         simulation.terminate()
     return rows
 
 
 def libcosim(task: Task, messages: list[str]) -> Rows:
-    """By libcosim, FMI 2.0; it shows nothing before the first step, and counts time in nanoseconds."""
+    """Execute an experiment for co-simulation in libcosim (FMI 2.0).
+
+    libcosim gives no outputs before the first step: the first row is None. Its step size is a whole number of
+    nanoseconds.
+    """
     from libcosimpy._internal import get_last_error_message
     from libcosimpy.CosimExecution import CosimExecution
     from libcosimpy.CosimManipulator import CosimManipulator
@@ -81,36 +92,36 @@ def libcosim(task: Task, messages: list[str]) -> Rows:
     if nanoseconds < 1 or abs(nanoseconds - task.step * 1e9) > 1e-3:
         raise ValueError(f"has a step of {task.step!r} s, libcosim takes whole nanoseconds")
     execution = CosimExecution.from_step_size(step_size=nanoseconds)
-    one = execution.add_local_slave(CosimLocalSlave(fmu_path=task.fmu, instance_name="fmu"))
+    slave = execution.add_local_slave(CosimLocalSlave(fmu_path=task.fmu, instance_name="fmu"))
     observer, manipulator = CosimObserver.create_last_value(), CosimManipulator.create_override()
     if not (execution.add_observer(observer) and execution.add_manipulator(manipulator)):
         raise RuntimeError(get_last_error_message())
-    reference = {v.name.decode(): v.reference for v in execution.slave_variables(one)}
+    reference = {v.name.decode(): v.reference for v in execution.slave_variables(slave)}
     for name, value in {**task.settings, **task.given(0)}.items():
         kinds = {bool: "boolean", int: "integer", str: "string"}
-        give = getattr(execution, f"{kinds.get(type(value), 'real')}_initial_value")
-        if not give(one, reference[name], value):
+        setter = getattr(execution, f"{kinds.get(type(value), 'real')}_initial_value")
+        if not setter(slave, reference[name], value):
             raise RuntimeError(f"{name} = {value!r}: {get_last_error_message()}")
     rows: Rows = [None]
     for i in range(len(task.times) - 1):
-        given = task.given(i)
+        inputs = task.given(i)
         for kind in set(task.kinds.values()):
-            if chosen := [name for name in given if task.kinds[name] == kind]:
-                give = getattr(manipulator, f"slave_{kind}_values")
-                give(one, [reference[name] for name in chosen], [given[name] for name in chosen])
+            if names := [name for name in inputs if task.kinds[name] == kind]:
+                setter = getattr(manipulator, f"slave_{kind}_values")
+                setter(slave, [reference[name] for name in names], [inputs[name] for name in names])
         if not execution.step():
             raise RuntimeError(get_last_error_message())
         row: dict[str, float] = {}
         for kind in set(task.kinds.values()):
-            if chosen := [name for name in task.outputs if task.kinds[name] == kind]:
-                read = getattr(observer, f"last_{kind}_values")
-                row |= zip(chosen, map(float, read(one, [reference[name] for name in chosen])), strict=True)
+            if names := [name for name in task.outputs if task.kinds[name] == kind]:
+                getter = getattr(observer, f"last_{kind}_values")
+                row |= zip(names, map(float, getter(slave, [reference[name] for name in names])), strict=True)
         rows.append([row[name] for name in task.outputs])
     return rows
 
 
 def load(importer: str) -> None:
-    """Load the library of an importer; raises ImportError or OSError if a library is missing."""
+    """Load the library of an importer; ImportError or OSError if it is missing."""
     if importer == "ecos":
         from ecospy import EcosSimulationStructure
 
@@ -122,7 +133,7 @@ def load(importer: str) -> None:
 
 
 def _known(task: Task) -> None:
-    """Raise ValueError for a variable of a type that ecos leaves as it is and libcosim does not list."""
+    """Raise ValueError for a variable of a type that ecos cannot set and libcosim does not list."""
     variables = {v.name: v for v in description(task.fmu).modelVariables}
     for name in (*task.settings, *task.inputs, *task.outputs):
         if variables[name].type in ("Enumeration", "Int64"):
@@ -134,15 +145,15 @@ IMPORTERS: Mapping[str, Mapping[str, Execute]] = {
     "ecos": {CO_SIMULATION: ecos},
     "libcosim": {CO_SIMULATION: libcosim},
 }
-"""{importer: {interface: what executes an experiment}}."""
+"""{importer: {interface: function that executes an experiment}}."""
 PACKAGES = {"fmpy": "fmpy", "ecos": "ecospy", "libcosim": "libcosimpy"}
-"""{importer: its package}."""
+"""{importer: Python package}."""
 SYSTEM_LIBRARIES = {"ecos": "libtbb12", "libcosim": "libatomic1"}
-"""{importer: package of Debian with a library that the importer loads}."""
+"""{importer: Debian package of a library that the importer loads}."""
 VERSIONS = {"fmpy": "23", "ecos": "23", "libcosim": "2"}
-"""{importer: versions of FMI, first digits}; libcosim crashes on others."""
+"""{importer: major versions of FMI that it supports}; libcosim crashes with other versions."""
 
 
 def interfaces(importer: str) -> list[str]:
-    """Interfaces in which an importer runs FMUs here: fmpy has its solver not for every platform."""
+    """FMI interfaces in which an importer runs FMUs on this platform; fmpy lacks its solver on some."""
     return [name for name in IMPORTERS[importer] if name != MODEL_EXCHANGE or exchange.available()]

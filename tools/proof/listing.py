@@ -1,7 +1,8 @@
-"""The files that lists of exporting tools ask for, in the folders of the FMI cross-check rules, version 4.1.
+"""Files that an exporting tool submits to a list of FMI tools, by the FMI cross-check rules, version 4.1.
 
-fmus/VERSION/cs/PLATFORM/TOOL/TOOL_VERSION/MODEL holds MODEL.fmu, MODEL_in.csv, MODEL_ref.csv, MODEL_ref.opt
-and README.md, of one experiment: the first validation that needs no parameter set, else the first such one.
+The folder fmus/VERSION/cs/PLATFORM/TOOL/TOOL_VERSION/MODEL contains MODEL.fmu, MODEL_in.csv, MODEL_ref.csv,
+MODEL_ref.opt and README.md. The files describe one experiment that needs no parameter set: the first
+validation, or if there is none the first experiment of another purpose.
 """
 
 import re
@@ -26,22 +27,22 @@ if TYPE_CHECKING:
 README = "README.md"
 LISTING = FileKind("listing", (".md",))
 KNOWN = ("c-code", "darwin64", "linux32", "linux64", "win32", "win64")
-"""Platforms of the rules, for FMI 2.0; those of FMI 3.0 are named as the FMU has them."""
+"""Platform names of the cross-check rules for FMI 2.0. For FMI 3.0 the names in the FMU are used."""
 
 
 def write(proof: Proof, out: Path, force: bool = False) -> list[Path]:
-    """Write the files of a proof that passed, once for each platform of the FMU; the folders.
+    """Write the files of a passed proof into one folder for each platform of the FMU, and return the folders.
 
-    force : replace files of these names in a folder whose README.md jointfmu did not write
+    force : overwrite files also in a folder whose README.md was not written by jointfmu
 
-    Raises ValueError if no experiment fits, or a file may not or cannot be written.
+    Raises ValueError if no experiment is suitable, or if a file must not or cannot be written.
     """
     described = host.description(proof.fmu)
     files = _files(proof, _chosen(proof), described)
     tool, _, version = (described.generationTool or "unknown").rpartition(" ")
-    below = [_safe(tool or version), _safe(version), _safe(described.modelName)]
+    subfolders = [_safe(tool or version), _safe(version), _safe(described.modelName)]
     version = described.fmiVersion[:3]
-    folders = [out.joinpath("fmus", version, "cs", p, *below) for p in _platforms(proof.fmu, version)]
+    folders = [out.joinpath("fmus", version, "cs", p, *subfolders) for p in _platforms(proof.fmu, version)]
     check_outputs((folder / README for folder in folders), LISTING, force)
     for folder in folders:
         with made_folder(folder):
@@ -51,16 +52,24 @@ def write(proof: Proof, out: Path, force: bool = False) -> list[Path]:
 
 
 def _chosen(proof: Proof) -> Outcome:
-    """Of an experiment with results from its start to its end, whose settings its inputs hold, too."""
-    fitting = [o for o in proof.outcomes if o.interface == CO_SIMULATION and _fits(o.experiment)]
-    if not fitting:
+    """Select the outcome to be listed: the first validation, else the first listable experiment.
+
+    Raises ValueError if no experiment is listable.
+    """
+    listable = [o for o in proof.outcomes if o.interface == CO_SIMULATION and _fits(o.experiment)]
+    if not listable:
         raise ValueError(
             f"{proof.fmu}: no experiment without parameters has results from start to end to list"
         )
-    return next((one for one in fitting if one.experiment.purpose == "validation"), fitting[0])
+    validations = (outcome for outcome in listable if outcome.experiment.purpose == "validation")
+    return next(validations, listable[0])
 
 
 def _fits(one: Experiment) -> bool:
+    """Whether an experiment can be listed.
+
+    Its reference results cover the time from start to stop, and it sets no variables but its inputs.
+    """
     if one.unfit or one.references is None or not one.settings.keys() <= set(_inputs(one)):
         return False
     start, stop = _ends(one)
@@ -68,24 +77,33 @@ def _fits(one: Experiment) -> bool:
 
 
 def _inputs(one: Experiment) -> list[str]:
+    """Names of the inputs that an experiment drives."""
     return list(one.stimuli.columns) if one.stimuli else []
 
 
 def _ends(one: Experiment) -> tuple[float, float]:
-    """Start and stop time; those of the results where the experiment does not state them."""
+    """Start and stop time [s] of an experiment; if not stated: zero, and the end of the reference results."""
     assert one.references is not None
     stop = float(one.references.time[-1]) if one.stop is None else one.stop
     return one.start or 0.0, stop
 
 
 def _files(proof: Proof, chosen: Outcome, description: "ModelDescription") -> dict[str, bytes]:
-    """{name: content}."""
-    one, name = chosen.experiment, _safe(description.modelName)
-    assert one.references is not None
-    start, stop = _ends(one)
-    tolerance = TOLERANCE if one.tolerance is None else one.tolerance
-    options = {"StartTime": start, "StopTime": stop, "StepSize": one.step or 0.0, "RelTol": tolerance}
-    series: dict[str, TimeSeries] = {"ref": one.references, **({"in": one.stimuli} if one.stimuli else {})}
+    """Files of the listing, {name: content}, for the chosen outcome."""
+    experiment, name = chosen.experiment, _safe(description.modelName)
+    assert experiment.references is not None
+    start, stop = _ends(experiment)
+    tolerance = TOLERANCE if experiment.tolerance is None else experiment.tolerance
+    options = {
+        "StartTime": start,
+        "StopTime": stop,
+        "StepSize": experiment.step or 0.0,
+        "RelTol": tolerance,
+    }
+    series: dict[str, TimeSeries] = {
+        "ref": experiment.references,
+        **({"in": experiment.stimuli} if experiment.stimuli else {}),
+    }
     return {
         f"{name}.fmu": proof.fmu.read_bytes(),
         **{f"{name}_{key}.csv": text(values).encode() for key, values in series.items()},
@@ -95,16 +113,18 @@ def _files(proof: Proof, chosen: Outcome, description: "ModelDescription") -> di
 
 
 def _readme(proof: Proof, chosen: Outcome, description: "ModelDescription") -> str:
-    one, worst, name = chosen.experiment, chosen.worst, _safe(description.modelName)
+    """Text of README.md for the chosen outcome."""
+    experiment, worst, name = chosen.experiment, chosen.worst, _safe(description.modelName)
     assert worst is not None
     tool = description.generationTool or "an unknown tool"
-    driven = f"`{name}_in.csv` drives {', '.join(f'`{n}`' for n in _inputs(one))}; " if one.stimuli else ""
+    inputs = ", ".join(f"`{n}`" for n in _inputs(experiment))
+    driven = f"`{name}_in.csv` drives {inputs}; " if experiment.stimuli else ""
     text = f"{description.description or description.modelName}."
     return f"""# {description.modelName}
 
 {text} FMI {description.fmiVersion} for co-simulation, exported by {tool}.
 
-These are the files of the experiment "{one.name}" in `{FOLDER}` of the FMU.
+These are the files of the experiment "{experiment.name}" in `{FOLDER}` of the FMU.
 {driven}`{name}_ref.csv` has the reference results that the FMU carries, `{name}_ref.opt` times, step
 and relative tolerance. Nothing else is set.
 
@@ -116,12 +136,13 @@ times `{worst.output}` is furthest off, by {worst.error:.1e}; allowed is {worst.
 
 
 def _platforms(fmu: Path, version: str) -> list[str]:
-    """Platforms for which an FMU has a binary; of FMI 2.0 those that the rules know."""
+    """Platforms for which an FMU contains a binary; for FMI 2.0 only those of FMI2_PLATFORMS."""
     with archives.open_archive(fmu) as archive:
-        found = {match[1] for name in archive.namelist() if (match := re.match(r"binaries/([^/]+)/.", name))}
-    return sorted(found & set(KNOWN) if version.startswith("2") else found)
+        names = archive.namelist()
+        platforms = {match[1] for name in names if (match := re.match(r"binaries/([^/]+)/.", name))}
+    return sorted(platforms & set(KNOWN) if version.startswith("2") else platforms)
 
 
 def _safe(name: str) -> str:
-    """A name as that of a file."""
+    """Replace the characters of a name that are not safe in a file name."""
     return re.sub(r"[^\w.+-]+", "_", name) or "unknown"

@@ -1,6 +1,6 @@
-"""The experiments of FMI-LS-REF in an FMU: its manifest, files of MA-HS-Experiments, SSV and CSV.
+"""Experiments in an FMU by the layered standard FMI-LS-REF: manifest, MA-HS-Experiments, SSV and CSV files.
 
-Older drafts have the times of an experiment as attributes of `Experiment`; they are read there, too.
+Older drafts of the standard state the times of experiments as attributes of `Experiment`; they are read, too.
 """
 
 import posixpath
@@ -31,14 +31,14 @@ from jointfmu.files.archives import Members
 from . import checksum
 
 VALUES = "http://ssp-standard.org/SSP1/SystemStructureParameterValues"
-"""Namespace of SSV files."""
+"""XML namespace of SSV files."""
 _OTHER_NAMES = ("application/x-ma-ls-experiments", "application/octet-stream")
-"""Of the type of experiments: in the standard's example, and its default."""
+"""Other MIME types accepted for files of experiments: in the example of the standard, and its default."""
 
 
 @dataclass(frozen=True, slots=True)
 class Setting:
-    """A start value that an experiment gives; `unit` as its file states it, empty: it states none."""
+    """Start value of a variable in an experiment; `unit` as stated in the file, empty if not stated."""
 
     value: float | int | bool | str
     unit: str
@@ -46,16 +46,17 @@ class Setting:
 
 @dataclass(frozen=True, slots=True)
 class Experiment:
-    """An experiment of an FMU.
+    """Experiment of an FMU: times, start values, inputs and reference results.
 
-    purpose   : one of PURPOSES
-    start, stop, step : [s], None: not stated
-    tolerance : relative, of the reference results; None: not stated
-    settings  : {variable: start value}
-    stimuli, references : inputs and expected results over time
-    interfaces : for which it is
-    scales    : {output: size by which the tolerance counts, and not each value's own}
-    unfit     : why it cannot be executed here; empty: it can
+    purpose    : one of PURPOSES
+    start, stop, step : start time, stop time and step size [s]; None: not stated
+    tolerance  : relative tolerance of the reference results [1]; None: not stated
+    settings   : {variable: start value}
+    stimuli    : inputs over time
+    references : reference results over time
+    interfaces : FMI interfaces for which the experiment is meant
+    scales     : {output: size to which the relative tolerance refers, instead of each reference value}
+    unsupported_reason : why the experiment cannot be executed by jointfmu; empty if it can
     """
 
     name: str
@@ -73,41 +74,46 @@ class Experiment:
 
 
 class Related:
-    """The related files of an FMU, by the addresses that its manifest and experiments give.
+    """Reader of the related files of an FMU: the files named in its manifest and experiments.
 
-    members : those to be read instead of the FMU's own
+    members : {path: content} of files to be read instead of the files in the FMU
 
-    Raises ValueError, one line that names FMU and file, wherever one is missing or broken.
+    All methods raise ValueError, one line that names FMU and file, if a file is missing or broken.
     """
 
     def __init__(self, fmu: Path, members: Mapping[str, bytes] | None = None) -> None:
         self.fmu = fmu
-        self._own = Members(fmu)
-        self.members: Mapping[str, bytes] = members or self._own
+        self._fmu_members = Members(fmu)
+        self.members: Mapping[str, bytes] = members or self._fmu_members
         if MANIFEST not in self.members:
             raise ValueError(f"{fmu}: has no {MANIFEST}; expected an FMU with experiments after FMI-LS-REF")
 
     def experiments(self) -> list[Experiment]:
-        """All experiments of the manifest, in its order."""
-        with self._own.open_for_reading():
+        """All experiments that the manifest names, in the order of the manifest."""
+        with self._fmu_members.open_for_reading():
             return self._all_experiments()
 
     def _all_experiments(self) -> list[Experiment]:
         root = self._xml(MANIFEST)
-        if (found := root.get(f"{{{ATTRIBUTES}}}fmi-ls-name")) != NAME:
-            raise ValueError(f"{self.fmu}: {MANIFEST} is of {found!r}, expected {NAME!r}")
-        read = []
+        if (standard := root.get(f"{{{ATTRIBUTES}}}fmi-ls-name")) != NAME:
+            raise ValueError(f"{self.fmu}: {MANIFEST} is of {standard!r}, expected {NAME!r}")
+        experiments = []
         for related in root.iter("Related"):
             self._unchanged(related)
             role, _, purpose = related.get("role", "").partition("/")
             if role == "experiment":
-                read += self._experiments(related, purpose or PURPOSES[0])
-        if not read:
+                experiments += self._experiments(related, purpose or PURPOSES[0])
+        if not experiments:
             raise ValueError(f"{self.fmu}: {MANIFEST} names no experiment; expected one at least")
-        return read
+        return experiments
 
     def _unchanged(self, related: Element) -> None:
-        """Compare a related file of the layered standard's folder with its checksum, if one is stated."""
+        """Compare a related file in the FMU with its checksum, if the manifest states one.
+
+        related : element of the manifest
+
+        Raises ValueError if they differ.
+        """
         source = related.get("source", "")
         if urlsplit(source).scheme or (path := self._path(MANIFEST, source)) not in self.members:
             return
@@ -117,7 +123,7 @@ class Related:
             raise ValueError(f"{self.fmu}: {path} {error}") from None
 
     def _experiments(self, related: Element, purpose: str) -> list[Experiment]:
-        """The experiments of a file; one as its name if it cannot be read here."""
+        """Experiments of a related file; if its type is not supported, one experiment with the reason."""
         source, kind = related.get("source", ""), related.get("type", EXPERIMENTS)
         if kind not in (EXPERIMENTS, *_OTHER_NAMES):
             return [Experiment(source, purpose, unfit=f"is of type {kind}, {EXPERIMENTS} is read")]
@@ -125,10 +131,12 @@ class Related:
             return [Experiment(source, purpose, unfit="lies outside of the FMU")]
         path = self._path(MANIFEST, source)
         labels = {label.get("name") for label in related.iter("Label")}
-        meant = [name for name, label in LABELS.items() if label in labels] or INTERFACES
-        return [self._experiment(path, node, purpose, meant) for node in self._xml(path).iter("Experiment")]
+        interfaces = [name for name, label in LABELS.items() if label in labels] or INTERFACES
+        nodes = self._xml(path).iter("Experiment")
+        return [self._experiment(path, node, purpose, interfaces) for node in nodes]
 
     def _experiment(self, path: str, node: Element, purpose: str, interfaces: Sequence[str]) -> Experiment:
+        """Experiment of an XML element in the file `path`, with the files that it names."""
         name = node.get("name", "")
         kinds = [child.tag for child in node if child.tag not in ("Annotations", *_FILES)]
         unfit = f"is a {kinds[0]}" if kinds and kinds[0] != TRANSIENT else ""
@@ -156,7 +164,7 @@ class Related:
         return Experiment(name, purpose, *numbers, settings, stimuli, references, interfaces, scales, unfit)
 
     def _scales(self, path: str, experiment: str, node: Element) -> dict[str, float]:
-        """What its annotation states."""
+        """{output: scale} that the annotation of an experiment states; ValueError unless positive."""
         scales = {}
         for scale in node.iterfind(f"Annotations/Annotation[@type='{SCALES}']/Scale"):
             output = scale.get("name", "")
@@ -170,6 +178,7 @@ class Related:
         return scales
 
     def _number(self, path: str, experiment: str, key: str, value: str | None) -> float | None:
+        """Parse a number of an experiment; None if it is not stated."""
         try:
             return None if value is None else float(value)
         except ValueError:
@@ -177,7 +186,7 @@ class Related:
             raise ValueError(text) from None
 
     def _settings(self, path: str) -> dict[str, Setting]:
-        """The values of an SSV file."""
+        """Start values of an SSV file, {variable: start value}."""
         settings = {}
         for parameter in self._xml(path).iter(f"{{{VALUES}}}Parameter"):
             name = parameter.get("name", "")
@@ -191,12 +200,13 @@ class Related:
         return settings
 
     def _path(self, base: str, source: str) -> str:
-        """The member of the archive that an address beside another member means."""
+        """Path in the FMU of a source address, which is relative to the member `base`."""
         if urlsplit(source).scheme:
             raise ValueError(f"{self.fmu}: {base} names {source}; expected a file in the FMU")
         return posixpath.normpath(posixpath.join(posixpath.dirname(base), unquote(source)))
 
     def _text(self, path: str) -> str:
+        """Text of a related file."""
         if path not in self.members:
             raise ValueError(f"{self.fmu}: has no {path}, which its manifest or an experiment names")
         try:
@@ -205,6 +215,7 @@ class Related:
             raise ValueError(f"{self.fmu}: {path} is no text; expected UTF-8") from None
 
     def _xml(self, path: str) -> Element:
+        """XML root element of a related file."""
         try:
             return ElementTree.fromstring(self._text(path))
         except ElementTree.ParseError as error:
@@ -212,12 +223,12 @@ class Related:
 
 
 _FILES = {"Parameters": SSV, "Stimuli": CSV, "References": CSV}
-"""{element of an experiment: type of its file}."""
+"""{child element of an experiment: MIME type of the file that it names}."""
 _TRUTH = {"true": True, "1": True, "false": False, "0": False}
 
 
 def _value(kind: str, value: str) -> float | int | bool | str:
-    """The value of an SSV file: what its element's name says."""
+    """Parse a value of an SSV file by the name of its XML element (kind): Real, Integer, Boolean, String."""
     if kind == "Boolean":
         return _TRUTH[value]
     if kind.startswith(("Integer", "Int", "UInt")):

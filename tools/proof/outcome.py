@@ -1,4 +1,4 @@
-"""What became of the experiments of an FMU."""
+"""Results of the experiments of an FMU: comparison with the reference results, errors, exclusions."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,7 +11,12 @@ from .manifest import Experiment
 
 @dataclass(frozen=True, slots=True)
 class WorstPoint:
-    """An output where it is furthest from its reference, measured by what is allowed."""
+    """Point of an output with the largest ratio of error to tolerance.
+
+    time             : [s]
+    value, reference : computed and reference value of the output
+    tolerance        : allowed absolute error
+    """
 
     output: str
     time: float
@@ -21,6 +26,7 @@ class WorstPoint:
 
     @property
     def error(self) -> float:
+        """Absolute error."""
         return abs(self.value - self.reference)
 
     @property
@@ -29,7 +35,7 @@ class WorstPoint:
 
     @property
     def share(self) -> float:
-        """The error over what is allowed [1]; infinite if the value is no number."""
+        """Error over tolerance [1]; infinite if the value is not finite."""
         return self.error / self.allowed if self.finite else np.inf
 
     @property
@@ -39,9 +45,12 @@ class WorstPoint:
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """What became of an experiment: the worst point of each output, or an error, or why it was left out.
+    """Outcome of an experiment: the worst point of each output, or an error.
 
-    interface : of the FMU; empty if it was left out
+    interface : FMI interface in which the experiment was executed; empty if it was not executed
+    points    : worst point of each output
+    compared_points : number of compared times
+    error     : error message; empty if none occurred
     """
 
     experiment: Experiment
@@ -52,30 +61,35 @@ class Outcome:
 
     @property
     def name(self) -> str:
+        """Name of the experiment, and interface if it was executed."""
         return f"{self.experiment.name}, {self.interface}" if self.interface else self.experiment.name
 
     @property
     def left_out(self) -> str:
-        """Why it was not executed; empty if it was."""
+        """Why the experiment was not executed; empty if it was."""
         text = self.experiment.unfit or f"is for {' and '.join(self.experiment.interfaces)}"
         return "" if self.interface else text
 
     @property
     def worst(self) -> WorstPoint | None:
+        """Worst point of all outputs; None if nothing was compared."""
         return max(self.points, key=lambda point: point.share, default=None)
 
     @property
     def passed(self) -> bool:
+        """Whether there is no error and all outputs are within their tolerance."""
         return not self.error and all(point.passed for point in self.points)
 
 
 @dataclass(frozen=True, slots=True)
 class Proof:
-    """All of an FMU.
+    """Result of all experiments of an FMU.
 
-    interfaces : in which it was run
-    starts : start values compared
-    differing : a line for each that differs from modelDescription.xml
+    importer   : name of the importer
+    interfaces : FMI interfaces in which experiments were executed
+    compared_starts : number of compared start values
+    start_differences : a line for each start value that differs from modelDescription.xml or from `Expected`
+    outcomes   : outcomes of the experiments, for each interface
     """
 
     fmu: Path
@@ -87,11 +101,12 @@ class Proof:
 
     @property
     def runs(self) -> int:
+        """Number of executed experiments, counted for each interface."""
         return sum(bool(outcome.interface) for outcome in self.outcomes)
 
     @property
     def worst(self) -> WorstPoint | None:
-        """The output that is furthest off, measured by what is allowed."""
+        """Point with the largest error over tolerance, of all outcomes; None if nothing was compared."""
         points = [outcome.worst for outcome in self.outcomes if outcome.worst]
         return max(points, key=lambda point: point.share, default=None)
 
@@ -101,7 +116,7 @@ class Proof:
 
     @property
     def misses(self) -> list[str]:
-        """A line for everything that failed, of an experiment with its worst output."""
+        """Failures, one line each: start values, errors, experiments with their worst output."""
         lines = list(self.differing)
         if self.outcomes and not self.runs:
             lines.append(f"{self.importer} executes none of the experiments")
@@ -111,7 +126,7 @@ class Proof:
                 lines.append(f"{name}: {outcome.error}")
             missed = sorted((p for p in outcome.points if not p.passed), key=lambda p: -p.share)
             if missed:
-                worst, *others = missed
+                worst, *others = missed  # sorted by error over tolerance
                 lines.append(
                     f"{name}: {worst.output} = {worst.value:.10g} at {worst.time:g} s, reference "
                     f"{worst.reference:.10g}, off by {worst.error:.2g}, allowed {worst.allowed:.2g}"

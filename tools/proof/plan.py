@@ -1,4 +1,4 @@
-"""An experiment on its way to an importer, and the importer's answer on its way back."""
+"""Plan of an experiment: task for an importer, and evaluation of the importer's answer."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -19,20 +19,21 @@ if TYPE_CHECKING:
 
 
 TOLERANCE = 1e-3
-"""Where an experiment states no tolerance [1]."""
+"""Default relative tolerance of an experiment that states none [1]."""
 MEETING = 1e-6
-"""Part of a step [1] below which two times are one."""
+"""Time difference over the step size [1], below which two times count as equal."""
 STEPS, MOST_STEPS = 500, 10_000_000
-"""Of an experiment: where nothing states a step, and at most."""
+"""Number of steps of an experiment that states no step size, and maximum number of steps."""
 
 
 @dataclass(frozen=True, slots=True)
 class ExperimentPlan:
-    """An experiment with what an importer needs; if it cannot be executed, `task` is empty.
+    """Plan of an experiment in one interface of an FMU: the task for an importer.
 
-    interface : of the FMU; empty if it is left out
-    nominal : {output: its nominal value}
-    refused : why it cannot, although the FMU asks for it
+    interface : FMI interface; empty if the experiment is not executed
+    nominal   : {output: nominal value}
+    task      : fields of the `Task`; empty if the experiment cannot be executed
+    refusal   : why the experiment cannot be executed with this FMU; empty if it can
     """
 
     experiment: Experiment
@@ -45,7 +46,7 @@ class ExperimentPlan:
     def of(
         cls, fmu: Path, folder: str, experiment: Experiment, interface: str, description: "ModelDescription"
     ) -> "ExperimentPlan":
-        """The plan of an experiment with an unpacked FMU."""
+        """Plan an experiment with an FMU that is unpacked in `folder`."""
         if not interface:
             return cls(experiment, interface, {}, {})
         variables = {v.name: v for v in description.modelVariables}
@@ -60,12 +61,12 @@ class ExperimentPlan:
             if stimuli and interface == MODEL_EXCHANGE:
                 times = _with_corners(times, stimuli.time)
             values: dict[str, object] = {
-                "settings": {n: setting(variables[n], given) for n, given in experiment.settings.items()},
+                "settings": {n: setting(variables[n], value) for n, value in experiment.settings.items()},
                 "kinds": {n: kind(variables[n]) for n in (*inputs, *outputs)},
             }
             if stimuli:
-                for key, before in (("inputs", False), ("before", True)):
-                    values[key] = {n: course(variables[n], stimuli, times, before) for n in inputs}
+                for key, left_limit in (("inputs", False), ("before", True)):
+                    values[key] = {n: course(variables[n], stimuli, times, left_limit) for n in inputs}
         except ValueError as error:
             return cls(experiment, interface, {}, {}, str(error))
         values |= {"times": times.tolist(), "outputs": outputs, "tolerance": SOLVER * _tolerance(experiment)}
@@ -75,6 +76,10 @@ class ExperimentPlan:
         return cls(experiment, interface, nominal, task(fmu, folder, interface, **values))
 
     def outcome(self, answer: Mapping[str, Any] | None) -> Outcome:
+        """Compare the answer of an importer with the reference results.
+
+        answer : {"rows"} or {"error"} from a `worker`; None if the experiment was not executed
+        """
         if answer is None:
             return Outcome(self.experiment, self.interface, error=self.refused)
         if "error" in answer:
@@ -82,44 +87,49 @@ class ExperimentPlan:
         expected = self.experiment.references
         if expected is None:
             return Outcome(self.experiment, self.interface)
-        shown = [i for i, row in enumerate(answer["rows"]) if row is not None]
-        times = np.array([self.task["times"][i] for i in shown])
-        table = np.array([answer["rows"][i] for i in shown])
-        once = np.diff(expected.time) > 0.0
-        inside = (expected.time >= times[0]) & (expected.time <= times[-1] * (1.0 + 1e-12))
-        inside &= np.append(True, once) & np.append(once, True)  # where it jumps, either side would do
-        if not np.any(inside):
+        available = [i for i, row in enumerate(answer["rows"]) if row is not None]
+        times = np.array([self.task["times"][i] for i in available])
+        table = np.array([answer["rows"][i] for i in available])
+        rises = np.diff(expected.time) > 0.0
+        compared = (expected.time >= times[0]) & (expected.time <= times[-1] * (1.0 + 1e-12))
+        compared &= np.append(True, rises) & np.append(rises, True)  # at a jump both sides are valid: skip it
+        if not np.any(compared):
             error = "no reference result lies at a time that was computed"
             return Outcome(self.experiment, self.interface, error=error)
-        at, tolerance = expected.time[inside], _tolerance(self.experiment)
+        t, tolerance = expected.time[compared], _tolerance(self.experiment)
         points = []
         for column, (name, reference) in zip(table.T, expected.columns.items(), strict=True):
-            found, due = np.interp(at, times, column), reference[inside]
-            size = np.maximum(np.abs(due), FLOOR * self.nominal[name])
-            allowed = tolerance * np.broadcast_to(self.experiment.scales.get(name, size), due.shape)
+            y, y_ref = np.interp(t, times, column), reference[compared]
+            size = np.maximum(np.abs(y_ref), FLOOR * self.nominal[name])
+            allowed = tolerance * np.broadcast_to(self.experiment.scales.get(name, size), y_ref.shape)
             with np.errstate(invalid="ignore"):
-                share = np.where(np.isfinite(found), np.abs(found - due) / allowed, np.inf)
-            i = int(np.argmax(share))
-            points.append(WorstPoint(name, float(at[i]), float(found[i]), float(due[i]), float(allowed[i])))
-        return Outcome(self.experiment, self.interface, points, int(np.sum(inside)))
+                error_ratio = np.where(np.isfinite(y), np.abs(y - y_ref) / allowed, np.inf)
+            i = int(np.argmax(error_ratio))
+            points.append(WorstPoint(name, float(t[i]), float(y[i]), float(y_ref[i]), float(allowed[i])))
+        return Outcome(self.experiment, self.interface, points, int(np.sum(compared)))
 
 
 def _tolerance(experiment: Experiment) -> float:
+    """Relative tolerance [1] of an experiment, or the default."""
     return TOLERANCE if experiment.tolerance is None else experiment.tolerance
 
 
 def _with_corners(times: Array, corners: Array) -> Array:
-    """Times together with those between them where inputs have a corner; it replaces a time that it meets."""
-    meet = MEETING * float(np.min(np.diff(times)))
-    inner = np.unique(corners[(corners > times[0] + meet) & (corners < times[-1] - meet)])
-    places = np.searchsorted(inner, times)
-    around = np.concatenate([[-np.inf], inner, [np.inf]])
-    far = np.minimum(times - around[places], around[places + 1] - times) > meet
-    return np.sort(np.append(times[far], inner))
+    """Insert the corners of the inputs [s] into communication points [s]; a corner replaces an equal time."""
+    equal = MEETING * float(np.min(np.diff(times)))
+    inner = np.unique(corners[(corners > times[0] + equal) & (corners < times[-1] - equal)])
+    positions = np.searchsorted(inner, times)
+    bounds = np.concatenate([[-np.inf], inner, [np.inf]])
+    distinct = np.minimum(times - bounds[positions], bounds[positions + 1] - times) > equal
+    return np.sort(np.append(times[distinct], inner))
 
 
 def _times(experiment: Experiment, description: "ModelDescription") -> Array:
-    """Communication points [s]; what an experiment does not state is the FMU's default, or its results'."""
+    """Communication points (n) [s] of an experiment.
+
+    Times that the experiment does not state are taken from its reference results, or from the default
+    experiment of the FMU.
+    """
     default = description.defaultExperiment
     results = experiment.references or experiment.stimuli
     start = _first(experiment.start, getattr(default, "startTime", None), 0.0)
@@ -136,10 +146,10 @@ def _times(experiment: Experiment, description: "ModelDescription") -> Array:
 
 
 def task(fmu: Path, folder: str, interface: str, **more: object) -> dict[str, object]:
-    """The fields of a `Task`."""
+    """Fields of a `Task`, as a JSON object."""
     return {"fmu": str(fmu), "folder": str(folder), "interface": interface, **more}
 
 
 def _first(*values: Any) -> float:
-    """The first that is stated."""
+    """First value that is not None."""
     return float(next(value for value in values if value is not None))

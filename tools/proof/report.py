@@ -1,4 +1,4 @@
-"""A proof as text and as one JSON object."""
+"""Result of a proof as text and as one JSON object."""
 
 from collections.abc import Iterator, Mapping
 
@@ -13,7 +13,10 @@ _OUTPUT = ("output", "worst in", "interface", *_NUMBERS)
 
 
 def lines(proof: Proof) -> Iterator[str]:
-    """Two tables, of experiments and of outputs, each with its worst point; then what missed."""
+    """Lines of the printed result: table of experiments, table of outputs, failures, summary.
+
+    Both tables state the worst point of each row.
+    """
     experiments: list[tuple[str, ...]] = [_EXPERIMENT]
     worst: dict[str, tuple[Outcome, WorstPoint]] = {}
     for outcome in proof.outcomes:
@@ -21,9 +24,10 @@ def lines(proof: Proof) -> Iterator[str]:
         verdict = _verdict(outcome), str(outcome.compared or ""), point.output if point else ""
         cells = _cells(point) if point else ("",) * len(_NUMBERS)
         experiments.append((outcome.experiment.name, outcome.interface, *verdict, *cells))
-        for own in outcome.points:
-            if own.output not in worst or own.share > worst[own.output][1].share:
-                worst[own.output] = outcome, own
+        for output_point in outcome.points:
+            name = output_point.output
+            if name not in worst or output_point.share > worst[name][1].share:
+                worst[name] = outcome, output_point
     yield f"{proof.fmu} in {proof.importer}, {' and '.join(proof.interfaces)}: {count_of(proof)}"
     if proof.outcomes:
         yield ""
@@ -38,27 +42,29 @@ def lines(proof: Proof) -> Iterator[str]:
 
 
 def count_of(proof: Proof) -> str:
-    """How many experiments there are of each kind, and start values."""
-    kinds = [one.purpose for one in {id(o.experiment): o.experiment for o in proof.outcomes}.values()]
-    parts = [f"{kinds.count(p)} {p}" for p in (*PURPOSES, *sorted({*kinds} - {*PURPOSES})) if p in kinds]
-    return f"{', '.join(parts) or 'no experiment executed'}; {proof.starts} start values"
+    """Number of experiments of each purpose, and number of compared start values, as text."""
+    experiments = {id(o.experiment): o.experiment for o in proof.outcomes}.values()
+    purposes = [experiment.purpose for experiment in experiments]
+    ordered = (*PURPOSES, *sorted({*purposes} - {*PURPOSES}))
+    counts = [f"{purposes.count(p)} {p}" for p in ordered if p in purposes]
+    return f"{', '.join(counts) or 'no experiment executed'}; {proof.starts} start values"
 
 
 def summary(proof: Proof) -> str:
-    """One line: how many runs of experiments passed, missed, were left out."""
-    left = sum(bool(outcome.left_out) for outcome in proof.outcomes)
+    """One line: number of experiments that passed, missed, and were not executed; differing start values."""
+    excluded = sum(bool(outcome.left_out) for outcome in proof.outcomes)
     missed = sum(not outcome.passed for outcome in proof.outcomes)
     if not proof.outcomes:
         return "it does not start, nothing was executed"
-    passed = len(proof.outcomes) - left - missed
-    words = [f"{passed} passed", f"{missed} missed", *([f"{left} not executed"] if left else [])]
+    passed = len(proof.outcomes) - excluded - missed
+    words = [f"{passed} passed", f"{missed} missed", *([f"{excluded} not executed"] if excluded else [])]
     if count := len(proof.differing):
         words.append(f"{count} start {'value differs' if count == 1 else 'values differ'}")
     return ", ".join(words)
 
 
 def document(proof: Proof) -> dict[str, object]:
-    """All of it: every experiment with the worst point of each output."""
+    """Result of a proof as one JSON object, with the worst point of each output of each experiment."""
     return {
         "fmu": str(proof.fmu),
         "importer": proof.importer,
@@ -71,11 +77,11 @@ def document(proof: Proof) -> dict[str, object]:
 
 
 def _experiment(outcome: Outcome) -> dict[str, object]:
-    one = outcome.experiment
+    """Outcome of an experiment as a JSON object."""
     return {
-        "name": one.name,
+        "name": outcome.experiment.name,
         "interface": outcome.interface or None,
-        "purpose": one.purpose,
+        "purpose": outcome.experiment.purpose,
         "verdict": _verdict(outcome),
         "error": outcome.error or outcome.left_out or None,
         "points": outcome.compared,
@@ -84,6 +90,7 @@ def _experiment(outcome: Outcome) -> dict[str, object]:
 
 
 def _point(point: WorstPoint) -> Mapping[str, object]:
+    """Worst point of an output as a JSON object."""
     value = point.value if point.finite else None
     return {
         "output": point.output,
@@ -97,6 +104,7 @@ def _point(point: WorstPoint) -> Mapping[str, object]:
 
 
 def _verdict(outcome: Outcome) -> str:
+    """Verdict on an experiment, as text."""
     if outcome.left_out:
         return f"not executed: {outcome.left_out}"
     if not outcome.passed:
@@ -105,5 +113,6 @@ def _verdict(outcome: Outcome) -> str:
 
 
 def _cells(point: WorstPoint) -> tuple[str, ...]:
+    """Cells of a table row: time, value, reference, error and tolerance of a point."""
     numbers = (f"{point.time:g}", f"{point.value:.10g}", f"{point.reference:.10g}")
     return (*numbers, f"{point.error:.1e}", f"{point.allowed:.1e}")

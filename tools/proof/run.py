@@ -1,4 +1,4 @@
-"""Execute all experiments of an FMU and compare with its reference results."""
+"""Execute all experiments of an FMU in an importer, and compare with the reference results."""
 
 import json
 import subprocess
@@ -27,11 +27,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Expected:
-    """What somebody else says of an FMU.
+    """Expected contents of an FMU, from another source than the FMU itself.
 
-    source  : who
-    starts  : {variable: start value}
-    members : {path: content} of a manifest and its files
+    source  : name of the source, for messages
+    start_values : {variable: start value}
+    members : {path: content} of a manifest and its related files, used instead of those in the FMU
     """
 
     source: str
@@ -40,10 +40,10 @@ class Expected:
 
 
 def prove(fmu: Path, importer: str = "fmpy", expected: Expected | None = None) -> Proof:
-    """Execute what the manifest of an FMU names, or another one.
+    """Execute all experiments in the manifest of an FMU, or in the manifest of `expected`.
 
-    Raises ValueError, one line: no FMU, none that runs here, no manifest, a broken one, an importer that is
-    not installed or does not know the FMU's version of FMI.
+    Raises ValueError, one line: no FMU, an FMU that does not run on this platform, no manifest, a broken
+    manifest, an importer that is not installed or does not support the FMI version of the FMU.
     """
     experiments = Related(fmu, expected.members if expected else None).experiments()
     _check_importer(importer)
@@ -60,29 +60,29 @@ def prove(fmu: Path, importer: str = "fmpy", expected: Expected | None = None) -
                 f"{fmu}: is for {' and '.join(offered)}, {importer} runs {' and '.join(interfaces(importer))}"
             )
         plans = [
-            ExperimentPlan.of(fmu, folder, one, interface, description)
-            for one in experiments
-            for interface in _executed(one, common)
+            ExperimentPlan.of(fmu, folder, experiment, interface, description)
+            for experiment in experiments
+            for interface in _executed(experiment, common)
         ]
-        starting = [v for v in description.modelVariables if has_start(v)]
-        begin = {**task(fmu, folder, offered[0], outputs=[v.name for v in starting]), "start": True}
+        started = [v for v in description.modelVariables if has_start(v)]
+        start_task = {**task(fmu, folder, offered[0], outputs=[v.name for v in started]), "start": True}
         tasks = [plan.task for plan in plans if plan.task]
-        answers = _answers("fmpy", [begin, *(tasks if importer == "fmpy" else [])])
+        answers = _answers("fmpy", [start_task, *(tasks if importer == "fmpy" else [])])
         first = next(answers)
         if "error" in first:
             return Proof(fmu, importer, common, 0, [f"start: {first['error']}"], [])
-        found = {v.name: value for v, value in zip(starting, first["rows"][0], strict=True)}
-        differing = [
-            f"{v.name} starts at {_shown(found[v.name])}, modelDescription.xml says {v.start}"
-            for v in starting
-            if found[v.name] != start(v)
+        starts = {v.name: value for v, value in zip(started, first["rows"][0], strict=True)}
+        differences = [
+            f"{v.name} starts at {_shown(starts[v.name])}, modelDescription.xml says {v.start}"
+            for v in started
+            if starts[v.name] != start(v)
         ]
-        differing += _differing(found, expected) if expected else []
+        differences += _differing(starts, expected) if expected else []
         if importer != "fmpy":
             answers = _answers(importer, tasks)
-        bar = track(plans, fmu.stem, len(plans))
-        outcomes = [plan.outcome(next(answers) if plan.task else None) for plan in bar]
-    return Proof(fmu, importer, common, len(starting), differing, outcomes)
+        tracked_plans = track(plans, fmu.stem, len(plans))
+        outcomes = [plan.outcome(next(answers) if plan.task else None) for plan in tracked_plans]
+    return Proof(fmu, importer, common, len(started), differences, outcomes)
 
 
 def _check_importer(importer: str) -> None:
@@ -94,16 +94,20 @@ def _check_importer(importer: str) -> None:
         )
     if importer in SYSTEM_LIBRARIES:
         code = f"from {__package__}.importers import load; load({importer!r})"
-        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, errors="replace")
-        if done.returncode:
-            reason = (done.stderr.strip() or f"exit status {done.returncode}").splitlines()[-1]
+        command = [sys.executable, "-c", code]
+        result = subprocess.run(command, capture_output=True, text=True, errors="replace")
+        if result.returncode:
+            reason = (result.stderr.strip() or f"exit status {result.returncode}").splitlines()[-1]
             raise ValueError(
                 f"{importer} cannot be loaded ({reason}); on Debian, install {SYSTEM_LIBRARIES[importer]}"
             )
 
 
 def _differing(found: Mapping[str, object], expected: Expected) -> list[str]:
-    """A line for each start value that is not the one expected."""
+    """A line for each start value of the FMU that differs from the expected one.
+
+    starts : {variable: start value} of the FMU
+    """
     return [
         f"{name} {f'starts at {_shown(found[name])}' if name in found else 'is no parameter of the FMU'}, "
         f"{expected.source} says {_shown(value)}"
@@ -113,41 +117,48 @@ def _differing(found: Mapping[str, object], expected: Expected) -> list[str]:
 
 
 def _offered(description: "ModelDescription") -> list[str]:
-    """Interfaces of an FMU."""
+    """FMI interfaces that an FMU offers."""
     kinds = {CO_SIMULATION: description.coSimulation, MODEL_EXCHANGE: description.modelExchange}
     return [name for name, kind in kinds.items() if kind is not None]
 
 
 def _executed(experiment: Experiment, common: Sequence[str]) -> Sequence[str]:
-    """Interfaces in which an experiment is executed; one without a name if in none."""
-    found = [] if experiment.unfit else [name for name in common if name in experiment.interfaces]
-    return found or [""]
+    """Interfaces in which an experiment is executed; [""] if in none.
+
+    common : interfaces of both FMU and importer
+    """
+    usable = [] if experiment.unfit else [name for name in common if name in experiment.interfaces]
+    return usable or [""]
 
 
 def _answers(importer: str, tasks: Sequence[Mapping[str, Any]]) -> Iterator[dict[str, Any]]:
-    """Answers of a `worker` process as they come; if it dies, the rest says so."""
+    """Execute tasks in a `worker` process, and yield its answers, {"rows"} or {"error"}, as they arrive.
+
+    If the process dies, the remaining answers are errors.
+    """
     if not tasks:
         return
     command = [sys.executable, "-m", f"{__package__}.worker"]
     with subprocess.Popen(
         command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
-    ) as work:
-        assert work.stdin is not None
-        assert work.stdout is not None
+    ) as process:
+        assert process.stdin is not None
+        assert process.stdout is not None
         try:
-            with suppress(BrokenPipeError):  # it is gone; the end of its answers says so
-                work.stdin.write(json.dumps({"importer": importer, "tasks": tasks}).encode())
-                work.stdin.close()
-            done = 0
-            for line in work.stdout:
-                done += 1
+            with suppress(BrokenPipeError):  # the process died: its answers end
+                process.stdin.write(json.dumps({"importer": importer, "tasks": tasks}).encode())
+                process.stdin.close()
+            answered = 0
+            for line in process.stdout:
+                answered += 1
                 yield json.loads(line)
-            status = work.wait()
+            status = process.wait()
         finally:
-            work.kill()
-    for _ in tasks[done:]:
+            process.kill()
+    for _ in tasks[answered:]:
         yield {"error": f"{importer} ended with status {status}; the FMU's library may be broken"}
 
 
 def _shown(value: object) -> str:
+    """Format a start value as in modelDescription.xml."""
     return str(value).lower() if isinstance(value, bool) else repr(value)

@@ -1,4 +1,4 @@
-"""What an importer is given: an experiment as plain numbers, which go to its process as JSON."""
+"""Task for an importer: an experiment as plain numbers, passed to the process of the importer as JSON."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -8,23 +8,23 @@ import numpy as np
 from ..host import Instance
 
 REAL = ("Real", "Float64")
-"""Types of real numbers."""
+"""Types of real variables in FMI 2.0 and 3.0."""
 
 
 @dataclass(frozen=True, slots=True)
 class Task:
-    """An experiment, ready to be executed.
+    """Experiment with an FMU, ready to be executed by an importer.
 
     fmu, folder : path of the FMU, and of the folder where it is unpacked
-    interface : one of INTERFACES
-    settings : {variable: start value}
-    times    : (n) communication points [s]
-    inputs   : {variable: (n) values}, where one jumps the later
-    before   : the same, where one jumps the earlier
-    outputs  : variables that are read
-    kinds    : {variable: its kind} of inputs and outputs, see `jointfmu_tools.proof.values`
-    tolerance : relative, of a solver [1]
-    due      : times [s] at which outputs are compared; none if all communication points are asked for
+    interface : FMI interface, one of INTERFACES
+    settings  : {variable: start value}
+    times     : communication points (n) [s]
+    inputs    : {input: values (n)}; at a jump the value after it
+    inputs_before : {input: values (n)}; at a jump the value before it
+    outputs   : names of the variables to be read
+    kinds     : {variable: kind} of inputs and outputs: "real", "integer" or "boolean"
+    tolerance : relative tolerance of the solver [1]
+    comparison_times : times [s] at which outputs are compared; empty: outputs at all communication points
     """
 
     fmu: str
@@ -40,14 +40,14 @@ class Task:
     due: Sequence[float] = ()
 
     def given(self, i: int) -> dict[str, float]:
-        """Inputs at a communication point."""
+        """{input: value} at the communication point i; at a jump the value after it."""
         return {name: values[i] for name, values in self.inputs.items()}
 
     @property
     def step(self) -> float:
-        """The step [s], for importers that know one step only.
+        """Constant step size [s], for importers that support no other.
 
-        Raises ValueError if steps differ or do not begin at zero.
+        Raises ValueError if step sizes differ, or if the experiment does not start at zero.
         """
         if self.times[0] != 0.0:
             raise ValueError(f"begins at {self.times[0]:g} s, this importer begins at 0")
@@ -57,24 +57,27 @@ class Task:
         return size
 
     def compared(self, rows: "Rows") -> "Rows":
-        """None in place of what lies neither at nor beside a time that is due, but for the first and last."""
-        shown = np.array([i for i, row in enumerate(rows) if row is not None], dtype=int)
-        if not (len(self.due) and shown.size):
+        """Replace rows that are not needed for the comparison by None.
+
+        Rows next to a comparison time, and the first and the last row, are kept.
+        """
+        available = np.array([i for i, row in enumerate(rows) if row is not None], dtype=int)
+        if not (len(self.due) and available.size):
             return rows
-        after = np.searchsorted(np.take(self.times, shown), self.due, side="right")
-        around = np.clip([after - 1, after], 0, shown.size - 1)
-        kept = {*shown[around.ravel()].tolist(), int(shown[0]), int(shown[-1])}
-        return [row if i in kept else None for i, row in enumerate(rows)]
+        after = np.searchsorted(np.take(self.times, available), self.due, side="right")
+        neighbours = np.clip([after - 1, after], 0, available.size - 1)
+        needed = {*available[neighbours.ravel()].tolist(), int(available[0]), int(available[-1])}
+        return [row if i in needed else None for i, row in enumerate(rows)]
 
 
 Rows = list[list[float] | None]
-"""Outputs at each communication point; None where the importer does not show them, or none is due."""
+"""Outputs at each communication point; None if the importer gives none, or they are not needed."""
 Execute = Callable[[Task, list[str]], Rows]
-"""(task, messages, to which those of the FMU are added) -> outputs."""
+"""Function of an importer: (task, messages) -> rows; it appends the messages of the FMU."""
 
 
 def reader(instance: Instance, outputs: Sequence[str]) -> Callable[[], list[float]]:
-    """What reads outputs of an instance, real numbers in one call."""
+    """Function that reads the outputs of an instance; if all are real variables, in one call."""
     if all(instance.variables[name].type in REAL for name in outputs):
         return instance.reals(outputs).get
     return lambda: [float(instance.value(name)) for name in outputs]

@@ -1,4 +1,4 @@
-"""Variables of an FMU: their kind, and values of files as theirs."""
+"""Kinds of FMU variables, and conversion of values in files to the types of the variables."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -18,22 +18,25 @@ KINDS = {
     "Boolean": "boolean",
     **dict.fromkeys(("Integer", "Enumeration", "Int32", "Int64"), "integer"),
 }
-"""{type: kind} of variables that are driven and compared; in a series a truth value is 0 or 1."""
+"""{FMI type: kind} of possible inputs and compared outputs; in CSV files booleans are 0 or 1."""
 
 
 def kind(variable: "ScalarVariable") -> str:
-    """Kind of a variable. Raises ValueError if it is none of KINDS."""
+    """Kind of a variable: "real", "integer" or "boolean"; ValueError for other types and arrays."""
     if variable.type not in KINDS or variable.dimensions:
-        what = "an array" if variable.dimensions else f"of type {variable.type}"
-        raise ValueError(f"{variable.name} is {what}; single real, whole and truth values are compared")
+        text = "an array" if variable.dimensions else f"of type {variable.type}"
+        raise ValueError(f"{variable.name} is {text}; single real, whole and truth values are compared")
     return KINDS[variable.type]
 
 
 def setting(variable: "ScalarVariable", given: Setting) -> object:
-    """A start value as the variable takes it. Raises ValueError for a foreign unit, or if it does not fit."""
-    own = variable.unit or "1"
-    if given.unit and given.unit != own:
-        raise ValueError(f"{variable.name} is given in {given.unit!r}, expected {own!r}")
+    """Convert a stated start value to the type of its variable.
+
+    Raises ValueError if its unit is not that of the variable, or if it is no value of this type.
+    """
+    unit = variable.unit or "1"
+    if given.unit and given.unit != unit:
+        raise ValueError(f"{variable.name} is given in {given.unit!r}, expected {unit!r}")
     value = given.value
     items = variable.declaredType.items or () if variable.type == "Enumeration" else ()
     value = next((item.value for item in items if item.name == value), value)
@@ -46,31 +49,34 @@ def setting(variable: "ScalarVariable", given: Setting) -> object:
 
 
 def typed(variable: "ScalarVariable", value: float) -> float | int | bool:
-    """A number as a value of the kind of a variable. Raises ValueError if it is none."""
-    if (own := kind(variable)) == "real":
+    """Convert a number to the kind of a variable (real, integer, boolean); ValueError if it is none."""
+    if (variable_kind := kind(variable)) == "real":
         return value
     number = int(value)
-    if number != value or (own == "boolean" and number not in (0, 1)):
+    if number != value or (variable_kind == "boolean" and number not in (0, 1)):
         raise ValueError(f"{variable.name} = {value:g} is no {variable.type}")
-    return bool(number) if own == "boolean" else number
+    return bool(number) if variable_kind == "boolean" else number
 
 
 def course(variable: "ScalarVariable", stimuli: TimeSeries, times: Array, before: bool) -> list[Any]:
-    """An input at times: straight between rows if it is real, else held; see `Series.at`."""
+    """Values of an input at times (n) [s]: real inputs are interpolated linearly, others are held.
+
+    left_limit : at a jump, take the value before it instead of the value after it; real inputs only
+    """
     if kind(variable) != "real":
         return [typed(variable, value) for value in stimuli.held(variable.name, times).tolist()]
-    found = stimuli.before(variable.name, times) if before else stimuli.at(variable.name, times)
-    return list(found.tolist())
+    values = stimuli.before(variable.name, times) if before else stimuli.at(variable.name, times)
+    return list(values.tolist())
 
 
 def has_start(variable: "ScalarVariable") -> bool:
-    """Whether the start value is one that can be compared."""
-    set_from_outside = variable.causality in ("parameter", "input") and variable.start is not None
-    return set_from_outside and variable.type in KINDS and not variable.dimensions
+    """Whether a variable is a parameter or input with a start value that can be compared."""
+    is_settable = variable.causality in ("parameter", "input") and variable.start is not None
+    return is_settable and variable.type in KINDS and not variable.dimensions
 
 
 def start(variable: "ScalarVariable") -> float | int | bool:
-    """The start value of modelDescription.xml."""
+    """Start value of a variable in modelDescription.xml, converted to its type."""
     text = str(variable.start)
     if variable.type == "Boolean":
         return text in ("true", "1")

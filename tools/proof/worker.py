@@ -1,7 +1,8 @@
-"""The process in which an importer runs: a crash, and what it prints, stay here.
+"""Process in which an importer runs, so that crashes and printed output do not disturb the caller.
 
-It reads one JSON document, {"importer", "tasks"}, and answers with one line of JSON per task: {"rows",
-"messages"} or {"error", "messages"}. A task that has "start" is read for its start values instead.
+The process reads one JSON object, {"importer", "tasks"}, from standard input. It answers with one line of
+JSON for each task: {"rows", "messages"} or {"error", "messages"}. For a task with "start", it reads the start
+values of the outputs and simulates nothing.
 """
 
 import json
@@ -16,34 +17,40 @@ from . import importers
 from .task import Task
 
 _REFUSED = re.compile(r"fmi[23](?:Error|Fatal|Discard)\s+(?P<reason>\S.*)")
-"""How ecos logs what an FMU refuses."""
+"""Line in the log of ecos for a call that an FMU refused."""
 
 
 def main() -> None:
-    """Execute the tasks of standard input."""
+    """Execute the tasks read from standard input, and write the answers to standard output."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     replies = os.fdopen(os.dup(1), "w", encoding="utf-8")
     document = json.load(sys.stdin)
     with tempfile.TemporaryFile("w+", encoding="utf-8", errors="replace") as log:
         for handle in (1, 2):  # also what libraries print
             os.dup2(log.fileno(), handle)
-        known = importers.IMPORTERS[document["importer"]]
+        functions = importers.IMPORTERS[document["importer"]]
         for task in document["tasks"]:
-            started = task.pop("start", False)
-            execute = importers.start_values if started else known[task["interface"]]
+            reads_start_values = task.pop("start", False)
+            execute = importers.start_values if reads_start_values else functions[task["interface"]]
             reply = _reply(execute, task, log)
             replies.write(json.dumps(reply) + "\n")
             replies.flush()
 
 
 def _reply(execute: Any, task: dict[str, Any], log: TextIO) -> dict[str, Any]:
-    """What becomes of a task; an error is one line, the FMU's own where it gives one."""
+    """Execute a task and return the answer: {"rows", "messages"} or {"error", "messages"}.
+
+    execute : function of the importer
+    log     : file with the output of the importer
+
+    An error is one line: the message of the FMU if there is one, else that of the importer.
+    """
     begin, messages = log.seek(0, os.SEEK_END), list[str]()
     error = ""
     rows: Any = []
     try:
-        asked = Task(**task)
-        rows = asked.compared(execute(asked, messages))
+        job = Task(**task)
+        rows = job.compared(execute(job, messages))
     except Exception as failure:  # importers raise bare Exception
         error = " ".join(str(failure).split()) or type(failure).__name__
     log.seek(begin)

@@ -1,1 +1,1 @@
-"""From uncertain parameters to bands of stiffness, damping and displacement; sweeps of FMUs."""
+"""Uncertainty propagation: bands of stiffness, damping and displacement; sweeps of FMUs over parameters."""

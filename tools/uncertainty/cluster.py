@@ -1,4 +1,4 @@
-"""A sweep on the workers of a dask cluster that the user names."""
+"""Runs of a sweep on the workers of a dask cluster."""
 
 from collections import Counter
 from collections.abc import Generator, Iterator, Mapping, Sequence
@@ -12,9 +12,9 @@ from uuid import uuid4
 from .worker import KILLED, LoadRamp
 
 AHEAD = 4
-"""Runs that wait at each worker [1]: enough to keep it busy."""
+"""Runs submitted at once for each worker thread [1]: enough to keep the workers busy."""
 MOST_LOST = 3
-"""How often a run is started again [1] whose result was lost with its worker."""
+"""Maximum number of restarts of a run whose result was lost with its worker [1]."""
 
 
 def cluster_runs(
@@ -24,10 +24,15 @@ def cluster_runs(
     runs: Sequence[Mapping[str, Any]],
     todo: Sequence[int],
 ) -> Generator[dict[str, object]]:
-    """Entries of runs as they end; never more than AHEAD per worker are under way.
+    """Run the ramps on a dask cluster, and yield the journal entry of each run when it ends.
 
-    Raises ValueError if dask is missing or the scheduler does not answer, RuntimeError if it has no worker or
-    one cannot run at all.
+    scheduler : address of the dask scheduler
+    runs, todo : settings of all runs, and the indices of those to be run
+
+    At most RUNS_PER_WORKER runs for each worker thread are submitted at the same time.
+
+    Raises ValueError if dask is missing or the scheduler does not answer. Raises RuntimeError if the cluster
+    has no worker, or a worker cannot run the FMU at all.
     """
     with _client(scheduler) as client:
         from .plugin import FmuDistribution
@@ -47,7 +52,7 @@ def cluster_runs(
 
 @contextmanager
 def _client(scheduler: str) -> Iterator[Any]:
-    """A dask client of a scheduler, with the TLS settings of dask's own configuration."""
+    """Connect to a dask scheduler; TLS settings are those of dask's own configuration."""
     try:
         from distributed import Client
     except ImportError as error:
@@ -69,6 +74,10 @@ def _client(scheduler: str) -> Iterator[Any]:
 def _as_completed(
     client: Any, key: str, drive: LoadRamp, runs: Sequence[Mapping[str, Any]], todo: Sequence[int]
 ) -> Iterator[dict[str, object]]:
+    """Submit runs to a dask client, and yield the journal entry of each run when it ends.
+
+    key : key under which the workers have the FMU
+    """
     from distributed import KilledWorker, as_completed
 
     from .plugin import distributed_run
@@ -94,7 +103,7 @@ def _as_completed(
                 text = " ".join(str(error).split())[:200]
                 error_name = type(error).__name__
                 raise RuntimeError(f"run {index}: the worker failed: {error_name}: {text}") from None
-            queue.add(submit(index))  # its result went down with another run's process
+            queue.add(submit(index))  # its result was lost when another run killed the worker
             continue
         for following in islice(waiting, 1):
             queue.add(submit(following))

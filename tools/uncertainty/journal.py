@@ -1,9 +1,9 @@
-"""The folder of a sweep: `study.json` says what is swept, `runs.jsonl` has one line per finished run.
+"""Folder of a sweep: `study.json` describes the study, `runs.jsonl` has one line for each finished run.
 
-Lines are only ever appended, each in one write and flushed to the disk, so a sweep may be killed at any
-time: at most an unfinished last line is lost, which the next sweep cuts off. Every line, a row, holds `run`
-(its index in the study), `parameters`, and either `columns` (the ramp) or `error` (the failure's message).
-Rows are checked when they are read: the folder may have been anybody's.
+A line is appended in one write and flushed to the disk. Therefore a sweep may be killed at any time: at most
+an unfinished last line is lost, and the next sweep removes it. Each line is a JSON object with `run` (index
+in the study), `parameters`, and either `columns` (results of the ramp) or `error` (message). Lines are
+checked when they are read, because the folder may come from an untrusted source.
 """
 
 import hashlib
@@ -23,18 +23,18 @@ from jointfmu.files.writing import made_folder, write_text
 
 STUDY, RUNS, BANDS = "study.json", "runs.jsonl", "bands.csv"
 FAR = 1 << 40
-"""Place in the file of runs [byte] that no run reaches."""
+"""Position of the locked byte in the file of runs [byte], beyond all runs."""
 
 
 def digest(data: bytes) -> str:
-    """SHA-256 as text."""
+    """SHA-256 of data, as hexadecimal text."""
     return hashlib.sha256(data).hexdigest()
 
 
 def claim(folder: Path, study: Mapping[str, object]) -> None:
-    """Make the folder this study's, or check that it already is.
+    """Write a study into its folder, or check that the folder already holds this study.
 
-    Raises ValueError if it holds another study (the line names what differs) or foreign files.
+    Raises ValueError if the folder holds another study (the message names a difference) or other files.
     """
     path = folder / STUDY
     if not path.exists():
@@ -44,24 +44,27 @@ def claim(folder: Path, study: Mapping[str, object]) -> None:
         return
     data = read_bytes(path, "a study of a sweep")
     try:
-        held = json.loads(data.decode())
+        present = json.loads(data.decode())
     except (ValueError, RecursionError) as error:
         raise ValueError(f"{path}: is no study of a sweep ({error}); expected another folder") from None
-    if not isinstance(held, dict):
+    if not isinstance(present, dict):
         raise ValueError(f"{path}: is no study of a sweep (no JSON object); expected another folder")
-    if held == json.loads(json.dumps(study)):
+    if present == json.loads(json.dumps(study)):
         return
-    changed = sorted(key for key in {*held, *study} if held.get(key) != study.get(key))
-    before, now = (json.dumps(record.get(changed[0])) for record in (held, study))
+    changed = sorted(key for key in {*present, *study} if present.get(key) != study.get(key))
+    old, new = (json.dumps(record.get(changed[0])) for record in (present, study))
     raise ValueError(
-        f"{folder}: holds another study ({printable(changed[0])[:60]} = {before[:60]}, now {now[:60]}); "
+        f"{folder}: holds another study ({printable(changed[0])[:60]} = {old[:60]}, now {new[:60]}); "
         "expected the same study or another folder"
     )
 
 
 @contextmanager
 def claimed(folder: Path, study: Mapping[str, object]) -> Iterator[None]:
-    """`claim`; a folder that is new is removed again if the work is refused before any run is finished."""
+    """Context of a claimed folder, see `claim`.
+
+    If the context raises ValueError before a run is finished, a new folder is removed again.
+    """
     new = not (folder / STUDY).exists()
     with made_folder(folder):
         claim(folder, study)
@@ -76,12 +79,15 @@ def claimed(folder: Path, study: Mapping[str, object]) -> Iterator[None]:
 
 
 class Journal:
-    """The file of runs, open for appending; only one process may hold it.
+    """File of finished runs of a sweep, open for appending and locked by this process.
 
-    count : runs of the study
+    count         : number of runs of the study
+    finished      : indices of the finished runs
+    failed        : number of failed runs
+    first_failure : entry of the first failed run, or None
 
-    To enter it raises ValueError, one line, if another process holds it, or for a row that is no run of the
-    study.
+    Entering the context raises ValueError, one line, if another process has locked the file, or if a row is
+    no run of the study.
     """
 
     def __init__(self, folder: Path, count: int) -> None:
@@ -119,7 +125,7 @@ class Journal:
         self.file.close()
 
     def add(self, entry: Mapping[str, object]) -> None:
-        """Append a finished run, once."""
+        """Append the entry of a finished run, unless the run is already in the file."""
         if entry["run"] in self.finished:
             return
         self.file.write(json.dumps(entry).encode() + b"\n")
@@ -128,6 +134,7 @@ class Journal:
         self._note(entry)
 
     def _note(self, entry: Mapping[str, Any]) -> None:
+        """Update the counts and the first failure with an entry."""
         self.finished.add(int(entry["run"]))
         if "error" in entry:
             self.failed += 1
@@ -135,12 +142,15 @@ class Journal:
 
 
 def entries(folder: Path) -> Iterator[dict[str, Any]]:
-    """All finished runs of a folder. Raises ValueError, one line, for a row that is no run."""
+    """Entries of all finished runs of a folder. Raises ValueError, one line, for a row that is no run."""
     return (entry for entry, _ in _lines(folder / RUNS))
 
 
 def _lines(path: Path) -> Iterator[tuple[dict[str, Any], int]]:
-    """Complete lines and where each ends in the file; stops before an unfinished one."""
+    """Yield (entry, position of its end in the file [byte]) of each complete line.
+
+    Raises ValueError, one line, for a row that is no run, a repeated run, or columns of another length.
+    """
     end, rows, shape = 0, dict[int, int](), dict[str, int]()
     check_regular(path, "the journal of a sweep")
     with path.open("rb") as file:
@@ -150,11 +160,11 @@ def _lines(path: Path) -> Iterator[tuple[dict[str, Any], int]]:
             try:
                 entry = json.loads(line.decode())
                 _check(entry)
-                if (before := rows.setdefault(entry["run"], row)) != row:
-                    raise ValueError(f"run {entry['run']} stands in row {before} already")
-                if found := {name: len(values) for name, values in entry.get("columns", {}).items()}:
-                    shape = shape or found
-                    if found != shape:
+                if (first_row := rows.setdefault(entry["run"], row)) != row:
+                    raise ValueError(f"run {entry['run']} stands in row {first_row} already")
+                if lengths := {name: len(values) for name, values in entry.get("columns", {}).items()}:
+                    shape = shape or lengths
+                    if lengths != shape:
                         raise ValueError("its columns are not those of the other runs")
             except (ValueError, RecursionError) as error:
                 raise _no_run(path, row, str(error)) from None
@@ -163,6 +173,7 @@ def _lines(path: Path) -> Iterator[tuple[dict[str, Any], int]]:
 
 
 def _no_run(path: Path, row: int, reason: str) -> ValueError:
+    """Error for a row that is no run of the study."""
     return ValueError(
         f"{path}: row {row}: {printable(reason)[:200]}; expected a run as the sweep wrote it: delete "
         "the row, and the same command repeats its run"
@@ -170,7 +181,7 @@ def _no_run(path: Path, row: int, reason: str) -> ValueError:
 
 
 def _check(entry: object) -> None:
-    """Raise ValueError if a value of JSON is no run."""
+    """Raise ValueError if a JSON value is no journal entry of a run."""
     if not isinstance(entry, dict):
         raise ValueError("is no JSON object")
     run, parameters = entry.get("run"), entry.get("parameters")
@@ -207,20 +218,21 @@ def _check(entry: object) -> None:
 
 
 def _is_number(value: object) -> bool:
+    """Whether a JSON value is a finite number (no boolean)."""
     return type(value) is int or (type(value) is float and isfinite(value))
 
 
 def _shown(value: object) -> str:
-    """A value of JSON in few characters."""
+    """Format a JSON value in at most 60 characters."""
     return json.dumps(value)[:60]
 
 
 def _lock(handle: int) -> None:
-    """Hold the file until it is closed; OSError if another process does."""
+    """Lock a file for this process until it is closed; OSError if another process has locked it."""
     if sys.platform == "win32":
         import msvcrt
 
-        os.lseek(handle, FAR, os.SEEK_SET)  # what is locked cannot be read, so a byte behind all runs
+        os.lseek(handle, FAR, os.SEEK_SET)  # locked bytes cannot be read: lock a byte beyond all runs
         msvcrt.locking(handle, msvcrt.LK_NBLCK, 1)
     else:
         import fcntl

@@ -1,4 +1,4 @@
-"""How an FMU gets to the workers of a sweep (needs dask.distributed)."""
+"""Distribution of an FMU to the workers of a dask cluster (needs dask.distributed)."""
 
 import shutil
 import tempfile
@@ -11,20 +11,21 @@ from distributed import WorkerPlugin
 from .worker import LoadRamp, one_run, slim
 
 FILES: dict[str, Path] = {}
-"""{key: path} of the FMUs that this worker has."""
+"""{key: path} of the FMUs stored on this worker."""
 
 
 def distributed_run(
     key: str, drive: LoadRamp, index: int, settings: Mapping[str, object]
 ) -> dict[str, object]:
-    """`one_run` on a worker that has the FMU."""
+    """Run one load ramp on a dask worker, with the FMU stored there under `key`; see `run_sample`."""
     return one_run(FILES[key], drive, index, settings)
 
 
 class FmuDistribution(WorkerPlugin):  # type: ignore[misc]
-    """Gives an FMU to every worker, also to one that is started later, and takes it away in the end.
+    """Dask plugin that stores an FMU on every worker, and deletes the FMU at the end.
 
-    Only what the machine runs is kept of it, so that it unpacks faster for every run.
+    Workers that start later receive the FMU, too. Sources, documentation and binaries of other platforms are
+    removed from the FMU, so that each run unpacks it faster.
     """
 
     def __init__(self, key: str, file_name: str, data: bytes) -> None:

@@ -1,5 +1,6 @@
-"""What a user wants to know, as a problem: parameters, distributions, a ramp of load, a joint's fast
-curves.
+"""Statement of an uncertainty propagation: parameters, distributions, load ramp, reduced curves of the joint.
+
+Reduced curves are a fast evaluation of the joint for many samples at once.
 """
 
 import re
@@ -20,19 +21,20 @@ from ..joint_parts import part
 from .study import Uncertain, is_relative, samples_of, split
 
 Evaluate = Callable[[type[Any], Mapping[str, Any], Array, Array], dict[str, Array]]
+"""Type of `ReducedCurves.evaluate`."""
 
 
 @dataclass(frozen=True, slots=True)
 class Reduced:
-    """A joint's curves over a ramp of load.
+    """Reduced curves of a joint: outputs along a load ramp, for many samples at once.
 
     load     : the ramped input
-    outputs  : what is computed along the ramp
-    to       : default end of the ramp, of the parameter set
-    most     : where the tabulated law ends, of the parameter set (numbers or samples)
-    evaluate : (class of the parameter set, values or samples (n), loads (m), factor (n, 1)) -> outputs
-        (n, m) at factor times loads
-    exact    : (parameter set, loads (m)) -> outputs (m), by the exported spring itself
+    outputs  : variables computed along the ramp
+    default_end : function: parameter set -> default end of the ramp
+    max_load : function: parameter set (numbers or samples) -> largest load of the tabulated law
+    evaluate : function: class of the parameter set, {name: value or samples (n)}, loads (m), load factors
+        (n, 1) -> outputs (n, m) at factors times loads
+    exact    : function: parameter set, loads (m) -> outputs (m), by the spring model of the exported FMU
     """
 
     load: Variable
@@ -44,36 +46,40 @@ class Reduced:
 
     @property
     def units(self) -> dict[str, str]:
+        """{output: unit}."""
         return {v.name: v.unit for v in self.outputs}
 
 
 def reduced(kind: Kind) -> Reduced:
-    """What the joint's folder says.
+    """Reduced curves of a kind of joint, from its module `reduced`.
 
-    Raises ValueError if it has no reduced evaluation.
+    Raises ValueError if the joint has none.
     """
-    found = part(kind, "reduced")
-    if found is None:
+    module = part(kind, "reduced")
+    if module is None:
         raise ValueError(f"joint = {kind.name!r} has no evaluation for many samples at once")
-    curves: Reduced = found.REDUCED
+    curves: Reduced = module.REDUCED
     return curves
 
 
 INTERVAL = "interval"
-"""Word for the interval that the parameter file states in a source."""
+"""Setting that stands for the interval stated in the parameter file: its range, or the text of its source."""
 _ENDS = re.compile(r"\binterval ([-+.\de]+) to ([-+.\de]+)")
+"""Interval in the text of a source: its two ends."""
 LOAD_END = "up to the end of the tabulated law"
+"""Meaning of the load interval, for error messages."""
 
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """What is propagated.
+    """Uncertainty propagation problem of a joint.
 
+    joint      : name of the kind of joint
     parameters : class of the parameter set
-    values    : the parameter file's, with the plain settings
-    uncertain : parameters with a distribution, the load's last if it has one
-    loads     : (m) ramp of the load, ascending; one point if the load itself was set
-    relative  : whether the load's distribution is a factor on the ramp; None if it has none
+    values     : {name: value} of the parameter file, with the settings that are plain values
+    uncertain  : parameters with a distribution; the load is the last one if it has a distribution
+    loads      : load ramp (m), ascending; one point if the load itself was set
+    relative   : whether the distribution of the load is a factor on the ramp; None if it has none
     """
 
     joint: str
@@ -88,35 +94,43 @@ class Problem:
         return reduced(KINDS[self.joint])
 
     def sampled(self, points: Array) -> tuple[dict[str, object], Array]:
-        """Values with samples (n) among them, and factors (n) on the load, from points of the unit cube."""
-        drawn = samples_of(self.uncertain, points)
-        load = drawn.pop(self.reduced.load.name, None)
+        """Values of all parameters, {name: value or samples (n)}, and load factors (n).
+
+        points : points (n, d) of the unit cube
+        """
+        samples = samples_of(self.uncertain, points)
+        load = samples.pop(self.reduced.load.name, None)
         factor = np.ones(len(points)) if load is None else load if self.relative else load / self.loads[-1]
-        return {**self.values, **drawn}, factor
+        return {**self.values, **samples}, factor
 
 
 def pose(file: ParameterFile, given: Mapping[str, object], to: float | None, points: int) -> Problem:
-    """The problem of a parameter file and settings (values and distributions by name).
+    """State the problem of a parameter file and settings.
 
-    A parameter of which nothing is set has the range that the file states, evenly.
+    settings : {name: value or text of a distribution}
+    to       : end of the load ramp; None: end of the joint's law, or of the file
+    points   : number of points of the ramp
 
-    Raises ValueError naming what is unknown, outside its interval, or cannot be uncertain.
+    A parameter without setting is uniformly distributed over the range that the file states, if it does.
+
+    Raises ValueError for an unknown name, a value outside its interval, or a distribution of a parameter that
+    cannot be uncertain.
     """
     kind = KINDS[file.joint]
     curves, declared = reduced(kind), dict(flat_fields(type(file.values)))
     base = dict(file.flat)
     lists = {name for name, item in declared.items() if "series" in item.metadata}
-    known = [*(base.keys() - lists), curves.load.name]
-    if unknown := [name for name in given if name not in known]:
-        allowed = ", ".join(name for name in [*declared, curves.load.name] if name in known)
+    settable = [*(base.keys() - lists), curves.load.name]
+    if unknown := [name for name in given if name not in settable]:
+        allowed = ", ".join(name for name in [*declared, curves.load.name] if name in settable)
         raise ValueError(f"unknown name {unknown[0]!r}, allowed are {allowed}")
     given = dict.fromkeys(file.ranges, INTERVAL) | dict(given)
     given = {name: of_source(name, value, file) for name, value in given.items()}
     load_text = given.get(curves.load.name)
     relative = isinstance(load_text, str) and is_relative(load_text)
     plain, uncertain = split(given, base | ({curves.load.name: 1.0} if relative else {}))
-    fixed = plain.pop(curves.load.name, None)
-    stated = file.with_values(plain, "user", "set for the study")
+    set_load = plain.pop(curves.load.name, None)
+    nominal = file.with_values(plain, "user", "set for the study")
     for parameter in uncertain:
         if parameter.name != curves.load.name:
             _check(parameter, declared[parameter.name])
@@ -124,32 +138,37 @@ def pose(file: ParameterFile, given: Mapping[str, object], to: float | None, poi
     if not order:
         raise Refusal("no parameter has a distribution; expected NAME=LOW..HIGH or a study file", "settings")
     load = next((parameter for parameter in order if parameter.name == curves.load.name), None)
-    at = fixed if fixed is not None else None if load is None or relative else float(load.law.median())
-    end = to if to is not None or at is not None else file.start(curves.load.name) or None
-    loads = _ramp(curves, stated.values, at, end, points, load)
-    return Problem(file.joint, type(file.values), stated.flat, order, loads, relative if load else None)
+    median = None if load is None or relative else float(load.law.median())
+    single = set_load if set_load is not None else median
+    end = to if to is not None or single is not None else file.start(curves.load.name) or None
+    loads = _ramp(curves, nominal.values, single, end, points, load)
+    return Problem(file.joint, type(file.values), nominal.flat, order, loads, relative if load else None)
 
 
 def of_source(name: str, value: object, file: ParameterFile) -> object:
-    """A setting; INTERVAL becomes the distribution between the ends of the parameter's range, or those that
-    its source states.
+    """Replace the setting INTERVAL by the text LOW..HIGH; other settings are returned unchanged.
 
-    Raises ValueError if it states none.
+    The ends are the range of the parameter in the file, else the interval stated in the text of its source.
+
+    Raises ValueError if the file states neither.
     """
     if value != INTERVAL:
         return value
     if name in file.ranges:
         return "{!r}..{!r}".format(*file.ranges[name])
     source = file.sources.get(name, "")
-    if not (found := _ENDS.search(source)):
+    if not (match := _ENDS.search(source)):
         raise ValueError(
             f"{name} = {INTERVAL}: its source states none: {source!r}; expected '... interval LOW to HIGH'"
         )
-    return f"{found[1]}..{found[2]}"
+    return f"{match[1]}..{match[2]}"
 
 
 def _check(parameter: Uncertain, item: Any) -> None:
-    """Raise ValueError if a parameter cannot be uncertain or its distribution leaves the interval."""
+    """Raise ValueError if a parameter cannot be uncertain, or its distribution exceeds its interval.
+
+    item : dataclass field that declares the parameter
+    """
     if "allowed" in item.metadata:
         raise ValueError(f"{parameter.name} = {parameter.text}: is a named choice and cannot be uncertain")
     if item.metadata["whole"]:
@@ -163,7 +182,14 @@ def _check(parameter: Uncertain, item: Any) -> None:
 def _ramp(
     curves: Reduced, values: object, at: object, to: float | None, points: int, load: Uncertain | None
 ) -> Array:
-    """The loads: a ramp from 0 to `to`, or the one load that was set."""
+    """Loads (m): a ramp from 0 to `to`, or the single load that was set.
+
+    values      : parameter set
+    single_load : the load that was set, or None
+    load        : distribution of the load, or None
+
+    Raises ValueError for a load outside of the tabulated law, or a wrong ramp.
+    """
     allowed = Interval.of(gt=0.0, le=curves.most(values))
     if at is not None:
         if to is not None:
@@ -173,8 +199,8 @@ def _ramp(
         ends = [end for end in load.support if np.isfinite(end) and end != 0.0] if load else []
         for value in (float(at), *ends):
             if not allowed.contains(value):
-                given = f"{curves.load.name} = {value:g} {curves.load.unit}"
-                raise ValueError(f"{given} is outside {allowed}: {LOAD_END}")
+                text = f"{curves.load.name} = {value:g} {curves.load.unit}"
+                raise ValueError(f"{text} is outside {allowed}: {LOAD_END}")
         return np.array([float(at)])
     end = curves.to(values) if to is None else to
     if not allowed.contains(end):

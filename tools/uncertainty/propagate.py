@@ -1,8 +1,8 @@
-"""Samples of the parameters through the joint to bands along a ramp of load; Sobol' indices.
+"""Propagation of parameter samples through a joint: bands along a load ramp, and Sobol' indices.
 
-First order and total by the estimators of Saltelli et al. 2010 (doi:10.1016/j.cpc.2009.09.018) in
-scipy.stats.sobol_indices; 95 % confidence intervals by the variance of the estimators' terms, as if the
-samples were independent, which for a Sobol' sequence is on the safe side.
+First-order and total indices: estimators of Saltelli et al. 2010 (doi:10.1016/j.cpc.2009.09.018) in
+scipy.stats.sobol_indices. 95 % confidence intervals follow from the variance of the terms of the estimators,
+as if the samples were independent. For a Sobol' sequence this is conservative.
 """
 
 from collections.abc import Iterator, Mapping
@@ -24,26 +24,34 @@ Mask = NDArray[np.bool_]
 Singles = NDArray[np.float32]
 
 QUANTILES = (0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99)
+"""Probabilities of the quantiles that bands consist of."""
 BLOCK = 512
-"""Samples that are evaluated at once: what fits the cache."""
+"""Number of samples evaluated at once: they fit into the processor cache."""
 ROUND_OFF = 1e-6
-"""Of single precision [1]."""
+"""Relative round-off in single precision [1]."""
 CHECKED = 4
-"""Samples that are compared with the exported spring."""
+"""Number of samples at which the reduced curves are compared with the spring model of the exported FMU."""
 ACCURACY = 1e-2
-"""Largest relative difference between the reduced evaluation and the spring that is let pass [1]."""
+"""Largest allowed relative difference between reduced curves and exported spring model [1]."""
 
 
 @dataclass(frozen=True, slots=True)
 class SampledOutputs:
-    """Outputs (m, n) in single precision by name at accepted samples, NaN elsewhere."""
+    """Outputs at m loads and n samples, in single precision.
+
+    outputs  : {name: (m, n)}; NaN at refused samples
+    accepted : mask (n) of the samples that the law accepts
+    """
 
     outputs: Mapping[str, Singles]
     good: Mask
 
 
 def run(task: Problem, points: Array, loads: Array, text: str) -> SampledOutputs:
-    """All outputs at loads (m) for points (n, d) of the unit cube."""
+    """Evaluate all outputs at loads (m) for points (n, d) of the unit cube.
+
+    text : label of the progress bar
+    """
     values, factor = task.sampled(points)
     n = len(points)
     joint = columns(task.parameters, values)
@@ -54,9 +62,9 @@ def run(task: Problem, points: Array, loads: Array, text: str) -> SampledOutputs
     index = np.flatnonzero(good)
     blocks = [index[i : i + BLOCK] for i in range(0, index.size, BLOCK)]
     for block in track(blocks, text, len(blocks)):
-        for part, results in _evaluated(task, values, factor, block, loads):
+        for part_indices, results in _evaluated(task, values, factor, block, loads):
             for name, value in results.items():
-                outputs[name][:, part] = value.T
+                outputs[name][:, part_indices] = value.T
     for column in outputs.values():
         good &= np.all(np.isfinite(column), axis=0)
     return SampledOutputs(outputs, good)
@@ -65,11 +73,14 @@ def run(task: Problem, points: Array, loads: Array, text: str) -> SampledOutputs
 def _evaluated(
     task: Problem, values: Mapping[str, Any], factor: Array, block: Any, loads: Array
 ) -> Iterator[tuple[Any, dict[str, Array]]]:
-    """Outputs of a block of samples; one that the law refuses is halved until it stands alone."""
-    some = {k: v[block] if isinstance(v, np.ndarray) else v for k, v in values.items()}
+    """Evaluate a block of samples: yield (indices of samples, {output: (samples, m)}).
+
+    If the law refuses the block, the block is halved, down to single samples. Refused samples are left out.
+    """
+    block_values = {k: v[block] if isinstance(v, np.ndarray) else v for k, v in values.items()}
     try:
         with np.errstate(all="ignore"):
-            results = task.reduced.evaluate(task.parameters, some, loads, factor[block][:, None])
+            results = task.reduced.evaluate(task.parameters, block_values, loads, factor[block][:, None])
     except (ValueError, RuntimeError):
         halves = (block[: block.size // 2], block[block.size // 2 :]) if block.size > 1 else ()
         for half in halves:
@@ -80,13 +91,17 @@ def _evaluated(
 
 @dataclass(frozen=True, slots=True)
 class Bands:
-    """Distribution of every output along the ramp.
+    """Distribution of each output along the load ramp.
 
-    loads     : (m) nominal load
+    loads     : nominal loads (m)
     quantiles : {output: (len(QUANTILES), m)}
-    mean, sd, nominal : {output: (m)}; nominal is of the parameter file
-    samples   : how many were drawn
-    error     : largest relative difference between reduced evaluation and spring at CHECKED samples
+    mean, sd  : mean and standard deviation, {output: (m)}
+    nominal   : outputs for the values of the parameter file, {output: (m)}
+    samples   : number of samples drawn
+    refused   : the samples that the law refuses
+    error     : largest relative difference [1] between reduced curves and exported spring model, at
+        CHECKED_SAMPLES samples
+    units     : {output: unit}
     """
 
     loads: Array
@@ -101,20 +116,20 @@ class Bands:
 
     @property
     def shown(self) -> list[str]:
-        """Outputs that are not zero throughout."""
+        """Names of the outputs that are not zero at all loads."""
         return [name for name in self.units if np.any(self.quantiles[name]) or np.any(self.nominal[name])]
 
     @property
     def moved(self) -> bool:
-        """Whether any output differs between samples, by more than single precision."""
+        """Whether any output differs between samples by more than the round-off of single precision."""
         return any(np.any(np.ptp(q, axis=0) > ROUND_OFF * np.abs(q[0])) for q in self.quantiles.values())
 
 
 def bands(task: Problem, points: Array) -> Bands:
-    """Bands of all outputs from points (n, d) of the unit cube.
+    """Bands of all outputs, from points (n, d) of the unit cube.
 
-    Raises RuntimeError if the law refuses every sample, or if the reduced evaluation misses the exported
-    spring by more than ACCURACY.
+    Raises RuntimeError if the law refuses all samples, or if the reduced curves differ from the exported
+    spring model by more than MAX_REDUCTION_ERROR.
     """
     outcome = run(task, points, task.loads, "samples")
     refused = refusals(task, points, outcome.good)
@@ -122,15 +137,15 @@ def bands(task: Problem, points: Array) -> Bands:
         raise RuntimeError(f"all {len(points)} samples are refused, the first: {refused.reason}")
     error = check(task, points, outcome)
     nominal = task.reduced.evaluate(task.parameters, task.values, task.loads, np.ones((1, 1)))
-    spread = {
+    statistics = {
         name: np.stack([_spread(row, outcome.good) for row in value], axis=1)
         for name, value in outcome.outputs.items()
     }
     return Bands(
         loads=task.loads,
-        quantiles={name: value[2:] for name, value in spread.items()},
-        mean={name: value[0] for name, value in spread.items()},
-        sd={name: value[1] for name, value in spread.items()},
+        quantiles={name: value[2:] for name, value in statistics.items()},
+        mean={name: value[0] for name, value in statistics.items()},
+        sd={name: value[1] for name, value in statistics.items()},
         nominal={name: value[0] for name, value in nominal.items()},
         samples=len(points),
         refused=refused,
@@ -140,26 +155,32 @@ def bands(task: Problem, points: Array) -> Bands:
 
 
 def _spread(row: Singles, good: Mask) -> Array:
-    """Mean, standard deviation and QUANTILES (linear between samples) of the accepted values of a row."""
-    kept = np.sort(row[good]).astype(np.float64)
-    places = np.array(QUANTILES) * (kept.size - 1)
-    return np.array([kept.mean(), kept.std(), *np.interp(places, np.arange(kept.size), kept)])
+    """Mean, standard deviation and quantiles (linear between samples) of one output at one load.
+
+    row, accepted : output (n), and mask (n) of the samples to be used
+    """
+    values = np.sort(row[good]).astype(np.float64)
+    positions = np.array(QUANTILES) * (values.size - 1)
+    return np.array([values.mean(), values.std(), *np.interp(positions, np.arange(values.size), values)])
 
 
 def one_sample(task: Problem, points: Array, i: int) -> tuple[dict[str, object], float, dict[str, float]]:
-    """Values, factor on the load, and the drawn numbers by name, of sample i."""
+    """Sample i: values of all parameters, load factor, and values of the uncertain parameters alone."""
     values, factor = task.sampled(points[i : i + 1])
     single = {k: float(v[0]) if isinstance(v, np.ndarray) else v for k, v in values.items()}
-    drawn = {name: float(v[0]) for name, v in samples_of(task.uncertain, points[i : i + 1]).items()}
-    return single, float(factor[0]), drawn
+    uncertain = {name: float(v[0]) for name, v in samples_of(task.uncertain, points[i : i + 1]).items()}
+    return single, float(factor[0]), uncertain
 
 
 def refusals(task: Problem, points: Array, good: Mask) -> Refused:
-    """How many samples are refused, and the first with the law's own words."""
-    bad = np.flatnonzero(~good)
-    if not bad.size:
+    """Refused samples: their number, and the first one with the error message of the law.
+
+    accepted : mask (n) of the accepted samples
+    """
+    refused = np.flatnonzero(~good)
+    if not refused.size:
         return Refused(0, {}, "")
-    values, factor, drawn = one_sample(task, points, int(bad[0]))
+    values, factor, sample = one_sample(task, points, int(refused[0]))
     reason = "the law gives no finite value"
     load, ramped = factor * float(task.loads[-1]), task.reduced.load
     allowed = Interval.of(gt=0.0, le=task.reduced.most(columns(task.parameters, values)))
@@ -169,47 +190,52 @@ def refusals(task: Problem, points: Array, good: Mask) -> Refused:
         task.reduced.exact(build(task.parameters, values), load * np.ones(1))
     except (ValueError, RuntimeError) as error:
         reason = str(error)
-    return Refused(int(bad.size), drawn, reason)
+    return Refused(int(refused.size), sample, reason)
 
 
 def check(task: Problem, points: Array, outcome: SampledOutputs) -> float:
-    """Largest relative difference to the exported spring over CHECKED samples and a few loads.
+    """Largest relative difference [1] between reduced curves and exported spring model.
 
-    Raises RuntimeError beyond ACCURACY, naming the output and the sample.
+    It is computed at CHECKED_SAMPLES samples and at most 6 loads.
+
+    Raises RuntimeError if it exceeds MAX_REDUCTION_ERROR; the message names the output and the sample.
     """
-    few = np.unique(np.linspace(0, task.loads.size - 1, 6).astype(int))
-    few = few[task.loads[few] > 0.0]
-    worst = 0.0
+    load_indices = np.unique(np.linspace(0, task.loads.size - 1, 6).astype(int))
+    load_indices = load_indices[task.loads[load_indices] > 0.0]
+    largest = 0.0
     for i in np.flatnonzero(outcome.good)[:CHECKED]:
-        values, factor, drawn = one_sample(task, points, int(i))
-        exact = task.reduced.exact(build(task.parameters, values), factor * task.loads[few])
+        values, factor, uncertain = one_sample(task, points, int(i))
+        exact = task.reduced.exact(build(task.parameters, values), factor * task.loads[load_indices])
         for name, value in exact.items():
             scale = np.where(value == 0.0, 1.0, np.abs(value))
-            miss = float(np.max(np.abs(outcome.outputs[name][few, i] - value) / scale))
-            if not miss <= ACCURACY:
-                sample = ", ".join(f"{k} = {v:g}" for k, v in drawn.items())
+            error = float(np.max(np.abs(outcome.outputs[name][load_indices, i] - value) / scale))
+            if not error <= ACCURACY:
+                sample = ", ".join(f"{k} = {v:g}" for k, v in uncertain.items())
                 raise RuntimeError(
-                    f"{name} of the reduced evaluation misses the joint's own by {miss:.2g} at {sample}, "
+                    f"{name} of the reduced evaluation misses the joint's own by {error:.2g} at {sample}, "
                     f"allowed is {ACCURACY:g}: take `jointfmu sweep` for such a study"
                 )
-            worst = max(worst, miss)
-    return worst
+            largest = max(largest, error)
+    return largest
 
 
 def design(task: Problem, count: int, seed: int) -> tuple[Array, Array]:
-    """Points (count, d) for the bands, and as many independent ones for the indices."""
+    """Two independent sets of points (count, d) of the unit cube: for bands and indices, for indices only."""
     d = len(task.uncertain)
     both = unit_design(count, 2 * d, seed)
     return both[:, :d], both[:, d:]
 
 
 LOADS = 21
-"""Most loads along the ramp at which indices are computed."""
+"""Maximum number of loads along the ramp at which Sobol' indices are computed."""
 
 
 @dataclass(frozen=True, slots=True)
 class Indices:
-    """Indices (s, d) of s outputs and d parameters, with the half widths of their 95 % intervals."""
+    """First-order and total Sobol' indices (s, d) of s outputs with respect to d parameters.
+
+    first_half, total_half : half widths (s, d) of their 95 % confidence intervals
+    """
 
     first: Array
     first_half: Array
@@ -219,7 +245,13 @@ class Indices:
 
 @dataclass(frozen=True, slots=True)
 class Sensitivity:
-    """Indices (m, d) by output at loads (m); `rows` is the number of base samples."""
+    """Sobol' indices along the load ramp.
+
+    loads   : (m)
+    names   : names of the uncertain parameters (d)
+    outputs : {output: indices (m, d)}
+    rows    : number of base samples
+    """
 
     loads: Array
     names: tuple[str, ...]
@@ -228,9 +260,12 @@ class Sensitivity:
 
 
 def indices(f_A: Array, f_B: Array, f_AB: Array) -> Indices:
-    """From outputs (s, n) at two independent sets of points and (d, s, n) with one column exchanged.
+    """Sobol' indices of s outputs from n base samples.
 
-    A row that is not finite everywhere counts for nothing.
+    f_A, f_B : outputs (s, n) at two independent sets of points A and B
+    f_AB     : outputs (d, s, n) at the points A, with one parameter (column) taken from B
+
+    A base sample with any output that is not finite is left out.
     """
     n = f_A.shape[1]
     good = np.isfinite(f_A).all(0) & np.isfinite(f_B).all(0) & np.isfinite(f_AB).all((0, 1))
@@ -245,18 +280,21 @@ def indices(f_A: Array, f_B: Array, f_AB: Array) -> Indices:
     level = np.where(level > 0.0, level, np.inf)
 
     def half(terms: Array, index: Array) -> Array:
-        """1.96 standard errors of a ratio of means (delta method)."""
-        spread = np.std(terms - index.T[:, :, None] * variance, axis=2)
-        return np.asarray(1.96 * (spread / level).T / np.sqrt(n))
+        """Half width of the 95 % interval: 1.96 standard errors of a ratio of means (delta method)."""
+        deviation = np.std(terms - index.T[:, :, None] * variance, axis=2)
+        return np.asarray(1.96 * (deviation / level).T / np.sqrt(n))
 
     return Indices(first, half(b * (ab - a), first), total, half(0.5 * (a - ab) ** 2, total))
 
 
 def sensitivity(task: Problem, A: Array, B: Array) -> Sensitivity:
-    """Indices of all outputs along the ramp from two independent designs (n, d), n a power of two."""
+    """Sobol' indices of all outputs along the load ramp.
+
+    A, B : two independent sets of points (n, d) of the unit cube, n a power of two
+    """
     n, d = A.shape
-    picked = np.unique(np.linspace(0, task.loads.size - 1, LOADS).astype(int))
-    loads = task.loads[picked]
+    load_indices = np.unique(np.linspace(0, task.loads.size - 1, LOADS).astype(int))
+    loads = task.loads[load_indices]
     loads = loads[loads > 0.0]
     sets = [A, B]
     for i in range(d):

@@ -1,4 +1,4 @@
-"""Bands and indices as table, CSV, JSON and pictures."""
+"""Results of an uncertainty propagation as table, CSV, JSON and plots."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -15,20 +15,24 @@ if TYPE_CHECKING:
 
 
 SHOWN = 6
-"""Loads that the table on the screen shows."""
+"""Maximum number of loads in the printed table."""
 
 
 def loads(task: Problem) -> list[float]:
-    """Loads above zero that the table on the screen shows."""
+    """Loads above zero in the printed table."""
     return [float(load) for load in task.loads[_shown(task.loads)] if load > 0.0]
 
 
 def _shown(values: Any) -> Any:
+    """Indices of at most TABLE_ROWS equally spaced values of a ramp."""
     return np.unique(np.linspace(0, values.size - 1, SHOWN).astype(int))
 
 
 def bands_csv(task: Problem, bands: Bands) -> str:
-    """One row per load: nominal, mean, standard deviation and quantiles of every output, exact numbers."""
+    """CSV text of the bands: one row for each load; nominal value, mean, standard deviation, quantiles.
+
+    Numbers are written without rounding.
+    """
     load = task.reduced.load
     heads, values = [(load.name, load.unit)], [bands.loads]
     for name, unit in bands.units.items():
@@ -42,7 +46,7 @@ def bands_csv(task: Problem, bands: Bands) -> str:
 
 
 def as_json(task: Problem, bands: Bands, sensitivity: Sensitivity | None) -> dict[str, object]:
-    """Everything as one JSON object."""
+    """Bands, refused samples and Sobol' indices as one JSON object."""
     outputs = {
         name: {
             "unit": unit,
@@ -84,17 +88,17 @@ def _indices_json(sensitivity: Sensitivity) -> dict[str, object]:
 
 
 def table(task: Problem, bands: Bands, sensitivity: Sensitivity | None) -> str:
-    """Bands at a few loads, and the indices at the end of the ramp."""
+    """Printed table: bands at a few loads, and Sobol' indices at the end of the ramp."""
     lines = []
-    picked = _shown(bands.loads)
-    at = {q: QUANTILES.index(q) for q in (0.05, 0.5, 0.95)}
+    load_indices = _shown(bands.loads)
+    quantile_indices = {q: QUANTILES.index(q) for q in (0.05, 0.5, 0.95)}
     for name in bands.shown:
         head = f"{task.reduced.load.name} [{task.reduced.load.unit}]"
         lines.append(f"{name} [{bands.units[name]}]")
         lines.append("".join(f"{x:>16}" for x in (head, "parameter file", "5 %", "50 %", "95 %")))
-        for j in picked:
+        for j in load_indices:
             row = [bands.loads[j], bands.nominal[name][j]]
-            row += [bands.quantiles[name][i, j] for i in at.values()]
+            row += [bands.quantiles[name][i, j] for i in quantile_indices.values()]
             lines.append("".join(f"{x:16.5g}" for x in row))
         lines.append("")
     if sensitivity is not None:
@@ -115,6 +119,7 @@ def table(task: Problem, bands: Bands, sensitivity: Sensitivity | None) -> str:
 
 
 def _indices_table(task: Problem, sensitivity: Sensitivity, outputs: Sequence[str]) -> list[str]:
+    """Lines of a table: Sobol' indices at the end of the load ramp."""
     load = f"{task.reduced.load.name} = {sensitivity.loads[-1]:g} {task.reduced.load.unit}"
     lines = [f"Sobol' indices at {load}, first order / total, +- 95 % interval"]
     width = max(len(name) for name in sensitivity.names) + 2
@@ -133,8 +138,9 @@ _COLOURS = (plots.BLUE, plots.RED, plots.GREEN, "#b8860b", "#7b4fa3", "#3a9ca6",
 
 
 def draw(path: Path, bands: Bands, sensitivity: Sensitivity | None, load: str) -> None:
-    """One column per output but those of zeros: bands, and total (line) and first-order (dashed) indices over
-    the load.
+    """Draw bands and Sobol' indices over the load, one column of plots for each output that is not zero.
+
+    Solid lines are total indices, dashed lines first-order indices.
     """
     names = bands.shown
     rows = 1 if sensitivity is None or bands.loads.size == 1 else 2
@@ -151,6 +157,7 @@ def draw(path: Path, bands: Bands, sensitivity: Sensitivity | None, load: str) -
 
 
 def _bands(axes: "Axes", bands: Bands, name: str, label: str, load: str) -> None:
+    """Draw median and quantile bands of an output over the load."""
     q = dict(zip(QUANTILES, bands.quantiles[name], strict=True))
     for low, high, shade in ((0.01, 0.99, 0.12), (0.05, 0.95, 0.2), (0.25, 0.75, 0.3)):
         text = f"{100 * low:g} to {100 * high:g} %"
@@ -164,6 +171,7 @@ def _bands(axes: "Axes", bands: Bands, name: str, label: str, load: str) -> None
 
 
 def _spread(axes: "Axes", bands: Bands, name: str, label: str) -> None:
+    """Draw the cumulative distribution of an output at a single load."""
     axes.plot(bands.quantiles[name][:, 0], 100.0 * np.array(QUANTILES), "o-", color=plots.BLUE)
     axes.axvline(bands.nominal[name][0], color=plots.RED, linestyle="--", label="parameter file")
     axes.set(xlabel=label, ylabel="samples below [%]", ylim=(0.0, 100.0))
@@ -171,6 +179,7 @@ def _spread(axes: "Axes", bands: Bands, name: str, label: str) -> None:
 
 
 def _indices(axes: "Axes", sensitivity: Sensitivity, name: str, load: str, legend: bool) -> None:
+    """Draw the Sobol' indices of an output over the load."""
     indices = sensitivity.outputs[name]
     for i, parameter in enumerate(sensitivity.names):
         colour = _COLOURS[i % len(_COLOURS)]

@@ -1,6 +1,6 @@
-"""A study: which parameters are uncertain and how, beside the values of a parameter file.
+"""Study of uncertain parameters: distributions for parameters of a parameter file.
 
-A study file is TOML, one entry per parameter with the same words as on the command line:
+A study file is TOML, with one entry for each parameter. The texts are the same as on the command line:
 
     schema = 1
     [parameters]
@@ -8,15 +8,15 @@ A study file is TOML, one entry per parameter with the same words as on the comm
     surface.G = "lognormal(20%)"
     eccentricity = "0..1e-5"
 
-What is known of a parameter, as one word of text, and its distribution:
+Text of an entry, and its distribution:
 
-    1.42                          a value, true, false or a named choice: not uncertain
-    1.38..1.46                    anything between, equally likely
-    loguniform(1e-12, 1e-10)      the same in the logarithm
-    1.42+-2%                      2 % about a value, equally likely; `+-2%` about the file's value
-    normal(1.42, 0.02)            mean and standard deviation, this also in %; `normal(2%)` about the file's
-    lognormal(2.4e-7, 20%)        median and factor of one standard deviation, 1.2 or 20 %; `lognormal(20%)`
-    triangular(1.3, 1.4, 1.5)     least, most likely, largest
+    1.42                          a value, true, false or a named choice: no distribution
+    1.38..1.46                    uniform between two values
+    loguniform(1e-12, 1e-10)      uniform in the logarithm
+    1.42+-2%                      uniform, 2 % about a value; `+-2%`: about the value of the file
+    normal(1.42, 0.02)            mean, standard deviation (number or %); `normal(2%)`: about the file's value
+    lognormal(2.4e-7, 20%)        median, factor of one standard deviation (1.2 or 20%); `lognormal(20%)`
+    triangular(1.3, 1.4, 1.5)     smallest, most likely, largest value
 """
 
 import math
@@ -42,10 +42,10 @@ _CALL = re.compile(r"(\w+)\((.*)\)")
 
 @dataclass(frozen=True, slots=True)
 class Uncertain:
-    """A parameter with a distribution.
+    """Uncertain parameter: name and distribution.
 
-    text : as the user wrote it
-    law  : frozen distribution of scipy.stats
+    text : text of the distribution, as the user wrote it
+    distribution : frozen distribution of scipy.stats
     """
 
     name: str
@@ -54,15 +54,17 @@ class Uncertain:
 
     @property
     def support(self) -> tuple[float, float]:
+        """Ends of the support of the distribution."""
         low, high = self.law.support()
         return float(low), float(high)
 
 
 def parse(name: str, text: str, base: float | None) -> Uncertain | None:
-    """The distribution that `text` describes; None if it is a plain value or word.
+    """Parse the text of a distribution; None if the text is a plain value or word.
 
-    `base` is the value of the parameter file, about which a lone percentage lies.
-    Raises ValueError naming the parameter, the text and what is allowed.
+    base : value of the parameter file, to which a percentage without a value refers; None if there is none
+
+    Raises ValueError that names the parameter, the text and the allowed forms.
     """
     try:
         law = _law(text.strip(), base)
@@ -72,17 +74,18 @@ def parse(name: str, text: str, base: float | None) -> Uncertain | None:
 
 
 def _law(text: str, base: float | None) -> Any:
+    """Parse a distribution of scipy.stats; None if the text is a plain value or word. See `parse`."""
     if ".." in text:
         return _uniform(*_numbers(text.split(".."), 2))
     if "+-" in text:
         middle, _, spread = text.partition("+-")
         m = _number(middle) if middle.strip() else _base(base)
-        half = abs(m) * _percent(spread) if _is_percent(spread) else _number(spread)
-        return _uniform(m - half, m + half)
+        half_width = abs(m) * _percent(spread) if _is_percent(spread) else _number(spread)
+        return _uniform(m - half_width, m + half_width)
     if call := _CALL.fullmatch(text):
         if call[1] not in _CALLS:
             raise ValueError(f"there is no distribution {call[1]!r}")
-        return _CALLS[call[1]]([part.strip() for part in call[2].split(",")], base)
+        return _CALLS[call[1]]([argument.strip() for argument in call[2].split(",")], base)
     return None
 
 
@@ -135,7 +138,7 @@ _CALLS = {
 
 
 def _about(parts: list[str], base: float | None) -> tuple[float, str]:
-    """Middle and spread; a lone percentage lies about the file's value."""
+    """Centre, and text of the spread, from one or two arguments; one percentage: about the file's value."""
     if len(parts) == 1 and _is_percent(parts[0]):
         return _base(base), parts[0]
     if len(parts) != 2:
@@ -144,17 +147,20 @@ def _about(parts: list[str], base: float | None) -> tuple[float, str]:
 
 
 def _ascending(low: float, high: float) -> None:
+    """Raise ValueError unless low < high."""
     if not low < high:
         raise ValueError(f"low = {low:g} is not below high = {high:g}")
 
 
 def _numbers(parts: list[str], count: int) -> list[float]:
+    """Parse exactly `count` finite numbers; ValueError if the texts are none, or more or less."""
     if len(parts) != count:
         raise ValueError(f"has {len(parts)} numbers, expected {count}")
-    return [_number(part) for part in parts]
+    return [_number(text) for text in parts]
 
 
 def _number(text: str) -> float:
+    """Parse a finite number; ValueError if the text is none."""
     try:
         value = float(text)
     except ValueError:
@@ -169,6 +175,7 @@ def _is_percent(text: str) -> bool:
 
 
 def _percent(text: str) -> float:
+    """Parse a positive percentage, as a fraction [1]."""
     value = _number(text.strip()[:-1])
     if value <= 0.0:
         raise ValueError(f"{value:g} % is outside (0, inf)")
@@ -176,25 +183,27 @@ def _percent(text: str) -> float:
 
 
 def _base(base: float | None) -> float:
+    """Return the value of the parameter file; ValueError if there is none."""
     if base is None:
         raise ValueError("a percentage needs a value before it here")
     return base
 
 
 def is_relative(text: str) -> bool:
-    """Whether a text is a lone percentage: about a value that stands elsewhere."""
+    """Whether the text of a distribution is a percentage without a value, relative to another value."""
     text = text.strip()
     call = _CALL.fullmatch(text)
     return text.startswith("+-") or bool(call and "," not in call[2] and _is_percent(call[2]))
 
 
 MOST_SAMPLES = 2**24
+"""Maximum number of samples of a study."""
 
 
 def read(path: str | Path) -> dict[str, object]:
-    """{name: number, true, false or text} of a study file.
+    """Read a study file: {name: number, true, false or text}.
 
-    Raises ValueError with one line that names the file, the entry and what is allowed.
+    Raises ValueError with one line that names the file, the entry and the allowed values.
     """
     path = Path(path)
     document = read_document(path, "a study file")
@@ -211,34 +220,36 @@ def read(path: str | Path) -> dict[str, object]:
 
 
 def settings(path: Path | None, given: Sequence[tuple[str, object]]) -> dict[str, object]:
-    """Settings of a study file, if any, and those given, which win."""
+    """Settings of a study file, if there is one, overridden by the stated settings (name, value)."""
     return (read(path) if path else {}) | dict(given)
 
 
 def split(
     given: Mapping[str, object], base: Mapping[str, object]
 ) -> tuple[dict[str, object], tuple[Uncertain, ...]]:
-    """Plain values and distributions among settings; `base` has the values that percentages refer to.
+    """Split settings into plain values, {name: value}, and uncertain parameters.
 
-    Raises ValueError for a text that is meant as a distribution and is none.
+    base : {name: value} to which percentages refer
+
+    Raises ValueError for a wrong text of a distribution.
     """
     plain: dict[str, object] = {}
     uncertain = []
     for name, value in given.items():
-        about = base.get(name)
-        about = float(about) if isinstance(about, int | float) and not isinstance(about, bool) else None
-        law = parse(name, value, about) if isinstance(value, str) else None
-        if law is None:
+        centre = base.get(name)
+        centre = float(centre) if isinstance(centre, int | float) and not isinstance(centre, bool) else None
+        parameter = parse(name, value, centre) if isinstance(value, str) else None
+        if parameter is None:
             plain[name] = value
         else:
-            uncertain.append(law)
+            uncertain.append(parameter)
     return plain, tuple(uncertain)
 
 
 def power_of_two(samples: int) -> int:
-    """The number of samples a Sobol sequence is balanced for: the next power of two.
+    """Round a number of samples up to a power of two, for which a Sobol' sequence is balanced.
 
-    Raises ValueError outside [2, MOST_SAMPLES].
+    Raises ValueError outside [2, MAX_SAMPLES].
     """
     if not 2 <= samples <= MOST_SAMPLES:
         raise ValueError(f"samples = {samples} is outside [2, {MOST_SAMPLES}]")
@@ -252,14 +263,14 @@ def check_seed(seed: int) -> None:
 
 
 def unit_design(count: int, dimensions: int, seed: int) -> Array:
-    """(count, dimensions) of a scrambled Sobol sequence in the open unit cube; `count` a power of two."""
+    """Points (count, dimensions) of a scrambled Sobol' sequence in the open unit cube, count = 2^k."""
     sequence = qmc.Sobol(dimensions, scramble=True, bits=64, seed=seed)
     points = sequence.random_base2(int(math.log2(count)))
     return np.asarray(np.clip(points, 2.0**-40, 1.0 - 2.0**-40))
 
 
 def samples_of(uncertain: Sequence[Uncertain], points: Array) -> dict[str, Array]:
-    """{name: samples (n)} from points (n, d) of the unit cube, by the inverse distribution functions."""
+    """Map points (n, d) of the unit cube to samples, {name: (n)}, by the inverse distribution functions."""
     return {
         parameter.name: np.asarray(parameter.law.ppf(points[:, i])) for i, parameter in enumerate(uncertain)
     }
@@ -267,7 +278,12 @@ def samples_of(uncertain: Sequence[Uncertain], points: Array) -> dict[str, Array
 
 @dataclass(frozen=True, slots=True)
 class Refused:
-    """Samples that the law refuses: how many, and the first with the law's own words."""
+    """Samples that the law refuses.
+
+    count   : number of refused samples
+    example : {name: value} of the first refused sample
+    reason  : error message of the law for this sample
+    """
 
     count: int
     example: Mapping[str, float]

@@ -1,4 +1,4 @@
-"""A study over an FMU: one ramp per sample, many at a time in processes of this machine or of a cluster."""
+"""Sweep: a study with an FMU, one load ramp for each sample, in processes of this machine or on a cluster."""
 
 from collections.abc import Generator, Mapping, Sequence
 from contextlib import closing
@@ -32,7 +32,13 @@ from .worker import KILLED, LoadRamp, local_run, slim
 
 @dataclass(frozen=True, slots=True)
 class Summary:
-    """What a sweep did: runs in all, done by this call, failed in all, and the first failure."""
+    """Summary of a sweep.
+
+    runs          : number of runs of the study
+    new_runs      : number of runs finished by this call
+    failed        : number of failed runs of the study
+    first_failure : journal entry of the first failed run, or None
+    """
 
     runs: int
     now: int
@@ -43,7 +49,10 @@ class Summary:
 def plan(
     fmu: Path, drive: LoadRamp, given: Mapping[str, object], count: int, seed: int
 ) -> tuple[dict[str, object], list[dict[str, object]]]:
-    """The study as a record for its folder, and the settings of each of `count` runs.
+    """Plan a sweep: the study as a JSON object for its folder, and the settings of each of `count` runs.
+
+    settings : {name: value or text of a distribution} of parameters and inputs
+    seed     : seed of the Sobol' sequence
 
     Raises ValueError for a file that is no FMU, an unknown name, a wrong distribution or ramp.
     """
@@ -70,8 +79,8 @@ def plan(
         raise ValueError(
             f"{fmu}: {wrong[0].name} = {wrong[0].text}: is no real number and cannot be uncertain"
         )
-    drawn = samples_of(uncertain, unit_design(count, len(uncertain), seed))
-    runs = [plain | {name: float(column[i]) for name, column in drawn.items()} for i in range(count)]
+    samples = samples_of(uncertain, unit_design(count, len(uncertain), seed))
+    runs = [plain | {name: float(column[i]) for name, column in samples.items()} for i in range(count)]
     record = {
         "fmu": fmu.name,
         "fmu_sha256": journal.digest(read_bytes(fmu, "an FMU")),
@@ -84,15 +93,15 @@ def plan(
 
 
 def _declared(fmu: Path) -> ParameterFile:
-    """The parameter file that an FMU carries in its proof.
+    """Load the parameter file that an FMU contains with its experiments.
 
-    Raises ValueError if it has none.
+    Raises ValueError if the FMU contains none.
     """
     with archives.open_archive(fmu) as archive, TemporaryDirectory() as folder:
-        inside = [name for name in archive.namelist() if fnmatch(name, f"{FOLDER}/parameters/*.toml")]
-        if own := [name for name in inside if Path(name).name != "study.toml"]:
-            file = Path(folder, Path(own[0]).name)
-            file.write_bytes(archives.read_member(archive, own[0]))
+        members = [name for name in archive.namelist() if fnmatch(name, f"{FOLDER}/parameters/*.toml")]
+        if parameter_files := [name for name in members if Path(name).name != "study.toml"]:
+            file = Path(folder, Path(parameter_files[0]).name)
+            file.write_bytes(archives.read_member(archive, parameter_files[0]))
             return load(file)
     raise ValueError(f"{fmu}: carries no parameter file; expected LOW..HIGH in place of {INTERVAL}")
 
@@ -105,17 +114,21 @@ def sweep(
     scheduler: str | None = None,
     workers: int | None = None,
 ) -> Summary:
-    """Do the runs that a claimed folder does not have yet, each written when it is finished.
+    """Execute the runs that are not yet in the folder `out`, and write each run when it is finished.
 
-    scheduler : address of a dask scheduler, whose workers do the runs
-    workers   : processes of this machine, if there is no scheduler; None: one per core
+    runs      : settings of all runs of the study
+    out       : folder of the sweep, see `journal.claim`
+    scheduler : address of a dask scheduler, whose workers execute the runs
+    workers   : number of processes on this machine, if there is no scheduler; None: one for each core
+
+    At the end the quantiles of all finished runs are written to bands.csv in the folder.
 
     Raises ValueError if dask is missing or the scheduler does not answer, RuntimeError if its workers cannot
-    run at all (the package missing there, none left).
+    execute any run (jointfmu is not installed there, or no worker is left).
     """
-    with Journal(out, len(runs)) as held:
-        before = len(held.finished)
-        todo = [i for i in range(len(runs)) if i not in held.finished]
+    with Journal(out, len(runs)) as runs_file:
+        count_before = len(runs_file.finished)
+        todo = [i for i in range(len(runs)) if i not in runs_file.finished]
         if todo:
             if scheduler is None:
                 entries = _local_runs(fmu, drive, runs, todo, workers)
@@ -125,8 +138,9 @@ def sweep(
                 entries = cluster_runs(scheduler, fmu, drive, runs, todo)
             with closing(entries) as finished:
                 for entry in track(finished, "sweep", len(todo)):
-                    held.add(entry)
-        summary = Summary(len(runs), len(held.finished) - before, held.failed, held.first_failure)
+                    runs_file.add(entry)
+        new_runs = len(runs_file.finished) - count_before
+        summary = Summary(len(runs), new_runs, runs_file.failed, runs_file.first_failure)
     if summary.failed < summary.runs:
         write_text(out / journal.BANDS, bands_csv(out, ramp.units(fmu)))
     return summary
@@ -139,7 +153,7 @@ def _local_runs(
     todo: Sequence[int],
     workers: int | None,
 ) -> Generator[dict[str, object]]:
-    """Entries of runs as they end, in processes of this machine."""
+    """Execute runs in processes of this machine, and yield the journal entry of each run when it ends."""
     with TemporaryDirectory(prefix="sweep-") as folder:
         small = Path(folder, fmu.name)
         slim(fmu, small)
@@ -150,7 +164,7 @@ def _local_runs(
 
 
 def bands_csv(folder: Path, units: Mapping[str, str]) -> str:
-    """Quantiles of every output at every point of the ramp over the runs that did not fail, as CSV."""
+    """CSV text: quantiles of each output at each point of the ramp, over all runs that did not fail."""
     runs: dict[str, list[Array]] = {}
     for entry in journal.entries(folder):
         for name, values in entry.get("columns", {}).items():

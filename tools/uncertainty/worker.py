@@ -1,4 +1,4 @@
-"""What a process of a sweep does: one load ramp of an FMU."""
+"""One run of a sweep: a load ramp of an FMU, in a worker process."""
 
 import tempfile
 import zipfile
@@ -15,12 +15,15 @@ from ..host import runs
 from ..ramps import ramp
 
 KILLED = "the process of the run died"
-"""What the journal says of a run that ended its process."""
+"""Error message in the journal for a run whose process died."""
 
 
 @dataclass(frozen=True, slots=True)
 class LoadRamp:
-    """What every run of a sweep does with the FMU: see `ramp.run`."""
+    """Load ramp of all runs of a sweep: name of the driven input, end and step [unit of the input].
+
+    See `ramp.run`.
+    """
 
     input: str
     to: float
@@ -28,27 +31,34 @@ class LoadRamp:
 
 
 def one_run(fmu: Path, drive: LoadRamp, index: int, settings: Mapping[str, object]) -> dict[str, object]:
-    """The entry of a run in the journal: columns of its ramp, or the FMU's refusal."""
+    """Run one load ramp, and return its journal entry: columns of results, or the error message.
+
+    index    : index of the run in the study
+    settings : start values of parameters and inputs
+    """
     entry = {"run": index, "parameters": dict(settings)}
     try:
-        done = ramp.run(fmu, drive.input, drive.to, drive.step, settings)
+        result = ramp.run(fmu, drive.input, drive.to, drive.step, settings)
     except (ValueError, RuntimeError) as error:
         return {**entry, "error": printable(str(error).replace(str(fmu), fmu.name))[:MAX_TEXT_LENGTH]}
-    columns = {key: column.tolist() for key, column in done.columns.items()}
-    if bad := [key for key, column in done.columns.items() if not np.all(np.isfinite(column))]:
-        return {**entry, "error": f"{bad[0]} is not finite"}
+    columns = {key: column.tolist() for key, column in result.columns.items()}
+    if not_finite := [key for key, column in result.columns.items() if not np.all(np.isfinite(column))]:
+        return {**entry, "error": f"{not_finite[0]} is not finite"}
     return {**entry, "columns": columns}
 
 
 def local_run(job: tuple[Path, LoadRamp, int, Mapping[str, object]]) -> dict[str, object]:
-    """`one_run` in a process of this machine; what it unpacks lies beside the FMU."""
+    """Run one load ramp in a process of this machine; the FMU is unpacked next to its file.
+
+    job : arguments of `run_sample`
+    """
     tempfile.tempdir = str(job[0].parent)
     return one_run(*job)
 
 
 def slim(fmu: Path, small: Path) -> None:
-    """Write an FMU without sources, documentation and other machines' binaries."""
-    with archives.open_archive(fmu) as full, zipfile.ZipFile(small, "w") as less:
+    """Write a copy `small` of an FMU without sources, documentation and binaries of other platforms."""
+    with archives.open_archive(fmu) as full, zipfile.ZipFile(small, "w") as reduced:
         for item in full.infolist():
             if runs(item.filename) and not item.is_dir():
-                less.writestr(item, archives.read_member(full, item.filename))
+                reduced.writestr(item, archives.read_member(full, item.filename))
