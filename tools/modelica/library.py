@@ -125,6 +125,7 @@ def _joint(
     is_given = file is not None and file.joint == kind.name
     joint_file = file if file and is_given else default(kind.name)
     used_points = tuple(points or (*_start(joint_file), *component.points))
+    found: Sequence[ModelicaRecord]
     if is_given:
         found = component.records(joint_file, used_points)
     else:
