@@ -20,7 +20,7 @@ from clients import needs
 from conftest import REFINEMENT
 from jointfmu_tools import cli
 from jointfmu_tools.joints.bolted_joint.new import computed
-from numbers_of_all import texts
+from numbers_of_all import components, texts
 
 pytestmark = pytest.mark.slow
 
@@ -41,6 +41,7 @@ from jointfmu_tools.fem.whole_joint import WholeJoint
 
 WholeJoint.of = partial(WholeJoint.of, refinement={bodies})
 sys.exit(main(sys.argv[1:]))"""
+COMMITTED = Path(__file__).resolve().parents[2] / "models" / "modelica"
 SURFACE = ["--material", "steel", "--Ra", "0.8"]
 PLATES = {
     "plate": ["--plate", "80x50", "--bolts", "4xM8", "--at", "50x25"],
@@ -74,9 +75,9 @@ def paths(tmp_path_factory) -> list[Path]:
 
 
 @pytest.fixture(scope="module")
-def here(tmp_path_factory, paths) -> dict[str, str]:
-    """As this process has it."""
-    return texts(tmp_path_factory.mktemp("here"), paths)
+def here(paths) -> dict[str, str]:
+    """As this process has it; the library is the committed one, which tests/modelica generates again."""
+    return texts(paths) | components(COMMITTED)
 
 
 newer = needs("AVX2")

@@ -21,8 +21,8 @@ from jointfmu.parameters import load
 GENERATED = ("data.c", "law.c", "law.h", "variables.c")
 
 
-def texts(folder: Path, paths: list[Path]) -> dict[str, str]:
-    """{what: text} of sources, of the proofs' results and of the Modelica library."""
+def texts(paths: list[Path]) -> dict[str, str]:
+    """{what: text} of sources and of the proofs' results."""
     shipped = files("jointfmu_models")
     found: dict[str, str] = {}
     for path in [*(Path(str(p)) for kind in KINDS for p in sorted((shipped / kind).glob("*.toml"))), *paths]:
@@ -32,10 +32,16 @@ def texts(folder: Path, paths: list[Path]) -> dict[str, str]:
             made = {k: v for k, v in sources(name, file).items() if k in GENERATED}
             made |= {k: v.decode() for k, v in proof(model, file).items() if k.endswith(".csv")}
             found |= {f"{path.stem}/{name}/{k}": text for k, text in made.items()}
-    with redirect_stdout(sys.stderr):
-        assert main(["modelica", "--out", str(folder)]) == 0
-    return found | {str(p.relative_to(folder)): p.read_text() for p in sorted(folder.rglob("*.mo"))}
+    return found
+
+
+def components(folder: Path) -> dict[str, str]:
+    """{path: text} of the Modelica library in a folder."""
+    return {str(p.relative_to(folder)): p.read_text(encoding="utf-8") for p in sorted(folder.rglob("*.mo"))}
 
 
 if __name__ == "__main__":
-    json.dump(texts(Path(sys.argv[1]), [Path(path) for path in sys.argv[2:]]), sys.stdout)
+    out = Path(sys.argv[1])
+    with redirect_stdout(sys.stderr):
+        assert main(["modelica", "--out", str(out)]) == 0
+    json.dump(texts([Path(path) for path in sys.argv[2:]]) | components(out), sys.stdout)
