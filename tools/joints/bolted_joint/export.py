@@ -211,7 +211,7 @@ def pull_table(spring: BoltedJointSpring, preload: float, moment: float, error: 
 
 @dataclass(frozen=True, slots=True)
 class Tightening:
-    """Working point of a bolted joint: preload of each bolt and bending moment."""
+    """Tightened state of a bolted joint: preload of each bolt and bending moment."""
 
     preload: float = quantity("N", "the force of each bolt")
     moment: float = quantity("N.m", "the bending moment")

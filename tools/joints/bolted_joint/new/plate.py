@@ -71,19 +71,19 @@ def joint(given: Given) -> NewJoint:
     for name, value in (("field", "computed"), ("sides", "elastic"), ("attached", given["attached"])):
         if given["tapped"] and given["thickness"] is None and value and given[name] == value:
             raise ValueError(f"--{name} {value} beside --tapped: expected --thickness of both plates for it")
-    one = clamped(given, thread, (length, width), at, hole, moduli)
+    bolt = clamped(given, thread, (length, width), at, hole, moduli)
     plate = BoltedPlate(
         length=length,
         width=width,
         x=tuple(at[:, 0].tolist()),
         y=tuple(at[:, 1].tolist()),
         hole_diameter=hole,
-        cone_diameter=one.cone,
+        cone_diameter=bolt.cone,
     )
-    _put_plate(sheet, plate, one, hole_source)
-    _put_bolts(sheet, plate, one, thread)
-    loss = _embedding(sheet, given, one, heights)
-    mass = plate.area * one.layers[0].thickness * faces.materials(given)[0].numbers["density"].value
+    _put_plate(sheet, plate, bolt, hole_source)
+    _put_bolts(sheet, plate, bolt, thread)
+    loss = _embedding(sheet, given, bolt, heights)
+    mass = plate.area * bolt.layers[0].thickness * faces.materials(given)[0].numbers["density"].value
     sheet.put("mass", mass, "estimate", "mass of the plate of side 1; what vibrates")
     preload, warnings = _preload(sheet, given, thread)
     if not loss < preload:
@@ -96,15 +96,15 @@ def joint(given: Given) -> NewJoint:
         sheet.put(choice, default, "estimate", "nearest to the roughness of the surfaces, docs/validity.md")
     file = sheet.file(f"plate {given['plate']} with {given['bolts']}")
     density = tuple(material.numbers["density"].value for material in faces.materials(given))
-    layers, depth = one.layers, 0.0
+    layers, depth = bolt.layers, 0.0
     if given["tapped"] and given["thickness"] is not None:
         layers, depth = (*layers, vdi2230.ClampedPart(_each(given)[1], moduli[1])), ENGAGED * thread.d
-    plates = Plates(plate, layers, one.bearing, density, preload, preload - loss, depth)
+    plates = Plates(plate, layers, bolt.bearing, density, preload, preload - loss, depth)
     shape = None
     if given["field"] == "computed":
         file, shape = with_computed_field(file, plates)
-    facts = _facts(file, one, heights, preload)
-    alone = _alone(facts["K_zz"][0] / count, one)
+    facts = _facts(file, bolt, heights, preload)
+    alone = _alone(facts["K_zz"][0] / count, bolt)
     if given["tapped"] and given["thickness"] is None:
         return NewJoint(
             file, facts, [*warnings, f"{alone}: for the whole joint state --thickness of both plates"]
