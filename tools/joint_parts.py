@@ -71,7 +71,7 @@ class Option:
     """Command-line option, also a keyword argument in Python, of a tool module.
 
     name         : in Python; on the command line with hyphens
-    text         : help; for a number with its unit
+    help_text    : meaning of the option; for a number with its unit
     metavar      : placeholder of the value in the help
     default      : value if the user does not set the option
     choices      : allowed words; empty: any text

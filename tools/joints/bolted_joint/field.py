@@ -27,11 +27,11 @@ if TYPE_CHECKING:
 class PlaneLayout:
     """Geometry of a bolted joint in the contact plane, relative to the centroid of the contact [m].
 
-    bolts      : positions (b, 2); empty if the file has none
-    outline    : rectangles (lower corner, upper corner) of the contact, the outer one first; empty for a
-                 pressure field without bodies
-    extent     : (2, 2) lower and upper corner of the bounding box
-    hole, head : diameters; 0 if the file has none
+    bolt_positions : (b, 2); empty if the file has none
+    outline        : rectangles (lower corner, upper corner) of the contact, the outer one first; empty for a
+                     pressure field without bodies
+    extent         : (2, 2) lower and upper corner of the bounding box
+    hole_diameter, head_diameter : 0 if the file has none
     """
 
     bolts: Array

@@ -40,11 +40,11 @@ class Svg:
 
     def put(self, kind: str, text: str = "", /, **given: object) -> None:
         """Add an element. An `_` in the name of an attribute becomes `-`."""
-        attributes = " ".join(
+        attribute_text = " ".join(
             f'{name.replace("_", "-")}="{f"{value:.1f}" if isinstance(value, float) else value}"'
             for name, value in given.items()
         )
-        element = f"<{kind} {attributes}"
+        element = f"<{kind} {attribute_text}"
         self.parts.append(f"{element}>{escape(text)}</{kind}>" if text else f"{element}/>")
 
     def line(self, x1: float, y1: float, x2: float, y2: float, stroke: str = INK, dash: str = "") -> None:

@@ -289,7 +289,7 @@ def _level(
 ) -> Exchange | None:
     """Exchange of unknowns: the stiffness at rest [N/m] for the parameter that sets the level.
 
-    rest_stiffness : {name: value} -> stiffness at rest [N/m]
+    compute_rest_stiffness : {name: value} -> stiffness at rest [N/m]
 
     None if the level is not fitted.
     """
