@@ -142,14 +142,14 @@ def mesh(given: Given) -> NewJoint:
     stiffness = wheels.contact_ratio * float(spring.curve.derivatives(np.array([deflection]), 1)[1][0])
     facts = {
         "load": (load, "N", "normal force of the mesh at the torque"),
-        "p_hertz": (float(hertz.pressure), "Pa", "greatest pressure of smooth flanks, one pair in contact"),
+        "p_hertz": (float(hertz.pressure), "Pa", "largest pressure of smooth flanks, one pair in contact"),
         "contact_ratio": (wheels.contact_ratio, "1", "mean number of pairs in contact over the full width"),
         "overlap_ratio": (wheels.overlap_ratio, "1", "mesh cycles over which a helix spreads the contact"),
         "K_tooth": (file.flat["K_tooth"], "N/m", "bending of one pair (ISO 6336-1)"),
-        "h": (file.flat["h"], "m", "rms height of both flanks together"),
+        "h": (file.flat["h"], "m", "combined rms height of both flanks"),
         "K": (stiffness, "N/m", "mean stiffness of the mesh at this load"),
         "c_gamma": (wheels.mesh_stiffness(file.flat["K_tooth"]), "N/m", "the same by ISO 6336-1, to compare"),
-        "deflection": (deflection, "m", "of a pair at this load"),
+        "deflection": (deflection, "m", "deflection of a tooth pair at this load"),
     }
     return NewJoint(file, facts, faces.beyond(float(hertz.pressure), file.flat["H"]))
 
@@ -203,12 +203,16 @@ NEW = Drawing(
     example="--module 4 --teeth 29 45 --width 20 --torque 150 --material 'hardened steel' --Ra 0.4",
     options=(
         Option("module", "normal module [mm]", "M", required=True),
-        Option("teeth", "of wheel 1 and wheel 2", "Z", many=True, required=True),
+        Option("teeth", "numbers of teeth of wheel 1 and wheel 2", "Z", many=True, required=True),
         Option("width", "common face width [mm]", "B", required=True),
-        Option("torque", "of wheel 1 at work [N.m]: decides the patch", "T", required=True),
+        Option(
+            "torque", "working torque of wheel 1 [N.m]; it determines the contact patch", "T", required=True
+        ),
         Option("pressure_angle", "normal pressure angle [deg] (default: 20)", "A"),
-        Option("helix_angle", "at the reference circle [deg] (default: 0)", "A"),
-        Option("backlash", "along the line of action [um] (default: the least of ISO/TR 10064-2)", "J"),
+        Option("helix_angle", "helix angle at the reference circle [deg] (default: 0)", "A"),
+        Option(
+            "backlash", "backlash along the line of action [um] (default: minimum of ISO/TR 10064-2)", "J"
+        ),
         *OPTIONS,
     ),
     run=mesh,

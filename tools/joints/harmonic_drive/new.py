@@ -233,51 +233,56 @@ def _row(printed: Mapping[str, Printed]) -> "Row":
 
 
 NEW = Drawing(
-    text="a harmonic drive by its name in the catalogue, or by the row that is printed there",
+    text="a harmonic drive by its name in the catalogue, or from the numbers of a catalogue row",
     example="--catalogue CSG-17-100",
     options=(
-        Option("catalogue", "its name, see jointfmu catalogue", "NAME"),
-        Option("ratio", "as catalogues print it [1], above 0; negative: with its sign", "R"),
+        Option("catalogue", "name of the drive, see jointfmu catalogue", "NAME"),
+        Option("ratio", "speed ratio as in catalogues [1], above 0; negative: used with its sign", "R"),
         Option(
             "fixed",
-            "what is held, which decides the sign of the ratio (circular-spline: it is negative)",
+            "part that is fixed; it decides the sign of the ratio (circular-spline: negative)",
             choices=tuple(FIXED),
         ),
         *(Option(column.name, f"{column.text} [{column.unit}]", column.name[0]) for column in ROW),
         Option(
             "stiffness_unit",
-            "of K1, K2, K3 without one of their own, as '1e4 N.m/rad' or kgf.m/arcmin (N.m/rad)",
+            "unit of K1, K2, K3 given without one, as '1e4 N.m/rad' or kgf.m/arcmin (default: N.m/rad)",
             "UNIT",
         ),
         Option("rated_torque", "rated torque [N.m] (default: the catalogue's, or T2)", "T"),
         Option(
             "hysteresis",
-            "hysteresis loss, the angle between the branches at zero torque [arcmin] (none)",
+            "hysteresis loss, the angle between the branches at zero torque [arcmin] (default: none)",
             "H",
         ),
         Option(
             "starting_torque",
-            "at the wave generator without load [N.m] (of a named drive: printed or scaled; else none)",
+            "starting torque at the wave generator without load [N.m] (default: of a named drive published "
+            "or scaled, else none)",
             "T",
         ),
-        Option("running_torque", "the same in motion, at 2000 rev/min [N.m] (as starting torque)", "T"),
-        Option("back_driving_torque", "at the output, that turns the drive without motor [N.m]", "T"),
-        Option("efficiency", "at rated torque and 2000 rev/min [1]", "E"),
+        Option(
+            "running_torque",
+            "torque at the wave generator without load, at 2000 rev/min [N.m] (default: as starting torque)",
+            "T",
+        ),
+        Option("back_driving_torque", "torque at the output that turns the drive without a motor [N.m]", "T"),
+        Option("efficiency", "efficiency at rated torque and 2000 rev/min [1]", "E"),
         Option(
             "motor_drag",
-            "dry friction of the motor's bearings and seals, beside the drive's [N.m] (none)",
+            "dry friction of bearings and seals of the motor, added to the drive's [N.m] (default: none)",
             "T",
         ),
-        Option("temperature", "of the lubricant, at the start [degC, or with K behind it] (20)", "T"),
-        Option("source", "where the row is printed", "TEXT"),
+        Option("temperature", "start temperature of the lubricant [degC, or as in 293 K] (default: 20)", "T"),
+        Option("source", "where the row is published", "TEXT"),
         Option(
             "corner",
-            "half-width of the smooth corners at T1 and T2 over their wind-up [1], 0 for none (0.04)",
+            "half-width of the smooth corners at T1 and T2 over their wind-up [1], 0: sharp (default: 0.04)",
             "C",
         ),
         Option(
             "law",
-            "catalogue: the three lines (default); hu2023: that of the contact pair, fitted to them",
+            "catalogue: the three lines (default); hu2023: law of the contact pair, fitted to the lines",
             choices=("catalogue", "hu2023"),
         ),
     ),

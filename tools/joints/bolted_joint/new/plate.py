@@ -277,7 +277,7 @@ def _embedding(sheet: Sheet, given: Given, one: Clamped, heights: faces.Heights)
 def _friction(file: ParameterFile, preload: float) -> dict[str, tuple[float, str, str]]:
     """Facts about friction: gross-slip force and loss factor, at mu and at both ends of its range."""
     shear, rows = friction_band(file, preload)
-    slip = "shear force at which all of the interface slips"
+    slip = "shear force at which the whole interface slips"
     loss = f"loss factor of the interface between rigid sides at {shear:.3g} N of shear"
     facts = {}
     for name, row in zip(("", "_low", "_high"), rows, strict=False):
@@ -312,19 +312,20 @@ def _facts(
         "embedding": (
             values.embedding,
             "N",
-            f"of it that embedding takes, {values.embedding / preload:.1%}; stiffness and slip lack it",
+            f"preload lost by embedding ({values.embedding / preload:.1%}); stiffness and slip are those of "
+            "the remaining preload",
         ),
         "p_mean": (float(state["p_mean"]), "Pa", "mean pressure on the plate"),
-        "p_max": (float(state["p_max"]), "Pa", "greatest pressure, beside a bolt"),
-        "h": (float(file.flat.get("h", np.nan)), "m", "rms height of both faces together"),
-        "K_zz": (K, "N/m", "normal stiffness of the interface at this preload, bolts apart"),
+        "p_max": (float(state["p_max"]), "Pa", "largest pressure, near a bolt"),
+        "h": (float(file.flat.get("h", np.nan)), "m", "combined rms height of both faces"),
+        "K_zz": (K, "N/m", "normal stiffness of the interface at this preload, without the bolts"),
         "K_xx": (float(state["K_xx"]), "N/m", "tangential stiffness of the interface"),
         "bolt_stiffness": (one.bolt, "N/m", "of one bolt, 1/delta_S of VDI 2230"),
         "member_stiffness": (one.members, "N/m", "of the parts that one bolt clamps, 1/delta_P of VDI 2230"),
         "load_factor": (
             one.bolt / (one.bolt + one.members),
             "1",
-            "Phi_K = delta_P/(delta_S + delta_P): part of an outer force that the bolts take",
+            "Phi_K = delta_P/(delta_S + delta_P): share of an external force that the bolts carry",
         ),
     }
     facts |= _friction(file, preload)
