@@ -131,7 +131,7 @@ def _split(
 ) -> Springs:
     """Distribute stiffness and damping to the nodes, in proportion to area share times k(p).
 
-    totals : {name in SUMS: total}; None: the totals of `spring`
+    totals : {name in TOTAL_OUTPUTS: total}; None: the totals of `spring`
 
     Raises ValueError if nothing is in contact or a pressure is outside the law.
     """
@@ -178,8 +178,8 @@ def pull_table(spring: BoltedJointSpring, preload: float, moment: float, error: 
     force of MAX_FORCE_RATIO times the one at tightening. It ends where the last node opens; beyond, only the
     force of the bolts grows.
 
-    error : largest relative error [1]; where force or stiffness are smaller than at tightening, relative to
-            the value at tightening
+    max_error : largest relative error [1]; where force or stiffness are smaller than at tightening, relative
+                to the value at tightening
 
     Raises ValueError if nothing is in contact or the pressure reaches the hardness.
     """

@@ -91,7 +91,10 @@ PRESSURE = NominalPressure(load="preload", usual=_usual, mean=_mean, peak=_peak,
 def _pressures(
     joint: Bolted, shape: PressureShape | MergedShape, preload: ArrayLike, moment: ArrayLike
 ) -> Array:
-    """Node pressures [Pa] at a preload after embedding: a field is computed for the remaining preload."""
+    """Nodal pressures [Pa] at a preload, without a further loss by embedding.
+
+    A field is computed for the preload that remains after embedding.
+    """
     return pressures(replace(joint, embedding=0.0), shape, preload, moment)
 
 

@@ -190,11 +190,12 @@ def _text(found: Compliances, tension: float, moment: float) -> str:
         f"Small motions of the attachments about the tightened state, {_told(tension, 'N')} in each bolt"
         + (f" with a moment of {moment:g} N m" if moment else "")
         + ", one at a time with the other five fixed. The stiffness of the whole joint is that of the FMU. "
-        "The last three columns are shares of its compliance, by stored energy. Members are a spring in series "
-        "with interface and bolts; interface alone and bolts alone are between rigid sides. The interface has "
-        f"{share[2]:.1%} of the compliance along z and at most {most:.1%} in any direction: {matters}. "
-        f"The bolts carry {found.load_factor:.3f} of a force along z (load factor n Phi_K of VDI 2230), with "
-        "the other motions free; where the interface is open they carry the full force, as the plot shows."
+        "The last three columns are shares of its compliance, by stored energy. Members are a spring in "
+        "series with interface and bolts; interface alone and bolts alone are between rigid sides. The "
+        f"interface has {share[2]:.1%} of the compliance along z and at most {most:.1%} in any direction: "
+        f"{matters}. The bolts carry {found.load_factor:.3f} of a force along z (load factor n Phi_K of VDI "
+        "2230), with the other motions free; where the interface is open they carry the full force, as the "
+        "plot shows."
     )
 
 

@@ -30,7 +30,7 @@ class InvoluteGearPair:
     """Two external involute gear wheels without profile shift, with an addendum of one module.
 
     module         : [m] normal module
-    z              : number of teeth of both wheels
+    tooth_counts   : number of teeth of both wheels
     width          : [m] common face width
     pressure_angle : [rad] normal pressure angle
     helix_angle    : [rad] at the reference circle

@@ -158,7 +158,7 @@ class Bench:
 
 @contextmanager
 def bench(path: Path, parameters: Mapping[str, float]) -> Iterator[Bench]:
-    """Open the FMU HarmonicDriveSpring (FMI 2.0) as a test rig; `parameters` replace default values."""
+    """Open the FMU HarmonicDriveSpring (FMI 2.0) as a test rig; the parameters replace default values."""
     wires = (*_TORQUES, "K_WTS", "ratio", "presliding")
     with Slave(path, {**parameters, **_STEADY}, _MOTION, wires) as drive:
         _, _, stiffness, ratio, presliding = drive.get()

@@ -192,12 +192,14 @@ def fit(
     damping_ratio: float = 0.0,
     series_stiffness: float | None = None,
 ) -> FitResult:
-    """Fit a file of loops, decays, responses, or frequency and damping over the amplitude (columns: HEADS).
+    """Fit a file of loops, decays, responses, or frequency and damping over the amplitude (columns:
+    COLUMN_NAMES).
 
     Parameters
     ----------
     start            : parameters to start from; None: the default joint
-    free             : names to fit, also `damping_ratio` and `series_stiffness`; None: those of FREE
+    fitted_names     : names to fit, also `damping_ratio` and `series_stiffness`; None: those of
+                       FITTED_PARAMETERS
     preload          : [N] of each bolt in the test; None: the one in the inputs of `start`
     modal_mass       : [kg] mass that vibrates on the joint; required unless the file has loops
     damping_ratio    : [1] of the structure alone

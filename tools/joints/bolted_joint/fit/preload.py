@@ -87,16 +87,16 @@ def fit(
     modal_mass: float | None = None,
     series_stiffness: float | None = None,
 ) -> FitResult:
-    """Fit a file with the columns preload (of each bolt) and stiffness or frequency (COLUMNS).
+    """Fit a file with the columns preload (of each bolt) and stiffness or frequency (COLUMN_UNITS).
 
     Parameters
     ----------
     start            : parameters to start from; None: the default joint
-    free             : names to fit; None: those of FREE, with `mass` instead of the level for frequencies
-                       without `modal_mass`
+    fitted_names     : names to fit; None: those of FITTED_PARAMETERS, with `mass` instead of the level for
+                       frequencies without `modal_mass`
     direction        : of the motion, "normal" or "tangential"
     modal_mass       : [kg] mass that vibrates on the joint, for frequencies; replaces `mass`
-    series_stiffness : [N/m] of the structure, in series; None: rigid, unless it is in `free`
+    series_stiffness : [N/m] of the structure, in series; None: rigid, unless it is among the names
 
     Raises ValueError with a one-line message for a bad file, unit or value, or a name that cannot be fitted.
     Raises RuntimeError if the fit does not converge.

@@ -116,7 +116,7 @@ def whole_of(
 
     make_assembly : builds the bodies
     preload       : [N] of each bolt at tightening
-    attached      : surfaces that move rigidly with the connected bodies, a key of ATTACHED
+    attached      : surfaces that move rigidly with the connected bodies, a key of ATTACHMENTS
     shape         : pressure at all nodes of a computed field; None: the pressure shape of the file
 
     Raises ValueError for bolt heads that overlap or extend beyond the plate, and if a package is missing.

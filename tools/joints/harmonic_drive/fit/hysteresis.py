@@ -71,7 +71,8 @@ def fit(
     free: Sequence[str] | None = None,
     inertia: float | None = None,
 ) -> FitResult:
-    """Fit a file of loops, decays, responses, or frequency and damping over the amplitude (columns: HEADS).
+    """Fit a file of loops, decays, responses, or frequency and damping over the amplitude (columns:
+    COLUMN_NAMES).
 
     Parameters
     ----------

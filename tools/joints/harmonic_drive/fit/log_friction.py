@@ -6,7 +6,7 @@ All torques are positive in the direction of the joint angle q, so that the rati
 linear in their unknowns and are eliminated: the inertia at the joint, an offset of the current, and gravity =
 a cos(q) + b sin(q) if it is not measured. The load of the teeth is gravity plus the inertia torque of the
 arm, that is of the total inertia without the rotor. The other unknowns are fitted over their logarithms. The
-load depends on them: it is fixed during each fit, and updated for the next of ROUNDS fits.
+load depends on them: it is fixed during each fit, and updated for the next of LOAD_ITERATIONS fits.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -121,8 +121,8 @@ class FittedLog:
 
     drive           : with the fitted friction
     solution        : of the fit of the friction parameters
-    linear          : (k) unknowns of the linear terms: inertia [kg.m2], offset, gravity [N.m]
-    covariance      : (k, k) of `linear`
+    linear_unknowns : (k) unknowns of the linear terms: inertia [kg.m2], offset, gravity [N.m]
+    covariance      : (k, k) of the linear unknowns
     rotor_inertia   : [kg.m2]
     rotor_deviation : [kg.m2] standard deviation of the rotor inertia
     """

@@ -1,9 +1,9 @@
 """Logs of a robot: read and check the columns, filter them, select samples.
 
 A log with the column time is dynamic. Motion and torque pass the same filter, a local polynomial over
-WINDOW (Savitzky and Golay 1964), which also gives the derivatives. One sample per window is kept, so that the
-noise of the samples is independent. Samples are marked if the drive has rotated far enough since its last
-reversal. A log without the column time is a table of steady speeds, and is not filtered.
+FILTER_WINDOW (Savitzky and Golay 1964), which also gives the derivatives. One sample per window is kept, so
+that the noise of the samples is independent. Samples are marked if the drive has rotated far enough since its
+last reversal. A log without the column time is a table of steady speeds, and is not filtered.
 """
 
 from collections.abc import Mapping, Sequence
@@ -40,8 +40,8 @@ class Samples:
 
     time          : [s]
     q, dq, ddq    : angle [rad], speed [rad/s] and acceleration [rad/s2] of the joint
-    speeds        : (n, NODES) [rad/s] of the joint, within the window of the filter
-    weights       : (n, NODES) [1] of the filter at these speeds
+    speeds        : (n, FILTER_NODES) [rad/s] of the joint, within the window of the filter
+    weights       : (n, FILTER_NODES) [1] of the filter at these speeds
     torque        : [N.m] of the motor
     gravity       : [N.m] torque at the joint that balances gravity
     temperature   : [K]
@@ -137,7 +137,7 @@ def moving(time: Array, step: float, have: Mapping[str, Array], drive: Drive) ->
 
 
 def _nodes(width: int) -> tuple[Places, Array]:
-    """Sample offsets (NODES) within the window of the filter, and the filter weights at these nodes.
+    """Sample offsets (FILTER_NODES) within the window of the filter, and the filter weights at these nodes.
 
     The weights are those for values that are linear between the nodes.
     """
