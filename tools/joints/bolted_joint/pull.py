@@ -33,35 +33,40 @@ def bolt_forces(spring: BoltedJointSpring, preload: float, moment: float, pulls:
     tension = working_preload(spring.joint, preload) + moment * modes.lever
     G = np.zeros((len(start), len(z)))
     G[:, 2:5], G[:, 6:] = whole.points, modes.opening
-    tight, stiff = spring.curve.derivatives(start, 1)
-    least, found = LEAST * law.stick(spring.pressed(start)).max(), []
+    preload_pressure, preload_stiffness = spring.curve.derivatives(start, 1)
+    min_stiffness, results = LEAST * law.stick(spring.pressed(start)).max(), []
 
     def left(z: Array, K: Array, pull: float) -> Array:
         p = spring.curve.derivatives(start - G @ z, 0)[0]
-        return np.asarray(K @ z - G.T @ (whole.weight * (p - tight)) - pull * (np.arange(len(z)) == 2))
+        return np.asarray(
+            K @ z - G.T @ (whole.weight * (p - preload_pressure)) - pull * (np.arange(len(z)) == 2)
+        )
 
     for pull in pulls:
         for _ in range(STEPS):
             approach = start - G @ z
             shift = np.linalg.norm(spring.shift(z[[0, 1, 5]], z[6:]), axis=1) + LEAST_SHIFT
-            stick = np.maximum(law.backbone(spring.pressed(approach), shift) / shift, least)
+            stick = np.maximum(law.backbone(spring.pressed(approach), shift) / shift, min_stiffness)
             K = whole.slope(np.zeros_like(start), stick[:, None] * STICKS)
-            normal = np.maximum(spring.curve.derivatives(approach, 1)[1], LEAST * stiff.max()) * whole.weight
+            normal = (
+                np.maximum(spring.curve.derivatives(approach, 1)[1], LEAST * preload_stiffness.max())
+                * whole.weight
+            )
             r = left(z, K, pull)
             step = -np.linalg.solve(K + G.T @ (normal[:, None] * G), r)
-            falls, size = float(r @ step), 1.0
-            if -falls <= CLOSE * pull * abs(z[2]):
+            energy_slope_0, size = float(r @ step), 1.0
+            if -energy_slope_0 <= CLOSE * pull * abs(z[2]):
                 break
             for _ in range(PARTS):
-                rises = float(left(z + size * step, K, pull) @ step)
-                if rises <= 0.5 * abs(falls):
+                energy_slope_1 = float(left(z + size * step, K, pull) @ step)
+                if energy_slope_1 <= 0.5 * abs(energy_slope_0):
                     break
-                size *= max(falls / (falls - rises), 0.1)
+                size *= max(energy_slope_0 / (energy_slope_0 - energy_slope_1), 0.1)
             z = z + size * step
         else:
             break
         forces = tension + bolt * whole.stretch(Place(z[:6]), z[6:])
         if np.any(forces > MOST * tension):
             break
-        found.append(forces)
-    return np.array(found)
+        results.append(forces)
+    return np.array(results)

@@ -105,13 +105,13 @@ def friction_band(file: ParameterFile, preload: float) -> tuple[float, list[Band
     of the interface between rigid sides, all at this amplitude.
     """
     joint = interface_alone(file.values)
-    left = float(working_preload(joint, preload))
-    shear = TOLD_AT * float(slip_force(joint, left))
+    remaining_preload = float(working_preload(joint, preload))
+    shear = TOLD_AT * float(slip_force(joint, remaining_preload))
     rows = []
     for mu in (joint.mu, *file.ranges.get("mu", ())):
         other = replace(joint, mu=mu)
-        lost = loss_factor(BoltedJointSpring.of(other), left, shear)
-        rows.append(Band(mu, float(slip_force(other, left)), lost))
+        loss = loss_factor(BoltedJointSpring.of(other), remaining_preload, shear)
+        rows.append(Band(mu, float(slip_force(other, remaining_preload)), loss))
     return shear, rows
 
 
@@ -149,23 +149,27 @@ def whole_joint(course: Course) -> list[Figure]:
         return []
     assert isinstance(spring, BoltedJointSpring)
     preload, moment = _tight(course)
-    found = spring.compliances(preload, moment)
-    left = float(working_preload(joint, preload))
-    opening = found.opening_load(left)
-    limit = float(slip_force(joint, left))
+    compliances = spring.compliances(preload, moment)
+    remaining_preload = float(working_preload(joint, preload))
+    opening = compliances.opening_load(remaining_preload)
+    limit = float(slip_force(joint, remaining_preload))
     panel = _bolt_forces(spring, preload, moment, BEYOND * opening)
-    share = found.bolt_force[:, 2]
-    most = int(np.argmax(share))
-    uneven = share[most] > (1.0 + ALIKE) * np.mean(share)
-    where = f"around bolt {most + 1}, which gets {share[most]:.3g} of it" if uneven else "around the bolts"
-    text = _text(found, left, moment) + (
-        f" A force of {_told(opening, 'N')} along z opens the interface {where}, by these stiffnesses; "
+    share = compliances.bolt_force[:, 2]
+    most_loaded = int(np.argmax(share))
+    is_uneven = share[most_loaded] > (1.0 + ALIKE) * np.mean(share)
+    location = (
+        f"around bolt {most_loaded + 1}, which gets {share[most_loaded]:.3g} of it"
+        if is_uneven
+        else "around the bolts"
+    )
+    text = _text(compliances, remaining_preload, moment) + (
+        f" A force of {_told(opening, 'N')} along z opens the interface {location}, by these stiffnesses; "
         "a joint that peels opens at a lower load, as the plot shows. The whole interface slips at "
         f"{_told(limit, 'N')} along x or y; slip begins at the edges at a far lower load, and its loss is "
         f"under Loops. The plot shows a tensile force up to {BEYOND:g} times the opening load, free in the "
         f"other five motions, and up to {MOST:g} times the force of a bolt at tightening."
     )
-    return [Figure("The whole joint", text, [panel], table=_rows(found))]
+    return [Figure("The whole joint", text, [panel], table=_rows(compliances))]
 
 
 def _told(value: float, unit: str) -> str:
@@ -176,24 +180,24 @@ def _rows(found: Compliances) -> list[tuple[str, ...]]:
     """Table rows, one per direction: stiffnesses, and shares of the compliance."""
     heads = ("whole joint", "interface alone", "members", "bolts alone", "interface", "members", "bolts")
     rows: list[tuple[str, ...]] = [("", *heads)]
-    for name, unit, each, shares in found.rows():
-        told = [_told(value, unit) if value > 0.0 else "none" for value in each]
-        rows.append((name, *told, *(f"{share:.1%}" for share in shares)))
+    for name, unit, stiffnesses, shares in found.rows():
+        cells = [_told(value, unit) if value > 0.0 else "none" for value in stiffnesses]
+        rows.append((name, *cells, *(f"{share:.1%}" for share in shares)))
     return rows
 
 
 def _text(found: Compliances, tension: float, moment: float) -> str:
     share = found.shares[0]
-    most = float(np.max(share))
-    matters = "it matters for the stiffness" if found.matters else "it hardly affects the stiffness"
+    largest = float(np.max(share))
+    effect = "it matters for the stiffness" if found.matters else "it hardly affects the stiffness"
     return (
         f"Small motions of the attachments about the tightened state, {_told(tension, 'N')} in each bolt"
         + (f" with a moment of {moment:g} N m" if moment else "")
         + ", one at a time with the other five fixed. The stiffness of the whole joint is that of the FMU. "
         "The last three columns are shares of its compliance, by stored energy. Members are a spring in "
         "series with interface and bolts; interface alone and bolts alone are between rigid sides. The "
-        f"interface has {share[2]:.1%} of the compliance along z and at most {most:.1%} in any direction: "
-        f"{matters}. The bolts carry {found.load_factor:.3f} of a force along z (load factor n Phi_K of VDI "
+        f"interface has {share[2]:.1%} of the compliance along z and at most {largest:.1%} in any direction: "
+        f"{effect}. The bolts carry {found.load_factor:.3f} of a force along z (load factor n Phi_K of VDI "
         "2230), with the other motions free; where the interface is open they carry the full force, as the "
         "plot shows."
     )

@@ -161,11 +161,14 @@ def _wheels(given: Given) -> InvoluteGearPair:
     if any(z % 1.0 for z in teeth):
         raise ValueError(f"--teeth = {' '.join(given['teeth'])}: expected whole numbers")
     angles = []
-    for name, usual, least, most in (("pressure_angle", "20", 0.0, 45.0), ("helix_angle", "0", -1.0, 60.0)):
-        angle = number(name, given[name] or usual, "deg", "rad", least=None)
-        if not max(least, 0.0) <= np.degrees(angle) < most or (least == 0.0 and angle == 0.0):
-            low = "(0" if least == 0.0 else "[0"
-            raise ValueError(f"{flag(name)} = {given[name]} deg is outside {low}, {most:g})")
+    for name, default, lowest, highest in (
+        ("pressure_angle", "20", 0.0, 45.0),
+        ("helix_angle", "0", -1.0, 60.0),
+    ):
+        angle = number(name, given[name] or default, "deg", "rad", least=None)
+        if not max(lowest, 0.0) <= np.degrees(angle) < highest or (lowest == 0.0 and angle == 0.0):
+            lower_end = "(0" if lowest == 0.0 else "[0"
+            raise ValueError(f"{flag(name)} = {given[name]} deg is outside {lower_end}, {highest:g})")
         angles.append(angle)
     width, module = (number(name, given[name], "mm", "m") for name in ("width", "module"))
     return InvoluteGearPair(module, (teeth[0], teeth[1]), width, angles[0], angles[1])
@@ -181,9 +184,9 @@ def _put(sheet: Sheet, wheels: InvoluteGearPair, given: Given, K: float) -> None
     sheet.stated("teeth1", wheels.z[0])
     if given["backlash"] is None:
         distance = sum(wheels.radii) * 1e3
-        least = 2.0 / 3.0 * (0.06 + 0.0005 * distance + 0.03 * wheels.module * 1e3) * 1e-3
+        min_backlash = 2.0 / 3.0 * (0.06 + 0.0005 * distance + 0.03 * wheels.module * 1e3) * 1e-3
         text = f"least backlash of ISO/TR 10064-2, Annex A, at {distance:.4g} mm of centre distance"
-        sheet.put("backlash", least, "estimate", text)
+        sheet.put("backlash", min_backlash, "estimate", text)
     else:
         sheet.stated("backlash", number("backlash", given["backlash"], "um", "m"))
     sheet.put("K_tooth", K, "derived", "single stiffness c' of ISO 6336-1, method B, times the width")

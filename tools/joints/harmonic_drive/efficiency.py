@@ -199,7 +199,7 @@ def lost_motion(spring: HarmonicDriveSpring) -> float:
 
 def _wind_up(spring: HarmonicDriveSpring, torques: tuple[float, ...]) -> float:
     """Wind-up [rad] after a sequence of torques [N.m], starting at rest."""
-    memory = spring.rest()
+    history = spring.rest()
     for torque in torques:
-        out, memory = spring.loaded(torque, memory)
-    return float(out["phi_rel"])
+        outputs, history = spring.loaded(torque, history)
+    return float(outputs["phi_rel"])

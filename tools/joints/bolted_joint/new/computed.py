@@ -207,14 +207,14 @@ def facts(
     Raises ValueError if the user asked for elastic sides and they cannot be computed.
     """
     try:
-        found = whole_joint(file, plates, attached, shape)
+        computed = whole_joint(file, plates, attached, shape)
     except ValueError as error:
         if sides == "elastic":
             raise
         return NewJoint(file, {}, [f"members and bolts are not computed, {alone}: {error}"])
     if sides == "rigid":
-        return NewJoint(file, _rows(found.compliances, plates.tension, attached), [])
-    return NewJoint(found.file, whole_facts(found.file, plates.preload), [])
+        return NewJoint(file, _rows(computed.compliances, plates.tension, attached), [])
+    return NewJoint(computed.file, whole_facts(computed.file, plates.preload), [])
 
 
 def whole_facts(file: ParameterFile, preload: float) -> Facts:

@@ -335,10 +335,10 @@ def _check(path: Path, samples: Samples, drive: Drive) -> None:
         raise ValueError(
             f"{path}: has no motion; expected speeds of the joint above {STILL / ratio:.2g} rad/s"
         )
-    most = MOST_TORQUE * float(drive.reach) / ratio
+    limit = MOST_TORQUE * float(drive.reach) / ratio
     largest = float(np.max(np.abs(samples.torque)))
-    if largest > most:
+    if largest > limit:
         raise ValueError(
-            f"{path}: a motor torque of {largest:.4g} N.m is outside [-{most:.4g}, {most:.4g}] N.m; expected "
-            "that of the motor, not of the joint, of a drive as stated"
+            f"{path}: a motor torque of {largest:.4g} N.m is outside [-{limit:.4g}, {limit:.4g}] N.m; "
+            "expected that of the motor, not of the joint, of a drive as stated"
         )
