@@ -205,8 +205,8 @@ def _check_met(printed: Mapping[str, Printed], stated: Collection[str]) -> None:
         highest, stated_value = 1.0 / (1.0 + _idle(printed)), printed["efficiency"].value
         if stated_value > (1.0 + _MET) * highest:
             raise ValueError(
-                f"--efficiency = {stated_value:g} is outside (0, {highest:.6g}]: the torque without load takes "
-                "the rest"
+                f"--efficiency = {stated_value:g} is outside (0, {highest:.6g}]: the torque without load "
+                "takes the rest"
             )
 
 
