@@ -40,12 +40,12 @@ TOOLS = (
 class ToolParts:
     """Tool modules of one joint.
 
-    package : of the folder of the joint
-    names   : modules with the name of their tool
-    modules : {tool: module}, if a module has another name than its tool
+    package      : of the folder of the joint
+    module_names : modules with the name of their tool
+    modules      : {tool: module}, if a module has another name than its tool
 
-    Raises ImportError if a name is not in TOOLS, if a named module is missing, or if the folder has a module
-    with the name of a tool that is not in `names`.
+    Raises ImportError if a name is not in TOOL_NAMES, if a named module is missing, or if the folder has a
+    module with the name of a tool that is not in `module_names`.
     """
 
     def __init__(self, package: str, names: Sequence[str], **modules: str) -> None:
@@ -71,7 +71,7 @@ class Option:
     """Command-line option, also a keyword argument in Python, of a tool module.
 
     name         : in Python; on the command line with hyphens
-    text         : help; for a number with its unit
+    help_text    : meaning of the option; for a number with its unit
     metavar      : placeholder of the value in the help
     default      : value if the user does not set the option
     choices      : allowed words; empty: any text
@@ -79,7 +79,7 @@ class Option:
     separator    : character between the numbers of one value, for example the x of 200x100
     is_flag      : takes no value
     is_required  : the user must set the option
-    is_number    : the value is a number in the unit of `text`
+    is_number    : the value is a number in the unit of `help_text`
     default_unit : unit of a number that the user states without a unit
     unit_option  : name of the option that sets the unit of numbers without a unit; this option itself is not
                    passed to the tool module

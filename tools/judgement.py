@@ -59,7 +59,7 @@ class Level:
 class Judgement:
     """Plausibility of a stiffness: comparison with the roughness, and warnings.
 
-    level : None if the roughness is unknown
+    comparison : None if the roughness is unknown
     """
 
     level: Level | None

@@ -89,7 +89,7 @@ def shown(fmu: Path) -> str:
 
 
 def run(out: Path) -> JobResult:
-    """Build, prove and check all flavours; write report, laboratory page and ramps (CSV) to folder/report.
+    """Build, prove and check all flavours; write report, laboratory page and ramps to out_folder/report.
 
     The report shows the ramps of the flavour `fmi2`. The ramps of the other flavours must be equal to them.
     """

@@ -65,18 +65,18 @@ def on_mesh(spring: BoltedJointSpring, mesh: "Mesh", preload: float, moment: flo
     from scipy.spatial import KDTree
 
     _check_area(spring, mesh)
-    shape, place = spring.shape, mesh.position
+    shape, position = spring.shape, mesh.position
     share = mesh.area / mesh.area.sum()
-    far, nearest = KDTree(shape.position).query(place)
+    distance, nearest = KDTree(shape.position).query(position)
     allowed = _OUTSIDE * float(np.hypot(*np.ptp(shape.position, axis=0)))
-    if np.any(far > allowed):
-        worst = int(np.argmax(far))
+    if np.any(distance > allowed):
+        worst = int(np.argmax(distance))
         raise ValueError(
-            f"{mesh.path}: node {mesh.nodes[worst, 0]} is {far[worst]:.3g} m off the joint, allowed are "
+            f"{mesh.path}: node {mesh.nodes[worst, 0]} is {distance[worst]:.3g} m off the joint, allowed are "
             f"{allowed:.3g} m; place and size must be the joint's"
         )
     values = np.stack([shape.equal, shape.tilt], axis=1)
-    linear = LinearNDInterpolator(shape.position, values)(place)
+    linear = LinearNDInterpolator(shape.position, values)(position)
     equal, tilt = np.where(np.isnan(linear), values[nearest], linear).T
     force = float(share @ equal)
     if abs(force - 1.0) > FORCE_TOLERANCE:
@@ -86,7 +86,7 @@ def on_mesh(spring: BoltedJointSpring, mesh: "Mesh", preload: float, moment: flo
         )
     equal /= force
     tilt -= (share @ tilt) * equal
-    mapped = spring.on(PressureShape(share, place, equal, tilt))
+    mapped = spring.on(PressureShape(share, position, equal, tilt))
     return _split(mapped, mesh.nodes, preload, moment, _sums(spring, preload, moment))
 
 
@@ -133,7 +133,7 @@ def _split(
 ) -> Springs:
     """Distribute stiffness and damping to the nodes, in proportion to area share times k(p).
 
-    totals : {name in SUMS: total}; None: the totals of `spring`
+    totals : {name in TOTAL_OUTPUTS: total}; None: the totals of `spring`
 
     Raises ValueError if nothing is in contact or a pressure is outside the law.
     """
@@ -147,20 +147,20 @@ def _split(
         )
     nodal_stiffness = shape.share * spring.curve.derivatives(spring.curve.inverse(p), 1)[1]
     closed = nodal_stiffness > 0.0
-    part = (nodal_stiffness / nodal_stiffness.sum())[closed]
-    own = _sums(spring, preload, moment)
-    sums = whole or own
+    fraction = (nodal_stiffness / nodal_stiffness.sum())[closed]
+    spring_totals = _sums(spring, preload, moment)
+    sums = whole or spring_totals
     return Springs(
         nodes[closed],
         shape.position[closed],
         (shape.share * joint.A_0)[closed],
         p[closed],
-        sums["K_zz"] * part,
-        sums["K_xx"] * part,
-        sums["C_zz"] * part,
-        sums["C_xx"] * part,
+        sums["K_zz"] * fraction,
+        sums["K_xx"] * fraction,
+        sums["C_zz"] * fraction,
+        sums["C_xx"] * fraction,
         sums,
-        sums["K_zz"] / own["K_zz"],
+        sums["K_zz"] / spring_totals["K_zz"],
         int(np.sum(~closed)),
     )
 
@@ -180,8 +180,8 @@ def pull_table(spring: BoltedJointSpring, preload: float, moment: float, error: 
     force of MAX_FORCE_RATIO times the one at tightening. It ends where the last node opens; beyond, only the
     force of the bolts grows. A bolt adds its stiffness while it pulls.
 
-    error : largest relative error [1]; where force or stiffness are smaller than at tightening, relative to
-            the value at tightening
+    max_error : largest relative error [1]; where force or stiffness are smaller than at tightening, relative
+                to the value at tightening
 
     Raises ValueError if nothing is in contact or the pressure reaches the hardness.
     """
@@ -190,7 +190,7 @@ def pull_table(spring: BoltedJointSpring, preload: float, moment: float, error: 
     start = spring.within_law(preload, moment)
     low, high = spring.curve.displacement[[0, -1]]
     shape = spring.shape.merged(moment=moment != 0.0)
-    alike = spring.curve.inverse(pressures(spring.joint, shape, preload, moment))
+    approach = spring.curve.inverse(pressures(spring.joint, shape, preload, moment))
     weight = spring.joint.A_0 * shape.share
     springs, held_bolts = spring.bolts, spring.bolts.tightened(spring.joint, preload, moment)
     bolts = float(spring.joint.n_bolts * spring.joint.bolt_stiffness)
@@ -203,26 +203,27 @@ def pull_table(spring: BoltedJointSpring, preload: float, moment: float, error: 
         return springs.count * springs.stiffness * gap.sum(axis=1), springs.count * lost.sum(axis=1)
 
     def total(separation: Array) -> Array:
-        blocks = np.array_split(separation[:, None], max(separation.size * alike.size // _BLOCK, 1))
-        both = [[value @ weight for value in spring.curve.derivatives(alike - s, 1)] for s in blocks]
-        return np.concatenate(both, axis=1)
+        blocks = np.array_split(separation[:, None], max(separation.size * approach.size // _BLOCK, 1))
+        results = [[value @ weight for value in spring.curve.derivatives(approach - s, 1)] for s in blocks]
+        return np.concatenate(results, axis=1)
 
-    held, stiff = (float(value[0]) for value in total(np.zeros(1)))
-    reach = np.linspace(0.0, float(high - np.max(start)), 400)
-    end = float(np.interp(STRONGEST * held, total(-reach)[0], reach))
+    preload_force, preload_stiffness = (float(value[0]) for value in total(np.zeros(1)))
+    compression = np.linspace(0.0, float(high - np.max(start)), 400)
+    end = float(np.interp(STRONGEST * preload_force, total(-compression)[0], compression))
     opening = float(np.max(start) - low)
     s = np.concatenate([np.linspace(-end, 0.0, _FINE), np.linspace(0.0, opening, _FINE)[1:]])
     force, stiffness = total(s)
-    compression, lost = missing(s)
-    pull = held - force + bolts * s + compression
-    table = thinned(s, pull, stiffness + (bolts - lost), error, (held, stiff), keep=(_FINE - 1,))
-    last = [2.0 * opening, held + 2.0 * bolts * opening, bolts]
+    pushing, lost = missing(s)
+    normal_force = preload_force - force + bolts * s + pushing
+    scale = preload_force, preload_stiffness
+    table = thinned(s, normal_force, stiffness + (bolts - lost), error, scale, keep=(_FINE - 1,))
+    last = [2.0 * opening, preload_force + 2.0 * bolts * opening, bolts]
     return LoadTable(np.vstack([table.rows, last]), table.straight, table.monotone)
 
 
 @dataclass(frozen=True, slots=True)
 class Tightening:
-    """Working point of a bolted joint: preload of each bolt and bending moment."""
+    """Tightened state of a bolted joint: preload of each bolt and bending moment."""
 
     preload: float = quantity("N", "the force of each bolt")
     moment: float = quantity("N.m", "the bending moment")

@@ -27,11 +27,11 @@ if TYPE_CHECKING:
 class PlaneLayout:
     """Geometry of a bolted joint in the contact plane, relative to the centroid of the contact [m].
 
-    bolts      : positions (b, 2); empty if the file has none
-    outline    : rectangles (lower corner, upper corner) of the contact, the outer one first; empty for a
-                 pressure field without bodies
-    extent     : (2, 2) lower and upper corner of the bounding box
-    hole, head : diameters; 0 if the file has none
+    bolt_positions : (b, 2); empty if the file has none
+    outline        : rectangles (lower corner, upper corner) of the contact, the outer one first; empty for a
+                     pressure field without bodies
+    extent         : (2, 2) lower and upper corner of the bounding box
+    hole_diameter, head_diameter : 0 if the file has none
     """
 
     bolts: Array
@@ -91,7 +91,10 @@ PRESSURE = NominalPressure(load="preload", usual=_usual, mean=_mean, peak=_peak,
 def _pressures(
     joint: Bolted, shape: PressureShape | MergedShape, preload: ArrayLike, moment: ArrayLike
 ) -> Array:
-    """Node pressures [Pa] at a preload after embedding: a field is computed for the remaining preload."""
+    """Nodal pressures [Pa] at a preload, without a further loss by embedding.
+
+    A field is computed for the preload that remains after embedding.
+    """
     return pressures(replace(joint, embedding=0.0), shape, preload, moment)
 
 

@@ -40,11 +40,11 @@ class Svg:
 
     def put(self, kind: str, text: str = "", /, **given: object) -> None:
         """Add an element. An `_` in the name of an attribute becomes `-`."""
-        attributes = " ".join(
+        attribute_text = " ".join(
             f'{name.replace("_", "-")}="{f"{value:.1f}" if isinstance(value, float) else value}"'
             for name, value in given.items()
         )
-        element = f"<{kind} {attributes}"
+        element = f"<{kind} {attribute_text}"
         self.parts.append(f"{element}>{escape(text)}</{kind}>" if text else f"{element}/>")
 
     def line(self, x1: float, y1: float, x2: float, y2: float, stroke: str = INK, dash: str = "") -> None:
@@ -63,8 +63,8 @@ class Svg:
         size = float(np.hypot(*along))
         along = along / size
         out = TICK * (np.array([along[1], -along[0]]) + along)
-        for place in np.arange(0.0, size - 0.5 * TICK, TICK):
-            x, y = np.array([x1, y1]) + place * along
+        for distance in np.arange(0.0, size - 0.5 * TICK, TICK):
+            x, y = np.array([x1, y1]) + distance * along
             self.line(x, y, x + out[0], y + out[1], RED)
 
     def arrow(self, x: float, y: float, dx: float, dy: float) -> None:
@@ -125,17 +125,25 @@ def plan(joint: Bolted, preload: float, moment: float) -> str:
     if attached == "faces":
         for ends in ((x1, y1, x2, y1), (x2, y1, x2, y2), (x2, y2, x1, y2), (x1, y2, x1, y1)):
             sheet.held(*ends)
-    told = {"faces": "attached: outer faces of both sides", "heads": f"attached: {_seats(joint)}"}
-    if attached in told:
-        sheet.text(x1, y1 - 22.0, told[attached], "start", RED)
-    over = "" if layout.outline else "points over "
-    width, height = (f"{over}{1e3 * way:.4g} mm" for way in high - low)
+    notes = {"faces": "attached: outer faces of both sides", "heads": f"attached: {_seats(joint)}"}
+    if attached in notes:
+        sheet.text(x1, y1 - 22.0, notes[attached], "start", RED)
+    prefix = "" if layout.outline else "points over "
+    width, height = (f"{prefix}{1e3 * extent:.4g} mm" for extent in high - low)
     sheet.text(0.5 * (x1 + x2), y2 + 26.0, f"{width}, x to the right", "middle", SOFT)
-    turned = f"rotate(-90 {x1 - 26.0:.1f} {0.5 * (y1 + y2):.1f})"
-    sheet.text(x1 - 26.0, 0.5 * (y1 + y2), f"{height}, y up", "middle", SOFT, transform=turned)
+    rotation = f"rotate(-90 {x1 - 26.0:.1f} {0.5 * (y1 + y2):.1f})"
+    sheet.text(x1 - 26.0, 0.5 * (y1 + y2), f"{height}, y up", "middle", SOFT, transform=rotation)
     _bar(sheet, sheet.width - 98.0, EDGE, sheet.height - 2.0 * EDGE, top)
-    moved, left = f", {moment:g} N m" if moment else "", float(working_preload(joint, preload))
-    sheet.text(EDGE, 22.0, f"{left / 1e3:.4g} kN in each bolt{moved}: up to {top / 1e6:.4g} MPa", "start")
+    moment_text, remaining_preload = (
+        f", {moment:g} N m" if moment else "",
+        float(working_preload(joint, preload)),
+    )
+    sheet.text(
+        EDGE,
+        22.0,
+        f"{remaining_preload / 1e3:.4g} kN in each bolt{moment_text}: up to {top / 1e6:.4g} MPa",
+        "start",
+    )
     return sheet.svg("The interface from above: pressure, bolts, attachments")
 
 
@@ -170,8 +178,8 @@ def _bar(sheet: Svg, x: float, y: float, height: float, top: float) -> None:
         sheet.put(
             "rect", x=x, y=place, width=16.0, height=height / steps + 0.6, fill=_colour((k + 0.5) / steps)
         )
-    for part in (0.0, 0.25, 0.5, 0.75, 1.0):
-        sheet.text(x + 22.0, y + height * (1.0 - part) + 4.0, f"{part * top / 1e6:.3g}", "start")
+    for fraction in (0.0, 0.25, 0.5, 0.75, 1.0):
+        sheet.text(x + 22.0, y + height * (1.0 - fraction) + 4.0, f"{fraction * top / 1e6:.3g}", "start")
     sheet.text(x - 8.0, y - 12.0, "pressure [MPa]", "start")
 
 
@@ -211,11 +219,11 @@ def section(joint: Bolted) -> str:
     sheet = Svg(max(x2 - x1, 300.0) + 2.0 * EDGE + 60.0, bottom + head + EDGE)
     for y, height, fill in ((top, up * second, "#dfe6ef"), (middle, up * first, "#eef1f5")):
         sheet.put("rect", x=x1, y=y, width=x2 - x1, height=height, fill=fill, stroke=INK)
-    for y, name, thick in (
+    for y, name, thickness in (
         (0.5 * (top + middle), "side 2", second),
         (0.5 * (middle + bottom), "side 1", first),
     ):
-        sheet.text(x2 + 20.0, y + 4.0, f"{name}: {1e3 * thick:.4g} mm", "start", SOFT)
+        sheet.text(x2 + 20.0, y + 4.0, f"{name}: {1e3 * thickness:.4g} mm", "start", SOFT)
     places = x1 + scale * (layout.bolts[:, 0] - low)
     for x in np.unique(np.round(places, 1)):
         thread = up * bodies.thread_depth
@@ -223,23 +231,23 @@ def section(joint: Bolted) -> str:
         _bolt(sheet, x, ends, 0.5 * scale * layout.head, head, attached == "heads", thread)
         names = ", ".join(str(j + 1) for j in np.flatnonzero(np.abs(places - x) < 0.1))
         sheet.text(x, bottom + head + 24.0, names)
-    enters = {"faces": "the outer faces", "edge": "the edges", "heads": f"what lies {_seats(joint)}"}
+    surfaces = {"faces": "the outer faces", "edge": "the edges", "heads": f"what lies {_seats(joint)}"}
     if attached == "edge":
         sheet.held(x1, bottom, x1, middle)
         sheet.held(x2, top, x2, middle)
         sheet.arrow(x2 + 14.0, top - 14.0, 40.0, 0.0)
         sheet.arrow(x1 - 14.0, bottom + 14.0, -40.0, 0.0)
-    elif attached in enters:
+    elif attached in surfaces:
         if attached == "faces":
             sheet.held(x1, top, x2, top)
             sheet.held(x2, bottom, x1, bottom)
         for x in (x1, x2) if attached == "faces" else (np.min(places), np.max(places)):
-            beside = 0.5 * scale * layout.head + 12.0 if attached == "heads" else 0.0
-            seat = middle - 0.5 * up * bodies.thread_depth if beside and bodies.thread_depth else top - 14.0
-            sheet.arrow(x + beside, seat, 0.0, -34.0)
-            sheet.arrow(x + beside, bottom + 14.0, 0.0, 34.0)
-    if attached in enters:
-        sheet.text(x1, 22.0, f"the load enters at {enters[attached]} (hatched)", "start", RED)
+            offset = 0.5 * scale * layout.head + 12.0 if attached == "heads" else 0.0
+            seat = middle - 0.5 * up * bodies.thread_depth if offset and bodies.thread_depth else top - 14.0
+            sheet.arrow(x + offset, seat, 0.0, -34.0)
+            sheet.arrow(x + offset, bottom + 14.0, 0.0, 34.0)
+    if attached in surfaces:
+        sheet.text(x1, 22.0, f"the load enters at {surfaces[attached]} (hatched)", "start", RED)
     if up > 1.01 * scale:
         sheet.text(x1, sheet.height - 10.0, f"z drawn {up / scale:.2g} times as large as x", "start", SOFT)
     return sheet.svg("Both sides from the front, with bolts and attachments")

@@ -36,37 +36,39 @@ def bolt_forces(spring: BoltedJointSpring, preload: float, moment: float, pulls:
     G, E = (np.zeros((len(rows), len(z))) for rows in (start, tension))
     G[:, 2:5], G[:, 6:] = whole.points, modes.opening
     E[:, 2:5], E[:, 6:] = whole.seats, modes.stretch
-    tight, stiff = spring.curve.derivatives(start, 1)
-    least, found = LEAST * law.stick(spring.pressed(start)).max(), []
+    preload_pressure, preload_stiffness = spring.curve.derivatives(start, 1)
+    min_stiffness, results = LEAST * law.stick(spring.pressed(start)).max(), []
 
     def left(z: Array, K: Array, pull: float) -> Array:
         p = spring.curve.derivatives(start - G @ z, 0)[0]
-        inside = E.T @ (bolts.force(tension, E @ z) - tension) - G.T @ (whole.weight * (p - tight))
+        contact = G.T @ (whole.weight * (p - preload_pressure))
+        inside = E.T @ (bolts.force(tension, E @ z) - tension) - contact
         return np.asarray(K @ z + inside - pull * (np.arange(len(z)) == 2))
 
     for pull in pulls:
         for _ in range(STEPS):
             approach = start - G @ z
             shift = np.linalg.norm(spring.shift(z[[0, 1, 5]], z[6:]), axis=1) + LEAST_SHIFT
-            stick = np.maximum(law.backbone(spring.pressed(approach), shift) / shift, least)
+            stick = np.maximum(law.backbone(spring.pressed(approach), shift) / shift, min_stiffness)
             K = whole.slope(np.zeros_like(start), stick[:, None] * STICKS, np.zeros_like(tension))
-            normal = np.maximum(spring.curve.derivatives(approach, 1)[1], LEAST * stiff.max()) * whole.weight
+            stiffness = spring.curve.derivatives(approach, 1)[1]
+            normal = np.maximum(stiffness, LEAST * preload_stiffness.max()) * whole.weight
             r = left(z, K, pull)
             pulling = bolts.tangent(tension, E @ z)[:, None]
             step = -np.linalg.solve(K + E.T @ (pulling * E) + G.T @ (normal[:, None] * G), r)
-            falls, size = float(r @ step), 1.0
-            if -falls <= CLOSE * pull * abs(z[2]):
+            energy_slope_0, size = float(r @ step), 1.0
+            if -energy_slope_0 <= CLOSE * pull * abs(z[2]):
                 break
             for _ in range(PARTS):
-                rises = float(left(z + size * step, K, pull) @ step)
-                if rises <= 0.5 * abs(falls):
+                energy_slope_1 = float(left(z + size * step, K, pull) @ step)
+                if energy_slope_1 <= 0.5 * abs(energy_slope_0):
                     break
-                size *= max(falls / (falls - rises), 0.1)
+                size *= max(energy_slope_0 / (energy_slope_0 - energy_slope_1), 0.1)
             z = z + size * step
         else:
             break
         forces = bolts.force(tension, E @ z)
         if np.any(forces > MOST * tension):
             break
-        found.append(forces)
-    return np.array(found)
+        results.append(forces)
+    return np.array(results)

@@ -51,18 +51,21 @@ def pictured(course: Course) -> Figure:
         pictures.append(section(joint))
     text = "The tightened interface from side 2, grey where it is open. "
     if isinstance(joint.pattern, NodalField):
-        text += "The pressure comes as points, some of the field's nodes, which stand for all of them. "
+        text += "Dots show the pressure at some nodes of the field, which represent all nodes. "
     if not PlaneLayout.of(joint).outline:
         text += "The outline is not in the file. "
     text += (
-        "Bolts are numbered as the FMU's F_bolt. " if len(bolts) else "The file has no places of the bolts. "
+        "The numbers of the bolts are those of the FMU's F_bolt. "
+        if len(bolts)
+        else "The file has no places of the bolts. "
     )
     text += (
-        "Hatched is what moves with the bodies that the joint connects; the section is schematic."
+        "Hatched surfaces move rigidly with the connected bodies; the section is schematic."
         if joint.elastic
-        else "The sides are rigid: the FMU is the interface"
-        + (" with its bolts." if joint.bolt_stiffness else " alone.")
-        + " The members, mostly far softer, are not in it; jointfmu new makes the whole joint of a drawing."
+        else "The sides are rigid: the FMU contains the interface"
+        + (" and its bolts." if joint.bolt_stiffness else " only.")
+        + " The members, usually much softer, are not included; jointfmu new makes the complete joint from a "
+        "drawing."
     )
     return Figure("The joint", text, pictures=pictures)
 
@@ -76,10 +79,10 @@ def friction(course: Course) -> list[Figure]:
     for row in sorted(rows):
         table.append((f"{row.mu:.4g}", _told(row.slip_force, "N"), f"{row.loss_factor:.3g}"))
     text = (
-        f"The number known least: {course.file.sources['mu']}. The loss is that of the interface between "
-        "rigid sides, under the same shear force."
+        f"The friction coefficient is the least certain input: {course.file.sources['mu']}. The loss factor "
+        "is that of the interface between rigid sides, under the same shear force."
     )
-    return [Figure("What the friction may be", text, table=table)]
+    return [Figure("Effect of the friction coefficient", text, table=table)]
 
 
 class Band(NamedTuple):
@@ -102,13 +105,13 @@ def friction_band(file: ParameterFile, preload: float) -> tuple[float, list[Band
     of the interface between rigid sides, all at this amplitude.
     """
     joint = interface_alone(file.values)
-    left = float(working_preload(joint, preload))
-    shear = TOLD_AT * float(slip_force(joint, left))
+    remaining_preload = float(working_preload(joint, preload))
+    shear = TOLD_AT * float(slip_force(joint, remaining_preload))
     rows = []
     for mu in (joint.mu, *file.ranges.get("mu", ())):
         other = replace(joint, mu=mu)
-        lost = loss_factor(BoltedJointSpring.of(other), left, shear)
-        rows.append(Band(mu, float(slip_force(other, left)), lost))
+        loss = loss_factor(BoltedJointSpring.of(other), remaining_preload, shear)
+        rows.append(Band(mu, float(slip_force(other, remaining_preload)), loss))
     return shear, rows
 
 
@@ -146,23 +149,27 @@ def whole_joint(course: Course) -> list[Figure]:
         return []
     assert isinstance(spring, BoltedJointSpring)
     preload, moment = _tight(course)
-    found = spring.compliances(preload, moment)
-    left = float(working_preload(joint, preload))
-    opening = found.opening_load(left)
-    limit = float(slip_force(joint, left))
+    compliances = spring.compliances(preload, moment)
+    remaining_preload = float(working_preload(joint, preload))
+    opening = compliances.opening_load(remaining_preload)
+    limit = float(slip_force(joint, remaining_preload))
     panel = _bolt_forces(spring, preload, moment, BEYOND * opening)
-    share = found.bolt_force[:, 2]
-    most = int(np.argmax(share))
-    uneven = share[most] > (1.0 + ALIKE) * np.mean(share)
-    where = f"around bolt {most + 1}, which gets {share[most]:.3g} of it" if uneven else "around the bolts"
-    text = _text(found, left, moment) + (
-        f" It takes {_told(opening, 'N')} along z to open the interface {where}, by these stiffnesses; "
-        "one that peels opens before, as drawn. It takes "
-        f"{_told(limit, 'N')} along x or y to slip wholly; slip begins at the edges far below, and what "
-        f"it loses is under Loops. Drawn is a pull to {BEYOND:g} times that load, the other five motions "
-        f"free, and to no more than {MOST:g} times the force of a bolt at tightening."
+    share = compliances.bolt_force[:, 2]
+    most_loaded = int(np.argmax(share))
+    is_uneven = share[most_loaded] > (1.0 + ALIKE) * np.mean(share)
+    location = (
+        f"around bolt {most_loaded + 1}, which gets {share[most_loaded]:.3g} of it"
+        if is_uneven
+        else "around the bolts"
     )
-    return [Figure("The whole joint", text, [panel], table=_rows(found))]
+    text = _text(compliances, remaining_preload, moment) + (
+        f" A force of {_told(opening, 'N')} along z opens the interface {location}, by these stiffnesses; "
+        "a joint that peels opens at a lower load, as the plot shows. The whole interface slips at "
+        f"{_told(limit, 'N')} along x or y; slip begins at the edges at a far lower load, and its loss is "
+        f"under Loops. The plot shows a tensile force up to {BEYOND:g} times the opening load, free in the "
+        f"other five motions, and up to {MOST:g} times the force of a bolt at tightening."
+    )
+    return [Figure("The whole joint", text, [panel], table=_rows(compliances))]
 
 
 def _told(value: float, unit: str) -> str:
@@ -173,25 +180,26 @@ def _rows(found: Compliances) -> list[tuple[str, ...]]:
     """Table rows, one per direction: stiffnesses, and shares of the compliance."""
     heads = ("whole joint", "interface alone", "members", "bolts alone", "interface", "members", "bolts")
     rows: list[tuple[str, ...]] = [("", *heads)]
-    for name, unit, each, shares in found.rows():
-        told = [_told(value, unit) if value > 0.0 else "none" for value in each]
-        rows.append((name, *told, *(f"{share:.1%}" for share in shares)))
+    for name, unit, stiffnesses, shares in found.rows():
+        cells = [_told(value, unit) if value > 0.0 else "none" for value in stiffnesses]
+        rows.append((name, *cells, *(f"{share:.1%}" for share in shares)))
     return rows
 
 
 def _text(found: Compliances, tension: float, moment: float) -> str:
     share = found.shares[0]
-    most = float(np.max(share))
-    matters = "it has a say in the stiffness" if found.matters else "the stiffness hardly knows of it"
+    largest = float(np.max(share))
+    effect = "it matters for the stiffness" if found.matters else "it hardly affects the stiffness"
     return (
         f"Small motions of the attachments about the tightened state, {_told(tension, 'N')} in each bolt"
         + (f" with a moment of {moment:g} N m" if moment else "")
-        + ", each alone with the other five held: the stiffness of the whole is the FMU's. The last three "
-        "columns are parts of its compliance, by the energy stored; members are a spring "
-        "in series with the rest, interface and bolts alone are between rigid sides. The interface has "
-        f"{share[2]:.1%} of it along z and at most {most:.1%} in any direction: {matters}. Of a force along "
-        f"z that leaves the other motions free the bolts take {found.load_factor:.3f} (load factor n Phi_K "
-        "of VDI 2230); where the interface opens they take all, as drawn."
+        + ", one at a time with the other five fixed. The stiffness of the whole joint is that of the FMU. "
+        "The last three columns are shares of its compliance, by stored energy. Members are a spring in "
+        "series with interface and bolts; interface alone and bolts alone are between rigid sides. The "
+        f"interface has {share[2]:.1%} of the compliance along z and at most {largest:.1%} in any direction: "
+        f"{effect}. The bolts carry {found.load_factor:.3f} of a force along z (load factor n Phi_K of VDI "
+        "2230), with the other motions free; where the interface is open they carry the full force, as the "
+        "plot shows."
     )
 
 

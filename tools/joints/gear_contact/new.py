@@ -34,8 +34,8 @@ def _flanks(given: Given) -> NewJoint:
     facts = {
         "load": (load, "N", "normal load"),
         "half_width": (float(hertz.half_width), "m", "half width of the patch (Hertz)"),
-        "p_hertz": (float(hertz.pressure), "Pa", "greatest pressure of smooth flanks (Hertz)"),
-        "h": (file.flat["h"], "m", "rms height of both flanks together"),
+        "p_hertz": (float(hertz.pressure), "Pa", "largest pressure of smooth flanks (Hertz)"),
+        "h": (file.flat["h"], "m", "combined rms height of both flanks"),
         "K_N": (float(state["K_N"]), "N/m", "stiffness of the rough interface at this load"),
         "s_rel": (float(state["s_rel"]), "m", "approach of the rough interface at this load"),
     }
@@ -65,7 +65,7 @@ NEW = Drawing(
             many=True,
             required=True,
         ),
-        Option("load", "normal load, which decides the patch [N]", "F", required=True),
+        Option("load", "normal load, which determines the contact patch [N]", "F", required=True),
         *OPTIONS,
     ),
     run=_flanks,

@@ -41,7 +41,7 @@ def claim(contact: GearContact, of: str, over: str) -> bool:
         rows = [[float(at_largest_spot(law, 1e-6)[of]) for law in studies[over]]]
     else:
         fractions = np.geomspace(1e-3, 1e-1, 9)
-        rows = [[_at_real_area(law, part)[of] for law in studies[over]] for part in fractions]
+        rows = [[_at_real_area(law, fraction)[of] for law in studies[over]] for fraction in fractions]
     return bool(np.all(np.diff(rows, axis=1) > 0.0))
 
 

@@ -27,9 +27,9 @@ def _load(mesh: Mesh, _: None, error: float) -> "LoadTable":
     i = int(np.argmin(np.abs(pair.displacement - closing)))
     columns = (pair.load, pair.stiffness, pair.bend_start, pair.bend_end)
     load, stiffness, start, end = (mesh.contact_ratio * column for column in columns)
-    half = law_table(Curve(pair.displacement - pair.displacement[i], load, stiffness, start, end), error)
-    rows = np.vstack([half.rows[:0:-1] * [-1.0, -1.0, 1.0], half.rows])
-    return LoadTable(rows, half.straight, half.monotone)
+    positive = law_table(Curve(pair.displacement - pair.displacement[i], load, stiffness, start, end), error)
+    rows = np.vstack([positive.rows[:0:-1] * [-1.0, -1.0, 1.0], positive.rows])
+    return LoadTable(rows, positive.straight, positive.monotone)
 
 
 EXPORTS = Exports(

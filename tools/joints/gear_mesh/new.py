@@ -30,7 +30,7 @@ class InvoluteGearPair:
     """Two external involute gear wheels without profile shift, with an addendum of one module.
 
     module         : [m] normal module
-    z              : number of teeth of both wheels
+    tooth_counts   : number of teeth of both wheels
     width          : [m] common face width
     pressure_angle : [rad] normal pressure angle
     helix_angle    : [rad] at the reference circle
@@ -142,14 +142,14 @@ def mesh(given: Given) -> NewJoint:
     stiffness = wheels.contact_ratio * float(spring.curve.derivatives(np.array([deflection]), 1)[1][0])
     facts = {
         "load": (load, "N", "normal force of the mesh at the torque"),
-        "p_hertz": (float(hertz.pressure), "Pa", "greatest pressure of smooth flanks, one pair in contact"),
+        "p_hertz": (float(hertz.pressure), "Pa", "largest pressure of smooth flanks, one pair in contact"),
         "contact_ratio": (wheels.contact_ratio, "1", "mean number of pairs in contact over the full width"),
         "overlap_ratio": (wheels.overlap_ratio, "1", "mesh cycles over which a helix spreads the contact"),
         "K_tooth": (file.flat["K_tooth"], "N/m", "bending of one pair (ISO 6336-1)"),
-        "h": (file.flat["h"], "m", "rms height of both flanks together"),
+        "h": (file.flat["h"], "m", "combined rms height of both flanks"),
         "K": (stiffness, "N/m", "mean stiffness of the mesh at this load"),
         "c_gamma": (wheels.mesh_stiffness(file.flat["K_tooth"]), "N/m", "the same by ISO 6336-1, to compare"),
-        "deflection": (deflection, "m", "of a pair at this load"),
+        "deflection": (deflection, "m", "deflection of a tooth pair at this load"),
     }
     return NewJoint(file, facts, faces.beyond(float(hertz.pressure), file.flat["H"]))
 
@@ -161,11 +161,14 @@ def _wheels(given: Given) -> InvoluteGearPair:
     if any(z % 1.0 for z in teeth):
         raise ValueError(f"--teeth = {' '.join(given['teeth'])}: expected whole numbers")
     angles = []
-    for name, usual, least, most in (("pressure_angle", "20", 0.0, 45.0), ("helix_angle", "0", -1.0, 60.0)):
-        angle = number(name, given[name] or usual, "deg", "rad", least=None)
-        if not max(least, 0.0) <= np.degrees(angle) < most or (least == 0.0 and angle == 0.0):
-            low = "(0" if least == 0.0 else "[0"
-            raise ValueError(f"{flag(name)} = {given[name]} deg is outside {low}, {most:g})")
+    for name, default, lowest, highest in (
+        ("pressure_angle", "20", 0.0, 45.0),
+        ("helix_angle", "0", -1.0, 60.0),
+    ):
+        angle = number(name, given[name] or default, "deg", "rad", least=None)
+        if not max(lowest, 0.0) <= np.degrees(angle) < highest or (lowest == 0.0 and angle == 0.0):
+            lower_end = "(0" if lowest == 0.0 else "[0"
+            raise ValueError(f"{flag(name)} = {given[name]} deg is outside {lower_end}, {highest:g})")
         angles.append(angle)
     width, module = (number(name, given[name], "mm", "m") for name in ("width", "module"))
     return InvoluteGearPair(module, (teeth[0], teeth[1]), width, angles[0], angles[1])
@@ -181,9 +184,9 @@ def _put(sheet: Sheet, wheels: InvoluteGearPair, given: Given, K: float) -> None
     sheet.stated("teeth1", wheels.z[0])
     if given["backlash"] is None:
         distance = sum(wheels.radii) * 1e3
-        least = 2.0 / 3.0 * (0.06 + 0.0005 * distance + 0.03 * wheels.module * 1e3) * 1e-3
+        min_backlash = 2.0 / 3.0 * (0.06 + 0.0005 * distance + 0.03 * wheels.module * 1e3) * 1e-3
         text = f"least backlash of ISO/TR 10064-2, Annex A, at {distance:.4g} mm of centre distance"
-        sheet.put("backlash", least, "estimate", text)
+        sheet.put("backlash", min_backlash, "estimate", text)
     else:
         sheet.stated("backlash", number("backlash", given["backlash"], "um", "m"))
     sheet.put("K_tooth", K, "derived", "single stiffness c' of ISO 6336-1, method B, times the width")
@@ -203,12 +206,16 @@ NEW = Drawing(
     example="--module 4 --teeth 29 45 --width 20 --torque 150 --material 'hardened steel' --Ra 0.4",
     options=(
         Option("module", "normal module [mm]", "M", required=True),
-        Option("teeth", "of wheel 1 and wheel 2", "Z", many=True, required=True),
+        Option("teeth", "numbers of teeth of wheel 1 and wheel 2", "Z", many=True, required=True),
         Option("width", "common face width [mm]", "B", required=True),
-        Option("torque", "of wheel 1 at work [N.m]: decides the patch", "T", required=True),
+        Option(
+            "torque", "working torque of wheel 1 [N.m]; it determines the contact patch", "T", required=True
+        ),
         Option("pressure_angle", "normal pressure angle [deg] (default: 20)", "A"),
-        Option("helix_angle", "at the reference circle [deg] (default: 0)", "A"),
-        Option("backlash", "along the line of action [um] (default: the least of ISO/TR 10064-2)", "J"),
+        Option("helix_angle", "helix angle at the reference circle [deg] (default: 0)", "A"),
+        Option(
+            "backlash", "backlash along the line of action [um] (default: minimum of ISO/TR 10064-2)", "J"
+        ),
         *OPTIONS,
     ),
     run=mesh,

@@ -94,12 +94,12 @@ def torque_angle(result: RampResult) -> list[Panel]:
     """Panels of the torque on wheel 1 over its angle: for both flanks, and near the first contact."""
     angle, torque = result.columns["phi1"] * 1e3, -result.columns["tau1"]
     first = int(np.argmax(torque > 0.0))
-    some = slice(max(first - 3, 0), first + 15)
-    both = np.concatenate([-angle[::-1], angle]), np.concatenate([-torque[::-1], torque])
+    rows = slice(max(first - 3, 0), first + 15)
+    curve = np.concatenate([-angle[::-1], angle]), np.concatenate([-torque[::-1], torque])
     axes = ("angle of wheel 1 [mrad]", "torque [N m]")
     return [
-        Panel("Torque over angle", *axes, [Series("torque", *both)]),
-        Panel("First touch", *axes, [Series("torque", angle[some], torque[some])]),
+        Panel("Torque over angle", *axes, [Series("torque", *curve)]),
+        Panel("First touch", *axes, [Series("torque", angle[rows], torque[rows])]),
     ]
 
 

@@ -73,9 +73,9 @@ def find(name: str) -> Item:
     matches = [item for key, item in known.items() if wanted == key or wanted.startswith(f"{key}-")]
     if matches:
         return max(matches, key=lambda item: len(item.name))
-    near = sorted(known, key=lambda key: _distance(key, wanted))[:_NAMES]
+    similar = sorted(known, key=lambda key: _distance(key, wanted))[:_NAMES]
     raise ValueError(
-        f"catalogue {name!r} is unknown; nearest are {', '.join(known[key].name for key in near)} "
+        f"catalogue {name!r} is unknown; nearest are {', '.join(known[key].name for key in similar)} "
         "(jointfmu catalogue)"
     )
 
@@ -92,11 +92,11 @@ def _distance(key: str, wanted: str) -> tuple[float, ...]:
 def items() -> tuple[Item, ...]:
     """All drives of the catalogue: those with a row of stiffness, and those that share such a row."""
     torques = {(row["series"], row["size"], row["ratio"]): row for row in _table("torque")}
-    found = {item.name: item for row in _table("stiffness") for item in _of_row(row, torques)}
+    drives_by_name = {item.name: item for row in _table("stiffness") for item in _of_row(row, torques)}
     for row in _table("friction"):
-        found[row["drive"]] = _single(row, found[row["like"]])
-    drives = known(found.values())
-    return tuple(with_friction(item, drives) for item in found.values())
+        drives_by_name[row["drive"]] = _single(row, drives_by_name[row["like"]])
+    drives = known(drives_by_name.values())
+    return tuple(with_friction(item, drives) for item in drives_by_name.values())
 
 
 def _of_row(row: Mapping[str, str], torques: Torques) -> Iterator[Item]:
@@ -163,14 +163,17 @@ def _torque(torques: Torques, series: str, size: str, ratio: str) -> dict[str, P
         if row := torques.get((other, size, ratio)):
             name = f"{other}-{size}-{ratio}"
             if other == series:
-                kind, part = "catalogue", 1.0
+                kind, ratio_to_series = "catalogue", 1.0
                 text = f"{name}: {row['source']}"
             elif other in STRONG and series not in STRONG:
-                kind, part = "estimate", 1.0 / STRONGER
+                kind, ratio_to_series = "estimate", 1.0 / STRONGER
                 text = f"that of {name} over {STRONGER:g}: the catalogue gives the CSG 30 % more than the CSF"
             else:
-                kind, text, part = "estimate", f"that of {name}", 1.0
-            return {column: Printed(part * float(row[head]), kind, text) for column, head in _TORQUE.items()}
+                kind, text, ratio_to_series = "estimate", f"that of {name}", 1.0
+            return {
+                column: Printed(ratio_to_series * float(row[head]), kind, text)
+                for column, head in _TORQUE.items()
+            }
     return {}
 
 
@@ -181,20 +184,20 @@ def _limits(drive: str, size: str, ratio: float) -> dict[str, Printed]:
     """
     step = "30" if ratio < 50.0 else "50" if ratio == 50.0 else "50+"
     rows = [row for row in _table("accuracy") if row["ratio"] == step]
-    alike = [row for row in rows if row["size"] == size]
-    found = {}
+    same_size = [row for row in rows if row["size"] == size]
+    limits = {}
     for column, head in _LIMITS.items():
-        row = max(alike or rows, key=lambda row: float(row[head]))
+        row = max(same_size or rows, key=lambda row: float(row[head]))
         actuator = f"{row['series']}-{row['size']}A"
         kind = "catalogue" if drive == actuator else "estimate"
         text = f"limit for the actuators {actuator}"
         if drive != actuator:
             text += ", whose stiffness is the same"
-        if not alike:
+        if not same_size:
             text = f"limit for all actuators {row['series']}, none of which has this size"
         value = float(row[head]) * factor("arcmin", "rad")
-        found[column] = Printed(value, kind, f"{text} ({row['source']})", bound=True)
-    return found
+        limits[column] = Printed(value, kind, f"{text} ({row['source']})", bound=True)
+    return limits
 
 
 def _single(row: Mapping[str, str], like: Item) -> Item:

@@ -85,7 +85,7 @@ def wound_up(carried: Callable[[float], float], torque: float, stiffness: float)
 
 @dataclass(slots=True)
 class Bench:
-    """Simulated test bench: a drive whose input rotates at a steady speed, with a torque at its output.
+    """Simulated test rig: a drive whose input rotates at a steady speed, with a torque at its output.
 
     drive       : running drive with inputs phi1, w1, phi2, w2 and first outputs tau, tau1
     ratio       : speed ratio [1]
@@ -94,7 +94,7 @@ class Bench:
     motor_angle : phi1 [rad]
     step_count  : steps so far
 
-    `open_fmu_bench` and `make_python_bench` make one.
+    `open_fmu_test_rig` and `make_python_test_rig` create a rig.
     """
 
     drive: Slave | PythonDrive
@@ -158,7 +158,7 @@ class Bench:
 
 @contextmanager
 def bench(path: Path, parameters: Mapping[str, float]) -> Iterator[Bench]:
-    """Open the FMU HarmonicDriveSpring (FMI 2.0) as a test bench; `parameters` replace default values."""
+    """Open the FMU HarmonicDriveSpring (FMI 2.0) as a test rig; the parameters replace default values."""
     wires = (*_TORQUES, "K_WTS", "ratio", "presliding")
     with Slave(path, {**parameters, **_STEADY}, _MOTION, wires) as drive:
         _, _, stiffness, ratio, presliding = drive.get()
@@ -166,7 +166,7 @@ def bench(path: Path, parameters: Mapping[str, float]) -> Iterator[Bench]:
 
 
 def spring_bench(model: Model, file: ParameterFile) -> Bench:
-    """Make a test bench of the drive in Python, with the parameters of a file. No FMU is needed."""
+    """Make a test rig of the drive in Python, with the parameters of a file. No FMU is needed."""
     steady = file.with_values(_STEADY, "user", "steady")
     drive = PythonDrive(model, steady)
     return Bench(drive, steady.values.ratio, steady.values.presliding, drive.get()[2])
@@ -199,7 +199,7 @@ def lost_motion(spring: HarmonicDriveSpring) -> float:
 
 def _wind_up(spring: HarmonicDriveSpring, torques: tuple[float, ...]) -> float:
     """Wind-up [rad] after a sequence of torques [N.m], starting at rest."""
-    memory = spring.rest()
+    history = spring.rest()
     for torque in torques:
-        out, memory = spring.loaded(torque, memory)
-    return float(out["phi_rel"])
+        outputs, history = spring.loaded(torque, history)
+    return float(outputs["phi_rel"])

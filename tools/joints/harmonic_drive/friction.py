@@ -197,15 +197,16 @@ def _check_met(printed: Mapping[str, Printed], stated: Collection[str]) -> None:
         "running_torque": (start, "the starting torque"),
         "back_driving_torque": (ratio * start, "ratio times starting torque"),
     }
-    for name, (least, what) in ends.items():
-        if name in stated and printed[name].value < (1.0 - _MET) * least:
+    for name, (lowest, bound_text) in ends.items():
+        if name in stated and printed[name].value < (1.0 - _MET) * lowest:
             value = f"{flag(name)} = {printed[name].value:g} N.m"
-            raise ValueError(f"{value} is outside [{least:.6g}, inf) N.m: it is at least {what}")
+            raise ValueError(f"{value} is outside [{lowest:.6g}, inf) N.m: it is at least {bound_text}")
     if "efficiency" in stated and "rated_torque" in printed:
-        most, own = 1.0 / (1.0 + _idle(printed)), printed["efficiency"].value
-        if own > (1.0 + _MET) * most:
+        highest, stated_value = 1.0 / (1.0 + _idle(printed)), printed["efficiency"].value
+        if stated_value > (1.0 + _MET) * highest:
             raise ValueError(
-                f"--efficiency = {own:g} is outside (0, {most:.6g}]: the torque without load takes the rest"
+                f"--efficiency = {stated_value:g} is outside (0, {highest:.6g}]: the torque without load "
+                "takes the rest"
             )
 
 
@@ -278,7 +279,7 @@ def with_friction(item: Item, drives: Mapping[str, tuple[PrintedFriction, str]])
 
     Without a rated torque there is no estimate of the efficiency.
     """
-    own, ratio = dict(item.numbers), item.numbers["ratio"].value
+    numbers, ratio = dict(item.numbers), item.numbers["ratio"].value
     law = scaled(size(item.name), ratio, [each for each, _ in drives.values()])
     makers: dict[str, list[str]] = {}
     for name, (_, maker) in drives.items():
@@ -289,13 +290,13 @@ def with_friction(item: Item, drives: Mapping[str, tuple[PrintedFriction, str]])
     def estimate(column: str, value: float, *ends: float) -> None:
         """Add the estimate of a column, unless the drive has this column."""
         interval = min(ends), max(ends)
-        own.setdefault(column, Printed(value, "estimate", text, interval=interval))
+        numbers.setdefault(column, Printed(value, "estimate", text, interval=interval))
 
     estimate("starting_torque", *law.starting)
-    start = own["starting_torque"].value
+    start = numbers["starting_torque"].value
     estimate("running_torque", *(start + x for x in law.rise))
     estimate("back_driving_torque", *(ratio * start / (1.0 - x) for x in law.load_loss_back))
-    if rated := own.get("rated_torque"):
-        idle = 1.0 + own["running_torque"].value * ratio / rated.value
+    if rated := numbers.get("rated_torque"):
+        idle = 1.0 + numbers["running_torque"].value * ratio / rated.value
         estimate("efficiency", *(1.0 / (idle + x) for x in law.load_loss))
-    return Item(item.name, own)
+    return Item(item.name, numbers)

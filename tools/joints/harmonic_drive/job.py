@@ -108,24 +108,29 @@ def friction(fmu: Path) -> list[Panel]:
     panels, published_torques, found_torques = [], [], []
     drives, share = efficiency.printed_drives(), np.linspace(0.1, 1.0, 41) ** 2
     for drive in drives:
-        rated, back = drive.numbers["rated_torque"].value, drive.numbers["back_driving_torque"].value
+        rated, published_torque = (
+            drive.numbers["rated_torque"].value,
+            drive.numbers["back_driving_torque"].value,
+        )
         with efficiency.bench(fmu, efficiency.parameters(drive)) as bench:
             rows = {
                 rpm: [bench.efficiency(rpm * np.pi / 30.0, load) for load in rated * share]
                 for rpm in (500, 2000, 3500)
             }
-            found_torques.append(bench.back_driving_torque(10.0 * back))
-        published_torques.append(back)
+            found_torques.append(bench.back_driving_torque(10.0 * published_torque))
+        published_torques.append(published_torque)
         series = [Series(f"{rpm} rev/min", rated * share, row) for rpm, row in rows.items()]
         if "efficiency" in drive.numbers:
-            known = [drive.numbers["efficiency"].value]
-            series.append(Series("published, 2000 rev/min", [rated], known, "empty", titles=[drive.name]))
+            published_efficiency = [drive.numbers["efficiency"].value]
+            series.append(
+                Series("published, 2000 rev/min", [rated], published_efficiency, "empty", titles=[drive.name])
+            )
         panels.append(Panel(f"Efficiency of {drive.name}", "load [N m]", "efficiency", series))
     ends = [0.0, max(published_torques)]
     names = [drive.name for drive in drives]
     marks = Series("FMU", published_torques, found_torques, "full", titles=names)
-    both = [marks, Series("equal", ends, ends, dashed=True)]
-    return [*panels, Panel("Back-driving torque", "published [N m]", "FMU [N m]", both)]
+    series_with_diagonal = [marks, Series("equal", ends, ends, dashed=True)]
+    return [*panels, Panel("Back-driving torque", "published [N m]", "FMU [N m]", series_with_diagonal)]
 
 
 def stiffness(result: RampResult, rows: list[ValidatedPoint]) -> list[Panel]:

@@ -52,16 +52,16 @@ def _drive(given: Given) -> NewJoint:
     if "rated_torque" not in printed:
         text = "no rated torque given; T2 of the catalogue"
         printed["rated_torque"] = Printed(printed["T2"].value, "estimate", text)
-    brakes, (printed["ratio"], held) = _brakes(given, printed), _held(given, printed["ratio"])
+    friction_numbers, (printed["ratio"], ratio_text) = _brakes(given, printed), _held(given, printed["ratio"])
     printed = {name: number for name, number in printed.items() if name not in QUOTED}
     if given["corner"] is not None:
         if given["law"] == "hu2023":
             raise ValueError("--corner is of the catalogue's lines; --law hu2023 has no corners")
         corner = number("corner", given["corner"], "1", "1", None)
         printed["corner"] = Printed(corner, "user", "stated" if corner else "stated: the lines, with kinks")
-    made = (_of_pair if given["law"] == "hu2023" else _of_lines)(printed, brakes, source)
-    made = replace(made, facts={"ratio": (printed["ratio"].value, "1", held), **made.facts})
-    return made if given["temperature"] is None else _at(made, given["temperature"])
+    joint = (_of_pair if given["law"] == "hu2023" else _of_lines)(printed, friction_numbers, source)
+    joint = replace(joint, facts={"ratio": (printed["ratio"].value, "1", ratio_text), **joint.facts})
+    return joint if given["temperature"] is None else _at(joint, given["temperature"])
 
 
 def _at(made: NewJoint, text: str) -> NewJoint:
@@ -139,14 +139,14 @@ def _with_drag(brakes: dict[str, Printed], stated: str | None) -> dict[str, Prin
     if drag < 0.0:
         raise ValueError(f"--motor-drag = {stated!r} is outside [0, inf) N.m")
     text = f"motor drag {drag:g} N.m, stated"
-    own = brakes.get("friction_coulomb")
-    if own is None:
+    dry_friction = brakes.get("friction_coulomb")
+    if dry_friction is None:
         return {**brakes, "friction_coulomb": Printed(drag, "user", text)}
-    source, interval = own.source, own.interval
+    source, interval = dry_friction.source, dry_friction.interval
     if interval is not None:
         interval = interval[0] + drag, interval[1] + drag
         source = f"{source.rpartition('; ')[0]}; {interval_text(interval)}"
-    total = Printed(own.value + drag, own.kind, f"{source}; with {text}", interval=interval)
+    total = Printed(dry_friction.value + drag, dry_friction.kind, f"{source}; with {text}", interval=interval)
     return {**brakes, "friction_coulomb": total}
 
 
@@ -179,7 +179,7 @@ def _of_lines(printed: dict[str, Printed], brakes: Mapping[str, Printed], name: 
         text = f"{_short(bound)}; off unless --hysteresis is stated"
         facts["hysteresis_bound"] = (bound.value, "rad", text)
         printed["hysteresis_loss"] = Printed(0.0, "user", f"default choice: none; {bound.source}")
-    play = printed.pop("lost_motion", None)
+    printed_angle = printed.pop("lost_motion", None)
     text = f"not published; {DAMPING:g} s times K1, 2 % of critical at 60 Hz"
     printed["d"] = Printed(DAMPING * printed["K1"].value, "estimate", text)
     printed |= brakes
@@ -188,20 +188,21 @@ def _of_lines(printed: dict[str, Printed], brakes: Mapping[str, Printed], name: 
     angle = float(spring.curve.inverse(rated))
     facts["wind_up"] = (angle, "rad", f"at the rated torque {rated:g} N.m, of the midline")
     text = f"of this drive, midway in its loop between +-{LOST_MOTION:g} times the rated torque"
-    found = lost_motion(spring)
-    if play:
-        text += f"; {'below' if found < play.value else 'above'} {play.value:.4g} rad: {_short(play)}"
-    facts["lost_motion"] = (found, "rad", text)
+    computed_angle = lost_motion(spring)
+    if printed_angle:
+        relation = "below" if computed_angle < printed_angle.value else "above"
+        text += f"; {relation} {printed_angle.value:.4g} rad: {_short(printed_angle)}"
+    facts["lost_motion"] = (computed_angle, "rad", text)
     if brakes:
         facts["efficiency"] = (efficiency(file.values), "1", "at rated torque and 2000 rev/min")
     kinds = {name: number.kind for name, number in printed.items() if name in file.flat}
     guessed = ", ".join(sorted(name for name, kind in kinds.items() if kind == "estimate"))
-    said = [f"estimates, not of the catalogue's row: {guessed}"]
+    notes = [f"estimates, not of the catalogue's row: {guessed}"]
     if file.values.corner == 0.0:
-        said.append(
+        notes.append(
             "corner = 0: the torque has kinks at T1 and T2, where the stiffness jumps without an event"
         )
-    return NewJoint(file, facts, said)
+    return NewJoint(file, facts, notes)
 
 
 def _of_pair(printed: Mapping[str, Printed], brakes: Mapping[str, Printed], name: str) -> NewJoint:
@@ -233,51 +234,56 @@ def _row(printed: Mapping[str, Printed]) -> "Row":
 
 
 NEW = Drawing(
-    text="a harmonic drive by its name in the catalogue, or by the row that is printed there",
+    text="a harmonic drive by its name in the catalogue, or from the numbers of a catalogue row",
     example="--catalogue CSG-17-100",
     options=(
-        Option("catalogue", "its name, see jointfmu catalogue", "NAME"),
-        Option("ratio", "as catalogues print it [1], above 0; negative: with its sign", "R"),
+        Option("catalogue", "name of the drive, see jointfmu catalogue", "NAME"),
+        Option("ratio", "speed ratio as in catalogues [1], above 0; negative: used with its sign", "R"),
         Option(
             "fixed",
-            "what is held, which decides the sign of the ratio (circular-spline: it is negative)",
+            "part that is fixed; it decides the sign of the ratio (circular-spline: negative)",
             choices=tuple(FIXED),
         ),
         *(Option(column.name, f"{column.text} [{column.unit}]", column.name[0]) for column in ROW),
         Option(
             "stiffness_unit",
-            "of K1, K2, K3 without one of their own, as '1e4 N.m/rad' or kgf.m/arcmin (N.m/rad)",
+            "unit of K1, K2, K3 given without one, as '1e4 N.m/rad' or kgf.m/arcmin (default: N.m/rad)",
             "UNIT",
         ),
         Option("rated_torque", "rated torque [N.m] (default: the catalogue's, or T2)", "T"),
         Option(
             "hysteresis",
-            "hysteresis loss, the angle between the branches at zero torque [arcmin] (none)",
+            "hysteresis loss, the angle between the branches at zero torque [arcmin] (default: none)",
             "H",
         ),
         Option(
             "starting_torque",
-            "at the wave generator without load [N.m] (of a named drive: printed or scaled; else none)",
+            "starting torque at the wave generator without load [N.m] (default: of a named drive published "
+            "or scaled, else none)",
             "T",
         ),
-        Option("running_torque", "the same in motion, at 2000 rev/min [N.m] (as starting torque)", "T"),
-        Option("back_driving_torque", "at the output, that turns the drive without motor [N.m]", "T"),
-        Option("efficiency", "at rated torque and 2000 rev/min [1]", "E"),
+        Option(
+            "running_torque",
+            "torque at the wave generator without load, at 2000 rev/min [N.m] (default: as starting torque)",
+            "T",
+        ),
+        Option("back_driving_torque", "torque at the output that turns the drive without a motor [N.m]", "T"),
+        Option("efficiency", "efficiency at rated torque and 2000 rev/min [1]", "E"),
         Option(
             "motor_drag",
-            "dry friction of the motor's bearings and seals, beside the drive's [N.m] (none)",
+            "dry friction of bearings and seals of the motor, added to the drive's [N.m] (default: none)",
             "T",
         ),
-        Option("temperature", "of the lubricant, at the start [degC, or with K behind it] (20)", "T"),
-        Option("source", "where the row is printed", "TEXT"),
+        Option("temperature", "start temperature of the lubricant [degC, or as in 293 K] (default: 20)", "T"),
+        Option("source", "where the row is published", "TEXT"),
         Option(
             "corner",
-            "half-width of the smooth corners at T1 and T2 over their wind-up [1], 0 for none (0.04)",
+            "half-width of the smooth corners at T1 and T2 over their wind-up [1], 0: sharp (default: 0.04)",
             "C",
         ),
         Option(
             "law",
-            "catalogue: the three lines (default); hu2023: that of the contact pair, fitted to them",
+            "catalogue: the three lines (default); hu2023: law of the contact pair, fitted to the lines",
             choices=("catalogue", "hu2023"),
         ),
     ),

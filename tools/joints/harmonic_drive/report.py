@@ -43,12 +43,16 @@ def friction(course: Course) -> list[Figure]:
         Series(f"{rpm} rev/min", loads, [bench.efficiency(rpm * math.pi / 30.0, x) for x in loads])
         for rpm in SPEEDS
     ]
-    back = bench.back_driving_torque(_MOST * drive.rated_torque)
-    moved = f"{back:.4g} N m" if math.isfinite(back) else f"none up to {_MOST * drive.rated_torque:g} N m"
+    back_driving_torque = bench.back_driving_torque(_MOST * drive.rated_torque)
+    torque_text = (
+        f"{back_driving_torque:.4g} N m"
+        if math.isfinite(back_driving_torque)
+        else f"none up to {_MOST * drive.rated_torque:g} N m"
+    )
     text = (
         f"Starting torque of the motor without load: {bench.starting_torque():.4g} N m. Torque at the output "
-        f"that drives the motor back: {moved}. Efficiency against a load, without hysteresis and kinematic "
-        "error, up to the rated torque; speeds are those of the motor; the lubricant is at "
+        f"that drives the motor back: {torque_text}. Efficiency against a load, without hysteresis and "
+        "kinematic error, up to the rated torque; speeds are those of the motor; the lubricant is at "
         f"{_celsius(file.start('temperature'))}."
     )
     over_load = Panel("Efficiency", "load [N m]", "efficiency", series)
@@ -117,8 +121,8 @@ def _rows(model: Model, file: ParameterFile, item: Item) -> Iterator[Beside]:
     for column in known:
         assert bench is not None
         number, (parameter, text) = printed[column], SET_BY[column]
-        own = file.sources.get(parameter, "").startswith(f"{number.source}; {text}")
-        role = SET if own else PREDICTED
+        is_set = file.sources.get(parameter, "").startswith(f"{number.source}; {text}")
+        role = SET if is_set else PREDICTED
         value = _turned(bench, column, printed)
         yield Beside(column, _UNITS[column], number.value, number.bound, value, role, number.source)
 
@@ -129,9 +133,9 @@ def _angles(spring: HarmonicDriveSpring, printed: Mapping[str, Printed], role: s
     torques = {name: printed[name] for name in ("T1", "T2", "rated_torque", "peak_torque") if name in printed}
     row = Row(**lines, rated=torques.get("rated_torque", printed["T2"]).value)
     for name, torque in torques.items():
-        angle, found = float(row.angle(torque.value)), float(spring.curve.inverse(torque.value))
+        angle, midline_angle = float(row.angle(torque.value)), float(spring.curve.inverse(torque.value))
         label = f"wind-up at {name.replace('_', ' ')}, {torque.value:g} N m"
-        yield Beside(label, "rad", angle, False, found, role, printed["K1"].source)
+        yield Beside(label, "rad", angle, False, midline_angle, role, printed["K1"].source)
 
 
 def _stiffness_set(file: ParameterFile, printed: Mapping[str, Printed]) -> bool:

@@ -5,7 +5,7 @@ from ....joint_parts import Option
 
 SERIES = Option(
     "series_stiffness",
-    "of the structure, in series with the joint [N/m]; to fit it, free series_stiffness",
+    "stiffness of the structure in series with the joint [N/m]; to fit it: --free series_stiffness",
     number=True,
 )
 
@@ -16,8 +16,10 @@ FITS = (
         text="stiffness or frequency over preload to the bolted joint",
         file=True,
         options=(
-            Option("direction", "of the motion", default="normal", choices=("normal", "tangential")),
-            Option("modal_mass", "what vibrates on the joint [kg]", number=True),
+            Option(
+                "direction", "direction of the motion", default="normal", choices=("normal", "tangential")
+            ),
+            Option("modal_mass", "mass that vibrates on the joint [kg]", number=True),
             SERIES,
         ),
         run=fit_of(f"{__name__}.preload"),
@@ -29,7 +31,9 @@ FITS = (
         column="displacement",
         options=(
             Option("preload", "of each bolt in the test [N] (default: of the start's inputs)", number=True),
-            Option("modal_mass", "what vibrates on the joint [kg]; with decays and responses", number=True),
+            Option(
+                "modal_mass", "mass that vibrates on the joint [kg], for decays and responses", number=True
+            ),
             DAMPING_RATIO,
             SERIES,
         ),

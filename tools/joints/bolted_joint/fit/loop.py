@@ -6,8 +6,8 @@ force of the contact (Jäger 1995, Ciavarella 1998):
     B(u) = mu (F_N(0) - F_N(kappa u/mu)),    kappa = K_T/K_N,
 
 F_N(s) normal force [N] of all nodes at the separation s [m] from the preloaded state. So three quantities can
-be fitted: the stiffness at rest gives the level of the law, the force at gross slip gives mu, and the
-decrease of the stiffness in between gives the exponent of K_N as a function of the load.
+be fitted: the stiffness at rest gives the level (factor) of the law, the force at gross slip gives mu, and
+the decrease of the stiffness in between gives the exponent of K_N as a function of the load.
 
 With elastic sides the first loading is computed with the complete joint, as exported. The fit does not change
 the modes of the bodies.
@@ -74,31 +74,37 @@ def first_loading(
     """
     curve, approach, weight = _tightened(joint, preload)
     kappa, mu = float(joint.shear_ratio()), joint.mu
-    apart = (float(np.max(approach)) - curve.displacement[0]) * np.linspace(0.0, 1.0, _NODES + 1) ** 2
-    load, stiffness, bend = (value @ weight for value in curve.derivatives(approach - apart[:, None], 2))
-    motion, force, slope = apart * mu / kappa, mu * (load[0] - load), kappa * stiffness
+    separation = (float(np.max(approach)) - curve.displacement[0]) * np.linspace(0.0, 1.0, _NODES + 1) ** 2
+    load, stiffness, d2_load = (
+        value @ weight for value in curve.derivatives(approach - separation[:, None], 2)
+    )
+    motion, force, tangent_stiffness = separation * mu / kappa, mu * (load[0] - load), kappa * stiffness
     limit = float(mu * load[0])
     if joint.elastic:
-        even = _SLIPPED * limit / rest_stiffness(joint, preload)
-        motion, force, slope = _first_loading_of_whole(joint, preload, even, float(motion[-1]), reach)
-    beside = 0.0 if series is None else 1.0 / series
-    moved = motion + beside * force
-    table = CubicHermiteSpline(moved, force, slope / (1.0 + beside * slope))
-    whole = table.antiderivative()
-    end, most = float(moved[-1]), float(force[-1])
+        gross_slip = _SLIPPED * limit / rest_stiffness(joint, preload)
+        motion, force, tangent_stiffness = _first_loading_of_whole(
+            joint, preload, gross_slip, float(motion[-1]), reach
+        )
+    compliance = 0.0 if series is None else 1.0 / series
+    displacement = motion + compliance * force
+    table = CubicHermiteSpline(
+        displacement, force, tangent_stiffness / (1.0 + compliance * tangent_stiffness)
+    )
+    energy = table.antiderivative()
+    end, max_force = float(displacement[-1]), float(force[-1])
 
     def friction(motion: Array) -> Array:
-        return np.where(motion < end, table(np.minimum(motion, end)), most)
+        return np.where(motion < end, table(np.minimum(motion, end)), max_force)
 
     def work(motion: Array) -> Array:
         inside = np.minimum(motion, end)
-        return np.asarray(whole(inside) + most * (motion - inside))
+        return np.asarray(energy(inside) + max_force * (motion - inside))
 
     return HysteresisLaw(friction, work), {
         "friction_limit": (limit, "N", "mu times the normal force"),
-        "shear_stiffness": (float(slope[0]), "N/m", "K_xx of the joint at rest: the level"),
+        "shear_stiffness": (float(tangent_stiffness[0]), "N/m", "K_xx of the joint at rest: the level"),
         "exponent": (
-            float(bend[0] * load[0] / stiffness[0] ** 2),
+            float(d2_load[0] * load[0] / stiffness[0] ** 2),
             "1",
             "power of the load with which the stiffness falls as the joint opens",
         ),
@@ -114,8 +120,8 @@ def _first_loading_of_whole(
     Displacements: s = uniform_length t + graded_length t^2, t from 0 to 1 in equal steps. If the last one is
     larger than `max_displacement` [m], all are scaled down to end there.
     """
-    spring, part = BoltedJointSpring.of(joint), np.linspace(0.0, 1.0, _WHOLE_NODES + 1)
-    motion = (even * part + graded * part**2) * min(1.0, reach / (even + graded))
+    spring, fraction = BoltedJointSpring.of(joint), np.linspace(0.0, 1.0, _WHOLE_NODES + 1)
+    motion = (even * fraction + graded * fraction**2) * min(1.0, reach / (even + graded))
     force, stiffness, _ = _moved(spring, preload, motion, spring.at_rest())
     curve = CubicSpline(motion, force, bc_type=((1, stiffness[0]), (1, stiffness[-1])))
     return motion, force, curve(motion, 1)
@@ -125,12 +131,12 @@ def _moved(
     spring: BoltedJointSpring, preload: float, way: Array, memory: Array
 ) -> tuple[Array, Array, Array]:
     """Force (n) [N] and K_xx (n) [N/m] along displacements x (n) [m], and history variables at the end."""
-    found = np.empty((2, way.size))
+    outputs = np.empty((2, way.size))
     for i, x in enumerate(way.tolist()):
-        place = Place(np.array([x, 0.0, 0.0, 0.0, 0.0, 0.0]))
-        out, memory = spring.evolve(preload, 0.0, place, (0.0,) * 6, memory)
-        found[:, i] = -out["f_x"], out["K_xx"]
-    return found[0], found[1], memory
+        position = Place(np.array([x, 0.0, 0.0, 0.0, 0.0, 0.0]))
+        out, memory = spring.evolve(preload, 0.0, position, (0.0,) * 6, memory)
+        outputs[:, i] = -out["f_x"], out["K_xx"]
+    return outputs[0], outputs[1], memory
 
 
 def _off_masing(joint: Bolted, preload: float, loops: Loops, law: HysteresisLaw) -> Array:
@@ -139,7 +145,7 @@ def _off_masing(joint: Bolted, preload: float, loops: Loops, law: HysteresisLaw)
     Bending of the bodies changes the slip direction of the patches, so that unloading does not mirror
     loading. After gross slip the deviation is about half a percent of the friction force.
     """
-    spring, found = BoltedJointSpring.of(joint), np.empty_like(loops.force)
+    spring, deviation = BoltedJointSpring.of(joint), np.empty_like(loops.force)
     for run in range(loops.run[-1] + 1):
         branches = np.unique(loops.branch[loops.run == run])
         middle = 0.5 * (np.max(loops.start[branches]) + np.min(loops.start[branches]))
@@ -147,13 +153,13 @@ def _off_masing(joint: Bolted, preload: float, loops: Loops, law: HysteresisLaw)
         memory = _moved(spring, preload, first, spring.at_rest())[2]
         for k in branches:
             start, motion = loops.start[k], loops.motion[loops.branch == k]
-            far = np.abs(motion - start)
-            end = motion[np.argmax(far)]
-            way = np.linspace(start, end, _WHOLE_NODES + 1)
-            force, _, memory = _moved(spring, preload, way - middle, memory)
-            off = force - force[0] - law.change(way, np.full_like(way, start))
-            found[loops.branch == k] = np.interp(far, np.abs(way - start), off)
-    return found
+            distance = np.abs(motion - start)
+            end = motion[np.argmax(distance)]
+            path = np.linspace(start, end, _WHOLE_NODES + 1)
+            force, _, memory = _moved(spring, preload, path - middle, memory)
+            difference = force - force[0] - law.change(path, np.full_like(path, start))
+            deviation[loops.branch == k] = np.interp(distance, np.abs(path - start), difference)
+    return deviation
 
 
 def rest_stiffness(joint: Bolted, preload: float) -> float:
@@ -174,9 +180,9 @@ def _tightened(joint: Bolted, preload: float) -> tuple[Curve, Array, Array]:
     """
     shape, curve = even_shape(joint.pattern), approach_curve(joint)
     pressure = pressures(joint, shape, preload, 0.0)
-    if not 0.0 < (most := float(np.max(pressure))) < curve.end[1]:
+    if not 0.0 < (max_pressure := float(np.max(pressure))) < curve.end[1]:
         raise ValueError(
-            f"preload = {preload:g} N per bolt presses with {most:.3g} Pa, allowed is up to "
+            f"preload = {preload:g} N per bolt presses with {max_pressure:.3g} Pa, allowed is up to "
             f"{curve.end[1]:.3g} Pa"
         )
     return curve, curve.inverse(pressure), joint.A_0 * shape.share
@@ -192,12 +198,13 @@ def fit(
     damping_ratio: float = 0.0,
     series_stiffness: float | None = None,
 ) -> FitResult:
-    """Fit a file of loops, decays, responses, or frequency and damping over the amplitude (columns: HEADS).
+    """Fit a file of loops, decays, responses, or frequency and damping over the amplitude (COLUMN_NAMES).
 
     Parameters
     ----------
     start            : parameters to start from; None: the default joint
-    free             : names to fit, also `damping_ratio` and `series_stiffness`; None: those of FREE
+    fitted_names     : names to fit, also `damping_ratio` and `series_stiffness`; None: those of
+                       FITTED_PARAMETERS
     preload          : [N] of each bolt in the test; None: the one in the inputs of `start`
     modal_mass       : [kg] mass that vibrates on the joint; required unless the file has loops
     damping_ratio    : [1] of the structure alone
@@ -231,28 +238,30 @@ def fit(
         return first_loading(joint(values), force, beside(values), reach)[0]
 
     model = memory.model(data, law_of, "modal_mass", modal_mass, damping_ratio)
-    seen = data.rest_stiffness(modal_mass)
+    measured_rest = data.rest_stiffness(modal_mass)
 
     def rest(values: Mapping[str, float]) -> float:
         series = beside(values)
         return 1.0 / (1.0 / rest_stiffness(joint(values), force) + (0.0 if series is None else 1.0 / series))
 
     if data.kind == "loops":
-        HEADS.check_level(data.path, seen / rest({}), data.units, file)
-    if series_stiffness is not None and SERIES not in names and series_stiffness <= seen:
+        HEADS.check_level(data.path, measured_rest / rest({}), data.units, file)
+    if series_stiffness is not None and SERIES not in names and series_stiffness <= measured_rest:
         raise Refusal(
-            f"series stiffness = {series_stiffness:g} N/m is outside ({seen:.4g}, inf): the data "
+            f"series stiffness = {series_stiffness:g} N/m is outside ({measured_rest:.4g}, inf): the data "
             "show joint and structure together as that stiff at rest",
             SERIES,
         )
-    wanted = unknowns(file, [name for name in names if name not in BESIDE], {})
-    wanted += [memory.DAMPING_UNKNOWN] * (memory.DAMPING in names)
-    wanted += [Unknown(SERIES, "N/m", SERIES_STARTS[0] * seen, 0.0, np.inf)] * (SERIES in names)
+    unknown_list = unknowns(file, [name for name in names if name not in BESIDE], {})
+    unknown_list += [memory.DAMPING_UNKNOWN] * (memory.DAMPING in names)
+    unknown_list += [Unknown(SERIES, "N/m", SERIES_STARTS[0] * measured_rest, 0.0, np.inf)] * (
+        SERIES in names
+    )
     level = _level(file, names, rest)
-    moved = data.kind != "loops" and set(FREE[file.law][1:]) <= set(names)
-    starts = {**STARTS, SERIES: [times * seen for times in SERIES_STARTS[1:]]}
-    alone = series_stiffness is None and SERIES not in names
-    exact = data.kind == "loops" and file.values.elastic and alone
+    is_vibration_with_level = data.kind != "loops" and set(FREE[file.law][1:]) <= set(names)
+    starts = {**STARTS, SERIES: [times * measured_rest for times in SERIES_STARTS[1:]]}
+    is_joint_alone = series_stiffness is None and SERIES not in names
+    is_corrected = data.kind == "loops" and file.values.elastic and is_joint_alone
 
     def corrected(values: Mapping[str, float]) -> Measurement:
         assert isinstance(data.data, Loops)
@@ -261,20 +270,20 @@ def fit(
 
     solution, scale, data = memory.search(
         data,
-        wanted,
+        unknown_list,
         model,
         starts,
         level,
-        moved and level is not None,
-        corrected if exact else None,
+        is_vibration_with_level and level is not None,
+        corrected if is_corrected else None,
     )
     result = fitted(
         file, _own(solution.values), "calibration", data.path.name, f"{data.span}, preload {force:g} N"
     )
-    law, described = first_loading(joint(solution.values), force, beside(solution.values), reach)
-    reached = float(law.friction(np.array([data.amplitude]))[0]) / described["friction_limit"][0]
+    law, joint_facts = first_loading(joint(solution.values), force, beside(solution.values), reach)
+    slip_ratio = float(law.friction(np.array([data.amplitude]))[0]) / joint_facts["friction_limit"][0]
     text = "largest friction force of the data over friction_limit"
-    facts = described | {"slip_reached": (reached, "1", text)}
+    facts = joint_facts | {"slip_reached": (slip_ratio, "1", text)}
     return FitResult(
         result,
         solution,
@@ -289,7 +298,7 @@ def _level(
 ) -> Exchange | None:
     """Exchange of unknowns: the stiffness at rest [N/m] for the parameter that sets the level.
 
-    rest_stiffness : {name: value} -> stiffness at rest [N/m]
+    compute_rest_stiffness : {name: value} -> stiffness at rest [N/m]
 
     None if the level is not fitted.
     """

@@ -6,10 +6,11 @@ and bolts. A structure in series is optional:
     1/K = 1/K_joint(preload) + 1/K_series,        f = sqrt(K/mass)/(2 pi).
 
 K_joint is nearly a power of the preload P, `K_N ~ P^(D/(3-D))` for D below 1.5 and `~ P` above. So a curve
-determines two parameters: the exponent (D, below about 1.5) and the level. The level depends on G, on the
-moduli and weakly on H: G is fitted, the others keep their start values. A_0 has no effect, because the law
-depends on loads, not on pressures. In the law `roughness` h sets the level, and the exponent is fixed. A
-resonance frequency determines only K/mass: without a stated mass the fit adjusts `mass` and keeps G or h.
+determines two parameters: the exponent (D, below about 1.5) and the level, the factor of the power. The level
+depends on G, on the moduli and weakly on H: G is fitted, the others keep their start values. A_0 has no
+effect, because the law depends on loads, not on pressures. In the law `roughness` h sets the level, and the
+exponent is fixed. A resonance frequency determines only K/mass: without a stated mass the fit adjusts `mass`
+and keeps G or h.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -89,25 +90,25 @@ def fit(
     modal_mass: float | None = None,
     series_stiffness: float | None = None,
 ) -> FitResult:
-    """Fit a file with the columns preload (of each bolt) and stiffness or frequency (COLUMNS).
+    """Fit a file with the columns preload (of each bolt) and stiffness or frequency (COLUMN_UNITS).
 
     Parameters
     ----------
     start            : parameters to start from; None: the default joint
-    free             : names to fit; None: those of FREE, with `mass` instead of the level for frequencies
-                       without `modal_mass`
+    fitted_names     : names to fit; None: those of FITTED_PARAMETERS, with `mass` instead of the level for
+                       frequencies without `modal_mass`
     direction        : of the motion, "normal" or "tangential"
     modal_mass       : [kg] mass that vibrates on the joint, for frequencies; replaces `mass`
-    series_stiffness : [N/m] of the structure, in series; None: rigid, unless it is in `free`
+    series_stiffness : [N/m] of the structure, in series; None: rigid, unless it is among the names
 
     Raises ValueError with a one-line message for a bad file, unit or value, or a name that cannot be fitted.
     Raises RuntimeError if the fit does not converge.
     """
     curve = _measured(Path(path))
     file = _stated(start or default("bolted_joint"), curve, modal_mass, series_stiffness)
-    mass = curve.of == "frequency" and modal_mass is None
+    is_mass_fitted = curve.of == "frequency" and modal_mass is None
     level, *exponent = FREE[file.law]
-    names = list(free if free is not None else (*exponent, "mass" if mass else level))
+    names = list(free if free is not None else (*exponent, "mass" if is_mass_fitted else level))
 
     def predict(values: Mapping[str, float]) -> Array:
         own = {name: value for name, value in values.items() if name != SERIES}
@@ -134,7 +135,7 @@ def fit(
         labels=("preload of each bolt [kN]", f"{curve.of} [{unit}]", "data / law - 1 [%]"),
     )
     notes = systematic(solution.residuals, "curve")
-    if mass and "mass" in names and level not in names:
+    if is_mass_fitted and "mass" in names and level not in names:
         notes.append(
             f"frequencies without a stated mass give K/mass only: the level is in mass, {level} is kept; "
             f"state the modal mass to fit {level}"
@@ -166,24 +167,24 @@ def _measured(path: Path) -> PreloadCurve:
     """Read and check the file."""
     table = columns.read(path, COLUMNS, LEAST)
     preload = table.require("preload", COLUMNS)
-    given = [name for name in ("stiffness", "frequency") if name in table.columns]
-    if len(given) != 1:
-        have = "both" if given else "neither"
+    quantities = [name for name in ("stiffness", "frequency") if name in table.columns]
+    if len(quantities) != 1:
+        have = "both" if quantities else "neither"
         choice = {name: COLUMNS[name] for name in ("stiffness", "frequency")}
         raise ValueError(
             f"{path}: has {have} of stiffness and frequency; expected one: {columns.heading(choice)}"
         )
-    table.positive(("preload", given[0]), COLUMNS)
+    table.positive(("preload", quantities[0]), COLUMNS)
     order = np.argsort(preload, kind="stable")
-    preload, value = preload[order], table.columns[given[0]][order]
+    preload, value = preload[order], table.columns[quantities[0]][order]
     if np.unique(preload).size < LEAST:
         raise ValueError(
             f"{path}: has {np.unique(preload).size} different preloads, at least {LEAST} are needed"
         )
     slope = float(np.polyfit(np.log(preload), np.log(value), 1)[0])
     if slope <= 0.0:
-        raise ValueError(f"{path}: the {given[0]} does not rise with the preload (power {slope:.2g})")
-    return PreloadCurve(given[0], preload, value)
+        raise ValueError(f"{path}: the {quantities[0]} does not rise with the preload (power {slope:.2g})")
+    return PreloadCurve(quantities[0], preload, value)
 
 
 def _stated(
@@ -212,23 +213,23 @@ def _best_start(
     miss: Callable[[Mapping[str, float]], Array],
 ) -> Sequence[Unknown]:
     """Unknowns with the best of several start values."""
-    wanted = unknowns(file, [name for name in names if name != SERIES], {})
+    parameters = unknowns(file, [name for name in names if name != SERIES], {})
     level = (
         curve.value[-1]
         if curve.of == "stiffness"
         else (2.0 * np.pi * curve.value[-1]) ** 2 * file.values.mass
     )
-    wanted += [Unknown(SERIES, "N/m", 3.0 * float(level), 0.0, np.inf)] * (SERIES in names)
+    parameters += [Unknown(SERIES, "N/m", 3.0 * float(level), 0.0, np.inf)] * (SERIES in names)
 
     def tried(values: dict[str, float]) -> tuple[Mapping[str, float], float]:
         """Scale the mass, if it is fitted, to the mean frequency. Returns values and squared error."""
-        rest = miss(values)
+        errors = miss(values)
         if "mass" in values:
-            values["mass"] *= float(np.exp(2.0 * np.mean(rest)))
-            rest = rest - np.mean(rest)
-        return values, float(rest @ rest)
+            values["mass"] *= float(np.exp(2.0 * np.mean(errors)))
+            errors = errors - np.mean(errors)
+        return values, float(errors @ errors)
 
-    return best_start(wanted, STARTS, tried)
+    return best_start(parameters, STARTS, tried)
 
 
 def _facts(curve: PreloadCurve, solution: Solution) -> Facts:

@@ -79,33 +79,33 @@ def tightened(spring: BoltedJointSpring, preload: float, moment: float) -> Tight
         nodal = spring.curve.derivatives(approach, 2)
         return [area * (value @ share) for value in nodal]
 
-    at_rest = total(np.zeros(1))[0][0]
+    preload_force = total(np.zeros(1))[0][0]
     first, last = float(low - np.max(start)), float(high - np.max(start))
-    reach = np.linspace(0.0, last, 200)
-    end = float(np.interp(STRONGEST * at_rest, total(reach)[0], reach))
+    compression = np.linspace(0.0, last, 200)
+    end = float(np.interp(STRONGEST * preload_force, total(compression)[0], compression))
     c = np.unique(np.concatenate([np.linspace(first, 0.0, _FINE), np.linspace(0.0, end, _FINE)]))
-    load, stiffness, bend = total(c)
-    whole = Curve(c, load, stiffness, bend[:-1], bend[1:])
+    load, stiffness, d2_load = total(c)
+    curve = Curve(c, load, stiffness, d2_load[:-1], d2_load[1:])
     zero = int(np.searchsorted(c, 0.0))
-    some = np.concatenate([np.linspace(first, 0.0, _COARSE), np.linspace(0.0, end, _COARSE)[1:]])
-    eta = np.interp(c, some, _dissipation(spring, start + some[:, None]))
+    coarse = np.concatenate([np.linspace(first, 0.0, _COARSE), np.linspace(0.0, end, _COARSE)[1:]])
+    eta = np.interp(c, coarse, _dissipation(spring, start + coarse[:, None]))
 
     def linear(i: int, j: int) -> bool:
         line = np.interp(c[i : j + 1], c[[i, j]], eta[[i, j]])
         return bool(np.all(np.abs(line - eta[i : j + 1]) <= DAMPING_TOLERANCE * eta[i : j + 1]))
 
-    table = thinned(whole, reference=zero, keep=(zero,), fits=linear)
+    table = thinned(curve, reference=zero, keep=(zero,), fits=linear)
     damping = np.column_stack([table.rows[:, 0], np.interp(table.rows[:, 0], c, eta)])
     table.rows[:, 1] -= load[zero]
-    levels = [np.interp(factor * at_rest, load, c) for factor in ABOVE]
+    levels = [np.interp(factor * preload_force, load, c) for factor in ABOVE]
     heights = np.concatenate([[first], first * np.geomspace(1.0, EARLIEST, BELOW)[1:], [0.0], levels])
     force, normal, _ = total(heights)
     rows = np.column_stack([heights, force, normal])
     ratio = float(spring.joint.shear_ratio())
-    carried = Foundation(whole, ratio, spring.joint.mu, heights).carried(0.0)
+    carried = Foundation(curve, ratio, spring.joint.mu, heights).carried(0.0)
     sliders = np.column_stack([np.concatenate([x[::2], x[1::2]]) for x in (carried.stiffness, carried.limit)])
     bolts = spring.bolts.count * spring.bolts.tightened(spring.joint, preload, moment)
-    return Tightened(table, damping, ratio, at_rest, rows, sliders, bolts)
+    return Tightened(table, damping, ratio, preload_force, rows, sliders, bolts)
 
 
 def _dissipation(spring: BoltedJointSpring, approach: Array) -> Array:

@@ -27,20 +27,20 @@ NEW = Drawing(
         Option("bolts", "number and thread", "NxMd", by="x", required=True),
         Option(
             "at",
-            "distances of the outermost bolts along x and y, LxW, or the place X,Y of each bolt from "
+            "distances of the outermost bolts along x and y, LxW, or the position X,Y of each bolt from "
             "the middle of the plate [mm]",
             "PLACE",
             many=True,
             by="x",
         ),
-        Option("grid", "bolts along x and y, where the distances do not tell", "NxM", by="x"),
-        Option("circle", "pitch circle of the bolts [mm]", "D"),
+        Option("grid", "number of bolts along x and y, if --at LxW leaves it open", "NxM", by="x"),
+        Option("circle", "diameter of the pitch circle of the bolts [mm]", "D"),
         Option(
             "grip", "clamped length of both plates together, or of each [mm]", "L", many=True, required=True
         ),
-        Option("tapped", "the thread is in side 2, and the grip that of side 1", flag=True),
-        Option("head", "of the bolts (default: hexagon)", choices=("hexagon", "socket")),
-        Option("hole", "clearance hole [mm] (default: ISO 273, medium)", "D"),
+        Option("tapped", "the thread is tapped in side 2; --grip is the thickness of side 1", flag=True),
+        Option("head", "head of the bolts (default: hexagon)", choices=("hexagon", "socket")),
+        Option("hole", "diameter of the clearance holes [mm] (default: ISO 273, medium)", "D"),
         Option("bearing", "outer diameter of the bearing surface [mm] (default: of the head)", "D"),
         Option("preload", "force of each bolt [N] (default: VDI 2230)", "F"),
         Option(
@@ -48,28 +48,28 @@ NEW = Drawing(
         ),
         Option(
             "property_class",
-            "of the bolts, for the default of the preload (default: 8.8)",
+            "property class of the bolts, for the default preload (default: 8.8)",
             choices=("8.8", "10.9", "12.9"),
         ),
         Option(
             "field",
-            "pressure by the cones of the bolts, or computed by finite elements (default: cones)",
+            "contact pressure from the cones of the bolts, or computed by finite elements (default: cones)",
             choices=("cones", "computed"),
         ),
-        Option("thickness", "of each plate [mm] (default: half the grip)", "T", many=True),
+        Option("thickness", "thickness of each plate [mm] (default: half the grip)", "T", many=True),
         Option(
             "sides",
-            "elastic: the whole joint, with members and bolts; rigid: the interface alone (default: "
-            "elastic where the finite elements are installed)",
+            "elastic: the complete joint, with members and bolts; rigid: the interface only (default: "
+            "elastic if the finite elements are installed)",
             choices=("elastic", "rigid"),
         ),
         Option(
             "attached",
-            "what moves with the bodies that the joint connects: outer faces, edges (side 1 at -x, "
-            "side 2 at +x), or what lies under the heads (default: faces)",
+            "surfaces that move rigidly with the connected bodies: outer faces, edges (side 1 at -x, "
+            "side 2 at +x), or faces under heads and nuts (default: faces)",
             choices=tuple(ATTACHED),
         ),
-        Option("law", "of the interface (default: roughness)", choices=("roughness", "zhao2018")),
+        Option("law", "law of the interface (default: roughness)", choices=("roughness", "zhao2018")),
         *OPTIONS,
     ),
     run=_plate,

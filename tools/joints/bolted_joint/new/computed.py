@@ -116,7 +116,7 @@ def whole_of(
 
     make_assembly : builds the bodies
     preload       : [N] of each bolt at tightening
-    attached      : surfaces that move rigidly with the connected bodies, a key of ATTACHED
+    attached      : surfaces that move rigidly with the connected bodies, a key of ATTACHMENTS
     shape         : pressure at all nodes of a computed field; None: the pressure shape of the file
 
     Raises ValueError for bolt heads that overlap or extend beyond the plate, and if a package is missing.
@@ -207,14 +207,14 @@ def facts(
     Raises ValueError if the user asked for elastic sides and they cannot be computed.
     """
     try:
-        found = whole_joint(file, plates, attached, shape)
+        computed = whole_joint(file, plates, attached, shape)
     except ValueError as error:
         if sides == "elastic":
             raise
         return NewJoint(file, {}, [f"members and bolts are not computed, {alone}: {error}"])
     if sides == "rigid":
-        return NewJoint(file, _rows(found.compliances, plates.tension, attached), [])
-    return NewJoint(found.file, whole_facts(found.file, plates.preload), [])
+        return NewJoint(file, _rows(computed.compliances, plates.tension, attached), [])
+    return NewJoint(computed.file, whole_facts(computed.file, plates.preload), [])
 
 
 def whole_facts(file: ParameterFile, preload: float) -> Facts:
@@ -246,7 +246,11 @@ def _stiffnesses(found: Compliances, attached: str, told: str) -> Facts:
             + (f" (the FMU's {name}{told})" if told else "")
             + f"; of its energy {shares}; the interface alone is {interface / whole:.3g} times as stiff",
         )
-        members[f"members_{name}"] = (alone, unit, "of its members, as a spring in series with the rest")
+        members[f"members_{name}"] = (
+            alone,
+            unit,
+            "stiffness of the members, in series with interface and bolts",
+        )
     return rows | members
 
 
@@ -254,10 +258,10 @@ def _share(found: Compliances, alone: bool) -> Facts:
     """Share of the interface in the compliance of the complete joint."""
     share = found.shares[0]
     rest = max(part for i, part in enumerate(share) if i != 2)
-    text = f"part of the interface in the whole's compliance along z, at most {rest:.3g} in others; " + (
+    text = f"share of the interface in the compliance along z, at most {rest:.3g} in other directions; " + (
         "the FMU is the interface alone (--sides rigid)"
         if alone
-        else "the FMU is the whole (sides = elastic)"
+        else "the FMU is the whole joint (sides = elastic)"
     )
     return {"interface_share": (float(share[2]), "1", text)}
 
@@ -268,16 +272,16 @@ def _load(found: Compliances, tension: float, attached: str) -> Facts:
     opens = found.opening_load(tension)
     free = f"{where}, other motions free"
     return {
-        "whole_load_factor": (found.load_factor, "1", f"n Phi_K: part that the bolts take of {free}"),
+        "whole_load_factor": (found.load_factor, "1", f"n Phi_K: share that the bolts carry of {free}"),
         "whole_bolt_share": (
             float(found.bolt_force[:, 2].max()),
             "1",
-            f"part that one bolt takes at most of {free}",
+            f"largest share that one bolt carries of {free}",
         ),
         "opening_load": (
             opens,
             "N",
-            f"{where} that takes the pressure off around the bolt that gets most, linear; a joint that peels "
-            "opens before, as the report draws",
+            f"{where} at which the interface opens around the most loaded bolt, by linear theory; a joint "
+            "that peels opens at a lower load, see the report",
         ),
     }

@@ -34,24 +34,24 @@ def positions(given: Given, count: int) -> Array:
 
     Raises ValueError with a one-line message if the options do not give `count` positions.
     """
-    at, circle = given["at"], given["circle"]
-    if at and circle:
+    texts, circle = given["at"], given["circle"]
+    if texts and circle:
         raise ValueError("--at beside --circle: expected one of them")
-    if given["grid"] and not (at and "," not in at[0]):
+    if given["grid"] and not (texts and "," not in texts[0]):
         raise ValueError(f"--grid = {given['grid']!r} needs the distances of the outermost bolts, --at LxW")
     if circle:
         radius = 0.5 * number("circle", circle, "mm", "m")
         angle = 2.0 * np.pi * (np.arange(count) + 0.5) / count
         return radius * np.column_stack([np.cos(angle), np.sin(angle)])
-    if not at:
+    if not texts:
         if count == 1:
             return np.zeros((1, 2))
         raise ValueError(f"the places of {count} bolts are missing; expected --at or --circle")
-    if "," in at[0]:
-        return _list(at, count)
-    if len(at) > 1:
-        raise ValueError(f"--at = {at[0]!r} and more: expected one LxW, or the place X,Y of each bolt")
-    spans = numbers("at", at[0], "mm", "m", by="x", count=2, least=None)
+    if "," in texts[0]:
+        return _list(texts, count)
+    if len(texts) > 1:
+        raise ValueError(f"--at = {texts[0]!r} and more: expected one LxW, or the place X,Y of each bolt")
+    spans = numbers("at", texts[0], "mm", "m", by="x", count=2, least=None)
     return _rectangle(spans, count, given["grid"])
 
 

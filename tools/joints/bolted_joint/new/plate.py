@@ -62,7 +62,7 @@ def joint(given: Given) -> NewJoint:
     """
     length, width = numbers("plate", given["plate"], "mm", "m", by="x", count=2)
     count, thread = layout.bolts(given["bolts"])
-    at = layout.positions(given, count)
+    positions = layout.positions(given, count)
     law = given["law"] or "roughness"
     sheet = Sheet(KIND.name, law)
     heights = faces.put(sheet, given)
@@ -71,19 +71,19 @@ def joint(given: Given) -> NewJoint:
     for name, value in (("field", "computed"), ("sides", "elastic"), ("attached", given["attached"])):
         if given["tapped"] and given["thickness"] is None and value and given[name] == value:
             raise ValueError(f"--{name} {value} beside --tapped: expected --thickness of both plates for it")
-    one = clamped(given, thread, (length, width), at, hole, moduli)
+    bolt = clamped(given, thread, (length, width), positions, hole, moduli)
     plate = BoltedPlate(
         length=length,
         width=width,
-        x=tuple(at[:, 0].tolist()),
-        y=tuple(at[:, 1].tolist()),
+        x=tuple(positions[:, 0].tolist()),
+        y=tuple(positions[:, 1].tolist()),
         hole_diameter=hole,
-        cone_diameter=one.cone,
+        cone_diameter=bolt.cone,
     )
-    _put_plate(sheet, plate, one, hole_source)
-    _put_bolts(sheet, plate, one, thread)
-    loss = _embedding(sheet, given, one, heights)
-    mass = plate.area * one.layers[0].thickness * faces.materials(given)[0].numbers["density"].value
+    _put_plate(sheet, plate, bolt, hole_source)
+    _put_bolts(sheet, plate, bolt, thread)
+    loss = _embedding(sheet, given, bolt, heights)
+    mass = plate.area * bolt.layers[0].thickness * faces.materials(given)[0].numbers["density"].value
     sheet.put("mass", mass, "estimate", "mass of the plate of side 1; what vibrates")
     preload, warnings = _preload(sheet, given, thread)
     if not loss < preload:
@@ -96,22 +96,24 @@ def joint(given: Given) -> NewJoint:
         sheet.put(choice, default, "estimate", "nearest to the roughness of the surfaces, docs/validity.md")
     file = sheet.file(f"plate {given['plate']} with {given['bolts']}")
     density = tuple(material.numbers["density"].value for material in faces.materials(given))
-    layers, depth = one.layers, 0.0
+    layers, depth = bolt.layers, 0.0
     if given["tapped"] and given["thickness"] is not None:
         layers, depth = (*layers, vdi2230.ClampedPart(_each(given)[1], moduli[1])), ENGAGED * thread.d
-    plates = Plates(plate, layers, one.bearing, density, preload, preload - loss, depth)
+    plates = Plates(plate, layers, bolt.bearing, density, preload, preload - loss, depth)
     shape = None
     if given["field"] == "computed":
         file, shape = with_computed_field(file, plates)
-    facts = _facts(file, one, heights, preload)
-    alone = _alone(facts["K_zz"][0] / count, one)
+    facts = _facts(file, bolt, heights, preload)
+    alone = _alone(facts["K_zz"][0] / count, bolt)
     if given["tapped"] and given["thickness"] is None:
         return NewJoint(
             file, facts, [*warnings, f"{alone}: for the whole joint state --thickness of both plates"]
         )
     attached, sides = given["attached"] or "faces", given["sides"]
-    found = computed.facts(file, plates, attached, sides, alone, shape)
-    return NewJoint(found.file, {**facts, **found.facts}, [*warnings, *found.warnings])
+    complete_joint = computed.facts(file, plates, attached, sides, alone, shape)
+    return NewJoint(
+        complete_joint.file, {**facts, **complete_joint.facts}, [*warnings, *complete_joint.warnings]
+    )
 
 
 def _hole(given: Given, thread: Thread) -> tuple[float, tuple[str, str]]:
@@ -144,20 +146,20 @@ def clamped(
     for name, value, low in (("hole", hole, thread.d), ("bearing", bearing, hole)):
         if not value > low:
             raise ValueError(f"--{name} = {value * 1e3:g} mm is outside ({low * 1e3:g}, inf) mm")
-    thick = _thicknesses(given)
-    if len(thick) > (1 if tapped else 2):
+    thicknesses = _thicknesses(given)
+    if len(thicknesses) > (1 if tapped else 2):
         expected = "that of side 1" if tapped else "both plates together, or each"
-        raise ValueError(f"--grip has {len(thick)} values, expected {expected}")
+        raise ValueError(f"--grip has {len(thicknesses)} values, expected {expected}")
     if tapped:
-        layers: tuple[vdi2230.ClampedPart, ...] = (vdi2230.ClampedPart(thick[0], moduli[0]),)
+        layers: tuple[vdi2230.ClampedPart, ...] = (vdi2230.ClampedPart(thicknesses[0], moduli[0]),)
     else:
-        pair = thick if len(thick) == 2 else [0.5 * thick[0]] * 2
+        pair = thicknesses if len(thicknesses) == 2 else [0.5 * thicknesses[0]] * 2
         layers = tuple(vdi2230.ClampedPart(t, E) for t, E in zip(pair, moduli, strict=True))
     grip = float(sum(layer.thickness for layer in layers))
     if grip > LONGEST * thread.d:
-        most = LONGEST * thread.d * 1e3
+        longest_grip = LONGEST * thread.d * 1e3
         raise ValueError(
-            f"--grip = {grip * 1e3:g} mm is outside (0, {most:g}] mm: {LONGEST} times {thread.name}"
+            f"--grip = {grip * 1e3:g} mm is outside (0, {longest_grip:g}] mm: {LONGEST} times {thread.name}"
         )
     outer = outer_diameter(size, at)
     slope = vdi2230.cone_slope(grip, bearing, outer, tapped)
@@ -172,30 +174,30 @@ def clamped(
 
 def _thicknesses(given: Given) -> list[float]:
     """Thickness [m] of each plate, or one value for both plates together."""
-    thick = [number("grip", text, "mm", "m") for text in given["grip"]]
+    grip = [number("grip", text, "mm", "m") for text in given["grip"]]
     if given["thickness"] is None:
-        return thick
-    each = _each(given)
+        return grip
+    plates = _each(given)
     if given["tapped"]:
-        if abs(each[0] - sum(thick)) > SAME * each[0]:
+        if abs(plates[0] - sum(grip)) > SAME * plates[0]:
             raise ValueError(
-                f"--thickness = {each[0] * 1e3:g} mm of side 1 contradicts --grip = {sum(thick) * 1e3:g} mm: "
-                "expected the same, the thread is in side 2"
+                f"--thickness = {plates[0] * 1e3:g} mm of side 1 contradicts --grip = {sum(grip) * 1e3:g} mm"
+                ": expected the same, the thread is in side 2"
             )
-        return thick
-    if abs(sum(each) - sum(thick)) > SAME * sum(thick):
+        return grip
+    if abs(sum(plates) - sum(grip)) > SAME * sum(grip):
         raise ValueError(
-            f"--thickness = {each[0] * 1e3:g} and {each[1] * 1e3:g} mm contradicts --grip = "
-            f"{sum(thick) * 1e3:g} mm: expected their sum"
+            f"--thickness = {plates[0] * 1e3:g} and {plates[1] * 1e3:g} mm contradicts --grip = "
+            f"{sum(grip) * 1e3:g} mm: expected their sum"
         )
-    return each
+    return plates
 
 
 def _each(given: Given) -> list[float]:
-    each = [number("thickness", text, "mm", "m") for text in given["thickness"]]
-    if len(each) != 2:
-        raise ValueError(f"--thickness has {len(each)} values, expected that of each plate")
-    return each
+    thicknesses = [number("thickness", text, "mm", "m") for text in given["thickness"]]
+    if len(thicknesses) != 2:
+        raise ValueError(f"--thickness has {len(thicknesses)} values, expected that of each plate")
+    return thicknesses
 
 
 def outer_diameter(size: tuple[float, float], at: Array) -> float:
@@ -252,9 +254,9 @@ def _preload(sheet: Sheet, given: Given, thread: Thread) -> tuple[float, list[st
         sheet.stated("inputs.preload", preload)
     if given["property_class"] is None:
         return preload, []
-    most = strength(name, "proof", thread) * vdi2230.stress_area(thread)
+    proof_load = strength(name, "proof", thread) * vdi2230.stress_area(thread)
     return preload, overload(
-        "preload", preload, (most, f"the proof load of {thread.name}-{name} (ISO 898-1)")
+        "preload", preload, (proof_load, f"the proof load of {thread.name}-{name} (ISO 898-1)")
     )
 
 
@@ -277,7 +279,7 @@ def _embedding(sheet: Sheet, given: Given, one: Clamped, heights: faces.Heights)
 def _friction(file: ParameterFile, preload: float) -> dict[str, tuple[float, str, str]]:
     """Facts about friction: gross-slip force and loss factor, at mu and at both ends of its range."""
     shear, rows = friction_band(file, preload)
-    slip = "shear force at which all of the interface slips"
+    slip = "shear force at which the whole interface slips"
     loss = f"loss factor of the interface between rigid sides at {shear:.3g} N of shear"
     facts = {}
     for name, row in zip(("", "_low", "_high"), rows, strict=False):
@@ -312,19 +314,20 @@ def _facts(
         "embedding": (
             values.embedding,
             "N",
-            f"of it that embedding takes, {values.embedding / preload:.1%}; stiffness and slip lack it",
+            f"preload lost by embedding ({values.embedding / preload:.1%}); stiffness and slip are those of "
+            "the remaining preload",
         ),
         "p_mean": (float(state["p_mean"]), "Pa", "mean pressure on the plate"),
-        "p_max": (float(state["p_max"]), "Pa", "greatest pressure, beside a bolt"),
-        "h": (float(file.flat.get("h", np.nan)), "m", "rms height of both faces together"),
-        "K_zz": (K, "N/m", "normal stiffness of the interface at this preload, bolts apart"),
+        "p_max": (float(state["p_max"]), "Pa", "largest pressure, near a bolt"),
+        "h": (float(file.flat.get("h", np.nan)), "m", "combined rms height of both faces"),
+        "K_zz": (K, "N/m", "normal stiffness of the interface at this preload, without the bolts"),
         "K_xx": (float(state["K_xx"]), "N/m", "tangential stiffness of the interface"),
         "bolt_stiffness": (one.bolt, "N/m", "of one bolt, 1/delta_S of VDI 2230"),
         "member_stiffness": (one.members, "N/m", "of the parts that one bolt clamps, 1/delta_P of VDI 2230"),
         "load_factor": (
             one.bolt / (one.bolt + one.members),
             "1",
-            "Phi_K = delta_P/(delta_S + delta_P): part of an outer force that the bolts take",
+            "Phi_K = delta_P/(delta_S + delta_P): share of an external force that the bolts carry",
         ),
     }
     facts |= _friction(file, preload)

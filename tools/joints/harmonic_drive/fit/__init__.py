@@ -10,10 +10,12 @@ FITS = (
         text="a torque-angle curve to the harmonic drive",
         file=True,
         options=(
-            Option("rated_torque", "of the drive [N.m]; scales max_torque with it", unit="N.m"),
+            Option(
+                "rated_torque", "rated torque of the drive [N.m]; max_torque is scaled with it", unit="N.m"
+            ),
             Option(
                 "law",
-                "table: the mid-line itself (default: the law of the start, fitted)",
+                "table: use the midline itself (default: fit the law of the start file)",
                 choices=("table",),
             ),
         ),
@@ -25,7 +27,9 @@ FITS = (
         file=True,
         column="angle",
         options=(
-            Option("inertia", "what vibrates on the drive [kg.m2]; with decays and responses", number=True),
+            Option(
+                "inertia", "inertia that vibrates on the drive [kg.m2], for decays and responses", number=True
+            ),
         ),
         run=fit_of(f"{__name__}.hysteresis"),
     ),
@@ -37,14 +41,16 @@ FITS = (
         options=(
             Option(
                 "columns",
-                "headings of time, q, dq, i, tau, gravity, temperature with other names: q=HEADING "
-                "or 'q=HEADING [UNIT]'",
+                "other headings of time, q, dq, i, tau, gravity, q_motor, link_torque, temperature in the "
+                "file: q=HEADING or 'q=HEADING [UNIT]'",
                 "TEXT",
                 many=True,
             ),
-            Option("torque_constant", "torque of the motor over its current [N.m/A]", number=True),
-            Option("ratio", "speed ratio (default: that of the start)", number=True),
-            Option("motor_inertia", "of the rotor [kg.m2], which the teeth do not carry (0)", number=True),
+            Option("torque_constant", "motor torque over motor current [N.m/A]", number=True),
+            Option("ratio", "speed ratio (default: that of the start file)", number=True),
+            Option(
+                "motor_inertia", "inertia of the rotor [kg.m2], which does not load the teeth", number=True
+            ),
         ),
         run=fit_of(f"{__name__}.log"),
     ),
@@ -65,15 +71,15 @@ FITS = (
             ),
             Option(
                 "stiffness_unit",
-                "of K1, K2, K3 without one of their own, as '1e4 N.m/rad' or kgf.m/arcmin (N.m/rad)",
+                "unit of K1, K2, K3 given without one, as '1e4 N.m/rad' or kgf.m/arcmin (default: N.m/rad)",
                 "TEXT",
             ),
             Option("rated_torque", "rated torque [N.m] (default: T2)", unit="N.m"),
-            Option("source", "where the row is printed", "TEXT", default="catalogue"),
-            Option("ratio", "speed ratio (default: that of the start)", number=True),
+            Option("source", "where the row is published", "TEXT", default="catalogue"),
+            Option("ratio", "speed ratio (default: that of the start file)", number=True),
             Option(
                 "law",
-                "catalogue: the three lines; hu2023: that of the contact pair, fitted to them",
+                "catalogue: the three lines; hu2023: law of the contact pair, fitted to the lines",
                 default="catalogue",
                 choices=("catalogue", "hu2023"),
             ),

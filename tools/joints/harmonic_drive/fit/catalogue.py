@@ -99,23 +99,26 @@ def fit_pair(
     if "ratio" in printed:
         file = file.with_values({"ratio": printed["ratio"].value}, "catalogue", origin)
     file = file.with_values({FURTHER: row.T1}, "catalogue", f"T1 of {origin}")
-    torque, most = torques(row, file.values.max_torque), file.values.max_torque
+    torque, max_torque = torques(row, file.values.max_torque), file.values.max_torque
     choices = [tuple(free)] if free else [FREE, (*FREE, FURTHER)]
     file = drive.scaled(file, choices[0], torque, row.angle(torque))
     solution, deviation = _solved(row, file, choices, torque)
-    result = fitted(file, solution.values, "catalogue", origin, f"torque 0 to {most:g} N.m")
+    result = fitted(file, solution.values, "catalogue", origin, f"torque 0 to {max_torque:g} N.m")
     result = replace(result, name=f"fitted to {source}")
-    miss = drive.windup(result.values, torque) / row.angle(torque) - 1.0
-    worst = int(np.argmax(np.abs(miss)))
-    text = f"at {torque[worst]:.3g} N.m, largest between {torque[0]:.3g} and {most:g} N.m"
+    errors = drive.windup(result.values, torque) / row.angle(torque) - 1.0
+    worst = int(np.argmax(np.abs(errors)))
+    text = f"at {torque[worst]:.3g} N.m, largest between {torque[0]:.3g} and {max_torque:g} N.m"
     facts = _angle_errors(row, result.values, {})
-    facts["angle_error_largest"] = float(miss[worst]), "1", text
+    facts["angle_error_largest"] = float(errors[worst]), "1", text
     note = (
         f"standard deviations: the angle known to {100 * deviation:g} % at T1, T2 and rated torque, "
         f"{100 * LOOSE:g} % elsewhere"
     )
-    pictures = angle_picture(row, result.values, {}, torque), stiffness_picture(row, result.values, {}, most)
-    return FitResult(result, solution, facts | _most(row, most), pictures, notes=[note])
+    pictures = (
+        angle_picture(row, result.values, {}, torque),
+        stiffness_picture(row, result.values, {}, max_torque),
+    )
+    return FitResult(result, solution, facts | _most(row, max_torque), pictures, notes=[note])
 
 
 def torques(row: Row, most: float) -> Array:
@@ -192,18 +195,18 @@ def fit_lines(
     """
     if free:
         raise ValueError("the law catalogue has nothing to fit; --free is allowed with --law hu2023")
-    most = MAX_OVER_RATED * row.rated
-    largest = Printed(most, "estimate", f"{MAX_OVER_RATED:g} times rated_torque")
+    max_torque = MAX_OVER_RATED * row.rated
+    largest = Printed(max_torque, "estimate", f"{MAX_OVER_RATED:g} times rated_torque")
     file = made(source, {**(printed or stated_numbers(row)), "max_torque": largest}, start)
     pair, note = _pair(row, start if start and start.law == "hu2023" else None)
-    facts = _angle_errors(row, file.values, {"max": most}) | _most(row, most)
+    facts = _angle_errors(row, file.values, {"max": max_torque}) | _most(row, max_torque)
     also = {}
     if pair is not None:
         also = {PAIR: pair}
-        facts |= _pair_facts(row, pair, most)
-    angle = angle_picture(row, file.values, also, torques(row, most))
+        facts |= _pair_facts(row, pair, max_torque)
+    angle = angle_picture(row, file.values, also, torques(row, max_torque))
     return FitResult(
-        file, NOTHING, facts, (angle, stiffness_picture(row, file.values, also, most)), notes=note
+        file, NOTHING, facts, (angle, stiffness_picture(row, file.values, also, max_torque)), notes=note
     )
 
 
@@ -220,8 +223,8 @@ def _angle_errors(row: Row, law: Drive, more: Mapping[str, float]) -> Facts:
     """Relative errors of the angle of a law at T1, T2, the rated torque, and extra torques [N.m]."""
     facts = {}
     for name, T in {"T1": row.T1, "T2": row.T2, "rated": row.rated, **more}.items():
-        miss = float(drive.windup(law, np.array(T)) / row.angle(T)) - 1.0
-        facts[f"angle_error_{name}"] = (miss, "1", f"law over catalogue - 1 at {T:g} N.m")
+        error = float(drive.windup(law, np.array(T)) / row.angle(T)) - 1.0
+        facts[f"angle_error_{name}"] = (error, "1", f"law over catalogue - 1 at {T:g} N.m")
     return facts
 
 

@@ -124,12 +124,12 @@ PRINTED = ("1e4 N.m/rad", "N.m/arcmin", "kN.m/rad", "kgf.m/arcmin", "N.m/mrad", 
 
 def _likely(angle: float) -> str:
     """Hint which unit of the stiffness makes the wind-up at T2 [rad] closest to the usual one."""
-    usual = np.sqrt(np.prod(WINDUP))
+    typical = np.sqrt(np.prod(WINDUP))
     sizes = {u: factor(u, "N.m/rad") for u in PRINTED}
-    best = min(sizes, key=lambda u: abs(np.log(angle / sizes[u] / usual)))
-    if not 0.1 < angle / sizes[best] / usual < 10.0:
+    unit = min(sizes, key=lambda u: abs(np.log(angle / sizes[u] / typical)))
+    if not 0.1 < angle / sizes[unit] / typical < 10.0:
         return "no usual unit explains it"
-    return f"likely they are in {best}: times {sizes[best]:g} (--stiffness-unit)"
+    return f"likely they are in {unit}: times {sizes[unit]:g} (--stiffness-unit)"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -71,7 +71,7 @@ def fit(
     free: Sequence[str] | None = None,
     inertia: float | None = None,
 ) -> FitResult:
-    """Fit a file of loops, decays, responses, or frequency and damping over the amplitude (columns: HEADS).
+    """Fit a file of loops, decays, responses, or frequency and damping over the amplitude (COLUMN_NAMES).
 
     Parameters
     ----------
@@ -84,12 +84,12 @@ def fit(
     """
     data = measured(path, HEADS)
     names = list(free or FREE)
-    begun = start or default("harmonic_drive")
+    start_file = start or default("harmonic_drive")
     if isinstance(data.data, Loops):
         reach = 0.5 * float(np.ptp(data.data.force))
-        wind_up = float(drive.windup(begun.values, np.array(reach)))
-        HEADS.check_level(data.path, wind_up / data.amplitude, data.units, begun)
-    file, rest = _begun(begun, names)
+        wind_up = float(drive.windup(start_file.values, np.array(reach)))
+        HEADS.check_level(data.path, wind_up / data.amplitude, data.units, start_file)
+    file, rest = _begun(start_file, names)
 
     def own(values: Mapping[str, float]) -> HysteresisLaw:
         return law(file.with_values(values, "calibration", "fit").values)
@@ -98,13 +98,13 @@ def fit(
     starts = {LOSS: LOSSES, STIFFNESS: tuple(rest * np.array(STIFFNESSES))}
     solution, scale, _ = memory.search(data, unknowns(file, names, drive.bounds(file)), model, starts)
     result = fitted(file, solution.values, "calibration", data.path.name, data.span)
-    found = law(result.values)
-    limit = float(found.friction(np.array([np.inf]))[0])
-    described = {"friction_torque": (limit, "N.m", "bound of the friction torque")}
+    fitted_law = law(result.values)
+    limit = float(fitted_law.friction(np.array([np.inf]))[0])
+    law_facts = {"friction_torque": (limit, "N.m", "bound of the friction torque")}
     return FitResult(
         result,
         solution,
-        described | memory.facts(data, solution, found, scale),
+        law_facts | memory.facts(data, solution, fitted_law, scale),
         memory.pictures(data, model, solution.values, scale),
         notes=memory.notes(data, solution),
     )
@@ -154,11 +154,11 @@ def rotor(
     Returns inertia and standard deviation [kg.m2]; None if the data do not determine them. Raises
     RuntimeError if the fit does not converge.
     """
-    own = [name for name in OWN if name in file.flat]
-    wanted = Unknown(ROTOR, "kg.m2", 0.1 * most, LEAST_PART * most, most)
-    solution, _ = _solved(file, own, phi, lambda values: tau + values[ROTOR] * relief, spread, [wanted])
-    found = solution.values[ROTOR]
-    return None if ROTOR in undetermined(solution) else (found, found * solution.deviations[ROTOR])
+    names = [name for name in OWN if name in file.flat]
+    unknown = Unknown(ROTOR, "kg.m2", 0.1 * most, LEAST_PART * most, most)
+    solution, _ = _solved(file, names, phi, lambda values: tau + values[ROTOR] * relief, spread, [unknown])
+    inertia = solution.values[ROTOR]
+    return None if ROTOR in undetermined(solution) else (inertia, inertia * solution.deviations[ROTOR])
 
 
 def fit_log(
@@ -197,19 +197,23 @@ def _solved(
 
     def angle(values: Mapping[str, float], tau: Array) -> Array:
         """Wind-up (n) [rad] of the law, shifted to the mean of the measured one."""
-        own = {name: values[name] for name in names}
-        spring = HarmonicDriveSpring.of(file.with_values(own, "calibration", "fit").values)
-        found = spring.curve.odd_inverse(tau - _friction(spring, path))
-        return np.asarray(found - np.mean((found - phi)[SETTLED:]))
+        own_values = {name: values[name] for name in names}
+        spring = HarmonicDriveSpring.of(file.with_values(own_values, "calibration", "fit").values)
+        wind_up_values = spring.curve.odd_inverse(tau - _friction(spring, path))
+        return np.asarray(wind_up_values - np.mean((wind_up_values - phi)[SETTLED:]))
 
-    wanted = [*unknowns(start, names, {LOSS: (LEAST_PART * start.flat[LOSS], np.inf)}), *more]
-    solution = solve(wanted, lambda values: (phi - angle(values, torque(values)))[SETTLED:], nuisances=1)
-    carried = torque(solution.values)
-    law = angle(solution.values, carried)
+    all_unknowns = [*unknowns(start, names, {LOSS: (LEAST_PART * start.flat[LOSS], np.inf)}), *more]
+    solution = solve(
+        all_unknowns, lambda values: (phi - angle(values, torque(values)))[SETTLED:], nuisances=1
+    )
+    fitted_torque = torque(solution.values)
+    law = angle(solution.values, fitted_torque)
     for change in spread:
-        off = (angle(solution.values, carried + change) - law)[SETTLED:]
-        moved = np.linalg.lstsq(solution.jacobian, off)[0]
-        solution = replace(solution, covariance=solution.covariance + np.outer(moved, moved))
+        difference = (angle(solution.values, fitted_torque + change) - law)[SETTLED:]
+        parameter_changes = np.linalg.lstsq(solution.jacobian, difference)[0]
+        solution = replace(
+            solution, covariance=solution.covariance + np.outer(parameter_changes, parameter_changes)
+        )
     return solution, law
 
 
@@ -218,8 +222,8 @@ def _friction(spring: HarmonicDriveSpring, path: Array) -> Array:
     sliders = spring.hysteresis
     if not sliders.acts:
         return np.zeros(path.size)
-    places, sampled = _with_turns(path)
-    return sliders.path(np.diff(places, prepend=0.0), sliders.limit)[sampled]
+    path_with_turns, sampled = _with_turns(path)
+    return sliders.path(np.diff(path_with_turns, prepend=0.0), sliders.limit)[sampled]
 
 
 def _with_turns(path: Array) -> tuple[Array, NDArray[np.int_]]:
@@ -229,10 +233,10 @@ def _with_turns(path: Array) -> tuple[Array, NDArray[np.int_]]:
     """
     before, after = np.diff(path)[:-1], np.diff(path)[1:]
     turns = np.flatnonzero(before * after < 0.0)
-    one, two = before[turns], after[turns]
-    late = 0.5 * (one + two) / (one - two)  # in steps after the sample
-    vertex = path[turns + 1] + 0.25 * (one + two) * late
+    step_before, step_after = before[turns], after[turns]
+    offset = 0.5 * (step_before + step_after) / (step_before - step_after)  # in steps after the sample
+    vertex = path[turns + 1] + 0.25 * (step_before + step_after) * offset
     # the vertex lies on the side of the sample to which `late` points
-    at = turns + 1 + (late > 0.0)
-    sampled = np.arange(path.size) + np.searchsorted(at, np.arange(path.size), side="right")
-    return np.insert(path, at, vertex), sampled
+    positions = turns + 1 + (offset > 0.0)
+    sampled = np.arange(path.size) + np.searchsorted(positions, np.arange(path.size), side="right")
+    return np.insert(path, positions, vertex), sampled

@@ -58,41 +58,41 @@ def fit(
     logs = [read(path, names, torque_constant, file.values) for path in paths]
     samples = joined([log.part(log.built) for log in logs])
     label = ", ".join(path.name for path in paths)
-    turned = [log for log in logs if np.all(np.isfinite(log.motor + log.q))]
-    if not turned and (alone := [name for name in free or () if name in hysteresis.OWN]):
+    logs_with_motor_angle = [log for log in logs if np.all(np.isfinite(log.motor + log.q))]
+    if not logs_with_motor_angle and (alone := [name for name in free or () if name in hysteresis.OWN]):
         raise ValueError(f"{label}: {alone[0]} needs the columns q and q_motor beside the time")
     _speeds(label, samples)
     if driven(samples, file.values):
         raise ValueError(
             f"{label}: friction drives the motion; reverse the sign of one column or of --torque-constant"
         )
-    rotor = motor_inertia or 0.0
-    own = [name for name in free or () if name not in hysteresis.OWN]
-    wanted, left = wanted_of(samples, file.values, own, rotor)
-    whole = fitted_to(file, samples, wanted, rotor)
-    if rotor and samples.dynamic.any():
-        _within(rotor, whole)
-    if not own:
-        whole, wanted, blind = without_blind(file, samples, whole, wanted)
-        left += blind
+    rotor_inertia = motor_inertia or 0.0
+    friction_names = [name for name in free or () if name not in hysteresis.OWN]
+    names_to_fit, notes = wanted_of(samples, file.values, friction_names, rotor_inertia)
+    fitted_log = fitted_to(file, samples, names_to_fit, rotor_inertia)
+    if rotor_inertia and samples.dynamic.any():
+        _within(rotor_inertia, fitted_log)
+    if not friction_names:
+        fitted_log, names_to_fit, dropped = without_blind(file, samples, fitted_log, names_to_fit)
+        notes += dropped
     if samples.dynamic.any() and motor_inertia is None:
-        if turned and (seen := _rotor(file, turned[0], whole)):
-            whole = with_rotor(file, samples, wanted, *seen)
+        if logs_with_motor_angle and (rotor_fit := _rotor(file, logs_with_motor_angle[0], fitted_log)):
+            fitted_log = with_rotor(file, samples, names_to_fit, *rotor_fit)
         else:
-            left.append(
+            notes.append(
                 "without --motor-inertia all inertia counts as the arm's: what hangs on the load, load_loss "
                 "and stiffness, is off by the rotor's share"
             )
-    found, drawn = whole.solution, [*pictures(samples, whole)]
-    intervals = _intervals(whole.solution)
-    if turned:
-        more, why = _link(file, turned[0], whole, free)
-        left += why
-        if more is not None:
-            found, drawn = _both(found, more[0]), [*drawn, more[1]]
-            intervals |= _intervals(more[0])
-    result = fitted(file, found.values, "calibration", label, _span(samples))
-    for name, value in found.values.items():
+    solution, drawn_pictures = fitted_log.solution, [*pictures(samples, fitted_log)]
+    intervals = _intervals(fitted_log.solution)
+    if logs_with_motor_angle:
+        stiffness_fit, link_notes = _link(file, logs_with_motor_angle[0], fitted_log, free)
+        notes += link_notes
+        if stiffness_fit is not None:
+            solution, drawn_pictures = _both(solution, stiffness_fit[0]), [*drawn_pictures, stiffness_fit[1]]
+            intervals |= _intervals(stiffness_fit[0])
+    result = fitted(file, solution.values, "calibration", label, _span(samples))
+    for name, value in solution.values.items():
         kind, text = "estimate", "not determined: other values fit as well"
         if name in intervals:
             kind, text = (
@@ -102,10 +102,10 @@ def fit(
         result = result.with_values({name: value}, kind, f"{result.sources[name]}; {text}")
     return FitResult(
         result,
-        found,
-        facts(file, samples, whole, wanted),
-        drawn,
-        notes=left,
+        solution,
+        facts(file, samples, fitted_log, names_to_fit),
+        drawn_pictures,
+        notes=notes,
         intervals=intervals,
     )
 

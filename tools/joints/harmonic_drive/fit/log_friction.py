@@ -6,7 +6,7 @@ All torques are positive in the direction of the joint angle q, so that the rati
 linear in their unknowns and are eliminated: the inertia at the joint, an offset of the current, and gravity =
 a cos(q) + b sin(q) if it is not measured. The load of the teeth is gravity plus the inertia torque of the
 arm, that is of the total inertia without the rotor. The other unknowns are fitted over their logarithms. The
-load depends on them: it is fixed during each fit, and updated for the next of ROUNDS fits.
+load depends on them: it is fixed during each fit, and updated for the next of LOAD_ITERATIONS fits.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -121,8 +121,8 @@ class FittedLog:
 
     drive           : with the fitted friction
     solution        : of the fit of the friction parameters
-    linear          : (k) unknowns of the linear terms: inertia [kg.m2], offset, gravity [N.m]
-    covariance      : (k, k) of `linear`
+    linear_unknowns : (k) unknowns of the linear terms: inertia [kg.m2], offset, gravity [N.m]
+    covariance      : (k, k) of the linear unknowns
     rotor_inertia   : [kg.m2]
     rotor_deviation : [kg.m2] standard deviation of the rotor inertia
     """
@@ -175,27 +175,31 @@ def wanted_of(
     """
     if free:
         return list(free), []
-    left: dict[str, str] = {}
+    reasons: dict[str, str] = {}
     terms, linear = _straight(samples, drive)
     load = terms.load(samples, linear[2:], abs(drive.ratio), rotor)  # with constant dry and viscous friction
     if np.max(np.abs(load)) < LOADED * drive.rated_torque:
         text = f"the load stays below {LOADED:g} times the rated torque"
-        left |= {LOSS: text, BACK: text}
+        reasons |= {LOSS: text, BACK: text}
     else:
         back_driven = load * samples.dq < -LOADED * drive.rated_torque * np.abs(samples.dq)
         if drive.load_loss_back < 0.0:
-            left[BACK] = "it is that of load_loss in the start file"
+            reasons[BACK] = "it is that of load_loss in the start file"
         elif not back_driven.any():
-            left[BACK] = "the load never drives the motor"
+            reasons[BACK] = "the load never drives the motor"
     known = samples.temperature[np.isfinite(samples.temperature)]
     if known.size == 0 or np.ptp(known) < WARMED:
         span = "no temperature in it" if known.size == 0 else f"{np.ptp(known):.2g} K of temperature"
-        left |= dict.fromkeys(WARM, f"{span}, {WARMED:g} K are needed")
-    slow = abs(drive.ratio) * np.min(np.abs(samples.dq))
-    if slow > 2.0 * drive.stribeck_speed:
-        left[STRIBECK] = f"the motor is never slower than {slow:.3g} rad/s, twice stribeck_speed is needed"
-    notes = [f"the log does not determine {name}, which stays as it is: {why}" for name, why in left.items()]
-    return [name for name in FREE if name not in left], notes
+        reasons |= dict.fromkeys(WARM, f"{span}, {WARMED:g} K are needed")
+    slowest = abs(drive.ratio) * np.min(np.abs(samples.dq))
+    if slowest > 2.0 * drive.stribeck_speed:
+        reasons[STRIBECK] = (
+            f"the motor is never slower than {slowest:.3g} rad/s, twice stribeck_speed is needed"
+        )
+    notes = [
+        f"the log does not determine {name}, which stays as it is: {why}" for name, why in reasons.items()
+    ]
+    return [name for name in FREE if name not in reasons], notes
 
 
 def _straight(samples: Samples, drive: Drive) -> tuple[LinearTerms, Array]:
@@ -218,9 +222,9 @@ def fitted_to(file: ParameterFile, samples: Samples, wanted: Sequence[str], roto
     """
     ratio = abs(file.values.ratio)
     terms, linear = _straight(samples, file.values)
-    begin, linear = _first(file, samples, linear), linear[2:]
-    changed = file.with_values({n: v for n, v in begin.items() if n in wanted}, "calibration", "start")
-    least = {name: (LEAST_PART * value, np.inf) for name, value in begin.items()}
+    start_values, linear = _first(file, samples, linear), linear[2:]
+    changed = file.with_values({n: v for n, v in start_values.items() if n in wanted}, "calibration", "start")
+    bounds = {name: (LEAST_PART * value, np.inf) for name, value in start_values.items()}
     for _ in range(ROUNDS):
         load = terms.load(samples, linear, ratio, rotor)
 
@@ -233,7 +237,7 @@ def fitted_to(file: ParameterFile, samples: Samples, wanted: Sequence[str], roto
             remaining = torque(values)
             return np.asarray(remaining - terms.matrix @ terms.found(remaining))
 
-        solution = solve(unknowns(changed, wanted, least), residuals, nuisances=len(terms.names))
+        solution = solve(unknowns(changed, wanted, bounds), residuals, nuisances=len(terms.names))
         linear = terms.found(net_torque(solution.values))
         changed = file.with_values(solution.values, "calibration", "fit")
     direct = solution.noise**2 * np.linalg.pinv(terms.matrix.T @ terms.matrix)
@@ -275,9 +279,9 @@ def with_rotor(
 ) -> FittedLog:
     """Fit with a rotor inertia and its standard deviation [kg.m2], which is added to the covariance."""
     fit = fitted_to(file, samples, wanted, rotor)
-    other = fitted_to(file, samples, wanted, rotor + deviation).solution.values
-    off = np.array([np.log(other[name] / value) for name, value in fit.solution.values.items()])
-    wider = replace(fit.solution, covariance=fit.solution.covariance + np.outer(off, off))
+    shifted = fitted_to(file, samples, wanted, rotor + deviation).solution.values
+    changes = np.array([np.log(shifted[name] / value) for name, value in fit.solution.values.items()])
+    wider = replace(fit.solution, covariance=fit.solution.covariance + np.outer(changes, changes))
     return replace(fit, solution=wider, rotor_deviation=deviation)
 
 
@@ -305,5 +309,5 @@ def _first(file: ParameterFile, samples: Samples, linear: Array) -> dict[str, fl
     size = float(np.median(np.abs(samples.torque))) or 1.0
     fastest = abs(file.values.ratio) * float(np.max(np.abs(samples.dq)))
     dry = max(float(linear[0]), 0.05 * size)
-    own = {name: file.flat[name] if file.flat[name] > 0.0 else value for name, value in FIRST.items()}
-    return {DRY: dry, STRIBECK: 0.2 * dry, VISCOUS: max(float(linear[1]), 0.02 * size / fastest)} | own
+    others = {name: file.flat[name] if file.flat[name] > 0.0 else value for name, value in FIRST.items()}
+    return {DRY: dry, STRIBECK: 0.2 * dry, VISCOUS: max(float(linear[1]), 0.02 * size / fastest)} | others

@@ -1,9 +1,9 @@
 """Logs of a robot: read and check the columns, filter them, select samples.
 
 A log with the column time is dynamic. Motion and torque pass the same filter, a local polynomial over
-WINDOW (Savitzky and Golay 1964), which also gives the derivatives. One sample per window is kept, so that the
-noise of the samples is independent. Samples are marked if the drive has rotated far enough since its last
-reversal. A log without the column time is a table of steady speeds, and is not filtered.
+FILTER_WINDOW (Savitzky and Golay 1964), which also gives the derivatives. One sample per window is kept, so
+that the noise of the samples is independent. Samples are marked if the drive has rotated far enough since its
+last reversal. A log without the column time is a table of steady speeds, and is not filtered.
 """
 
 from collections.abc import Mapping, Sequence
@@ -40,8 +40,8 @@ class Samples:
 
     time          : [s]
     q, dq, ddq    : angle [rad], speed [rad/s] and acceleration [rad/s2] of the joint
-    speeds        : (n, NODES) [rad/s] of the joint, within the window of the filter
-    weights       : (n, NODES) [1] of the filter at these speeds
+    speeds        : (n, FILTER_NODES) [rad/s] of the joint, within the window of the filter
+    weights       : (n, FILTER_NODES) [1] of the filter at these speeds
     torque        : [N.m] of the motor
     gravity       : [N.m] torque at the joint that balances gravity
     temperature   : [K]
@@ -137,7 +137,7 @@ def moving(time: Array, step: float, have: Mapping[str, Array], drive: Drive) ->
 
 
 def _nodes(width: int) -> tuple[Places, Array]:
-    """Sample offsets (NODES) within the window of the filter, and the filter weights at these nodes.
+    """Sample offsets (FILTER_NODES) within the window of the filter, and the filter weights at these nodes.
 
     The weights are those for values that are linear between the nodes.
     """
@@ -335,10 +335,10 @@ def _check(path: Path, samples: Samples, drive: Drive) -> None:
         raise ValueError(
             f"{path}: has no motion; expected speeds of the joint above {STILL / ratio:.2g} rad/s"
         )
-    most = MOST_TORQUE * float(drive.reach) / ratio
+    limit = MOST_TORQUE * float(drive.reach) / ratio
     largest = float(np.max(np.abs(samples.torque)))
-    if largest > most:
+    if largest > limit:
         raise ValueError(
-            f"{path}: a motor torque of {largest:.4g} N.m is outside [-{most:.4g}, {most:.4g}] N.m; expected "
-            "that of the motor, not of the joint, of a drive as stated"
+            f"{path}: a motor torque of {largest:.4g} N.m is outside [-{limit:.4g}, {limit:.4g}] N.m; "
+            "expected that of the motor, not of the joint, of a drive as stated"
         )

@@ -46,7 +46,7 @@ def fit(
     rated_torque: float | None = None,
     law: str | None = None,
 ) -> FitResult:
-    """Fit a file with the columns torque and angle (COLUMNS), in the order of measurement.
+    """Fit a file with the columns torque and angle (COLUMN_UNITS), in the order of measurement.
 
     An offset of the angle is a further unknown, which is fitted and subtracted.
 
@@ -96,12 +96,12 @@ def read(path: str | Path, start: ParameterFile | None, rated_torque: float | No
         line = loop.backbone(torque, angle)
     except ValueError as error:
         raise ValueError(f"{table.path}: {error}") from None
-    begun = start or default("harmonic_drive")
-    file = _sized(begun, line.torque, rated_torque, table.path)
+    start_file = start or default("harmonic_drive")
+    file = _sized(start_file, line.torque, rated_torque, table.path)
     _check_size(line, file, table)
-    size = begun.values.rated_torque / file.values.rated_torque
-    usual = float(np.ptp(drive.windup(begun.values, size * line.torque)))
-    HEADS.check_level(table.path, usual / float(np.ptp(line.angle)), table.units, begun)
+    size = start_file.values.rated_torque / file.values.rated_torque
+    expected = float(np.ptp(drive.windup(start_file.values, size * line.torque)))
+    HEADS.check_level(table.path, expected / float(np.ptp(line.angle)), table.units, start_file)
     return Record(table.path, line, file)
 
 
@@ -119,16 +119,18 @@ def outcome(
     noise  : [rad] standard deviation of one sample
     """
     line = record.line
-    rest = line.angle - drive.windup(result.values, line.torque) - shift
+    residuals = line.angle - drive.windup(result.values, line.torque) - shift
     grid = np.linspace(line.torque[0], line.torque[-1], 400)
     picture = Picture(
         x=line.torque,
         y=(line.angle - shift) / ARCMIN,
-        misfit=rest / ARCMIN,
+        misfit=residuals / ARCMIN,
         line=(grid, drive.windup(result.values, grid) / ARCMIN),
         labels=("torque [N.m]", "wind-up [arcmin]", "data - law [arcmin]"),
     )
-    return FitResult(result, solution, _facts(line, shift, rest, noise), [picture], notes=_notes(line, rest))
+    return FitResult(
+        result, solution, _facts(line, shift, residuals, noise), [picture], notes=_notes(line, residuals)
+    )
 
 
 def _sized(start: ParameterFile, torque: Array, rated: float | None, path: Path) -> ParameterFile:
@@ -154,21 +156,21 @@ def _check_size(line: loop.Backbone, start: ParameterFile, table: columns.Column
 
     Raises Refusal for a wind-up that is implausible for this size, ValueError for a loop that creates energy.
     """
-    turned, span = float(np.ptp(line.angle)), float(np.ptp(line.torque))
+    angle_range, torque_range = float(np.ptp(line.angle)), float(np.ptp(line.torque))
     rated = start.values.rated_torque
     low, high = drive.WINDUP
-    path, at_rated = table.path, turned * rated / span
+    path, at_rated = table.path, angle_range * rated / torque_range
     if not low <= at_rated <= high:
-        usual = float(np.sqrt(low * high))
+        typical = float(np.sqrt(low * high))
         raise Refusal(
-            f"{path}: the angle turns {turned:.3g} rad over {span:.3g} N.m, that is "
+            f"{path}: the angle turns {angle_range:.3g} rad over {torque_range:.3g} N.m, that is "
             f"{at_rated:.3g} rad at the rated torque {rated:g} N.m, allowed are {low:g} to {high:g}: "
-            f"{HEADS.likely_unit(usual / at_rated, table.units)}, or state the drive's rated torque",
+            f"{HEADS.likely_unit(typical / at_rated, table.units)}, or state the drive's rated torque",
             "rated_torque",
         )
     if line.loop_area is not None:
         area, deviation = line.loop_area
-        if area < -max(3.0 * deviation, CREATED * span * turned):
+        if area < -max(3.0 * deviation, CREATED * torque_range * angle_range):
             raise ValueError(
                 f"{path}: the loop creates energy, loop_area = {area:.3g} J, expected is 0 or more: the "
                 "angle has to lag behind the torque; reverse the order of the rows if they run back in time"
@@ -222,20 +224,20 @@ def fit_table(
     Raises ValueError as `fit`, and for a curve that does not include zero torque or does not rise.
     """
     record = read(path, start, rated_torque)
-    line, begun = record.line, record.start
+    line, start_file = record.line, record.start
     try:
-        torque, angle, shift = points(line)
+        torque, angle, offset = points(line)
     except ValueError as error:
         raise ValueError(f"{record.path}: {error}") from None
     name, values = record.path.name, dict[str, Any]()
     values["table.torque"] = tuple(torque.tolist())
     values["table.angle"] = tuple(angle.tolist())
     table = {label: Printed(column, "calibration", name) for label, column in values.items()}
-    file = drive.with_law(begun, TableDrive, name, table)
+    file = drive.with_law(start_file, TableDrive, name, table)
     file = replace(fitted(file, values, "calibration", name, span(line)), name=name)
-    rest = line.angle - shift - drive.windup(file.values, line.torque)
-    noise = float(np.sqrt(np.average(line.count * rest**2)))
-    return outcome(record, file, NOTHING, shift, noise)
+    residuals = line.angle - offset - drive.windup(file.values, line.torque)
+    noise = float(np.sqrt(np.average(line.count * residuals**2)))
+    return outcome(record, file, NOTHING, offset, noise)
 
 
 def points(line: loop.Backbone) -> tuple[Array, Array, float]:
@@ -246,15 +248,20 @@ def points(line: loop.Backbone) -> tuple[Array, Array, float]:
     low, high = line.torque[0], line.torque[-1]
     if low * high > 0.0 and min(abs(low), abs(high)) > 0.05 * (high - low):
         raise ValueError(f"the torque goes from {low:.4g} to {high:.4g} N.m; a table needs it to pass zero")
-    both = np.linspace(0.0, max(min(-low, high), 0.0), 41)
-    shift = float(np.mean([np.interp(sign * both, line.torque, line.angle) for sign in (-1.0, 1.0)]))
-    size, angle = np.abs(line.torque), np.sign(line.torque) * (line.angle - shift)
+    common_torques = np.linspace(0.0, max(min(-low, high), 0.0), 41)
+    offset = float(
+        np.mean([np.interp(sign * common_torques, line.torque, line.angle) for sign in (-1.0, 1.0)])
+    )
+    size, angle = np.abs(line.torque), np.sign(line.torque) * (line.angle - offset)
     for count in range(MOST, FEWEST - 1, -1):
         edges = size.max() * np.linspace(0.0, 1.0, count + 1) ** CROWDING
-        place = np.clip(np.searchsorted(edges, size, side="left") - 1, 0, count - 1)
-        weight = np.bincount(place, line.count, count)
-        some = weight > 0.0
-        means = [np.bincount(place, line.count * x, count)[some] / weight[some] for x in (size, angle)]
+        bin_index = np.clip(np.searchsorted(edges, size, side="left") - 1, 0, count - 1)
+        weight = np.bincount(bin_index, line.count, count)
+        is_filled = weight > 0.0
+        means = [
+            np.bincount(bin_index, line.count * x, count)[is_filled] / weight[is_filled]
+            for x in (size, angle)
+        ]
         if all(x[0] > 0.0 and np.all(np.diff(x) > 0.0) for x in means):
-            return means[0], means[1], shift
+            return means[0], means[1], offset
     raise ValueError(f"the mid-line does not rise from one of {FEWEST} points to the next")
