@@ -102,7 +102,7 @@ class Work:
 
 
 def _size(forces: Array) -> Array:
-    """Scale (s, 3 + k) of generalised forces: in each state one for x and y, one for moment, one for modes."""
+    """Scale (s, 3 + k) of generalised forces: in each state for x and y, for the moment, for the modes."""
     force, moment, modes = (np.linalg.norm(f, axis=1) for f in (forces[:, :2], forces[:, 2:3], forces[:, 3:]))
     lever_arm = np.max(moment) / np.max(force)
     force = np.hypot(force, moment / lever_arm)
