@@ -105,7 +105,7 @@ class Energy:
 
         approach : (q) [m], at the start of the step
         change   : (q) [m] of the approach by the full step
-        linear, square : [J] linear and quadratic coefficients of the elastic energy and the work of the loads
+        linear, quadratic : [J] linear and quadratic coefficients of the elastic energy and the work of the loads
         """
 
         def slope(length: float) -> float:

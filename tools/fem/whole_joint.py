@@ -83,7 +83,7 @@ class WholeJoint:
     def of(cls, assembly: Assembly, attached: str, refinement: float = 1.0) -> "WholeJoint":
         """Mesh an assembly.
 
-        attached   : kind of attachment, a key of ATTACHMENT_NODES
+        attachment : kind of attachment, a key of ATTACHMENT_NODES
         refinement : [1] divides the sizes of all elements
         """
         plan = plan_of(assembly, refinement)

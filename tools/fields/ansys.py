@@ -145,7 +145,7 @@ def _numbers(line: str) -> list[float] | None:
 
 
 def _content(head: list[str], numbers: list[float], where: str, before: str) -> tuple[str, list[float]]:
-    """Content of a row (see `_rows`) and its relevant numbers, from the head of its table.
+    """Content of a row (see `_listing_rows`) and its relevant numbers, from the head of its table.
 
     previous : content of the row before
     """

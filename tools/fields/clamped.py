@@ -63,7 +63,7 @@ class Clamping:
     """Functions of a kind of joint for pressure fields: the constant `FIELD` in field.py of its folder.
 
     pressures   : nodal pressure (m, n) [Pa] for parameters, a pressure shape (n), preloads (m) [N] per bolt
-                  and moments (m) [N.m]: (preload n_bolts equal + moment/L_a tilt)/A_0, at least 0
+                  and moments (m) [N.m]: (preload n_bolts preload_shape + moment/L_a moment_shape)/A_0, >= 0
     shear_ratio : tangential over normal stiffness [1] for parameters, the same at every pressure
     layout      : bolt positions, hole and head sizes for parameters, as far as they have them
     with_elastic_bodies : parameter file with elastic bodies, from a parameter file, an assembly, the preload

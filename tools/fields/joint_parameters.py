@@ -51,9 +51,9 @@ def with_field(
               `row_distance` relate the field to the bolt forces
     preload : [N] per bolt, at which the field was computed
     source  : origin of the field, written to the file
-    tilted  : field at the same nodes with an additional bending moment. None: the change of pressure by a
-              moment is in proportion to the distance from the centre of pressure
-    moment  : [N.m] of `tilted`, positive if it increases the pressure at y > 0
+    moment_field : field at the same nodes with an additional bending moment. None: the change of pressure by
+              a moment is in proportion to the distance from the centre of pressure
+    moment  : [N.m] of `moment_field`, positive if it increases the pressure at y > 0
     bolts   : (n, 2) [m] positions of the bolts, for their bending stiffness; None: no bending stiffness
     tolerance : [1] largest relative difference of the field's force from the bolt force, to which the field
               is scaled
@@ -87,7 +87,7 @@ def with_field(
 
 
 def _rule(tilted: ContactField | None, moment: float | None) -> str:
-    """Text for the source of `field.tilt`: how the pressure changes with a moment."""
+    """Text for the source of entry `field.tilt`: how the pressure changes with a moment."""
     if tilted is None:
         return "in proportion to the distance from the centre of pressure"
     return f"from the field at {moment:g} N.m"
@@ -103,9 +103,9 @@ def pressure_shape(
 ) -> PressureShape:
     """Pressure shape of a joint with all nodes of a field. Parameters as for `with_field`.
 
-    The pressure at a node is mean equal + M/(L_a A_0) tilt: mean is the bolt force over the contact area, M
-    the moment, L_a the distance of the bolt rows. Equilibrium requires sum(share tilt y) = L_a. Without a
-    second field, tilt = L_a equal (y - y_p)/sum(share equal (y - y_p)^2), with y_p the centre of pressure.
+    With e = `preload_shape` and t = `moment_shape`, the pressure at a node is p_m e + M/(L_a A_0) t: p_m bolt
+    force over contact area, M moment, L_a distance of the bolt rows. Equilibrium requires sum(share t y) =
+    L_a. Without a second field, t = L_a e (y - y_p)/sum(share e (y - y_p)^2); y_p is the centre of pressure.
     """
     scale = _force(joint, field, preload, "the field", tolerance)
     area = float(np.sum(field.area))

@@ -1,7 +1,7 @@
 """Nodal contact results: unchecked result of a file, checked pressure field of a plane joint, CSV format.
 
 A CSV file has the columns x [m], y [m], area [m2], pressure [Pa], and one node per line. The heading states
-the units; see COLUMNS for others. The x axis is along the bolt rows.
+the units; see COLUMN_UNITS for others. The x axis is along the bolt rows.
 """
 
 import re
@@ -73,7 +73,7 @@ class NodalResult:
     area     : (n) [m2] of each node, if the file has it
     faces    : blocks (k, 3 | 4 | 6 | 8 | 9) of node indices in these arrays: surface cells, or boundary faces
                of the bodies; corners first, then mid-side nodes, then the centre
-    body     : (n) number of the body of each node, if there are bodies
+    body_of_node : (n) number of the body of each node, if there are bodies
     omits_open_nodes : whether the file leaves out open nodes: on the contact, NaN then means zero pressure
     """
 

@@ -32,8 +32,8 @@ class Reading:
     """Options for reading a pressure field.
 
     format   : one of FORMATS; None: chosen by the suffix
-    length   : unit of lengths, one of LENGTHS; None for CSV, whose heading states it
-    pressure : unit of pressures, one of PRESSURES; None for CSV
+    length   : unit of lengths, one of LENGTH_UNITS; None for CSV, whose heading states it
+    pressure : unit of pressures, one of PRESSURE_UNITS; None for CSV
     data     : name of the point data with the pressure, for meshes
     companion_files : more listings of the same result, or its mesh (ANSYS, Abaqus)
     plane    : orientation of the contact plane in the file
@@ -55,7 +55,7 @@ class Reading:
 
         Both files must have the same contact nodes.
 
-        tilted          : second file; None: no second field
+        moment_path     : second file; None: no second field
         companion_files : more listings of the second result, or its mesh
 
         Raises ValueError: one line with file and node.

@@ -1,12 +1,12 @@
 """Reduce a pressure field to few nodes, with new area shares that keep its sums at all loads (cubature).
 
 The outputs of a joint are sums over its nodes: area share times a function of the two pressures of the node
-(`equal`, `tilt`) and of its position. A finite number of load cases gives a finite number of sums, and most
-of them are linearly dependent. Some nodes with positive shares keep all sums (`recombine`; Tchakaloff;
-Litterer and Lyons 2012). The fewest nodes that keep the sums within the tolerance are selected. Load cases in
-which the points miss the tolerance are added until the points meet it in new load cases. The selection uses
-rounded numbers (`footprint.reproducible`), so that it is the same on all processors; the selected nodes are
-not rounded.
+(`preload_shape`, `moment_shape`) and of its position. A finite number of load cases gives a finite number of
+sums, and most of them are linearly dependent. Some nodes with positive shares keep all sums (`recombine`;
+Tchakaloff; Litterer and Lyons 2012). The fewest nodes that keep the sums within the tolerance are selected.
+Load cases in which the points miss the tolerance are added until the points meet it in new load cases. The
+selection uses rounded numbers (`footprint.reproducible`), so that it is the same on all processors; the
+selected nodes are not rounded.
 """
 
 from dataclasses import dataclass
@@ -106,7 +106,7 @@ class Reduction:
                  in the preloaded joint, whichever is larger. Deviations of the moments of the force and of
                  coupling stiffnesses count a hundredth
     test_count : number of these load cases
-    moment     : [1] largest moment in these load cases over the moment that unloads a row of bolts
+    moment_ratio : [1] largest moment in these load cases over the moment that unloads a row of bolts
     deviation_beyond : [1] largest deviation at moments between these two
     """
 

@@ -305,7 +305,10 @@ def _sizes(sums: Array, x: float, y: float) -> Array:
 
 
 def balance(shape: PressureShape) -> Array:
-    """Functions (n, 9) whose sums give the balance of a field: 1, x, y, `equal`, `tilt` and their moments."""
+    """Functions (n, 9) whose sums give the balance of a field.
+
+    These are 1, x, y, `preload_shape` and `moment_shape`, and both times x and times y.
+    """
     pressures = np.column_stack([shape.equal, shape.tilt])
     moments = [pressures * shape.position[:, i : i + 1] for i in (0, 1)]
     return np.column_stack([np.ones_like(shape.share), shape.position, pressures, *moments])

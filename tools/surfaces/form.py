@@ -182,7 +182,7 @@ WAVES = 4.0
 class ScanRoughness:
     """Roughness of one scan without form and spikes.
 
-    areal         : whether the scan is an areal map
+    is_areal      : whether the scan is an areal map
     rms           : [m] root mean square height (Sq; Rq of a profile)
     mean_absolute : [m] mean absolute height (Sa; Ra of a profile)
     h             : [m] rms height of waves up to longest_wave

@@ -45,8 +45,8 @@ def identify(
 
     surfaces : one surface, or two of the same kind (profile or areal map)
     form     : form that is removed, one of FORMS
-    span     : range [m] of lags and wavelengths; None: the longest self-affine range
-    longest  : longest wavelength [m] of the roughness; None: the smallest `default_wave` of the surfaces
+    scale_range : range [m] of lags and wavelengths; None: the longest self-affine range
+    longest_wave : longest wavelength [m] of the roughness; None: the smallest `default_wave` of the surfaces
     side     : for one surface, its side of the contact, one of SIDES: "1" or "2", the other side is smooth;
                "both", the other side is alike. Of two surfaces, the first is side 1
     keep_spikes : do not remove spikes
@@ -76,9 +76,9 @@ def identify(
                 series = added(all_series[0], all_series[1])
             results.append(_result(series, fit(series, low, high)))
     repairs = [(surface.whole.name, repair) for surface in prepared for repair in surface.repairs]
-    repeats = [texture(surface.whole) for surface in prepared if isinstance(surface.whole, Areal)]
+    line_shares = [texture(surface.whole) for surface in prepared if isinstance(surface.whole, Areal)]
     names = tuple(surface.name for surface in surfaces)
-    textured = any(max(shares) > TEXTURE for shares in repeats)
+    textured = any(max(shares) > TEXTURE for shares in line_shares)
     wave = longest or min(default_wave(surface) for surface in surfaces)
     scans = tuple(of_scan(surface.gappy, surface.whole, wave) for surface in prepared)
     notes = tuple(warnings(results, textured))

@@ -43,7 +43,7 @@ def read(
     unit     : length unit of x, y and z, for a file without units
     unit_x   : unit of x and y, for columns without units; instead of `unit`
     unit_z   : unit of z, for columns without units; instead of `unit`
-    any_size : accept a size outside of PLAUSIBLE_LENGTHS
+    accept_any_size : accept a size outside of PLAUSIBLE_LENGTHS
 
     Raises ValueError (one line): no file, no surface, a unit is missing or given twice, too few points,
     constant heights, all heights missing, a size that suggests another unit.

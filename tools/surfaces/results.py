@@ -98,13 +98,13 @@ class Result:
 class Identification:
     """Identification of one surface or of the equivalent surface of two.
 
-    names    : files
-    results  : results of all methods and directions
-    repairs  : (file, repair) of all repairs
-    warnings : messages for the user
-    textured : whether a surface is textured (not isotropic)
-    scans    : roughness of each file
-    side     : for a single surface, its side of the contact, one of SIDES; None: not given
+    names       : names of the files
+    results     : results of all methods and directions
+    repairs     : (file, repair) of all repairs
+    warnings    : messages for the user
+    is_textured : whether a surface is textured (not isotropic)
+    scans       : roughness of each file
+    side        : for a single surface, its side of the contact, one of SIDES; None: not given
     """
 
     names: tuple[str, ...]

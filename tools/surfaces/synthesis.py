@@ -47,7 +47,7 @@ def isotropic(waves: Waves, D: float, G: float, ridges: int, seed: int) -> Areal
 
     D      : fractal dimension of the surface [1], 2 < D < 3
     G      : fractal roughness [m]
-    ridges : number M of wave directions pi m/M, m = 1 ... M
+    direction_count : number M of wave directions pi m/M, m = 1 ... M
     seed   : seed of the random phases, uniform in [0, 2 pi)
 
     Because cos(a x + b y + c) = Re(exp(i a x) exp(i (b y + c))), the sum over M (n_max + 1) waves is one
