@@ -68,8 +68,8 @@ def modes(
     if frequency[RIGID] < LEAST:
         raise RuntimeError(f"the contact leaves more than {RIGID} rigid motions: it does not hold the bodies")
     mass = sum(float(body.mass.sum()) / 3.0 for body in bodies) * (3 - len(bodies))
-    last = RIGID + count
-    return NaturalModes(frequency[RIGID:last], tuple(motion[1] for motion in motions[RIGID:last]), mass)
+    end = RIGID + count
+    return NaturalModes(frequency[RIGID:end], tuple(motion[1] for motion in motions[RIGID:end]), mass)
 
 
 def _springs(
@@ -172,4 +172,5 @@ def frequencies(
 
 
 def _on(joint: BoltedContact, normal: Array, shear: float, count: int) -> NaturalModes:
+    """Natural modes for a normal stiffness per area (q) [N/m3] and the tangential stiffness ratio [1]."""
     return modes(joint.bodies, joint.interface, normal, shear * normal, count)

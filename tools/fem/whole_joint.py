@@ -49,6 +49,7 @@ def _heads(body: ElasticBody, side: int) -> NDArray[np.bool_]:
 
 
 def _at(place: Array, end: float) -> NDArray[np.bool_]:
+    """Whether each coordinate [m] equals a value [m] within FACE_TOLERANCE."""
     return np.asarray(np.abs(place - end) < SLACK * abs(end))
 
 

@@ -90,17 +90,18 @@ def _on_deck(
     path: Path, mesh_path: Path, values: Values, left_out: bool, length: float, pressure: float
 ) -> NodalResult:
     """Contact result of listed pressures on the mesh of an input deck."""
-    parts = sorted({part for part, _ in values.pressure})
-    if len(parts) > 1:
+    instances = sorted({instance for instance, _ in values.pressure})
+    if len(instances) > 1:
         text = (
-            f"{path}: lists nodes of {len(parts)} parts ({', '.join(parts)}), an input deck has one numbering"
+            f"{path}: lists nodes of {len(instances)} parts ({', '.join(instances)}), "
+            "an input deck has one numbering"
         )
         raise Refusal(text, "beside")
     mesh = read_deck(mesh_path)
-    listed = {node: value for (_, node), value in values.pressure.items()}
-    if stray := mesh.stray(listed):
+    pressures = {node: value for (_, node), value in values.pressure.items()}
+    if stray := mesh.stray(pressures):
         raise ValueError(f"{path}: node {min(stray)} has a pressure and is not in {mesh_path}")
-    return mesh.result(path, listed, length, pressure, left_out)
+    return mesh.result(path, pressures, length, pressure, left_out)
 
 
 def _values(paths: Sequence[Path]) -> tuple[Values, bool]:
@@ -131,12 +132,12 @@ def _values(paths: Sequence[Path]) -> tuple[Values, bool]:
 
 def _report(path: Path, lines: list[str]) -> Iterator[ListingRow]:
     """Rows of the nodal tables of a field report; tables by element are ignored."""
-    step = frame = part = ""
+    step = frame = instance = ""
     head: list[str] | None = None  # lines between the name of the part and the rows
     columns: list[str] = []
     words: list[str] = []  # words of a row that continues in the next line
     for number, line in enumerate(lines, 1):
-        text, where = line.strip(), f"{path}: line {number}"
+        text, location = line.strip(), f"{path}: line {number}"
         if text.startswith("Step:"):
             step = text
         elif text.startswith("Frame:"):
@@ -144,16 +145,16 @@ def _report(path: Path, lines: list[str]) -> Iterator[ListingRow]:
         elif text.startswith("Field Output"):
             head, columns, words = None, [], []
             if text.startswith("Field Output reported at nodes for"):
-                head, part = [], text.split(":", 1)[-1].strip().split(".")[0]
+                head, instance = [], text.split(":", 1)[-1].strip().split(".")[0]
         elif text and set(text) == {"-"} and head:
-            columns, head = [*columns, *_columns(where, head)], []
+            columns, head = [*columns, *_columns(location, head)], []
         elif not text or text.upper().startswith(_SUMMARIES):
             columns = [] if text else columns
         elif columns and NUMBER.fullmatch(text.split()[0]):
             words += text.split()
             head = None
             if len(words) > len(columns):
-                yield _row(where, f"{step} {frame}", part, columns, words)
+                yield _row(location, f"{step} {frame}", instance, columns, words)
                 words = []
         elif head is not None and (columns or head or text.startswith("Node")):
             head.append(text)
@@ -293,6 +294,6 @@ def _kind(parameters: list[str]) -> str:
     values = (p.split("=")[1].strip().upper() for p in parameters if p.upper().startswith("TYPE"))
     name = next(values, "")
     for pattern, kinds in ((_SOLID, SOLIDS), (_SHELL, SHELLS)):
-        if found := pattern.match(name):
-            return kinds.get(int(found[1]), "")
+        if match := pattern.match(name):
+            return kinds.get(int(match[1]), "")
     return ""

@@ -36,7 +36,7 @@ def read(paths: Sequence[Path], length: float, pressure: float) -> NodalResult:
     elements: list[list[int]] = []
     meshes = [path for path in paths[1:] if path.suffix.lower() == ".cdb"]
     for path in (path for path in paths if path not in meshes):
-        for where, content, row in _rows(path):
+        for location, content, row in _rows(path):
             if content == "element":
                 elements.append([int(x) for x in row[_ELEMENT_HEAD:]])
             elif content == "more":
@@ -46,7 +46,7 @@ def read(paths: Sequence[Path], length: float, pressure: float) -> NodalResult:
                 table: dict[int, object] = values if is_pressure else coordinates  # type: ignore[assignment]
                 name, value = int(row[0]), row[1] if is_pressure else tuple(row[1:])
                 if table.setdefault(name, value) != value:
-                    raise ValueError(f"{where}: node {name} has a second {content}, expected one")
+                    raise ValueError(f"{location}: node {name} has a second {content}, expected one")
     first = paths[0]
     if meshes and values:
         return _on_archive(first, meshes[0], values, length, pressure)
@@ -113,24 +113,24 @@ def _rows(path: Path) -> Iterator[tuple[str, str, list[float]]]:
     The content is "pressure", "place" (coordinates), "element", or "more" (more nodes of an element).
     """
     head: list[str] = []
-    before = ""
+    previous = ""
     for number, line in enumerate(read_lines(path, "an ANSYS listing"), 1):
         words = line.replace("(", " ").split()
         if not words:
             continue
         if words[0] in ("NODE", "ELEM") and not any(map(_is_number, words)):
-            head, before = words, ""
+            head, previous = words, ""
             continue
         if words[0] in ("MINIMUM", "MAXIMUM"):
             head = []
         numbers = _numbers(line)
         if not head or numbers is None:
             continue
-        where = f"{path}: line {number}"
-        content, row = _content(head, numbers, where, before)
+        location = f"{path}: line {number}"
+        content, row = _content(head, numbers, location, previous)
         if content:
-            yield where, content, row
-            before = content
+            yield location, content, row
+            previous = content
 
 
 def _is_number(word: str) -> bool:

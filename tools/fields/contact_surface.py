@@ -138,13 +138,13 @@ def _faces(result: NodalResult, plane: Plane) -> list[Nodes]:
             f"{level:.6g} m; expected a plane contact and its normal",
             "normal",
         )
-    allowed = ~off_plane & np.isin(_body(result), _bodies(result, loaded, height - level, plane))
-    faces = [block[np.all(allowed[block], axis=1)] for block in result.faces]
+    candidate = ~off_plane & np.isin(_body(result), _bodies(result, loaded, height - level, plane))
+    faces = [block[np.all(candidate[block], axis=1)] for block in result.faces]
     faces = _with_values(result, [block for block in faces if block.size])
     used = np.zeros(len(height), dtype=bool)
     for block in faces:
         used[block] = True
-    unused = loaded[~used[loaded] & allowed[loaded]]
+    unused = loaded[~used[loaded] & candidate[loaded]]
     if unused.size:
         raise ValueError(f"{result.at(int(unused[0]))}: has a pressure and is on no face of the contact")
     return faces

@@ -24,8 +24,8 @@ def read(path: Path, length: float, pressure: float, data: str | None) -> NodalR
     """
     mesh = _read(path)
     values = _values(path, mesh.point_data, data)
-    place = np.asarray(mesh.points, dtype=np.float64)
-    place = np.pad(place, ((0, 0), (0, 3 - place.shape[1])))
+    position = np.asarray(mesh.points, dtype=np.float64)
+    position = np.pad(position, ((0, 0), (0, 3 - position.shape[1])))
     cells: dict[str, Any] = {}
     for block in mesh.cells:
         if block.type in PASSED:
@@ -40,11 +40,11 @@ def read(path: Path, length: float, pressure: float, data: str | None) -> NodalR
     return NodalResult(
         path=path,
         word="node",
-        names=np.arange(len(place), dtype=np.int64),
-        place=place * length,
+        names=np.arange(len(position), dtype=np.int64),
+        place=position * length,
         pressure=values * pressure,
         faces=boundary(cells),
-        body=bodies(cells, len(place)),
+        body=bodies(cells, len(position)),
     )
 
 

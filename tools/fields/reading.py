@@ -78,9 +78,11 @@ class Reading:
         return first.field(selected), second.field(selected)
 
     def _surface(self, path: Path, beside: Sequence[Path]) -> ContactSurface:
+        """Read a file and extract the contact surface."""
         return contact_surface(self._result(path, beside), self.plane)
 
     def _result(self, path: Path, beside: Sequence[Path]) -> NodalResult:
+        """Read a nodal result with the reader of its format; ValueError for options that do not apply."""
         format = self.format or SUFFIXES.get(path.suffix.lower(), "mesh")
         if format == "mesh" and not self.format and not meshfile.known(path):
             text = f"suffix {path.suffix!r} is of no format known here"

@@ -189,8 +189,8 @@ def _search(sums: Sums, shape: PressureShape, some: PressureShape, own: Pressure
         system.add(test_sums.part(deviations > WORTH_ADDING * TOLERANCE))
     if best is None:
         return None
-    beyond = _beyond(sums, shape, best, limit)
-    return Reduction(best, own, best_deviation, tests, limit, beyond)
+    deviation_beyond = _beyond(sums, shape, best, limit)
+    return Reduction(best, own, best_deviation, tests, limit, deviation_beyond)
 
 
 def _beyond(sums: Sums, shape: PressureShape, points: PressureShape, limit: float) -> float:

@@ -29,8 +29,8 @@ SEED = 1
 class Load(NamedTuple):
     """Load case of the joint.
 
-    preload       : over the preload of the field [1]
-    moment        : over the moment at which a row of bolts loses its force [1]
+    preload       : preload over the preload of the field [1]
+    moment        : moment over the moment at which a row of bolts loses its force [1]
     opening_ratio : normal motion over the motion that opens the joint fully [1]; negative in compression
     """
 
@@ -74,8 +74,8 @@ def further_loads(limit: float) -> Iterator[Load]:
 
     sequence = qmc.Halton(3, seed=SEED)
     low, high = np.log(PRELOADS)
-    drawn = (point for _ in count() for point in sequence.random(TOGETHER))
-    for i, (a, b, c) in enumerate(drawn):
+    points = (point for _ in count() for point in sequence.random(TOGETHER))
+    for i, (a, b, c) in enumerate(points):
         opening = c * (1.0 + PRESSED) - PRESSED if i % 3 else 0.0
         yield Load(float(np.exp(low + a * (high - low))), float(limit * (2.0 * b - 1.0)), float(opening))
 

@@ -61,8 +61,8 @@ def without_spikes(heights: Heights) -> tuple[Heights, list[Repair]]:
     if not spikes.any():
         return heights, []
     clean = heights.with_heights(np.where(spikes, np.nan, z))
-    before, after = (float(np.nanstd(without_form(scan).z)) for scan in (heights, clean))
-    effect = f"; with them Sq is {before / after:.3g} times as large" if after > 0.0 else ""
+    rms_before, rms_after = (float(np.nanstd(without_form(scan).z)) for scan in (heights, clean))
+    effect = f"; with them Sq is {rms_before / rms_after:.3g} times as large" if rms_after > 0.0 else ""
     return clean, [Repair("spikes taken as missing", int(spikes.sum()), z.size, effect)]
 
 
