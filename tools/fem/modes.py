@@ -49,8 +49,8 @@ def modes(
     """The lowest elastic modes of an assembly without supports.
 
     bodies     : side 1 and side 2, or side 2 alone if side 1 is its mirror image
-    normal     : normal stiffness per area (q) [N/m3] at the quadrature points of the interface
-    tangential : tangential stiffness per area (q) [N/m3] there
+    normal_stiffness : normal stiffness per area (q) [N/m3] at the quadrature points of the interface
+    tangential_stiffness : tangential stiffness per area (q) [N/m3] there
     count      : number of modes
 
     Raises RuntimeError if the contact stiffness leaves more than six rigid-body modes.

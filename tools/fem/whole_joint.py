@@ -197,7 +197,7 @@ class Halves:
 class Linear:
     """Linear model of a joint: the interface is a layer of springs.
 
-    bodies, contact, shanks : stiffness matrices (n, n) [N/m] of bodies, interface and bolts
+    body_matrix, contact_matrix, bolt_matrix : stiffness matrices (n, n) [N/m] of bodies, interface, bolts
     bolt_stiffness     : of each bolt [N/m]
     displacement       : (n, 6) for unit motions of side 2's attachment, about the centroid of the contact
     rigid_displacement : (n, 6) for the same motions if the bodies were rigid

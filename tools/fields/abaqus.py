@@ -55,7 +55,7 @@ def read(paths: Sequence[Path], length: float, pressure: float) -> NodalResult:
 
     Coordinates and nodal areas come from the listings, or from an input deck among the files.
 
-    length, pressure : units of the file in SI units
+    length_unit, pressure_unit : units of the file in SI units
 
     Raises ValueError with file and line: the file cannot be read, a column is missing, a row does not fit its
     columns, a node has two values.

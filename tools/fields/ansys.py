@@ -26,7 +26,7 @@ PRESSURE = "PRES"
 def read(paths: Sequence[Path], length: float, pressure: float) -> NodalResult:
     """Read a nodal contact result from ANSYS listings, or from one listing and an archive.
 
-    length, pressure : units of the files in SI units
+    length_unit, pressure_unit : units of the files in SI units
 
     Raises ValueError with file and line: a file cannot be read, a table is missing, a node has two values, an
     element has a node that is not listed.

@@ -65,7 +65,7 @@ class Clamping:
     pressures   : nodal pressure (m, n) [Pa] for parameters, a pressure shape (n), preloads (m) [N] per bolt
                   and moments (m) [N.m]: (preload n_bolts preload_shape + moment/L_a moment_shape)/A_0, >= 0
     shear_ratio : tangential over normal stiffness [1] for parameters, the same at every pressure
-    layout      : bolt positions, hole and head sizes for parameters, as far as they have them
+    bolt_layout : bolt positions, hole and head sizes for parameters, as far as they have them
     with_elastic_bodies : parameter file with elastic bodies, from a parameter file, an assembly, the preload
                   [N] per bolt, the name of the attachment and the pressure shape of all nodes
     facts       : {name: (value, unit, meaning)} of the complete joint for such a file and preload

@@ -29,7 +29,7 @@ class Plane:
 
     normal : axis x, y or z normal to the contact
     rows   : axis x, y or z along the bolt rows: the x axis of the joint; None: the axis after `normal`
-    side   : body whose surface is read if both bodies have pressure, one of SIDES; None: all with pressure
+    side   : body whose surface is read, one of BODY_SIDES; None: all bodies with pressure
 
     The y axis of the joint completes a right-handed system.
     """

@@ -33,7 +33,7 @@ DATASET, COMPONENT = "CONTACT", "CPRESS"
 def read(path: Path, length: float, pressure: float) -> NodalResult:
     """Read the last contact result of a file.
 
-    length, pressure : units of the file in SI units
+    length_unit, pressure_unit : units of the file in SI units
 
     Raises ValueError with file and line: no ASCII .frd file, no contact result, a line that cannot be read.
     """

@@ -189,7 +189,7 @@ class FiniteElementMesh:
         """Nodal result from pressures that the file `path` lists.
 
         listed_values    : {node number: pressure in the unit of the file}
-        length, pressure : units of mesh and listing in SI units
+        length_unit, pressure_unit : units of mesh and listing in SI units
         omits_open_nodes : True: the listing leaves out open nodes. False: the contact consists of the faces
                            whose corners are all listed
         """

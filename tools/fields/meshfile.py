@@ -16,8 +16,8 @@ from .nodal_result import NodalResult
 def read(path: Path, length: float, pressure: float, data: str | None) -> NodalResult:
     """Read a nodal contact result from the point data of a mesh.
 
-    length, pressure : units of the file in SI units
-    data             : name of the point data with the pressure; NAME:3 is the third component
+    length_unit, pressure_unit : units of the file in SI units
+    data : name of the point data with the pressure; NAME:3 is the third component
 
     Raises ValueError (one line): meshio is missing or cannot read the file, the point data do not exist (the
     message lists the existing ones), a cell type is not supported.

@@ -32,8 +32,8 @@ class Reading:
     """Options for reading a pressure field.
 
     format   : one of FORMATS; None: chosen by the suffix
-    length   : unit of lengths, one of LENGTH_UNITS; None for CSV, whose heading states it
-    pressure : unit of pressures, one of PRESSURE_UNITS; None for CSV
+    length_unit : unit of lengths, one of LENGTH_UNITS; None for CSV, whose heading states it
+    pressure_unit : unit of pressures, one of PRESSURE_UNITS; None for CSV
     data     : name of the point data with the pressure, for meshes
     companion_files : more listings of the same result, or its mesh (ANSYS, Abaqus)
     plane    : orientation of the contact plane in the file

@@ -194,7 +194,7 @@ def _search(sums: Sums, shape: PressureShape, some: PressureShape, own: Pressure
 
 
 def _beyond(sums: Sums, shape: PressureShape, points: PressureShape, limit: float) -> float:
-    """Largest deviation [1] at moment ratios from `limit` to 1, where a row of bolts loses its force."""
+    """Largest deviation [1] at moment ratios from `moment_limit` to 1 (a row of bolts loses its force)."""
     if limit >= 1.0:
         return 0.0
     moments = np.linspace(limit, 1.0, 6)[1:].tolist()

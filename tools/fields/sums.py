@@ -29,8 +29,8 @@ SEED = 1
 class Load(NamedTuple):
     """Load case of the joint.
 
-    preload       : preload over the preload of the field [1]
-    moment        : moment over the moment at which a row of bolts loses its force [1]
+    preload_ratio : preload over the preload of the field [1]
+    moment_ratio  : moment over the moment at which a row of bolts loses its force [1]
     opening_ratio : normal motion over the motion that opens the joint fully [1]; negative in compression
     """
 
@@ -57,7 +57,7 @@ def largest_moment(joint: BoltedInterface, shape: PressureShape) -> float:
 def first_loads(limit: float) -> list[Load]:
     """Initial load cases of the selection.
 
-    limit : largest moment over the moment that unloads a row of bolts [1]
+    moment_limit : largest moment over the moment that unloads a row of bolts [1]
     """
     moments = [limit * m for m in (-1.0, -0.97, -0.9, -0.8, -0.5, 0.0, 0.5, 0.8, 0.9, 0.97, 1.0)]
     extremes = (-1.0, 1.0) if limit < 1.0 else ()
@@ -137,7 +137,7 @@ class Sums:
     curve     : pressure as a function of the approach
     preload   : [N] per bolt of the field
     pressures : function of the joint for nodal pressures, see FieldAdapter
-    table     : pressures, their cubic roots and approaches, for the start of Newton's method
+    approach_table : pressures, their cubic roots and approaches, for the start of Newton's method
     """
 
     joint: BoltedInterface
@@ -219,7 +219,7 @@ class Sums:
         When the joint is nearly open, few nodes carry the load: the sample needs more of them than their area
         share.
 
-        limit : largest moment over the moment that unloads a row of bolts [1]
+        moment_limit : largest moment over the moment that unloads a row of bolts [1]
         """
         loads = [Load(p, m * limit, 0.0) for p in PRELOADS for m in (-1.0, 0.0, 1.0)]
         start = self._approach(self._pressures(shape, loads))

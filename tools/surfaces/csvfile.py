@@ -103,7 +103,7 @@ def titled(
 ) -> tuple[Heights, str]:
     """Read columns below title lines; return the heights and the unit along x.
 
-    heads        : name and unit of each column, as the file states them
+    column_heads : name and unit of each column, as the file states them
     option_units : {"x": unit, "z": unit} of columns without a unit in the file; y has the unit of x
     header_lines : number of title lines
 

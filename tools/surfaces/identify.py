@@ -47,8 +47,8 @@ def identify(
     form     : form that is removed, one of FORMS
     scale_range : range [m] of lags and wavelengths; None: the longest self-affine range
     longest_wave : longest wavelength [m] of the roughness; None: the smallest `default_wave` of the surfaces
-    side     : for one surface, its side of the contact, one of SIDES: "1" or "2", the other side is smooth;
-               "both", the other side is alike. Of two surfaces, the first is side 1
+    side : for one surface, its side of the contact, one of SCAN_SIDES. "1" or "2": the other side is smooth;
+               "both": the other side is alike. Of two surfaces, the first is side 1
     keep_spikes : do not remove spikes
     """
     if len(surfaces) not in (1, 2):

@@ -104,7 +104,7 @@ class Identification:
     warnings    : messages for the user
     is_textured : whether a surface is textured (not isotropic)
     scans       : roughness of each file
-    side        : for a single surface, its side of the contact, one of SIDES; None: not given
+    side        : for a single surface, its side of the contact, one of SCAN_SIDES; None: not given
     """
 
     names: tuple[str, ...]
