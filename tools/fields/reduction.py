@@ -107,7 +107,7 @@ class Reduction:
                  coupling stiffnesses count a hundredth
     test_count : number of these load cases
     moment_ratio : [1] largest moment in these load cases over the moment that unloads a row of bolts
-    deviation_beyond : [1] largest deviation at moments between these two
+    deviation_beyond : [1] largest deviation at moment ratios from `moment_ratio` to 1
     """
 
     shape: PressureShape
