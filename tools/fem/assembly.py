@@ -45,7 +45,7 @@ def load(path: str | Path) -> Assembly:
 
 
 def _part(path: Path, document: Mapping[str, Any], name: str) -> Any:
-    """Read the section `name` of an assembly file: a body, or the layout of the bolts."""
+    """Read one section of an assembly file: a body, or the layout of the bolts."""
     type_key, classes = SECTIONS[name]
     table = document.get(name)
     if not isinstance(table, Mapping):

@@ -69,7 +69,7 @@ class RigidBalance:
         """
         motions = [rigid_motions(body) for body in bodies]
         force = np.concatenate([m.T @ load for m, load in zip(motions, loads, strict=True)])
-        closing = np.hstack([trace @ m for m, trace in zip(motions, traces, strict=True)])
+        rigid_approach = np.hstack([trace @ m for m, trace in zip(motions, traces, strict=True)])
         at_supports = [m[rows] for m, rows in zip(motions, supports, strict=True)]
         unsupported = block_diag(
             *[null_space(rows, rcond=UNSEEN) if rows.size else np.eye(6) for rows in at_supports]
@@ -77,7 +77,9 @@ class RigidBalance:
         balanced = unsupported if bearing else np.eye(force.size)
         scale = sum(float(np.abs(load).sum()) for load in loads)
         corners = np.asarray(ConvexHull(position).vertices, dtype=np.int64)
-        return cls(balanced.T @ force, closing @ balanced, closing @ unsupported, scale, corners)
+        return cls(
+            balanced.T @ force, rigid_approach @ balanced, rigid_approach @ unsupported, scale, corners
+        )
 
     def check_loads(self) -> None:
         """Raise RuntimeError if the contact cannot balance the loads by pushing, or if no load closes it."""

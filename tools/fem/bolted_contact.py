@@ -55,6 +55,7 @@ class BoltedContact:
     def _solve(
         self, model: ContactModel, preload: float, moment: float, near: ContactSolution | None = None
     ) -> "JointSolution":
+        """Solve for a preload [N] per bolt and a moment [N.m] about x, optionally from another solution."""
         force = self.assembly.bolt_forces(preload, moment)
         signs = (-1.0,) if len(self.bodies) == 1 else (1.0, -1.0)
         loads = [sign * head @ force for sign, head in zip(signs, self.heads, strict=True)]

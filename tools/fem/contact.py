@@ -268,6 +268,6 @@ def _supports(body: ElasticBody, fully: bool) -> Index:
         Without them, the body rests on the contact.
     """
     x, y, z = body.nodes
-    corner, along, across = (int(np.argmin(a * x + b * y + 1e-3 * z)) for a, b in ((1, 1), (-1, 1), (1, -1)))
-    unknowns = [3 * corner, 3 * corner + 1, 3 * along + 1]
-    return np.array(unknowns + [3 * node + 2 for node in (corner, along, across)] if fully else unknowns)
+    first, second, third = (int(np.argmin(a * x + b * y + 1e-3 * z)) for a, b in ((1, 1), (-1, 1), (1, -1)))
+    unknowns = [3 * first, 3 * first + 1, 3 * second + 1]
+    return np.array(unknowns + [3 * node + 2 for node in (first, second, third)] if fully else unknowns)

@@ -114,7 +114,7 @@ _SAME = 1e-6
 
 
 def alike(bolts: Array, moment: bool) -> NDArray[np.int64]:
-    """For each bolt, index (n) of the first bolt that is its mirror image.
+    """For each bolt, index (n) of the first bolt that is equivalent to it by mirror symmetry.
 
     Mirror planes are x = 0 and, without a moment about x, y = 0. The bodies are symmetric about both planes.
     A mirror plane counts only if it maps all bolts onto bolts.

@@ -182,6 +182,7 @@ class BoxSection:
         return (flange, walls, Layer(end, self.height, outside)) if self.floor else (flange, walls)
 
     def _half(self, inset: float) -> tuple[float, float]:
+        """Half lengths (2) [m] of a rectangle with this inset from the edge of the flange."""
         return 0.5 * self.length - inset, 0.5 * self.width - inset
 
 
@@ -313,11 +314,11 @@ def _meets(x: float, y: float, radius: float, half: tuple[float, float]) -> bool
 
 def rectangles(assembly: Assembly) -> Iterator[tuple[float, float]]:
     """Half lengths (2) [m] of all outlines and openings of the layers of both bodies, without duplicates."""
-    seen: set[tuple[float, float]] = set()
+    known_keys: set[tuple[float, float]] = set()
     for body in (assembly.side1, assembly.side2):
         for layer in body.layers():
             for half in (layer.outer, layer.inner):
                 key = (round(half[0], 9), round(half[1], 9))
-                if min(half) > 0.0 and key not in seen:
-                    seen.add(key)
+                if min(half) > 0.0 and key not in known_keys:
+                    known_keys.add(key)
                     yield half

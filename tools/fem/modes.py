@@ -49,8 +49,8 @@ def modes(
     """The lowest elastic modes of an assembly without supports.
 
     bodies     : side 1 and side 2, or side 2 alone if side 1 is its mirror image
-    normal     : normal stiffness per area (q) [N/m3] at the quadrature points of the interface
-    tangential : tangential stiffness per area (q) [N/m3] there
+    normal_stiffness : normal stiffness per area (q) [N/m3] at the quadrature points of the interface
+    tangential_stiffness : tangential stiffness per area (q) [N/m3] there
     count      : number of modes
 
     Raises RuntimeError if the contact stiffness leaves more than six rigid-body modes.
@@ -68,8 +68,8 @@ def modes(
     if frequency[RIGID] < LEAST:
         raise RuntimeError(f"the contact leaves more than {RIGID} rigid motions: it does not hold the bodies")
     mass = sum(float(body.mass.sum()) / 3.0 for body in bodies) * (3 - len(bodies))
-    last = RIGID + count
-    return NaturalModes(frequency[RIGID:last], tuple(motion[1] for motion in motions[RIGID:last]), mass)
+    end = RIGID + count
+    return NaturalModes(frequency[RIGID:end], tuple(motion[1] for motion in motions[RIGID:end]), mass)
 
 
 def _springs(
@@ -172,4 +172,5 @@ def frequencies(
 
 
 def _on(joint: BoltedContact, normal: Array, shear: float, count: int) -> NaturalModes:
+    """Natural modes for a normal stiffness per area (q) [N/m3] and the tangential stiffness ratio [1]."""
     return modes(joint.bodies, joint.interface, normal, shear * normal, count)

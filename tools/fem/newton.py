@@ -71,14 +71,14 @@ class Energy:
         u = np.zeros(self.load.size) if near is None else near.displacement
         inner, approach = K @ u, offset + T @ u
         total_load = float(np.abs(self.load).sum())
-        factor, slow, last = None if near is None else near.factor, False, np.inf
+        factor, slow, last_residual = None if near is None else near.factor, False, np.inf
         for step in track(range(MOST_STEPS), "contact"):
             p, k = self.law(approach)[:2]
             residual = self.load - inner - T.T @ (self.weight * p)
             size = float(np.abs(residual).sum()) / total_load
-            if size <= TOLERANCE or (size <= 1e3 * TOLERANCE and size > 0.5 * last):
+            if size <= TOLERANCE or (size <= 1e3 * TOLERANCE and size > 0.5 * last_residual):
                 return Minimum(u, approach, step, factor)
-            last = size
+            last_residual = size
             spring = self.weight * k
             if factor is None or slow:
                 factor = Cholesky(K + T.T @ sp.diags_array(spring) @ T)
@@ -86,12 +86,13 @@ class Energy:
             tangent = LinearOperator(K.shape, partial(self._tangent, spring), dtype=np.float64)
             move, count = _solve(tangent, residual, factor, accuracy)
             slow = count > PATIENCE
-            change, push = T @ move, K @ move
-            length = self._length(approach, change, float(move @ (inner - self.load)), float(move @ push))
-            u, inner, approach = u + length * move, inner + length * push, approach + length * change
+            change, load_change = T @ move, K @ move
+            linear, quadratic = float(move @ (inner - self.load)), float(move @ load_change)
+            length = self._length(approach, change, linear, quadratic)
+            u, inner, approach = u + length * move, inner + length * load_change, approach + length * change
         raise RuntimeError(
-            f"the contact has not settled after {MOST_STEPS} steps (residual {last:.2g} of the load): "
-            "the loads may not balance"
+            f"the contact has not settled after {MOST_STEPS} steps (residual {last_residual:.2g} of the "
+            "load): the loads may not balance"
         )
 
     def _tangent(self, spring: Array, u: Array) -> Array:
@@ -105,10 +106,11 @@ class Energy:
 
         approach : (q) [m], at the start of the step
         change   : (q) [m] of the approach by the full step
-        linear, square : [J] linear and quadratic coefficients of the elastic energy and the work of the loads
+        linear, quadratic : [J] slope of elastic energy minus load work is linear + length * quadratic
         """
 
         def slope(length: float) -> float:
+            """Slope of the energy [J] with respect to the step length."""
             p = self.law(approach + length * change)[0]
             return linear + length * square + float(change @ (self.weight * p))
 

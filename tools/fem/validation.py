@@ -17,9 +17,9 @@ from ..published.validation import ValidatedPoint, compare
 class MeasuredFrequencies:
     """Measured natural frequencies of a bolted assembly: constant `FREQUENCIES` of a kind of joint.
 
-    points   : file of published numbers in models/reference/; `where` of each number gives `preload` [N] per
-               bolt, `moment` [N.m] about x and `mode`, counted from 1
-    assembly : file of the assembly in models/assemblies/
+    reference_file : file of published numbers in models/reference/; `where` of each number gives `preload`
+                     [N] per bolt, `moment` [N.m] about x and `mode`, counted from 1
+    assembly_file  : file of the assembly in models/assemblies/
     """
 
     points: str

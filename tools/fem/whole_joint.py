@@ -49,6 +49,7 @@ def _heads(body: ElasticBody, side: int) -> NDArray[np.bool_]:
 
 
 def _at(place: Array, end: float) -> NDArray[np.bool_]:
+    """Whether each coordinate [m] equals a value [m] within FACE_TOLERANCE."""
     return np.asarray(np.abs(place - end) < SLACK * abs(end))
 
 
@@ -83,7 +84,7 @@ class WholeJoint:
     def of(cls, assembly: Assembly, attached: str, refinement: float = 1.0) -> "WholeJoint":
         """Mesh an assembly.
 
-        attached   : kind of attachment, a key of ATTACHMENT_NODES
+        attachment : kind of attachment, a key of ATTACHMENT_NODES
         refinement : [1] divides the sizes of all elements
         """
         plan = plan_of(assembly, refinement)
@@ -196,7 +197,7 @@ class Halves:
 class Linear:
     """Linear model of a joint: the interface is a layer of springs.
 
-    bodies, contact, shanks : stiffness matrices (n, n) [N/m] of bodies, interface and bolts
+    body_matrix, contact_matrix, bolt_matrix : stiffness matrices (n, n) [N/m] of bodies, interface, bolts
     bolt_stiffness     : of each bolt [N/m]
     displacement       : (n, 6) for unit motions of side 2's attachment, about the centroid of the contact
     rigid_displacement : (n, 6) for the same motions if the bodies were rigid

@@ -1,1 +1,1 @@
-"""Nodal contact results: read from files, checked, reduced to what an FMU carries."""
+"""Nodal contact results: reading from files, checks, reduction to few points for an FMU."""

@@ -1,10 +1,10 @@
-"""Abaqus: field reports (.rpt) of Abaqus/CAE, printed tables (.dat) of Abaqus/Standard, input decks (.inp).
+"""Read contact pressure from Abaqus field reports (.rpt) and data files (.dat), meshes from decks (.inp).
 
-A report says for which part it lists nodes; a line of dashes parts the names of its columns from the rows,
-and where the page is too narrow for all columns both go on in the next line. In a data file the columns stand
-after NODE, the rows after them may have a status (CL, OP), rows of zeros are left out, and tables repeat for
-each increment. Of several frames the last one with a pressure counts. A deck (.inp, of Abaqus or CalculiX,
-without parts) has the nodes and elements beside them.
+A field report of Abaqus/CAE names the part of its nodes. A line of dashes separates the column names from the
+rows. If the page is too narrow for all columns, names and rows continue in the next line. A data file of
+Abaqus/Standard has the column names after NODE. Its rows may contain a status (CL, OP), rows of zeros are
+left out, and each increment repeats the tables. If there are several frames, the last one with a pressure is
+read. An input deck (of Abaqus or CalculiX, without parts) gives nodes and elements.
 """
 
 import re
@@ -26,11 +26,13 @@ _SUMMARIES = ("MINIMUM", "MAXIMUM", "TOTAL")
 
 
 class ListingRow(NamedTuple):
-    """What a listing says of a node.
+    """One row of a listing: values at a node.
 
-    where  : file and line
-    frame  : step and increment; `part` the instance that the node belongs to
-    values : {column: value}; a column of several components by the component
+    location : file and line
+    frame    : step and increment
+    instance : part instance of the node
+    node     : number of the node
+    values   : {column: value}; a vector has one column for each component
     """
 
     where: str
@@ -41,7 +43,7 @@ class ListingRow(NamedTuple):
 
 
 class Values(NamedTuple):
-    """Values by part and node, of one frame."""
+    """Nodal values of one frame: {(part instance, node): value}, in the units of the file."""
 
     pressure: dict[tuple[str, int], float]
     area: dict[tuple[str, int], float]
@@ -49,10 +51,14 @@ class Values(NamedTuple):
 
 
 def read(paths: Sequence[Path], length: float, pressure: float) -> NodalResult:
-    """The contact result of listings, with their coordinates and areas or an input deck among them; in SI.
+    """Read a nodal contact result from Abaqus listings.
 
-    Raises ValueError naming file and line: a file that cannot be read, a column that is missing, a row that
-    does not fit its columns, a node with two values.
+    Coordinates and nodal areas come from the listings, or from an input deck among the files.
+
+    length_unit, pressure_unit : units of the file in SI units
+
+    Raises ValueError with file and line: the file cannot be read, a column is missing, a row does not fit its
+    columns, a node has two values.
     """
     path, meshes = paths[0], [p for p in paths[1:] if p.suffix.lower() == ".inp"]
     values, left_out = _values([p for p in paths if p not in meshes])
@@ -60,11 +66,11 @@ def read(paths: Sequence[Path], length: float, pressure: float) -> NodalResult:
         raise ValueError(f"{path}: has no contact pressure, a column {PRESSURE} for nodes (Unique Nodal)")
     if meshes:
         return _on_deck(path, meshes[0], values, left_out, length, pressure)
-    for there, text in (
+    for table, text in (
         (values.place, "no coordinates, columns COOR1, COOR2 and COOR3 (COORD)"),
         (values.area, f"no nodal areas, a column {AREA}"),
     ):
-        if not any(there.values()):
+        if not any(table.values()):
             raise Refusal(f"{path}: has {text}; list them too, or give the input deck (.inp)", "beside")
     nodes = sorted(key for key, area in values.area.items() if area > 0.0)
     if missing := [key for key in nodes if key not in values.place]:
@@ -83,26 +89,29 @@ def read(paths: Sequence[Path], length: float, pressure: float) -> NodalResult:
 def _on_deck(
     path: Path, mesh_path: Path, values: Values, left_out: bool, length: float, pressure: float
 ) -> NodalResult:
-    """The pressures on the faces of an input deck."""
-    parts = sorted({part for part, _ in values.pressure})
-    if len(parts) > 1:
+    """Contact result of listed pressures on the mesh of an input deck."""
+    instances = sorted({instance for instance, _ in values.pressure})
+    if len(instances) > 1:
         text = (
-            f"{path}: lists nodes of {len(parts)} parts ({', '.join(parts)}), an input deck has one numbering"
+            f"{path}: lists nodes of {len(instances)} parts ({', '.join(instances)}), "
+            "an input deck has one numbering"
         )
         raise Refusal(text, "beside")
     mesh = read_deck(mesh_path)
-    listed = {node: value for (_, node), value in values.pressure.items()}
-    if stray := mesh.stray(listed):
+    pressures = {node: value for (_, node), value in values.pressure.items()}
+    if stray := mesh.stray(pressures):
         raise ValueError(f"{path}: node {min(stray)} has a pressure and is not in {mesh_path}")
-    return mesh.result(path, listed, length, pressure, left_out)
+    return mesh.result(path, pressures, length, pressure, left_out)
 
 
 def _values(paths: Sequence[Path]) -> tuple[Values, bool]:
-    """Pressures and areas of the last frame that has pressures, the last coordinates, and whether rows of
-    zeros are left out."""
+    """Read pressures and areas of the last frame with a pressure, and the last coordinates.
+
+    The second result tells whether a file leaves out rows of zeros.
+    """
     frames: dict[str, Values] = {}
     last, left_out = "", False
-    places: dict[tuple[str, int], tuple[float, ...]] = {}
+    coordinates: dict[tuple[str, int], tuple[float, ...]] = {}
     for path in paths:
         lines = read_lines(path, "an Abaqus listing")
         report = any(line.lstrip().startswith("Field Output") for line in lines)
@@ -114,21 +123,21 @@ def _values(paths: Sequence[Path]) -> tuple[Values, bool]:
                 if name in row.values and table.setdefault(key, row.values[name]) != row.values[name]:
                     raise ValueError(f"{row.where}: node {row.node} has a second {name}, expected one")
             if all(name in row.values for name in _PLACE):
-                frame.place[key] = places[key] = tuple(row.values[name] for name in _PLACE)
+                frame.place[key] = coordinates[key] = tuple(row.values[name] for name in _PLACE)
             if PRESSURE in row.values:
                 last = row.frame
-    found = frames.get(last, Values({}, {}, {}))
-    return Values(found.pressure, found.area, places | found.place), left_out
+    values = frames.get(last, Values({}, {}, {}))
+    return Values(values.pressure, values.area, coordinates | values.place), left_out
 
 
 def _report(path: Path, lines: list[str]) -> Iterator[ListingRow]:
-    """The rows of a field report whose nodes stand for themselves, not for an element."""
-    step = frame = part = ""
-    head: list[str] | None = None  # between the part and the rows
+    """Rows of the nodal tables of a field report; tables by element are ignored."""
+    step = frame = instance = ""
+    head: list[str] | None = None  # lines between the name of the part and the rows
     columns: list[str] = []
-    words: list[str] = []  # of a row that goes on in the next line
+    words: list[str] = []  # words of a row that continues in the next line
     for number, line in enumerate(lines, 1):
-        text, where = line.strip(), f"{path}: line {number}"
+        text, location = line.strip(), f"{path}: line {number}"
         if text.startswith("Step:"):
             step = text
         elif text.startswith("Frame:"):
@@ -136,25 +145,25 @@ def _report(path: Path, lines: list[str]) -> Iterator[ListingRow]:
         elif text.startswith("Field Output"):
             head, columns, words = None, [], []
             if text.startswith("Field Output reported at nodes for"):
-                head, part = [], text.split(":", 1)[-1].strip().split(".")[0]
+                head, instance = [], text.split(":", 1)[-1].strip().split(".")[0]
         elif text and set(text) == {"-"} and head:
-            columns, head = [*columns, *_columns(where, head)], []
+            columns, head = [*columns, *_columns(location, head)], []
         elif not text or text.upper().startswith(_SUMMARIES):
             columns = [] if text else columns
         elif columns and NUMBER.fullmatch(text.split()[0]):
             words += text.split()
             head = None
             if len(words) > len(columns):
-                yield _row(where, f"{step} {frame}", part, columns, words)
+                yield _row(location, f"{step} {frame}", instance, columns, words)
                 words = []
         elif head is not None and (columns or head or text.startswith("Node")):
             head.append(text)
 
 
 def _columns(where: str, head: Sequence[str]) -> list[str]:
-    """Names of columns in the lines of a head: in the first one, with a place (@Loc 1) each in the second.
+    """Read the column names in the head of a table: names in the first line, locations (@Loc 1) in the next.
 
-    A name may go on with that of a contact pair, as in CPRESS  ASSEMBLY_A/ASSEMBLY_B.
+    A name may be followed by the name of a contact pair, as in CPRESS  ASSEMBLY_A/ASSEMBLY_B.
     """
     words = [word for word in head[0].split() if word not in ("Node", "Label")]
     names: list[str] = []
@@ -166,21 +175,22 @@ def _columns(where: str, head: Sequence[str]) -> list[str]:
     count = sum(line.count("@Loc") for line in head)
     if count not in (0, len(names)):
         raise ValueError(f"{where}: has {count} columns, their names are not told apart: {' '.join(words)}")
-    known = [_known(name) for name in names]
-    if known.count(PRESSURE) > 1:
+    columns = [_known(name) for name in names]
+    if columns.count(PRESSURE) > 1:
         raise ValueError(
-            f"{where}: has {known.count(PRESSURE)} columns {PRESSURE}, expected one contact pair"
+            f"{where}: has {columns.count(PRESSURE)} columns {PRESSURE}, expected one contact pair"
         )
-    return known
+    return columns
 
 
 def _known(name: str) -> str:
-    """What a column is called here: COOR1 for COORD.COOR1, CPRESS for that of a contact pair."""
+    """Standard name of a column: COOR1 for COORD.COOR1, CPRESS for CPRESS with a contact pair."""
     first = name.split()[0]
     return first.removeprefix("COORD.") if first.startswith("COORD.") else first
 
 
 def _row(where: str, frame: str, part: str, columns: Sequence[str], words: Sequence[str]) -> ListingRow:
+    """Parse one row: a node and a number for each column. Raises ValueError for any other line."""
     numbers = words[-len(columns) :]
     if not words[0].isdigit() or len(words) != len(columns) + 1 or not all(map(NUMBER.fullmatch, numbers)):
         raise ValueError(f"{where}: {' '.join(words)!r} is no row with a node and {' '.join(columns)}")
@@ -189,7 +199,7 @@ def _row(where: str, frame: str, part: str, columns: Sequence[str], words: Seque
 
 
 def _printed(path: Path, lines: list[str]) -> Iterator[ListingRow]:
-    """The rows of the node tables of a data file."""
+    """Rows of the nodal tables of a data file."""
     step = increment = ""
     columns: list[str] = []
     for number, line in enumerate(lines, 1):
@@ -205,7 +215,7 @@ def _printed(path: Path, lines: list[str]) -> Iterator[ListingRow]:
         elif words[0] in _SUMMARIES or "TABLE" in words:
             columns = []
         elif columns and words[0].isdigit() and len(words) > 1:
-            numbers = [word for word in words if not word.isalpha()]  # without CL, OP
+            numbers = [word for word in words if not word.isalpha()]  # without the status CL or OP
             yield _row(f"{path}: line {number}", f"{step} {increment}", "", columns, numbers)
 
 
@@ -221,25 +231,27 @@ SOLIDS = {
     20: "hexahedron20",
 }
 SHELLS = {3: "triangle", 4: "quad", 6: "triangle6", 65: "triangle6", 8: "quad8"}
-"""Kinds of meshio by the number in the name of an element; their nodes are in the same order."""
+"""Cell types of meshio by the number of nodes in the name of an element; the node order is the same."""
 REFUSED = ("INSTANCE", "INCLUDE", "NGEN", "NCOPY", "NFILL", "ELGEN", "ELCOPY", "SYSTEM", "NMAP")
-"""Keywords that make or move nodes and elements elsewhere."""
+"""Keywords that are an error: they create or move nodes or elements outside of *NODE and *ELEMENT."""
 
 
 def read_deck(path: Path) -> FiniteElementMesh:
-    """The nodes, the solids, and the shells if there are no solids; other elements are passed over.
+    """Read the mesh of an input deck: solid elements, or shell elements if there are no solids.
 
-    Raises ValueError, one line with file and line: no deck, a keyword of REFUSED, a line that is none, an
-    element with a node that is not there.
+    Other elements are ignored.
+
+    Raises ValueError with file and line: no input deck, an unsupported keyword, a line that cannot be read,
+    an element with an undefined node.
     """
-    places: dict[int, tuple[float, float, float]] = {}
+    coordinates: dict[int, tuple[float, float, float]] = {}
     rows: dict[str, list[list[int]]] = {}
-    open_row: list[int] = []  # goes on in the next line, after a comma at its end
+    open_row: list[int] = []  # a row that continues in the next line, after a comma at its end
     for number, keyword, kind, words in _data(path):
         try:
             if keyword == "NODE":
                 x, y, z = (float(word or 0.0) for word in (*words[1:4], "", "")[:3])
-                places[int(words[0])] = x, y, z
+                coordinates[int(words[0])] = x, y, z
                 continue
             row = [*open_row, *(int(word) for word in words if word)]
         except ValueError:
@@ -253,14 +265,14 @@ def read_deck(path: Path) -> FiniteElementMesh:
             )
         if not open_row:
             rows.setdefault(kind, []).append(row[1:])
-    if not places or not rows:
+    if not coordinates or not rows:
         raise ValueError(f"{path}: has no nodes and elements, expected an input deck with *NODE and *ELEMENT")
-    names = np.array(list(places), dtype=np.int64)
-    return FiniteElementMesh.of(path, names, np.array(list(places.values())), rows)
+    names = np.array(list(coordinates), dtype=np.int64)
+    return FiniteElementMesh.of(path, names, np.array(list(coordinates.values())), rows)
 
 
 def _data(path: Path) -> Iterator[tuple[int, str, str, list[str]]]:
-    """(line, keyword, kind of meshio, words) of the data lines of *NODE and *ELEMENT."""
+    """Data lines of *NODE and *ELEMENT: (line number, keyword, cell type of meshio, words)."""
     keyword = kind = ""
     for number, line in enumerate(read_lines(path, "an input deck"), 1):
         if not line.strip() or line.startswith("**"):
@@ -278,10 +290,10 @@ def _data(path: Path) -> Iterator[tuple[int, str, str, list[str]]]:
 
 
 def _kind(parameters: list[str]) -> str:
-    """Kind of meshio of the parameter TYPE; empty if the element has no faces here."""
+    """Cell type of meshio for the parameter TYPE of *ELEMENT; empty if the element is not supported."""
     values = (p.split("=")[1].strip().upper() for p in parameters if p.upper().startswith("TYPE"))
     name = next(values, "")
     for pattern, kinds in ((_SOLID, SOLIDS), (_SHELL, SHELLS)):
-        if found := pattern.match(name):
-            return kinds.get(int(found[1]), "")
+        if match := pattern.match(name):
+            return kinds.get(int(match[1]), "")
     return ""

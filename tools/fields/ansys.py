@@ -1,9 +1,9 @@
-"""ANSYS listings: nodal contact pressure (PRNSOL,CONT), nodes (NLIST) and contact elements (ELIST).
+"""Read ANSYS listings: nodal contact pressure (PRNSOL,CONT), nodes (NLIST) and contact elements (ELIST).
 
-Nodes and elements may come from an archive (CDWRITE, .cdb) instead, read by mapdl-archive. A listing is a
-text of pages. A table begins with its header, a line of column names that starts with NODE or ELEM, and page
-headers may interrupt it anywhere. Only lines with a number for every column are its rows; the summary of
-extreme values at the end is passed over.
+Nodes and elements may also come from an archive (CDWRITE, .cdb), read by mapdl-archive. A listing is a text
+of pages. A table begins with its header: a line of column names that starts with NODE or ELEM. Page headers
+may interrupt the table anywhere. Only lines with a number for every column are rows. The summary of extreme
+values at the end is ignored.
 """
 
 from collections.abc import Iterator, Sequence
@@ -19,49 +19,51 @@ from .mesh import FiniteElementMesh, no_reader
 from .nodal_result import NUMBER, NodalResult, read_lines
 
 _ELEMENT_HEAD = 6
-"""Columns before the nodes of an element: its number, material, type, constants, system, section."""
+"""Number of columns before the nodes of an element: number, material, type, constants, system, section."""
 PRESSURE = "PRES"
 
 
 def read(paths: Sequence[Path], length: float, pressure: float) -> NodalResult:
-    """The contact result of one or more listings, or of one with an archive; units in SI.
+    """Read a nodal contact result from ANSYS listings, or from one listing and an archive.
 
-    Raises ValueError naming file and line: a file that cannot be read, a table that is missing, a node
-    with two values, an element with a node that is not listed.
+    length_unit, pressure_unit : units of the files in SI units
+
+    Raises ValueError with file and line: a file cannot be read, a table is missing, a node has two values, an
+    element has a node that is not listed.
     """
     values: dict[int, float] = {}
-    places: dict[int, tuple[float, ...]] = {}
+    coordinates: dict[int, tuple[float, ...]] = {}
     elements: list[list[int]] = []
     meshes = [path for path in paths[1:] if path.suffix.lower() == ".cdb"]
     for path in (path for path in paths if path not in meshes):
-        for where, content, row in _rows(path):
+        for location, content, row in _rows(path):
             if content == "element":
                 elements.append([int(x) for x in row[_ELEMENT_HEAD:]])
             elif content == "more":
                 elements[-1] += [int(x) for x in row]
             else:
-                pressed = content == "pressure"
-                listed: dict[int, object] = values if pressed else places  # type: ignore[assignment]
-                name, value = int(row[0]), row[1] if pressed else tuple(row[1:])
-                if listed.setdefault(name, value) != value:
-                    raise ValueError(f"{where}: node {name} has a second {content}, expected one")
+                is_pressure = content == "pressure"
+                table: dict[int, object] = values if is_pressure else coordinates  # type: ignore[assignment]
+                name, value = int(row[0]), row[1] if is_pressure else tuple(row[1:])
+                if table.setdefault(name, value) != value:
+                    raise ValueError(f"{location}: node {name} has a second {content}, expected one")
     first = paths[0]
     if meshes and values:
         return _on_archive(first, meshes[0], values, length, pressure)
-    for table, text in (
+    for entries, text in (
         (values, f"no contact pressure, a table with NODE and {PRESSURE} (PRNSOL,CONT)"),
-        (places, "no nodes, a table with NODE, X, Y and Z (NLIST)"),
+        (coordinates, "no nodes, a table with NODE, X, Y and Z (NLIST)"),
         (elements, "no contact elements, a table with ELEM and NODES (ESEL,S,ENAME,,174 and ELIST)"),
     ):
-        if not table:
+        if not entries:
             raise Refusal(f"{first}: has {text}; give further listings", "beside")
-    return _result(first, values, places, elements, length, pressure)
+    return _result(first, values, coordinates, elements, length, pressure)
 
 
 def _on_archive(
     path: Path, archive: Path, values: dict[int, float], length: float, pressure: float
 ) -> NodalResult:
-    """The pressures on those faces of an archive whose corners are listed."""
+    """Contact result of listed pressures on the mesh of an archive: faces whose corners all have a value."""
     mesh = read_archive(archive)
     if stray := mesh.stray(node for node, value in values.items() if value):
         raise ValueError(f"{path}: node {min(stray)} has a pressure and is not in {archive}")
@@ -76,6 +78,7 @@ def _result(
     length: float,
     pressure: float,
 ) -> NodalResult:
+    """Contact result of listed pressures, coordinates and contact elements."""
     used = sorted({node for element in elements for node in element if node})
     if missing := [node for node in used if node not in places]:
         raise ValueError(f"{path}: node {missing[0]} of a contact element is not listed (NLIST)")
@@ -105,26 +108,29 @@ def _result(
 
 
 def _rows(path: Path) -> Iterator[tuple[str, str, list[float]]]:
-    """(file and line, content, numbers) of all rows: pressure, place, element, more nodes of an element."""
+    """All rows of a listing as (file and line, content, numbers).
+
+    The content is "pressure", "place" (coordinates), "element", or "more" (more nodes of an element).
+    """
     head: list[str] = []
-    before = ""
+    previous = ""
     for number, line in enumerate(read_lines(path, "an ANSYS listing"), 1):
         words = line.replace("(", " ").split()
         if not words:
             continue
         if words[0] in ("NODE", "ELEM") and not any(map(_is_number, words)):
-            head, before = words, ""
+            head, previous = words, ""
             continue
         if words[0] in ("MINIMUM", "MAXIMUM"):
             head = []
         numbers = _numbers(line)
         if not head or numbers is None:
             continue
-        where = f"{path}: line {number}"
-        content, row = _content(head, numbers, where, before)
+        location = f"{path}: line {number}"
+        content, row = _content(head, numbers, location, previous)
         if content:
-            yield where, content, row
-            before = content
+            yield location, content, row
+            previous = content
 
 
 def _is_number(word: str) -> bool:
@@ -132,17 +138,19 @@ def _is_number(word: str) -> bool:
 
 
 def _numbers(line: str) -> list[float] | None:
-    """Numbers of a line that has nothing else; they may touch, as in 12-0.5E-003-0.1E-003."""
+    """Numbers of a line that has only numbers, else None. They may have no blank between: 12-0.5E-003."""
     if NUMBER.sub("", line).strip():
         return None
     return [float(x.replace("D", "E").replace("d", "e")) for x in NUMBER.findall(line)]
 
 
 def _content(head: list[str], numbers: list[float], where: str, before: str) -> tuple[str, list[float]]:
-    """What a row of a table is, and its numbers that count."""
+    """Content of a row (see `_listing_rows`) and its relevant numbers, from the head of its table.
+
+    previous : content of the row before
+    """
     if head[0] == "ELEM":
-        whole = all(x % 1.0 == 0.0 for x in numbers)
-        if not whole:
+        if not all(x % 1.0 == 0.0 for x in numbers):
             return "", []
         if len(numbers) > _ELEMENT_HEAD:
             return "element", numbers
@@ -160,9 +168,9 @@ def _content(head: list[str], numbers: list[float], where: str, before: str) -> 
 
 CONTACT = (173, 174)
 SOLIDS = (45, 62, 64, 65, 72, 73, 90, 92, 95, 185, 186, 187, 285)
-"""Element types with faces; the rest is passed over."""
+"""Numbers of the ANSYS element types that are read; others are ignored."""
 _HEAD = 10
-"""Numbers before the nodes of an element."""
+"""Count of numbers before the nodes of an element in an archive."""
 _REPEATED = {
     (8, "tetra"): ("tetra", (0, 1, 2, 4)),
     (8, "pyramid"): ("pyramid", (0, 1, 2, 3, 4)),
@@ -173,15 +181,17 @@ _REPEATED = {
     (20, "wedge"): ("wedge15", (0, 1, 2, 4, 5, 6, 8, 9, 11, 12, 13, 15, 16, 17, 18)),
     (20, "brick"): ("hexahedron20", tuple(range(20))),
 }
-"""Kind of meshio and nodes of a brick of so many nodes, some of which may be repeated."""
+"""{(number of nodes of a brick, shape): (cell type of meshio, indices of its nodes)}.
+
+Repeated nodes of the brick give the other shapes."""
 _TETRAS = {4: "tetra", 10: "tetra10"}
 
 
 def read_archive(path: Path) -> FiniteElementMesh:
-    """The contact elements (CONTA173, CONTA174), or the solids if there are none.
+    """Read the mesh of an archive: contact elements (CONTA173, CONTA174), or solids if there are none.
 
-    Raises ValueError, one line: mapdl-archive is missing or cannot read the file, no such elements, an
-    element with a node that is not there.
+    Raises ValueError (one line): mapdl-archive is missing or cannot read the file, there are no such
+    elements, an element has an undefined node.
     """
     archive = _archive(path)
     types = np.asarray(archive.etype)
@@ -204,6 +214,7 @@ def read_archive(path: Path) -> FiniteElementMesh:
 
 
 def _archive(path: Path) -> Any:
+    """Open an archive with mapdl-archive; ValueError if the package is missing or cannot read the file."""
     try:
         import mapdl_archive
     except ImportError as error:
@@ -216,25 +227,25 @@ def _archive(path: Path) -> Any:
         if len(archive.etype) and len(archive.nnum):
             return archive
         reason = "no nodes or elements"
-    except Exception as error:  # what its parser lets through
+    except Exception as error:  # the parser raises exceptions of any kind
         reason = " ".join(str(error).split())[:120] or type(error).__name__
     raise ValueError(f"{path}: mapdl-archive cannot read it ({reason}); expected NBLOCK and EBLOCK (CDWRITE)")
 
 
 def _cell(nodes: list[int], contact: bool) -> tuple[str, list[int]]:
-    """Kind of meshio and the nodes of an element, each once; no kind if it is none."""
+    """Cell type of meshio and nodes of an element, without repeated nodes; empty if it is not supported."""
     if contact:
         return _face([node for node in nodes if node])
     if len(nodes) in _TETRAS:
         return _TETRAS[len(nodes)], nodes
     if len(nodes) not in (8, 20):
         return "", nodes
-    kind, places = _REPEATED[len(nodes), _shape(nodes)]
-    return kind, [nodes[i] for i in places]
+    kind, indices = _REPEATED[len(nodes), _shape(nodes)]
+    return kind, [nodes[i] for i in indices]
 
 
 def _shape(nodes: list[int]) -> str:
-    """What a brick I J K L M N O P with repeated corners is."""
+    """Shape of a brick with corners I J K L M N O P, some of which may be repeated."""
     triangle = nodes[2] == nodes[3]
     if nodes[4] == nodes[5] == nodes[6] == nodes[7]:
         return "tetra" if triangle else "pyramid"
@@ -242,7 +253,7 @@ def _shape(nodes: list[int]) -> str:
 
 
 def _face(nodes: list[int]) -> tuple[str, list[int]]:
-    """A contact face I J K L (M N O P), a triangle if K and L agree."""
+    """Cell type of meshio and nodes of a contact face I J K L (M N O P); a triangle if K equals L."""
     if len(nodes) in (4, 8) and nodes[2] == nodes[3]:
         nodes = [nodes[i] for i in ((0, 1, 2) if len(nodes) == 4 else (0, 1, 2, 4, 5, 7))]
     return {3: "triangle", 4: "quad", 6: "triangle6", 8: "quad8"}.get(len(nodes), ""), nodes

@@ -1,4 +1,4 @@
-"""Joints that bolts clamp and whose pressure may be a field: what `footprint` and `modes` need of them."""
+"""Interface of a kind of bolted joint for the commands that use pressure fields (`footprint`, `modes`)."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -17,58 +17,58 @@ Pressures = Callable[[Any, PressureShape, Array, Array], Array]
 
 
 class BoltedInterface(InterfaceLaw, Protocol):
-    """Parameters of such a joint: an interface law and its bolts. They are a frozen dataclass.
+    """Parameters of a bolted joint whose pressure may be a field: a frozen dataclass of interface and bolts.
 
-    A solution by finite elements sets `A_0`, `side1.E`, `side1.nu`, `side2.E`, `side2.nu`, `n_bolts`,
-    `row_bolts` and `row_distance`, a field also the group `pattern`, by its table [field].
+    A finite-element solution sets `A_0`, `side1.E`, `side1.nu`, `side2.E`, `side2.nu`, `n_bolts`, `row_bolts`
+    and `row_distance`. A field also replaces the group `pattern` by the table [field].
     """
 
     __dataclass_fields__: ClassVar[dict[str, Any]]
 
     @property
     def n_bolts(self) -> float:
-        """Bolts [1]."""
+        """Number of bolts [1]."""
 
     @property
     def row_bolts(self) -> float:
-        """Bolts [1] in each of the two rows that carry a moment."""
+        """Number of bolts [1] in each of the two rows that carry a moment."""
 
     @property
     def row_distance(self) -> float:
-        """Distance L_a [m] of the rows."""
+        """Distance L_a [m] between the two rows."""
 
     @property
     def pattern(self) -> PressureSource:
-        """What gives the pressure; tables [pattern], [plate] and [field] of a parameter file."""
+        """Source of the pressure distribution: table [pattern], [plate] or [field] of a parameter file."""
 
 
 class BoltLayout(Protocol):
-    """What parameters say of their bolts: 0 or nothing where they do not."""
+    """Bolt positions and sizes in the parameters of a joint; empty or 0 where the parameters have none."""
 
     @property
     def bolts(self) -> Array:
-        """Places (b, 2) [m] from the centroid of the contact."""
+        """Positions (b, 2) [m] relative to the centroid of the contact."""
 
     @property
     def hole(self) -> float:
-        """Diameter [m]."""
+        """Diameter of the holes [m]."""
 
     @property
     def head(self) -> float:
-        """Outer diameter [m] of what presses."""
+        """Outer diameter of the bolt heads or washers [m]."""
 
 
 @dataclass(frozen=True, slots=True)
 class Clamping:
-    """How such a joint carries its bolts' forces: `FIELD` of the file field.py in its folder.
+    """Functions of a kind of joint for pressure fields: the constant `FIELD` in field.py of its folder.
 
-    pressures   : node pressures (m, n) [Pa] of parameters, a shape (n), preloads (m) [N] per bolt and moments
-                  (m) [N.m]: (preload n_bolts equal + moment/L_a tilt)/A_0, and 0 where that is negative
-    shear_ratio : tangential over normal stiffness [1] of parameters, the same at every pressure
-    layout      : places of its bolts and sizes of holes and heads, as far as parameters have them
-    whole       : a parameter file with the bodies of an assembly between attachments of a name, at the
-                  force [N] that tightens each bolt and the pressure of all nodes
-    facts       : {name: (value, unit, meaning)} of the whole joint of such a file at that force
+    pressures   : nodal pressure (m, n) [Pa] for parameters, a pressure shape (n), preloads (m) [N] per bolt
+                  and moments (m) [N.m]: (preload n_bolts preload_shape + moment/L_a moment_shape)/A_0, >= 0
+    shear_ratio : tangential over normal stiffness [1] for parameters, the same at every pressure
+    bolt_layout : bolt positions, hole and head sizes for parameters, as far as they have them
+    with_elastic_bodies : parameter file with elastic bodies, from a parameter file, an assembly, the preload
+                  [N] per bolt, the name of the attachment and the pressure shape of all nodes
+    facts       : {name: (value, unit, meaning)} of the complete joint for such a file and preload
     """
 
     pressures: Pressures
@@ -79,15 +79,15 @@ class Clamping:
 
 
 def clamped() -> dict[str, Clamping]:
-    """{name: clamping} of the joints that have one."""
-    parts = {name: part(kind, "field") for name, kind in KINDS.items()}
-    return {name: own.FIELD for name, own in parts.items() if own is not None}
+    """{name of the joint kind: adapter} of all joints whose pressure may be a field."""
+    modules = {name: part(kind, "field") for name, kind in KINDS.items()}
+    return {name: module.FIELD for name, module in modules.items() if module is not None}
 
 
 def clamping(joint: str) -> Clamping:
-    """That of a joint; ValueError if it has none."""
-    there = clamped()
-    if joint not in there:
-        allowed = " or ".join(repr(name) for name in there)
+    """Adapter of a kind of joint; ValueError if its pressure cannot be a field."""
+    adapters = clamped()
+    if joint not in adapters:
+        allowed = " or ".join(repr(name) for name in adapters)
         raise ValueError(f"joint = {joint!r} has no field of pressure; expected {allowed}")
-    return there[joint]
+    return adapters[joint]

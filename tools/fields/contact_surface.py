@@ -1,4 +1,4 @@
-"""From a nodal result to the contact's plane: its faces, the area of each node, and what is refused."""
+"""Extract and check the contact surface of a nodal result: nodes in the joint plane, area, pressure."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -15,21 +15,23 @@ from .nodal_result import ContactField, NodalResult, Nodes
 
 AXES = "xyz"
 FLAT = 1e-3
-"""Largest distance of a node from the plane [1], over the size of the contact."""
+"""Largest distance of a node from the contact plane over the size of the contact [1]."""
 SAME = 1e-6
-"""Distance [1], over the size of the contact, below which two nodes are at the same place."""
+"""Distance of two nodes over the size of the contact [1], below which they coincide."""
 SIDES = ("below", "above")
 OPEN = ("refuse", "keep", "drop")
-"""What to do with nodes without pressure: refuse them, take them as just touching, leave their area out."""
+"""Treatment of nodes without pressure: raise an error, keep them as just touching, leave their area out."""
 
 
 @dataclass(frozen=True, slots=True)
 class Plane:
-    """The joint's plane in the coordinates of a file.
+    """Orientation of the contact plane in the coordinate system of a file.
 
-    normal, rows : axes, one of x, y, z: normal to the contact, and along the bolt rows (the joint's x);
-                   the joint's y makes them right-handed
-    side         : which body's surface is taken where both have pressure, one of SIDES; None: there is one
+    normal : axis x, y or z normal to the contact
+    rows   : axis x, y or z along the bolt rows: the x axis of the joint; None: the axis after `normal`
+    side   : body whose surface is read, one of BODY_SIDES; None: all bodies with pressure
+
+    The y axis of the joint completes a right-handed system.
     """
 
     normal: str = "z"
@@ -37,7 +39,7 @@ class Plane:
     side: str | None = None
 
     def axes(self) -> tuple[int, int, int]:
-        """Places of x, y and the normal; ValueError if the rows run along the normal."""
+        """Indices of the joint's x, y and normal among the file's axes; ValueError if rows equals normal."""
         n = AXES.index(self.normal)
         x = (n + 1) % 3 if self.rows is None else AXES.index(self.rows)
         if x == n:
@@ -45,7 +47,7 @@ class Plane:
         return x, 3 - n - x, n
 
     def inside(self, place: Array) -> Array:
-        """Places (n, 2) in the plane."""
+        """Project positions (n, 3) of a file to positions (n, 2) in the plane of the joint."""
         x, y, n = self.axes()
         sign = 1.0 if (x - n) % 3 == 1 else -1.0
         return np.column_stack([place[:, x], sign * place[:, y]])
@@ -53,7 +55,14 @@ class Plane:
 
 @dataclass(frozen=True, slots=True)
 class ContactSurface:
-    """Nodes of the contact: places in the result, area (n) [m2], place (n, 2) [m], pressure (n) [Pa]."""
+    """Nodes (n) of the contact.
+
+    result   : nodal result they come from
+    index    : (n) indices in the nodal result
+    area     : (n) [m2]
+    position : (n, 2) [m] in the plane of the joint
+    pressure : (n) [Pa]
+    """
 
     result: NodalResult
     index: Nodes
@@ -62,19 +71,19 @@ class ContactSurface:
     pressure: Array
 
     def at(self, i: int) -> str:
-        """The file and the place of a node, for messages."""
+        """File and number of node i, for messages."""
         return self.result.at(int(self.index[i]))
 
     def field(self, kept: NDArray[np.bool_]) -> ContactField:
-        """The kept nodes."""
+        """Pressure field of the selected nodes, from a mask (n)."""
         return ContactField(self.area[kept], self.place[kept], self.pressure[kept])
 
 
 def contact_surface(result: NodalResult, plane: Plane) -> ContactSurface:
-    """The contact of a result.
+    """Extract the contact surface from a nodal result.
 
-    Raises ValueError naming the node: no pressure at all, a node off the plane, two at one place, a
-    pressure that is negative or no number, an area that is not positive.
+    Raises ValueError with the node: no node has a pressure, a node lies off the plane, two nodes coincide, a
+    pressure is negative or not finite, an area is not positive.
     """
     inside = plane.inside(result.place)
     if result.area is not None:
@@ -92,19 +101,20 @@ def contact_surface(result: NodalResult, plane: Plane) -> ContactSurface:
 
 
 def _check(contact: ContactSurface) -> None:
+    """Raise ValueError for a pressure or area out of range, and for nodes that coincide."""
     p = contact.pressure
-    for bad, text in (
+    for invalid, text in (
         (~np.isfinite(p), "pressure = {p:g} is no finite number"),
         (p < 0.0, "pressure = {p:g} Pa is outside [0, inf)"),
         (~(contact.area > 0.0), "area = {a:g} m2 is outside (0, inf)"),
     ):
-        if np.any(bad):
-            i = int(np.argmax(bad))
+        if np.any(invalid):
+            i = int(np.argmax(invalid))
             raise ValueError(f"{contact.at(i)}: {text.format(p=p[i], a=contact.area[i])}")
     size = float(np.max(np.ptp(contact.place, axis=0)))
-    twice = cKDTree(contact.place).query_pairs(SAME * size)
-    if twice:
-        first, second = min(twice)
+    coincident = cKDTree(contact.place).query_pairs(SAME * size)
+    if coincident:
+        first, second = min(coincident)
         raise ValueError(
             f"{contact.at(second)}: is at the same place as {contact.result.word} "
             f"{contact.result.names[contact.index[first]]}; expected each place once"
@@ -112,41 +122,41 @@ def _check(contact: ContactSurface) -> None:
 
 
 def _faces(result: NodalResult, plane: Plane) -> list[Nodes]:
-    """Faces of the contact: in the plane of the nodes with pressure, of a body that has some."""
-    touched = np.flatnonzero(np.nan_to_num(result.pressure) != 0.0)
-    if not touched.size:
+    """Contact faces: faces in the plane of the nodes with pressure, of the bodies with pressure."""
+    loaded = np.flatnonzero(np.nan_to_num(result.pressure) != 0.0)
+    if not loaded.size:
         raise ValueError(f"{result.path}: no node has a pressure")
-    _refuse_line(result, touched)
+    _refuse_line(result, loaded)
     axis = plane.axes()[2]
     height, size = result.place[:, axis], float(np.max(np.ptp(result.place, axis=0)))
-    level = float(np.median(height[touched]))
-    off = np.abs(height - level) > FLAT * size
-    if np.any(off[touched]):
-        i = int(touched[np.argmax(off[touched])])
+    level = float(np.median(height[loaded]))
+    off_plane = np.abs(height - level) > FLAT * size
+    if np.any(off_plane[loaded]):
+        i = int(loaded[np.argmax(off_plane[loaded])])
         raise Refusal(
             f"{result.at(i)}: lies {abs(height[i] - level):.3g} m off the plane {plane.normal} = "
             f"{level:.6g} m; expected a plane contact and its normal",
             "normal",
         )
-    allowed = ~off & np.isin(_body(result), _bodies(result, touched, height - level, plane))
-    faces = [block[np.all(allowed[block], axis=1)] for block in result.faces]
+    candidate = ~off_plane & np.isin(_body(result), _bodies(result, loaded, height - level, plane))
+    faces = [block[np.all(candidate[block], axis=1)] for block in result.faces]
     faces = _with_values(result, [block for block in faces if block.size])
     used = np.zeros(len(height), dtype=bool)
     for block in faces:
         used[block] = True
-    lost = touched[~used[touched] & allowed[touched]]
-    if lost.size:
-        raise ValueError(f"{result.at(int(lost[0]))}: has a pressure and is on no face of the contact")
+    unused = loaded[~used[loaded] & candidate[loaded]]
+    if unused.size:
+        raise ValueError(f"{result.at(int(unused[0]))}: has a pressure and is on no face of the contact")
     return faces
 
 
 def _refuse_line(result: NodalResult, touched: Nodes) -> None:
-    """Refuse a result of two dimensions, in which the contact is a line."""
-    place = result.place[touched] - result.place[touched[0]]
-    far = place[np.argmax(np.sum(place**2, axis=1))]
-    size = float(np.linalg.norm(far))
-    off = np.linalg.norm(np.cross(place, far), axis=1) if size else np.zeros(1)
-    if np.max(off) <= FLAT * size**2:
+    """Raise ValueError if the contact is a line, as in a two-dimensional model."""
+    offset = result.place[touched] - result.place[touched[0]]
+    farthest = offset[np.argmax(np.sum(offset**2, axis=1))]
+    size = float(np.linalg.norm(farthest))
+    distance = np.linalg.norm(np.cross(offset, farthest), axis=1) if size else np.zeros(1)
+    if np.max(distance) <= FLAT * size**2:
         raise ValueError(
             f"{result.path}: all nodes with pressure lie on one line, as in a two-dimensional or "
             "axisymmetric model; expected a three-dimensional one, whose contact is a surface"
@@ -154,30 +164,31 @@ def _refuse_line(result: NodalResult, touched: Nodes) -> None:
 
 
 def _body(result: NodalResult) -> NDArray[np.int64]:
+    """Number of the body of each node; 0 if the result has no bodies."""
     return np.zeros(len(result.place), dtype=np.int64) if result.body is None else result.body
 
 
 def _bodies(result: NodalResult, touched: Nodes, height: Array, plane: Plane) -> list[int]:
-    """Bodies with pressure, of the stated side if there is one.
+    """Numbers of the bodies with pressure; only those on `plane.side` if a side is given.
 
-    A body lies above the plane if its nodes do on average.
+    A body lies above the plane if the mean height of its nodes is positive.
     """
     body = _body(result)
-    there: list[int] = np.unique(body[touched]).tolist()
+    with_pressure: list[int] = np.unique(body[touched]).tolist()
     if plane.side is None:
-        return there
+        return with_pressure
     sign = 1.0 if plane.side == "above" else -1.0
-    chosen = [number for number in there if sign * float(np.mean(height[body == number])) > 0.0]
-    if not chosen:
+    selected = [number for number in with_pressure if sign * float(np.mean(height[body == number])) > 0.0]
+    if not selected:
         raise ValueError(f"{result.path}: no body {plane.side} the plane has a pressure")
-    return chosen
+    return selected
 
 
 def _with_values(result: NodalResult, faces: Sequence[Nodes]) -> list[Nodes]:
-    """The faces; only their corners if no node but corners has a value, as some programs list them."""
-    valued = np.isfinite(result.pressure)
-    middles = [block[:, CORNERS[block.shape[1]] :].ravel() for block in faces]
-    nodes = np.concatenate([*middles, np.empty(0, dtype=np.intp)])
-    if nodes.size and not np.any(valued[nodes]):
+    """Reduce quadratic faces to linear ones if no mid-side node has a value (some programs list corners)."""
+    has_value = np.isfinite(result.pressure)
+    midside = [block[:, CORNERS[block.shape[1]] :].ravel() for block in faces]
+    nodes = np.concatenate([*midside, np.empty(0, dtype=np.intp)])
+    if nodes.size and not np.any(has_value[nodes]):
         return [block[:, : CORNERS[block.shape[1]]] for block in faces]
     return list(faces)

@@ -1,7 +1,7 @@
-"""CalculiX result files (.frd, ASCII): the last contact result with its mesh.
+"""Read the last contact result and its mesh from a CalculiX result file (.frd, ASCII).
 
-The format is that of CalculiX GraphiX (cgx, appendix "Result Format"): nodes in the block 2C, elements in
-3C, and per result a block of lines -4 (its name), -5 (its components), -1 (a node), -3 (the end).
+The manual of CalculiX GraphiX (cgx, appendix "Result Format") describes the format: block 2C has the nodes,
+block 3C the elements. Each result is a block of lines -4 (name), -5 (components), -1 (a node), -3 (end).
 """
 
 from collections.abc import Iterator
@@ -21,19 +21,21 @@ TYPES = {
     **dict(enumerate(("hexahedron", "wedge", "tetra", "hexahedron20", "wedge15", "tetra10"), 1)),
     **dict(enumerate(("triangle", "triangle6", "quad", "quad8", "line", "line3"), 7)),
 }
-"""Names of meshio of the element types of the format."""
+"""Cell type of meshio for each element type of the format."""
 ORDER = {
     "hexahedron20": [*range(12), *range(16, 20), *range(12, 16)],
     "wedge15": [*range(9), *range(12, 15), *range(9, 12)],
 }
-"""Where the format has the middles of the upright edges before those of the top."""
+"""Node order of meshio for cells in which the format lists the mid-side nodes in another order."""
 DATASET, COMPONENT = "CONTACT", "CPRESS"
 
 
 def read(path: Path, length: float, pressure: float) -> NodalResult:
-    """The last contact result of a file; units in SI.
+    """Read the last contact result of a file.
 
-    Raises ValueError naming file and line: no ASCII .frd, no contact result, a line that is none.
+    length_unit, pressure_unit : units of the file in SI units
+
+    Raises ValueError with file and line: no ASCII .frd file, no contact result, a line that cannot be read.
     """
     lines = _text(path).splitlines()
     cells = _cells(path, lines)
@@ -44,6 +46,7 @@ def read(path: Path, length: float, pressure: float) -> NodalResult:
 
 
 def _text(path: Path) -> str:
+    """Read a file as text; ValueError if it is no ASCII .frd file."""
     data = read_bytes(path, "a CalculiX .frd file")
     if not data.startswith(b"    1"):
         raise ValueError(
@@ -53,7 +56,7 @@ def _text(path: Path) -> str:
 
 
 def _block(lines: list[str], start: int) -> Iterator[tuple[int, str]]:
-    """Numbers and lines after `start` up to the end of the block."""
+    """Lines of a block as (line number, line): those after `start`, up to the end of the block."""
     for number in range(start + 1, len(lines)):
         if lines[number].startswith(" -3"):
             return
@@ -61,6 +64,10 @@ def _block(lines: list[str], start: int) -> Iterator[tuple[int, str]]:
 
 
 def _start(path: Path, lines: list[str], key: str, what: str) -> int:
+    """Line number of the last block with this key; ValueError if there is none or if it is binary.
+
+    content : name of the content in the message
+    """
     starts = [i for i, line in enumerate(lines) if line.startswith(key)]
     if not starts:
         raise ValueError(f"{path}: has no {what}, expected a block {key.strip()}")
@@ -70,16 +77,20 @@ def _start(path: Path, lines: list[str], key: str, what: str) -> int:
 
 
 def _nodes(path: Path, lines: list[str]) -> tuple[NDArray[np.int64], Array]:
-    names, places = [], []
+    """Read node numbers (n) and coordinates (n, 3) in the unit of the file."""
+    names, coordinates = [], []
     for number, line in _block(lines, _start(path, lines, "    2C", "nodes")):
         name, values = _row(path, number, line, 3)
         names.append(name)
-        places.append(values)
-    return np.array(names, dtype=np.int64), np.array(places)
+        coordinates.append(values)
+    return np.array(names, dtype=np.int64), np.array(coordinates)
 
 
 def _row(path: Path, number: int, line: str, least: int) -> tuple[int, list[float]]:
-    """Node and numbers of a line -1: I10 after the key, then E12.5 without blanks between."""
+    """Node number and values of a line -1: I10 after the key, then E12.5 without blanks between.
+
+    Raises ValueError if the line has fewer than `min_count` values.
+    """
     try:
         name = int(line[3:13])
         values = [float(line[i : i + 12]) for i in range(13, len(line.rstrip()), 12)]
@@ -91,7 +102,7 @@ def _row(path: Path, number: int, line: str, least: int) -> tuple[int, list[floa
 
 
 def _cells(path: Path, lines: list[str]) -> dict[str, list[list[int]]]:
-    """Nodes of the cells by their kind; lines are passed over."""
+    """Read the elements: {cell type of meshio: node numbers of each cell}."""
     cells: dict[str, list[list[int]]] = {}
     kind, nodes = "", list[int]()
     for number, line in _block(lines, _start(path, lines, "    3C", "elements")):
@@ -110,17 +121,17 @@ def _cells(path: Path, lines: list[str]) -> dict[str, list[list[int]]]:
 
 
 def _pressures(path: Path, lines: list[str]) -> Iterator[tuple[int, float]]:
-    """Nodes and contact pressures of the last contact result.
+    """Node numbers and contact pressures of the last contact result.
 
-    Surface to surface contact lists zeros for all other nodes, node to surface contact leaves those out
-    whose gap is too large for a spring.
+    With surface-to-surface contact, CalculiX lists 0 for all other nodes. With node-to-surface contact, it
+    leaves out nodes whose gap is too large for a contact spring.
     """
     starts = [i for i, line in enumerate(lines) if line.startswith(" -4") and line[5:13].strip() == DATASET]
     if not starts:
-        there = sorted({line[5:13].strip() for line in lines if line.startswith(" -4")})
+        available = sorted({line[5:13].strip() for line in lines if line.startswith(" -4")})
         raise ValueError(
             f"{path}: has no result {DATASET} (*CONTACT FILE with CSTR); "
-            f"there are {', '.join(there) or 'none'}"
+            f"there are {', '.join(available) or 'none'}"
         )
     names: list[str] = []
     for number, line in _block(lines, starts[-1]):

@@ -1,11 +1,10 @@
-"""The mesh of a nodal result: faces of its cells, its bodies, what part of the surface a node stands for.
+"""Mesh of a nodal result: faces of the cells, connected bodies, and the area of each node.
 
-Names of cells and orders of nodes are meshio's. A field's sums are those of a nonlinear function, the
-stiffness k(p), so every node must have a positive area. Those consistent with the shape functions (their
-integrals) are positive for linear faces only: they are zero at the corners of quadratic triangles and
-negative at those of quadratic quadrilaterals. A quadratic face is therefore cut through its nodes into linear
-ones. The sums are those of the trapezoidal rule on all nodes, second order in their distance, as with linear
-faces on the same nodes.
+Cell types and node orders are those of meshio. A joint sums a nonlinear function of the nodal pressure, the
+stiffness k(p), so every node needs a positive area. The integrals of the shape functions are positive for
+linear faces only: they are zero at the corners of quadratic triangles and negative at the corners of
+quadratic quadrilaterals. A quadratic face is therefore divided into linear faces between its nodes. The sums
+then follow the trapezoidal rule on all nodes, with second order in the node distance.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -28,13 +27,17 @@ CUTS: dict[int, tuple[tuple[int, ...], ...]] = {
     8: ((0, 4, 7), (4, 1, 5), (5, 2, 6), (6, 3, 7), (4, 5, 6, 7)),
     9: ((0, 4, 8, 7), (4, 1, 5, 8), (8, 5, 2, 6), (7, 8, 6, 3)),
 }
-"""Linear faces into which a face with so many nodes is cut."""
+"""{number of nodes of a face: corners of the linear faces into which it is divided}."""
 CORNERS = {3: 3, 4: 4, 6: 3, 8: 4, 9: 4}
 _GAUSS = 1.0 / np.sqrt(3.0)
 
 
 def nodal_areas(place: Array, faces: Sequence[Nodes]) -> Array:
-    """Area (n) [m2] of each node, from faces and places (n, 2) [m] in the plane; zero where there is none."""
+    """Area (n) [m2] of each node: the integral of its shape functions over the faces; 0 without a face.
+
+    position : (n, 2) [m] in the contact plane
+    faces    : blocks (k, nodes of a face) of node indices
+    """
     area = np.zeros(len(place))
     for block in faces:
         for cut in CUTS[block.shape[1]]:
@@ -85,16 +88,16 @@ VOLUMES: dict[str, tuple[int, _Pairs, _Pairs]] = {
     "hexahedron": (8, _BRICK, ()),
     "hexahedron20": (8, _BRICK, _BRICK_EDGES),
 }
-"""Corners, faces by corners, and the edges whose middles follow the corners."""
+"""{cell type: (number of corners, corners of each face, edges in the order of their mid-side nodes)}."""
 SURFACES = {"triangle": 3, "quad": 4, "triangle6": 6, "quad8": 8, "quad9": 9}
 NODES = SURFACES | {name: corners + len(edges) for name, (corners, _, edges) in VOLUMES.items()}
-"""Nodes of a cell."""
+"""{cell type: number of nodes}."""
 PASSED = ("vertex", "line", "line3")
-"""Cells that have no area."""
+"""Cell types without area; they are ignored."""
 
 
 def boundary(cells: Mapping[str, Nodes]) -> list[Nodes]:
-    """Faces that one volume cell alone has; the surface cells themselves if there are no volumes."""
+    """Boundary faces of the volume cells: faces of one cell only. Without volumes: the surface cells."""
     volumes = {name: block for name, block in cells.items() if name in VOLUMES}
     if not volumes:
         return [block for name, block in cells.items() if name in SURFACES]
@@ -106,7 +109,7 @@ def boundary(cells: Mapping[str, Nodes]) -> list[Nodes]:
 
 
 def _faces(name: str) -> list[tuple[int, ...]]:
-    """Nodes of each face of a cell: corners, then the middles of its edges."""
+    """Node indices of each face of a cell type: corners, then mid-side nodes."""
     corners, faces, edges = VOLUMES[name]
     middle = {tuple(sorted(edge)): corners + i for i, edge in enumerate(edges)}
     if not middle:
@@ -117,14 +120,14 @@ def _faces(name: str) -> list[tuple[int, ...]]:
 
 
 def _single(faces: Nodes, size: int) -> Nodes:
-    """The faces (k, size) that occur once."""
+    """Select the faces, of (k, size), that occur only once."""
     keys = np.sort(faces[:, : CORNERS[size]], axis=1)
     _, first, count = np.unique(keys, axis=0, return_index=True, return_counts=True)
     return np.asarray(faces[np.sort(first[count == 1])])
 
 
 def bodies(cells: Mapping[str, Nodes], nodes: int) -> NDArray[np.int64]:
-    """(n) number of the body that each node belongs to: cells that share a node are one."""
+    """Number (n) of the body of each node: cells that share a node belong to the same body."""
     rows = []
     for block in cells.values():
         rows.append(np.stack([np.repeat(block[:, :1], block.shape[1] - 1, axis=1), block[:, 1:]], axis=-1))
@@ -135,10 +138,11 @@ def bodies(cells: Mapping[str, Nodes], nodes: int) -> NDArray[np.int64]:
 
 @dataclass(frozen=True, slots=True)
 class FiniteElementMesh:
-    """Nodes and cells of a file.
+    """Nodes and cells of a mesh.
 
-    names : (n) number of each node; `place` (n, 3) in the file's unit
-    cells : {name of meshio: (k, m) places of nodes in these arrays}, surfaces or volumes
+    numbers  : (n) node numbers in the file
+    position : (n, 3) in the unit of the file
+    cells    : {cell type of meshio: (k, m) indices of nodes in these arrays}, surfaces or volumes
     """
 
     names: NDArray[np.int64]
@@ -149,42 +153,45 @@ class FiniteElementMesh:
     def of(
         cls, path: Path, names: NDArray[np.int64], place: Array, rows: Mapping[str, Sequence[Sequence[int]]]
     ) -> "FiniteElementMesh":
-        """Of {kind: cells by the numbers of their nodes}; ValueError naming a node that is missing."""
+        """Mesh from {cell type: node numbers of each cell}; ValueError if a node is not defined."""
         order = np.argsort(names)
         cells = {}
-        for kind, numbers in rows.items():
-            wanted = np.array(numbers, dtype=np.int64)
-            at = order[np.minimum(np.searchsorted(names, wanted, sorter=order), names.size - 1)]
-            if np.any(missing := names[at] != wanted):
+        for kind, corners in rows.items():
+            wanted = np.array(corners, dtype=np.int64)
+            index = order[np.minimum(np.searchsorted(names, wanted, sorter=order), names.size - 1)]
+            if np.any(missing := names[index] != wanted):
                 raise ValueError(
                     f"{path}: node {wanted[missing][0]} of an element is not there; expected elements of the "
                     "nodes in the file"
                 )
-            cells[kind] = at.astype(np.intp)
+            cells[kind] = index.astype(np.intp)
         return cls(names, place, cells)
 
     def faces(self) -> list[Nodes]:
-        """The surfaces, or the boundary of the volumes."""
+        """Surface cells, or the boundary faces of the volume cells."""
         return boundary(self.cells)
 
     def body(self) -> NDArray[np.int64]:
-        """(n) number of the body that a node belongs to."""
+        """Number (n) of the body of each node."""
         return bodies(self.cells, self.names.size)
 
     def values(self, listed: Mapping[int, float]) -> Array:
-        """(n) values of nodes by their numbers, NaN where there is none."""
+        """Nodal values (n) from {node number: value}; NaN for nodes without a value."""
         return np.array([listed.get(name, np.nan) for name in self.names.tolist()])
 
     def stray(self, nodes: Iterable[int]) -> set[int]:
-        """Those of the nodes that the mesh has not."""
+        """Node numbers that the mesh does not have."""
         return set(nodes) - set(self.names.tolist())
 
     def result(
         self, path: Path, listed: Mapping[int, float], length: float, pressure: float, left_out: bool = False
     ) -> NodalResult:
-        """The contact result of pressures at nodes, listed in `path`; SI units per those of mesh and listing.
+        """Nodal result from pressures that the file `path` lists.
 
-        left_out : whether the listing leaves open nodes out; else the contact is where all corners are listed
+        listed_values    : {node number: pressure in the unit of the file}
+        length_unit, pressure_unit : units of mesh and listing in SI units
+        omits_open_nodes : True: the listing leaves out open nodes. False: the contact consists of the faces
+                           whose corners are all listed
         """
         p = self.values(listed)
         return NodalResult(
@@ -200,14 +207,14 @@ class FiniteElementMesh:
 
 
 def listed_faces(faces: Sequence[Nodes], values: Array) -> list[Nodes]:
-    """The faces all of whose corners have a value (n)."""
-    there = np.isfinite(values)
-    kept = [block[np.all(there[block[:, : CORNERS[block.shape[1]]]], axis=1)] for block in faces]
-    return [block for block in kept if block.size]
+    """Faces whose corners all have a value, from nodal values (n) with NaN for none."""
+    has_value = np.isfinite(values)
+    selected = [block[np.all(has_value[block[:, : CORNERS[block.shape[1]]]], axis=1)] for block in faces]
+    return [block for block in selected if block.size]
 
 
 def no_reader(path: Path, error: ImportError) -> ValueError:
-    """What is raised where the package that reads a file is missing."""
+    """Error for a missing package that is needed to read a file."""
     return ValueError(
         f"the package {error.name} is missing, needed to read {path}; "
         "install it with: pip install 'jointfmu[field]'"

@@ -1,4 +1,4 @@
-"""Meshes with point data: VTU, VTK and whatever else meshio reads."""
+"""Read nodal pressure from mesh files with point data: VTU, VTK and other formats of meshio."""
 
 from pathlib import Path
 from typing import Any
@@ -14,15 +14,18 @@ from .nodal_result import NodalResult
 
 
 def read(path: Path, length: float, pressure: float, data: str | None) -> NodalResult:
-    """The point data `data` of a mesh as pressure, `NAME` or `NAME:3` for a component; units in SI.
+    """Read a nodal contact result from the point data of a mesh.
 
-    Raises ValueError, one line: meshio is missing or cannot read the file, no such data (those that are
-    there are listed), a kind of cell that has no faces here.
+    length_unit, pressure_unit : units of the file in SI units
+    data : name of the point data with the pressure; NAME:3 is the third component
+
+    Raises ValueError (one line): meshio is missing or cannot read the file, the point data do not exist (the
+    message lists the existing ones), a cell type is not supported.
     """
     mesh = _read(path)
     values = _values(path, mesh.point_data, data)
-    place = np.asarray(mesh.points, dtype=np.float64)
-    place = np.pad(place, ((0, 0), (0, 3 - place.shape[1])))
+    position = np.asarray(mesh.points, dtype=np.float64)
+    position = np.pad(position, ((0, 0), (0, 3 - position.shape[1])))
     cells: dict[str, Any] = {}
     for block in mesh.cells:
         if block.type in PASSED:
@@ -37,16 +40,16 @@ def read(path: Path, length: float, pressure: float, data: str | None) -> NodalR
     return NodalResult(
         path=path,
         word="node",
-        names=np.arange(len(place), dtype=np.int64),
-        place=place * length,
+        names=np.arange(len(position), dtype=np.int64),
+        place=position * length,
         pressure=values * pressure,
         faces=boundary(cells),
-        body=bodies(cells, len(place)),
+        body=bodies(cells, len(position)),
     )
 
 
 def known(path: Path) -> bool:
-    """Whether meshio has a reader for files of this suffix; True where it is missing, which `read` says."""
+    """Whether meshio can read files with this suffix. True if meshio is missing: the reader then raises."""
     try:
         from meshio import extension_to_filetypes
     except ImportError:
@@ -55,6 +58,7 @@ def known(path: Path) -> bool:
 
 
 def _read(path: Path) -> Any:
+    """Read a mesh with meshio; ValueError if meshio is missing or cannot read the file."""
     try:
         import meshio
     except ImportError as error:
@@ -64,7 +68,7 @@ def _read(path: Path) -> Any:
         raise ValueError(f"{path}: cannot be read (no such file); expected a mesh with point data")
     try:
         return meshio.read(path)
-    except (Exception, SystemExit) as error:  # meshio lets through what its formats' parsers raise
+    except (Exception, SystemExit) as error:  # the parsers of meshio raise exceptions of any kind
         reason = " ".join(str(error).split())[:120] or type(error).__name__
         raise ValueError(
             f"{path}: meshio cannot read it ({reason}); expected a mesh with point data"
@@ -72,18 +76,17 @@ def _read(path: Path) -> Any:
 
 
 def _values(path: Path, point_data: dict[str, Any], data: str | None) -> Array:
-    """One number per node."""
-    shown = {name: np.asarray(value) for name, value in point_data.items()}
-    there = (
-        ", ".join(f"{n} ({v.shape[1]} components)" if v.ndim > 1 else n for n, v in shown.items()) or "none"
-    )
+    """Nodal values (n) of the selected point data or component."""
+    arrays = {name: np.asarray(value) for name, value in point_data.items()}
+    listed = [f"{n} ({v.shape[1]} components)" if v.ndim > 1 else n for n, v in arrays.items()]
+    available = ", ".join(listed) or "none"
     if data is None:
-        raise Refusal(f"{path}: state the point data that is the pressure; there are {there}", "data")
+        raise Refusal(f"{path}: state the point data that is the pressure; there are {available}", "data")
     name, _, component = data.partition(":")
-    name, component = (data, "") if data in shown else (name, component)
-    if name not in shown:
-        raise ValueError(f"{path}: has no point data {name!r}; there are {there}")
-    value = shown[name].reshape(len(shown[name]), -1)
+    name, component = (data, "") if data in arrays else (name, component)
+    if name not in arrays:
+        raise ValueError(f"{path}: has no point data {name!r}; there are {available}")
+    value = arrays[name].reshape(len(arrays[name]), -1)
     if not component and value.shape[1] == 1:
         component = "1"
     if not component.isdigit() or not 1 <= int(component) <= value.shape[1]:

@@ -1,7 +1,7 @@
-"""A nodal contact result: on a plane joint, as a file has it before it is checked, and as CSV.
+"""Nodal contact results: unchecked result of a file, checked pressure field of a plane joint, CSV format.
 
-CSV has x [m], y [m], area [m2], pressure [Pa], one node per line. The heading states the units, which may be
-others (COLUMNS). x runs along the bolt rows, y across them.
+A CSV file has the columns x [m], y [m], area [m2], pressure [Pa], and one node per line. The heading states
+the units; see COLUMN_UNITS for others. The x axis is along the bolt rows.
 """
 
 import re
@@ -19,21 +19,24 @@ from jointfmu.quantity.units import Sizes, sizes
 from .. import columns
 
 NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][-+]?\d+)?")
-"""A number of a listing, Fortran's exponents among them."""
+"""Pattern of a number in a listing, also with a Fortran exponent (1.5D+03)."""
 
 
 def read_lines(path: Path, what: str) -> list[str]:
-    """The lines of a listing; ValueError, one line, for what cannot be read."""
+    """Read the lines of a listing; ValueError (one line) if the file cannot be read.
+
+    content : name of the content in the message
+    """
     return read_bytes(path, what).decode("latin-1").splitlines()
 
 
 @dataclass(frozen=True, slots=True)
 class ContactField:
-    """Pressure at the nodes of a plane contact, whatever made it.
+    """Pressure field at the nodes of a plane contact.
 
-    area     : (n)    [m2] part of the contact that the node stands for, > 0
-    position : (n, 2) [m]  in the joint's plane, any origin
-    pressure : (n)    [Pa] >= 0; 0 where the contact is open
+    area     : (n) [m2] of the contact per node, > 0
+    position : (n, 2) [m] in the plane of the joint, with any origin
+    pressure : (n) [Pa] >= 0; 0 where the contact is open
     """
 
     area: Array
@@ -55,23 +58,23 @@ Nodes = NDArray[np.intp]
 
 LENGTHS = sizes("m", "mm", "um")
 PRESSURES = sizes("Pa", "kPa", "MPa", "GPa")
-"""Units of files, in the SI unit."""
+"""Allowed units of length and pressure in files: {unit: size in SI units}."""
 
 
 @dataclass(frozen=True, slots=True)
 class NodalResult:
-    """Pressure at nodes, in SI units.
+    """Nodal pressure as read from a file, in SI units, not yet checked.
 
-    path     : of the file
-    word     : what its nodes are named by: line, node
-    names    : (n) number of each node
-    place    : (n, 3) [m]
+    path     : path of the file
+    label    : word for a node in messages: line or node
+    numbers  : (n) number of each node
+    position : (n, 3) [m]
     pressure : (n) [Pa], NaN where the file has none
     area     : (n) [m2] of each node, if the file has it
-    faces    : each (k, 3 | 4 | 6 | 8 | 9) places of nodes in these arrays: faces of the surface, or
-               boundary faces of the bodies; corners first, then the middles of their edges, then the centre
-    body     : (n) number of the body that a node belongs to, if there are bodies
-    left_out : whether the file leaves open nodes out: on the contact, NaN means no pressure
+    faces    : blocks (k, 3 | 4 | 6 | 8 | 9) of node indices in these arrays: surface cells, or boundary faces
+               of the bodies; corners first, then mid-side nodes, then the centre
+    body_of_node : (n) number of the body of each node, if there are bodies
+    omits_open_nodes : whether the file leaves out open nodes: on the contact, NaN then means zero pressure
     """
 
     path: Path
@@ -85,7 +88,7 @@ class NodalResult:
     left_out: bool = False
 
     def at(self, i: int) -> str:
-        """The file and the place of node i, for messages."""
+        """File and number of node i, for messages."""
         return f"{self.path}: {self.word} {self.names[i]}"
 
 
@@ -98,7 +101,7 @@ COLUMNS: Mapping[str, Sizes] = {
 
 
 def read_csv(path: Path) -> NodalResult:
-    """The nodes of a file, in SI units; ValueError with file, line and column otherwise."""
+    """Read a nodal result from a CSV file; ValueError with file, line and column if it cannot be read."""
     table = columns.read(path, COLUMNS, 1)
     quantities = {name: table.require(name, COLUMNS) for name in COLUMNS}
     return NodalResult(
@@ -112,6 +115,6 @@ def read_csv(path: Path) -> NodalResult:
 
 
 def csv_text(field: ContactField) -> str:
-    """A field as the text of a file that `read` reads back, in SI units and to the last bit."""
+    """Text of a CSV file with a field in SI units; `read_csv` reads the same numbers to the last bit."""
     heads = [(name, next(iter(units))) for name, units in COLUMNS.items()]
     return columns.text(heads, [*field.position.T, field.area, field.pressure])

@@ -1,11 +1,12 @@
-"""Few points for many nodes: a field's sums at all loads, kept by some of its nodes with new shares.
+"""Reduce a pressure field to few nodes, with new area shares that keep its sums at all loads (cubature).
 
-What a joint exports are sums over its nodes of share times a function of the node's two pressures (`equal`,
-`tilt`), with its position as a factor. At finitely many loads these are finitely many sums, most of which
-follow from the others. Some of the nodes with positive shares keep these (`recombined`; Tchakaloff; Litterer
-and Lyons 2012), and as few of them as keep all within the tolerance are taken. Loads at which the points miss
-are added until none of further ones is missed. Which nodes and shares these are is found with rounded numbers
-(`footprint.reproducible`); the nodes are the field's own.
+The outputs of a joint are sums over its nodes: area share times a function of the two pressures of the node
+(`preload_shape`, `moment_shape`) and of its position. A finite number of load cases gives a finite number of
+sums, and most of them are linearly dependent. Some nodes with positive shares keep all sums (`recombine`;
+Tchakaloff; Litterer and Lyons 2012). The fewest nodes that keep the sums within the tolerance are selected.
+Load cases in which the points miss the tolerance are added until the points meet it in new load cases. The
+selection uses rounded numbers (`footprint.reproducible`), so that it is the same on all processors; the
+selected nodes are not rounded.
 """
 
 from dataclasses import dataclass
@@ -37,68 +38,76 @@ from .sums import (
 )
 
 GROUPS = 2
-"""Groups over kept sums [1]."""
+"""Number of groups of nodes over number of independent sums [1]."""
 
 
 def recombined(values: Array, weights: Array, turn: Array) -> tuple[Nodes, Array]:
-    """Nodes and their weights (at most d), with which values (n, d) have the sums that weights (n) > 0 give.
+    """Select at most d nodes with new weights that keep the weighted sums of d functions (recombination).
 
-    turn : (d, d) makes the d values independent
+    values    : (n, d) of the functions at the nodes
+    weights   : (n) > 0
+    transform : (d, d) matrix that makes the d functions independent
 
-    Raises RuntimeError if rounding stands in the way.
+    Returns the indices of the nodes and their weights. Raises RuntimeError if round-off prevents a solution.
     """
-    left, count = np.arange(len(values)), values.shape[1]
-    while left.size > count:
-        groups = np.linspace(0, left.size, min(GROUPS * count, left.size) + 1).astype(np.intp)
-        sums = [weights[a:b] @ values[a:b] for a, b in pairwise(groups)]
+    selected, count = np.arange(len(values)), values.shape[1]
+    while selected.size > count:
+        bounds = np.linspace(0, selected.size, min(GROUPS * count, selected.size) + 1).astype(np.intp)
+        sums = [weights[a:b] @ values[a:b] for a, b in pairwise(bounds)]
         vectors = (np.array(sums) @ turn).T
         factors, _ = nnls(vectors, np.sum(vectors, axis=1), maxiter=20 * count)
-        of_node = np.repeat(factors, np.diff(groups))
-        stays = of_node > 0.0
-        left, weights, values = left[stays], (weights * of_node)[stays], values[stays]
-    return left, weights
+        node_factors = np.repeat(factors, np.diff(bounds))
+        positive = node_factors > 0.0
+        selected, weights, values = (
+            selected[positive],
+            (weights * node_factors)[positive],
+            values[positive],
+        )
+    return selected, weights
 
 
 TOLERANCE = 1e-6
-"""Largest deviation of a sum [1] that a reduced field may have."""
+"""Largest relative deviation of a sum [1] of a reduced field."""
 LARGE = 1e-5
-"""The same of one with too many nodes to keep them all."""
+"""The same limit for a field with more nodes than can all be kept [1]."""
 AIM, LET_PASS, WORTH_ADDING = 0.05, 0.6, 0.15
-"""Parts of the tolerance [1]: what is aimed at, what is let pass where it was not aimed at (the rest is for
-loads that are not tried), and from where on a load is one to aim at."""
+"""Deviations over the tolerance [1]: goal in the load cases of the selection; limit in the test load cases
+(the margin is for untested ones); deviation from which a test load case is added to the selection."""
 DIGITS = 25
-"""Binary digits to which nodes are rounded before they decide: 3e-8, less than what is aimed at."""
+"""Number of bits to which nodes are rounded for the selection: 3e-8, less than the goal."""
 LEAST = 7e-9
-"""Sums that are kept: those that say so much that others do not, over the one that says most [1]."""
+"""Smallest pivot of an independent sum over the largest pivot [1]; sums below it are dependent."""
 FEWER = 0.93
-"""Sums that are kept in a further attempt with fewer points [1]."""
+"""Factor [1] on the number of kept sums, and so of points, from one attempt to the next."""
 MORE = 100
-"""Of the further loads, how many are aimed at from the beginning."""
+"""Number of quasi-random load cases in the selection from the start."""
 SKETCH = 600
-"""Random combinations of these nodes (Halko, Martinsson and Tropp 2011), more than the sums that are kept."""
+"""Number of random combinations of the sample nodes (Halko, Martinsson and Tropp 2011); more than the number
+of kept sums."""
 FEW = 60
-"""Nodes that are kept as they are."""
+"""Largest number of nodes of a field that is not reduced."""
 MOST = 3000
-"""Nodes that are all kept where no points do."""
+"""Largest number of nodes that are all kept if no reduction meets the tolerance."""
 SAMPLE = 3000
-"""Nodes on which it is found which sums follow from others."""
+"""Number of sample nodes for finding the independent sums."""
 TESTS, WORK = (60, 300), 3e6
-"""Fewest and most loads per round at which the points are tried, and how many nodes all of them may have."""
+"""Smallest and largest number of test load cases per round; largest number of test load cases times nodes."""
 ROUNDS = 8
 
 
 @dataclass(frozen=True, slots=True)
 class Reduction:
-    """What stands for a field.
+    """Result of the reduction of a pressure field.
 
-    shape     : the points
-    field     : all nodes, for which they stand
-    deviation : [1] largest one of the sums at `loads` loads that the points were not made for: total
-                force, K_zz (and K_xx, which is in proportion), K_rx, K_ry, each over its value or the
-                one at tightening, whichever is larger; a hundredth of that of moments of the force and of
-                coupling stiffnesses
-    moment    : [1] largest moment of these loads, over the one at which a row of bolts has no force left
-    beyond    : [1] the deviation between this moment and that one
+    shape      : pressure shape of the reduced points
+    full_shape : pressure shape of all nodes
+    deviation  : [1] largest deviation of the sums in `test_count` load cases outside the selection: total
+                 force, K_zz (and K_xx, proportional to K_zz), K_rx and K_ry, each over its value or its value
+                 in the preloaded joint, whichever is larger. Deviations of the moments of the force and of
+                 coupling stiffnesses count a hundredth
+    test_count : number of these load cases
+    moment_ratio : [1] largest moment in these load cases over the moment that unloads a row of bolts
+    deviation_beyond : [1] largest deviation at moment ratios from `moment_ratio` to 1
     """
 
     shape: PressureShape
@@ -110,43 +119,43 @@ class Reduction:
 
     @property
     def points(self) -> int:
-        """How many points the field has left."""
+        """Number of reduced points."""
         return int(self.shape.share.size)
 
     @property
     def nodes(self) -> int:
-        """How many nodes they stand for."""
+        """Number of nodes of the field."""
         return int(self.field.share.size)
 
 
 def reduce(joint: BoltedInterface, shape: PressureShape, preload: float, pressures: Pressures) -> Reduction:
-    """The fewest points found that keep a field's sums within TOLERANCE; all nodes where none do, of more
-    than MOST nodes those within LARGE.
+    """Reduce a pressure shape to the fewest points that keep its sums within RELATIVE_TOLERANCE.
 
-    preload   : [N] per bolt, the field's; loads are tried from PRELOADS of it, from pressed together to
-                fully open, with moments up to the one at which a row of bolts has no force left or nodes
-                that carried the part OPENED of the preload are open, whichever comes first
-    pressures : of the joint, those of joints.clamped.Clamping
+    If no points do, all nodes are kept. A field with more than MAX_KEPT_NODES nodes then takes the points
+    within LARGE_FIELD_TOLERANCE.
 
-    Raises RuntimeError if none do.
+    preload   : [N] per bolt of the field. Load cases cover PRELOAD_RANGE of it, from compression to full
+                opening, with moments up to `max_moment_ratio`
+    pressures : function of the joint for nodal pressures, see FieldAdapter
+
+    Raises RuntimeError if the field has too many nodes and no points are within LARGE_FIELD_TOLERANCE.
     """
     nodes = shape.share.size
     if nodes <= FEW:
         return Reduction(shape, shape)
     sums = Sums.of(joint, preload, pressures)
-    order = np.argsort(
-        to_digits(shape.equal), kind="stable"
-    )  # neighbours on the curve: it is read the faster
-    own = shape.part(order)
-    shape = rounded(own, DIGITS)
-    few = np.random.default_rng(SEED).choice(
+    # sorted by pressure, neighbouring nodes are close on the pressure curve: its evaluation is faster
+    order = np.argsort(to_digits(shape.equal), kind="stable")
+    unrounded = shape.part(order)
+    shape = rounded(unrounded, DIGITS)
+    sample = np.random.default_rng(SEED).choice(
         nodes, min(SAMPLE, nodes), replace=False, p=sums.weights(shape, largest_moment(joint, shape))
     )
-    reduction = _search(sums, shape, shape.part(few), own)
+    reduction = _search(sums, shape, shape.part(sample), unrounded)
     if reduction is not None and (nodes > MOST or reduction.deviation <= TOLERANCE):
         return reduction
     if nodes <= MOST:
-        return Reduction(own, own)
+        return Reduction(unrounded, unrounded)
     raise RuntimeError(
         f"the field of {nodes} nodes has no points that keep its sums within {LARGE:g}; of up to {MOST} all "
         "nodes are kept"
@@ -154,36 +163,38 @@ def reduce(joint: BoltedInterface, shape: PressureShape, preload: float, pressur
 
 
 def _search(sums: Sums, shape: PressureShape, some: PressureShape, own: PressureShape) -> Reduction | None:
-    """Points that keep the sums at first loads and at those of others that they missed, within LARGE.
+    """Search points that keep the sums within LARGE_FIELD_TOLERANCE; None if there are none.
 
-    shape : the nodes, rounded
-    some  : of these, on which it is found which sums follow from others
-    own   : the nodes as they are
+    Each round tests the points in new load cases, and adds those to the selection in which the points miss.
+
+    shape     : pressure shape of all nodes, rounded
+    sample    : sample of these nodes, for finding the independent sums
+    unrounded : pressure shape of all nodes
     """
     limit = largest_moment(sums.joint, shape)
     loads, tests = further_loads(limit), int(np.clip(WORK / shape.share.size, *TESTS))
     system = _System.of(sums, shape, own, some, sums.at(shape, [*first_loads(limit), *islice(loads, MORE)]))
-    best, least = None, LARGE
+    best, best_deviation = None, LARGE
     for _ in track(range(ROUNDS), "points", ROUNDS):
         points = system.points()
         if points is None:
             break
-        tried = sums.at(shape, list(islice(loads, tests)))
-        missed = sums.deviations(points, tried)
-        worst = float(np.max(missed))
-        if worst <= least:
-            best, least = points, worst
+        test_sums = sums.at(shape, list(islice(loads, tests)))
+        deviations = sums.deviations(points, test_sums)
+        worst = float(np.max(deviations))
+        if worst <= best_deviation:
+            best, best_deviation = points, worst
         if worst <= LET_PASS * TOLERANCE:
             break
-        system.add(tried.part(missed > WORTH_ADDING * TOLERANCE))
+        system.add(test_sums.part(deviations > WORTH_ADDING * TOLERANCE))
     if best is None:
         return None
-    beyond = _beyond(sums, shape, best, limit)
-    return Reduction(best, own, least, tests, limit, beyond)
+    deviation_beyond = _beyond(sums, shape, best, limit)
+    return Reduction(best, own, best_deviation, tests, limit, deviation_beyond)
 
 
 def _beyond(sums: Sums, shape: PressureShape, points: PressureShape, limit: float) -> float:
-    """Largest deviation [1] at larger moments."""
+    """Largest deviation [1] at moment ratios from `moment_limit` to 1 (a row of bolts loses its force)."""
     if limit >= 1.0:
         return 0.0
     moments = np.linspace(limit, 1.0, 6)[1:].tolist()
@@ -193,13 +204,15 @@ def _beyond(sums: Sums, shape: PressureShape, points: PressureShape, limit: floa
 
 @dataclass(slots=True)
 class _System:
-    """Sums that shares of the nodes of a shape are to keep, those that balance it and those at loads.
+    """The r sums that the reduced points must keep: balance of the field, and sums in load cases.
 
-    own    : the nodes as they are, not rounded
-    some   : (c) nodes on which it is found which sums follow from others, mixed by `mixing` (SKETCH, c)
-    rows   : the sums at loads
-    over   : what those that balance the shape are divided by
-    sketch : (SKETCH, r) the functions at these nodes, mixed
+    shape         : pressure shape of all nodes, rounded
+    unrounded     : pressure shape of all nodes
+    sample        : sample (c) of the nodes, for finding the independent sums
+    mixing        : random matrix (SKETCH_ROWS, c)
+    load_sums     : sums in the load cases
+    balance_scale : divisors of the balance functions
+    sketch        : (SKETCH_ROWS, r) random combinations of the functions at the sample nodes
     """
 
     sums: Sums
@@ -215,88 +228,96 @@ class _System:
     def of(
         cls, sums: Sums, shape: PressureShape, own: PressureShape, some: PressureShape, rows: SumsAtLoads
     ) -> "_System":
-        """Of loads, to begin with."""
-        over = np.maximum(np.max(np.abs(balance(shape)), axis=0), np.finfo(float).tiny)
+        """System with the sums in the first load cases."""
+        scale = np.maximum(np.max(np.abs(balance(shape)), axis=0), np.finfo(float).tiny)
         mixing = np.random.default_rng(SEED).standard_normal((SKETCH, some.share.size))
         mixing *= np.sqrt(some.share / SKETCH)
-        sketch = mixing @ np.concatenate([balance(some) / over, sums.columns(some, rows)], axis=1)
-        return cls(sums, shape, own, some, mixing, rows, over, sketch)
+        sketch = mixing @ np.concatenate([balance(some) / scale, sums.columns(some, rows)], axis=1)
+        return cls(sums, shape, own, some, mixing, rows, scale, sketch)
 
     def add(self, rows: SumsAtLoads) -> None:
-        """Further loads."""
+        """Add the sums in more load cases."""
         self.sketch = np.concatenate([self.sketch, self.mixing @ self.sums.columns(self.some, rows)], axis=1)
         self.rows = self.rows.joined(rows)
 
     def values(self, shape: PressureShape) -> Array:
-        """(n, r) the functions at nodes."""
+        """Values (n, r) of all functions at the nodes of a shape."""
         return np.concatenate([balance(shape) / self.over, self.sums.columns(shape, self.rows)], axis=1)
 
     def points(self) -> PressureShape | None:
-        """The fewest nodes found that keep the sums; None if none do."""
-        kept, turn = self._combinations()
-        held = highest(self.shape)
+        """Find the fewest nodes that keep the sums; None if no nodes do.
+
+        The nodes with the highest pressure (`highest`) are always kept, with their own share.
+        """
+        independent, turn = self._combinations()
+        fixed = highest(self.shape)
         try:
-            some, share = self._groups(kept, turn, held)
-            left, share = recombined(self._kept(some, kept), share, turn)
-        except RuntimeError:  # rounding
+            candidates, share = self._groups(independent, turn, fixed)
+            selected, share = recombined(self._kept(candidates, independent), share, turn)
+        except RuntimeError:  # round-off
             return None
-        left = some[left]
-        values = self.values(self.shape.part(left))
+        selected = candidates[selected]
+        values = self.values(self.shape.part(selected))
         target = np.concatenate([self.shape.share @ balance(self.shape) / self.over, self.rows.total.ravel()])
-        target -= self.shape.share[held] @ self.values(self.shape.part(held))
-        best, count = None, kept.size
-        allowed = LET_PASS * LARGE
-        while count > 1 and np.max(np.abs(share @ values - target)) <= allowed:
-            best, allowed = (left, share), AIM * TOLERANCE
+        target -= self.shape.share[fixed] @ self.values(self.shape.part(fixed))
+        best, count = None, independent.size
+        tolerance = LET_PASS * LARGE
+        while count > 1 and np.max(np.abs(share @ values - target)) <= tolerance:
+            best, tolerance = (selected, share), AIM * TOLERANCE
             count = int(FEWER * count)
             try:
-                few, share = recombined(values[:, kept[:count]], share, turn[:count, :count])
+                fewer, share = recombined(values[:, independent[:count]], share, turn[:count, :count])
             except RuntimeError:
                 break
-            left, values = left[few], values[few]
+            selected, values = selected[fewer], values[fewer]
         if best is None:
             return None
-        both = self.own.part(np.concatenate([held, best[0]]))
-        return _balanced(both, np.concatenate([self.shape.share[held], best[1]]))
+        points = self.own.part(np.concatenate([fixed, best[0]]))
+        return _balanced(points, np.concatenate([self.shape.share[fixed], best[1]]))
 
     def _groups(self, kept: Nodes, turn: Array, held: Nodes) -> tuple[Nodes, Array]:
-        """Nodes of few groups, with shares that keep the sums of all nodes but those held."""
+        """Select few groups of nodes, with shares that keep the sums of all nodes except the fixed ones.
+
+        Returns the nodes of these groups and their shares.
+        """
         share = self.shape.share.copy()
         share[held] = 0.0
-        of_node = np.arange(share.size) // grouped(share.size)
-        before = np.asarray(np.bincount(of_node, share), dtype=np.float64)
-        full = np.flatnonzero(before)
+        group = np.arange(share.size) // grouped(share.size)
+        old_share = np.asarray(np.bincount(group, share), dtype=np.float64)
+        nonempty = np.flatnonzero(old_share)
         sums = self._group_sums(kept)
-        np.subtract.at(sums, of_node[held], self.shape.share[held, None] * self._kept(held, kept))
-        left, after = recombined(sums[full] / before[full, None], before[full], turn)
-        scale = np.zeros(before.size)
-        scale[full[left]] = after / before[full[left]]
-        share *= scale[of_node]
+        np.subtract.at(sums, group[held], self.shape.share[held, None] * self._kept(held, kept))
+        selected, new_share = recombined(
+            sums[nonempty] / old_share[nonempty, None], old_share[nonempty], turn
+        )
+        scale = np.zeros(old_share.size)
+        scale[nonempty[selected]] = new_share / old_share[nonempty[selected]]
+        share *= scale[group]
         nodes = np.flatnonzero(share)
         return nodes, share[nodes]
 
     def _group_sums(self, kept: Nodes) -> Array:
-        """(g, k) sums of some of the functions over groups of nodes."""
-        share, own = self.shape.share[:, None], self.over.size
-        still = kept < own
-        load, function = np.divmod(kept[~still] - own, 9)
-        values = (balance(self.shape) / self.over)[:, kept[still]]
+        """Sums (g, k) of the selected functions over groups of nodes."""
+        share, count = self.shape.share[:, None], self.over.size
+        is_balance = kept < count
+        load, function = np.divmod(kept[~is_balance] - count, 9)
+        values = (balance(self.shape) / self.over)[:, kept[is_balance]]
         out = np.empty((self.rows.groups.shape[2], kept.size))
-        out[:, still] = np.add.reduceat(share * values, np.arange(0, share.size, grouped(share.size)))
-        out[:, ~still] = self.rows.groups[load, function].T
+        out[:, is_balance] = np.add.reduceat(share * values, np.arange(0, share.size, grouped(share.size)))
+        out[:, ~is_balance] = self.rows.groups[load, function].T
         return out
 
     def _kept(self, nodes: Nodes, kept: Nodes) -> Array:
-        """(n, k) some of the functions at nodes."""
-        some, own = self.shape.part(nodes), self.over.size
-        still = kept < own
+        """Values (n, k) of the selected functions at nodes."""
+        shape, count = self.shape.part(nodes), self.over.size
+        is_balance = kept < count
         out = np.empty((nodes.size, kept.size))
-        out[:, still] = (balance(some) / self.over)[:, kept[still]]
-        out[:, ~still] = self.sums.few_columns(some, self.rows, kept[~still] - own)
+        out[:, is_balance] = (balance(shape) / self.over)[:, kept[is_balance]]
+        out[:, ~is_balance] = self.sums.few_columns(shape, self.rows, kept[~is_balance] - count)
         return out
 
     def _combinations(self) -> tuple[Nodes, Array]:
-        """Sums that say what others do not, the most telling first, and what makes them independent."""
+        """Indices of independent sums, the largest pivot first, and the matrix that orthogonalises them."""
         triangle, order = qr(self.sketch, mode="r", pivoting=True)
         size = np.abs(np.diag(triangle))
         count = int(np.sum(size > LEAST * size[0]))
@@ -304,7 +325,7 @@ class _System:
 
 
 def _balanced(some: PressureShape, weights: Array) -> PressureShape:
-    """The nodes with a share, their sums put right to round-off."""
+    """Select the nodes with a share > 0 and correct the balance of the field to round-off."""
     points = some.part(np.flatnonzero(weights > 0.0))
     share = weights[weights > 0.0] / np.sum(weights)
     return PressureShape(

@@ -1,1 +1,1 @@
-"""Measured and made surfaces: reading, repair, fractal parameters, synthesis (docs/surfaces.md)."""
+"""Rough surfaces: reading, repair, roughness, fractal parameters, synthesis (docs/surfaces.md)."""

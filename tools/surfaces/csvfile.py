@@ -1,8 +1,10 @@
-"""The CSV format of this package for profiles and areal maps (docs/surfaces.md).
+"""Read and write the CSV formats of this package for profiles and areal maps (docs/surfaces.md).
 
-# profile: x [um], z [um]          two columns, spacing constant
-# points: x [um], y [um], z [nm]   three columns on a full or gappy grid
-# grid: dx = 0.5 um, dy = 0.5 um, z [um]   one line of z per y
+The first line declares the layout:
+
+# profile: x [um], z [um]          two columns, constant spacing
+# points: x [um], y [um], z [nm]   three columns on a regular grid; points may be missing
+# grid: dx = 0.5 um, dy = 0.5 um, z [um]   one line of z for each y
 """
 
 import contextlib
@@ -34,15 +36,15 @@ from .heights import Areal, Heights, Profile
 
 SCAN = FileKind("surface", (".csv",))
 LENGTHS = sizes("m", "mm", "um", "µm", "μm", "nm")
-"""Allowed length units in metres."""
+"""Allowed length units: {unit: size in metres}."""
 LAYOUTS = {"profile": ("x", "z"), "points": ("x", "y", "z"), "grid": ("z",)}
 _HEADER = re.compile(r"#\s*(profile|points|grid)\s*:(.*)")
 ALLOWED = ", ".join(filter(str.isascii, LENGTHS))
-"""The length units as text."""
+"""List of the allowed length units, for messages."""
 
 
 def unit(text: str, where: str) -> float:
-    """A length unit in metres."""
+    """Size of a length unit in metres; ValueError, with the location in the file, for an unknown unit."""
     try:
         return measured(text, LENGTHS)
     except ValueError:
@@ -50,7 +52,7 @@ def unit(text: str, where: str) -> float:
 
 
 def header(path: Path) -> str | None:
-    """The line that declares our layout, if the file begins with one; None for any other file."""
+    """First line of a file if it declares one of the layouts of this package; None for any other file."""
     with path.open("rb") as file, contextlib.suppress(UnicodeDecodeError):
         first = decoded(file.readline(1000)).strip()
         return first if _HEADER.match(first) else None
@@ -58,66 +60,73 @@ def header(path: Path) -> str | None:
 
 
 def read(path: Path, line: str) -> tuple[Heights, str]:
-    """A file whose first line declares its layout, and the unit of its lengths along x."""
+    """Read a file whose first line declares its layout; return the heights and the unit along x."""
     match = _HEADER.match(line)
     assert match
-    layout, rest = match[1], match[2]
-    units = dict(re.findall(r"\b([xyz])\s*\[\s*([^\]\s]+)\s*\]", rest))
+    layout, declaration = match[1], match[2]
+    units = dict(re.findall(r"\b([xyz])\s*\[\s*([^\]\s]+)\s*\]", declaration))
     needed = LAYOUTS[layout]
     if missing := [name for name in needed if name not in units]:
         expected = ", ".join(f"{name} [um]" for name in missing)
         raise ValueError(f"{path}: the header states no unit of {', '.join(missing)}; write it as {expected}")
     factors = {name: unit(units[name], f"{path}: {name}") for name in needed}
     if layout == "grid":
-        spacings = {name: _spacing(path, rest, name) for name in ("dx", "dy")}
+        spacings = {name: _spacing(path, declaration, name) for name in ("dx", "dy")}
         dx, dy = (size for size, _ in spacings.values())
-        stated = spacings["dx"][1]
-        return Areal(z=table(path) * factors["z"], dx=dx, dy=dy, name=str(path)), stated
+        unit_x = spacings["dx"][1]
+        return Areal(z=table(path) * factors["z"], dx=dx, dy=dy, name=str(path)), unit_x
     return columns(path, table(path), [factors[name] for name in needed]), units["x"]
 
 
 def titles(path: Path) -> list[Head] | None:
-    """Name and unit of two or three columns in the first line (x, z or x, y, z), if numbers are below it."""
+    """Name and unit of two or three columns (x, z or x, y, z), if the first line has names, the next numbers.
+
+    None for any other file.
+    """
     try:
         lines = content(path, 2)
     except ValueError:
         if path.suffix.lower() == ".csv":
             raise
-        return None  # no text: an instrument's
-    mark = separator(lines[0][1]) if len(lines) == 2 else None
-    if mark is None:
+        return None  # no text: a file of an instrument
+    delimiter = separator(lines[0][1]) if len(lines) == 2 else None
+    if delimiter is None:
         return None
-    words, values = (cells(line, mark) for _, line in lines)
-    named = len(words) in (2, 3) and all(number(word) is None and word.strip() for word in words)
-    below = len(values) == len(words) and all(number(cell) is not None for cell in values)
-    return [head(word) for word in words] if named and below else None
+    words, values = (cells(line, delimiter) for _, line in lines)
+    has_names = len(words) in (2, 3) and all(number(word) is None and word.strip() for word in words)
+    has_numbers = len(values) == len(words) and all(number(cell) is not None for cell in values)
+    return [head(word) for word in words] if has_names and has_numbers else None
 
 
 def titled(
     path: Path, heads: Sequence[Head], given: Mapping[str, str | None], above: int = 1
 ) -> tuple[Heights, str]:
-    """Columns under so many lines of titles, and the unit of x.
+    """Read columns below title lines; return the heights and the unit along x.
 
-    given : {"x", "z": unit of columns that state none}; y is as x
+    column_heads : name and unit of each column, as the file states them
+    option_units : {"x": unit, "z": unit} of columns without a unit in the file; y has the unit of x
+    header_lines : number of title lines
 
-    Raises ValueError for a column that states no unit and is given none, or both.
+    Raises ValueError for a column whose unit is missing, or given both in the file and as option.
     """
-    stated = []
-    for axis, (name, own) in zip(LAYOUTS["profile" if len(heads) == 2 else "points"], heads, strict=True):
-        other = given["z" if axis == "z" else "x"]
-        if own and other:
-            raise Refusal(f"{path}: column {name!r} states its unit {own}; leave {other} out", "unit")
-        if not own and not other:
+    units = []
+    for axis, (name, file_unit) in zip(
+        LAYOUTS["profile" if len(heads) == 2 else "points"], heads, strict=True
+    ):
+        option = given["z" if axis == "z" else "x"]
+        if file_unit and option:
+            raise Refusal(f"{path}: column {name!r} states its unit {file_unit}; leave {option} out", "unit")
+        if not file_unit and not option:
             raise Refusal(
                 f"{path}: column {name!r} states no length unit; state it, one of {ALLOWED}", "unit"
             )
-        stated.append(str(own or other))
-    factors = [unit(text, f"{path}: {name}") for text, (name, _) in zip(stated, heads, strict=True)]
-    return columns(path, table(path, above), factors), stated[0]
+        units.append(str(file_unit or option))
+    factors = [unit(text, f"{path}: {name}") for text, (name, _) in zip(units, heads, strict=True)]
+    return columns(path, table(path, above), factors), units[0]
 
 
 def _spacing(path: Path, text: str, name: str) -> tuple[float, str]:
-    """A spacing [m] and the unit in which it is stated."""
+    """Read a grid spacing from the declaration of a layout: its value [m], and its unit in the file."""
     match = re.search(rf"\b{name}\s*=\s*([-+\d.]+(?:[eE][-+]?\d+)?)\s*([a-zµμ]*)", text)
     if not match:
         raise ValueError(f"{path}: the header states no {name}; write it as {name} = 0.5 um")
@@ -130,24 +139,27 @@ def _spacing(path: Path, text: str, name: str) -> tuple[float, str]:
 
 
 def table(path: Path, above: int = 0) -> Array:
-    """The numbers of a file below some lines (semicolon, tab, comma or blanks; # begins a comment); empty
-    cells are NaN."""
+    """Read the numbers of a file below its header lines; empty cells are NaN.
+
+    The delimiter is a semicolon, tab, comma or blank; # begins a comment.
+    """
     top = content(path, above + 1)
     if len(top) <= above:
         raise ValueError(f"{path}: is no surface: it holds no numbers")
     first, line = top[above]
-    mark = separator(line.partition("#")[0])
+    delimiter = separator(line.partition("#")[0])
     with contextlib.suppress(ValueError):  # empty cells, rows of other lengths, words: row by row below
-        return np.loadtxt(text_lines(path)[first - 1 :], delimiter=mark, ndmin=2)
+        return np.loadtxt(text_lines(path)[first - 1 :], delimiter=delimiter, ndmin=2)
     values: list[Array] = []
     for i, line in ((i, line.partition("#")[0]) for i, line in content(path)[above:]):
-        row = cells(line, mark) if mark else line.split()
+        row = cells(line, delimiter) if delimiter else line.split()
         check_length(path, i, row, values[0].size if values else len(row))
         values.append(_numbers(path, i, row))
     return np.array(values)
 
 
 def _numbers(path: Path, line: int, row: Sequence[str]) -> Array:
+    """Parse the cells of one row; empty cells are NaN. Raises ValueError for a cell that is no number."""
     values = [number(cell) if cell.strip() else np.nan for cell in row]
     if None in values:
         cell = row[values.index(None)].strip()
@@ -158,7 +170,13 @@ def _numbers(path: Path, line: int, row: Sequence[str]) -> Array:
 
 
 def columns(path: Path, values: Array, factors: list[float]) -> Heights:
-    """Columns x, z (a profile) or x, y, z (an areal map) with their factors to metres."""
+    """Profile from columns x, z, or areal map from columns x, y, z.
+
+    values  : (n, 2) or (n, 3)
+    factors : units of the columns in metres
+
+    Raises ValueError for points that lie on no regular grid or occur twice.
+    """
     if values.shape[1] != len(factors):
         raise ValueError(f"{path}: has {values.shape[1]} columns, its header declares {len(factors)}")
     if len(factors) == 2:
@@ -167,40 +185,43 @@ def columns(path: Path, values: Array, factors: list[float]) -> Heights:
     if (x.max() + 1) * (y.max() + 1) > 4 * x.size:
         raise ValueError(f"{path}: {x.size} points lie on no grid of x and y; resample them to one")
     heights = np.full((y.max() + 1, x.max() + 1), np.nan)
-    taken = np.zeros(heights.shape, dtype=bool)
-    taken[y, x] = True
-    if np.count_nonzero(taken) < x.size:
+    occupied = np.zeros(heights.shape, dtype=bool)
+    occupied[y, x] = True
+    if np.count_nonzero(occupied) < x.size:
         raise ValueError(f"{path}: x and y repeat points; expected every point once")
     heights[y, x] = values[:, 2] * factors[2]
     return Areal(z=heights, dx=dx, dy=dy, name=str(path))
 
 
 def _places(path: Path, name: str, values: Array, factor: float) -> tuple[grid.Places, float]:
-    """Place of every point along x or y, which come in any order, and the spacing [m]."""
-    at, which = np.unique(values, return_inverse=True)
-    place, step = grid.places(path, name, at, factor)
-    return place[which], step * factor
+    """Grid index of every point along x or y, and the grid spacing [m]; the points may have any order."""
+    positions, inverse = np.unique(values, return_inverse=True)
+    index, step = grid.places(path, name, positions, factor)
+    return index[inverse], step * factor
 
 
 def _profile(path: Path, x: Array, z: Array, factor: float) -> Profile:
-    """A profile of x, in a unit of `factor` metres, and z [m]; rows may come in any order, and be missing."""
+    """Profile from positions x, in a unit of `factor` metres, and heights z [m].
+
+    The points may have any order, and points of the grid may be missing.
+    """
     if x[-1] < x[0]:
         x, z = x[::-1], z[::-1]
     order = np.argsort(x, kind="stable")
     in_order = bool(np.all(order == np.arange(x.size)))
-    place, step = grid.places(path, "x", x[order], factor, repeats=in_order)
-    heights = np.full(place[-1] + 1, np.nan)
-    heights[place] = z[order]
+    index, step = grid.places(path, "x", x[order], factor, repeats=in_order)
+    heights = np.full(index[-1] + 1, np.nan)
+    heights[index] = z[order]
     return Profile(z=heights, dx=step * factor, name=str(path))
 
 
 def text(heights: Heights) -> str:
-    """Heights as the text of a file that `read` reads back (SI, seven digits)."""
+    """Text of a CSV file with heights in metres, with seven digits; `read_declared` reads it."""
     if isinstance(heights, Profile):
-        at = np.arange(heights.z.size) * heights.dx
-        head = "# profile: x [m], z [m]"
-        body = rows([at, heights.z], [10, 7])
+        x = np.arange(heights.z.size) * heights.dx
+        declaration = "# profile: x [m], z [m]"
+        body = rows([x, heights.z], [10, 7])
     else:
-        head = f"# grid: dx = {heights.dx!r} m, dy = {heights.dy!r} m, z [m]"
+        declaration = f"# grid: dx = {heights.dx!r} m, dy = {heights.dy!r} m, z [m]"
         body = rows(heights.z.T, [7] * heights.z.shape[1])
-    return "\n".join([head, f"# {MARK}", *body, ""])
+    return "\n".join([declaration, f"# {MARK}", *body, ""])

@@ -1,4 +1,7 @@
-"""Fit of the self-affine law to a series: generalised least squares, range search, test of straightness."""
+"""Fit of the self-affine law to a structure function or spectrum by generalised least squares.
+
+The range of scales is given, or a search finds the longest range in which the surface is self-affine.
+"""
 
 from bisect import bisect_left
 from dataclasses import dataclass, replace
@@ -11,42 +14,46 @@ from jointfmu.quantity import Array
 from .spectrum import ScaleSeries
 
 FLOOR = 0.03
-"""Least standard deviation of ln(value) from the law at every scale [1]."""
+"""Smallest standard deviation of ln(value) from the law at each scale [1]."""
 CORRELATION = 0.5
-"""Length in ln(scale) over which deviations from the law hang together [1]."""
+"""Correlation length in ln(scale) [1] of the deviations from the law."""
 DRIFT = 0.1
-"""Largest drift of D over a range that counts as straight, unless within its own two standard errors."""
+"""Largest drift of D over a self-affine range [1]; a larger one is allowed within two standard errors."""
 MOST_DRIFT = 0.7
-"""Largest drift of D that counts as straight however unsure it is, well below that from 1 to 2."""
+"""Largest drift of D over a self-affine range [1] for any standard error; well below the interval 1 to 2."""
 RUN = 0.8
-"""Drift of D over all scales beyond which D counts as running through its interval from 1 to 2."""
+"""Drift of D over all scales [1], above which D covers the whole interval from 1 to 2 (no fractal)."""
 ENOUGH = 1.5
-"""Length of a straight range, in decades, that counts although D runs through its interval beyond it."""
+"""Shortest range [decades] that counts as self-affine if D covers its whole interval over all scales."""
 BOUND = 0.02
-"""The fit keeps H that far from 0 and 1."""
+"""Smallest distance of the fitted H from 0 and from 1 [1]."""
 ROUGHEST = 0.25
-"""Largest standard deviation of ln(value) from the law that counts as self-affine."""
+"""Largest standard deviation of ln(value) from the law over a self-affine range [1]."""
 SHORTEST = 0.5
-"""Least length of a range that the search considers, in decades."""
+"""Shortest range [decades] that the search considers."""
 INFLATION = 1.15
 """Factor on the covariance of the result, from simulation (benchmarks/surface_round_trip.py: coverage)."""
 OFFSET = 2.0
-"""Standard deviation of the offset before it is fitted [1]: it may hardly exceed the shortest value."""
+"""Prior standard deviation of the offset [1], relative to the value at the shortest scale."""
 UNSURE = 0.3
-"""Values with a larger variance of ln(value) are left out."""
+"""Largest variance of ln(value) [1]; values with a larger one are left out."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SelfAffineLaw:
-    """Self-affine law of a series.
+    """Self-affine law fitted to a series over scale.
 
-    H, level  : Hurst exponent, ln Phi [m2] at the wavelength `reference` [m]
-    covariance : (2, 2) of (H, level)
-    offset    : constant share of the shortest value: noise above 0, missing short waves below
-    deviation : standard deviation of ln(value) from the law beyond chance
-    drift, drift_error : change of D over the range, its standard error
-    low, high : range [m]; straight : whether the law holds there
-    runs      : whether the range is a short piece of a series over which D runs through its whole interval
+    H           : Hurst exponent [1]
+    level       : ln(Phi) at the wavelength `reference`, Phi in m2
+    reference   : [m]
+    covariance  : (2, 2) of (H, level)
+    offset      : constant added to the law, over its value at the shortest scale [1]: > 0 for noise, < 0 for
+                  missing short waves
+    deviation   : standard deviation of ln(value) from the law beyond statistical scatter [1]
+    drift       : change of D over the range [1]
+    drift_error : standard error of the drift [1]
+    low, high   : range of scales [m]
+    covers_interval : whether D covers its whole interval 1 to 2 over all scales, and this range is short
     """
 
     H: float
@@ -63,24 +70,25 @@ class SelfAffineLaw:
 
     @property
     def straight(self) -> bool:
-        """Whether drift and deviation stay within what counts as self-affine."""
+        """Whether the law holds over the range: drift and deviation are within their limits."""
         allowed = max(DRIFT, min(2.0 * self.drift_error, MOST_DRIFT))
         return abs(self.drift) <= allowed and self.deviation <= ROUGHEST and not self.runs
 
     @property
     def at_bound(self) -> bool:
-        """Whether H lies at an end of its interval, where its standard error means nothing."""
+        """Whether H lies at an end of its interval; its standard error is then invalid."""
         return not 1.5 * BOUND < self.H < 1.0 - 1.5 * BOUND
 
     @property
     def decades(self) -> float:
+        """Length of the range [decades]."""
         return float(np.log10(self.high / self.low))
 
 
 def fit(series: ScaleSeries, low: float | None = None, high: float | None = None) -> SelfAffineLaw:
-    """Fit over the given range of scales [m], or over the longest straight one.
+    """Fit the law over a range of scales [m], or over the longest self-affine range.
 
-    Raises ValueError if fewer than four values lie in the range.
+    Raises ValueError if the given range has fewer than four values.
     """
     sure = np.diag(series.covariance(0.5)) < UNSURE
     if low is not None and high is not None:
@@ -96,7 +104,7 @@ def fit(series: ScaleSeries, low: float | None = None, high: float | None = None
 
 
 def _search(series: ScaleSeries) -> SelfAffineLaw:
-    """The longest straight range; if there is none, the straightest."""
+    """Fit over the longest self-affine range; without one, over the range with least drift plus deviation."""
     n = series.scale.size
     step = max(1, n // 10)
     starts, ends = range(0, n - 3, step), range(n, 3, -step)
@@ -109,47 +117,50 @@ def _search(series: ScaleSeries) -> SelfAffineLaw:
         ),
         reverse=True,
     )
-    whole = _fit(series)
-    runs = abs(whole.drift) > max(RUN, 2.0 * whole.drift_error)
-    tried: list[SelfAffineLaw] = []
-    for length, negative, j in windows:
-        if length < SHORTEST and tried:
+    complete = _fit(series)
+    covers_interval = abs(complete.drift) > max(RUN, 2.0 * complete.drift_error)
+    candidates: list[SelfAffineLaw] = []
+    for length, negative_start, j in windows:
+        if length < SHORTEST and candidates:
             break
-        candidate = _fit(series.within(np.arange(-negative, j)))
-        candidate = replace(candidate, runs=runs and candidate.decades < ENOUGH)
+        candidate = _fit(series.within(np.arange(-negative_start, j)))
+        candidate = replace(candidate, runs=covers_interval and candidate.decades < ENOUGH)
         if candidate.straight:
             return candidate
-        tried.append(candidate)
-    return min(tried, key=lambda fitted: abs(fitted.drift) + fitted.deviation)
+        candidates.append(candidate)
+    return min(candidates, key=lambda law: abs(law.drift) + law.deviation)
 
 
 def _fit(series: ScaleSeries) -> SelfAffineLaw:
+    """Fit the law to all values of a series, by generalised least squares with iterated covariance."""
     x, y = np.log(series.scale), np.log(series.value)
     reference = float(np.exp(x.mean()))
     offset = series.method == "structure"
     start = np.array([0.5, 0.0, 0.0][: 3 if offset else 2])
-    chance = series.covariance(0.5)
+    scatter = series.covariance(0.5)
 
     def law(p: Array) -> Array:
+        """ln(value) of the law at all scales, for p = (H, level, offset)."""
         expected = series.expected(p[0]) * reference ** (-2.0 * p[0])
         return np.asarray(np.log(expected + (p[2] * expected[0] if offset else 0.0)) + p[1])
 
     start[1] = np.mean(y - law(start))
     deviation, p = FLOOR, start
     for _ in range(3):
-        whiten = _whitening(chance + deviation**2 * _hang(x))
-        known = y + 0.5 * np.diag(chance)
+        whiten = _whitening(scatter + deviation**2 * _hang(x))
+        unbiased = y + 0.5 * np.diag(scatter)
 
-        def residual(p: Array, whiten: Array = whiten, known: Array = known) -> Array:
+        def residual(p: Array, whiten: Array = whiten, known: Array = unbiased) -> Array:
+            """Whitened residual of the law, then of the prior of the offset."""
             white = whiten @ (known - law(p))
             return np.append(white, p[2] / OFFSET) if offset else np.asarray(white)
 
         bounds = ([BOUND, -np.inf, -0.9][: p.size], [1.0 - BOUND, np.inf, np.inf][: p.size])
         result = least_squares(residual, p, bounds=bounds, x_scale=np.array([0.1, 0.1, 0.1])[: p.size])
         p = result.x
-        chance = series.covariance(float(np.clip(p[0], 0.05, 0.95)))
-        deviation = _excess(known - law(p), chance, x, p.size)
-    drift, drift_error = _drift(x, known - law(p), chance)
+        scatter = series.covariance(float(np.clip(p[0], 0.05, 0.95)))
+        deviation = _excess(unbiased - law(p), scatter, x, p.size)
+    drift, drift_error = _drift(x, unbiased - law(p), scatter)
     covariance = INFLATION * np.linalg.inv(result.jac.T @ result.jac)[:2, :2]
     return SelfAffineLaw(
         H=float(p[0]),
@@ -166,30 +177,37 @@ def _fit(series: ScaleSeries) -> SelfAffineLaw:
 
 
 def _whitening(covariance: Array) -> Array:
-    """What makes residuals of this covariance independent, of variance 1.
+    """Matrix that transforms residuals with this covariance to independent ones of variance 1.
 
-    An inverse: scipy's triangular solver wakes threads that cost fifty times so small a solution.
+    The inverse is computed: for matrices this small, the threads of scipy's triangular solver take fifty
+    times as long.
     """
     return np.asarray(np.linalg.inv(np.linalg.cholesky(covariance)))
 
 
 def _hang(x: Array) -> Array:
+    """Correlation matrix (n, n) [1] of the deviations from the law at ln(scale) x (n)."""
     return np.asarray(np.exp(-np.abs(x[:, None] - x) / CORRELATION))
 
 
 def _excess(residual: Array, chance: Array, x: Array, parameters: int) -> float:
-    """Standard deviation beyond chance that makes the weighted residual as large as expected."""
-    freedom = max(x.size - parameters, 1)
-    hang, tried = _hang(x), np.geomspace(FLOOR, 3.0, 60)
+    """Standard deviation from the law beyond statistical scatter: chi-squared then has its expected value.
+
+    scatter : covariance (n, n) of the residual from statistics
+    """
+    degrees_of_freedom = max(x.size - parameters, 1)
+    correlation, deviations = _hang(x), np.geomspace(FLOOR, 3.0, 60)
 
     def enough(deviation: float) -> bool:
-        return bool(residual @ np.linalg.solve(chance + deviation**2 * hang, residual) <= freedom)
+        """Whether chi-squared is at most its expected value for this standard deviation."""
+        chi_squared = residual @ np.linalg.solve(chance + deviation**2 * correlation, residual)
+        return bool(chi_squared <= degrees_of_freedom)
 
-    return float(tried[min(bisect_left(tried, True, key=enough), tried.size - 1)])
+    return float(deviations[min(bisect_left(deviations, True, key=enough), deviations.size - 1)])
 
 
 def _drift(x: Array, residual: Array, chance: Array) -> tuple[float, float]:
-    """Change of D over the range and its standard error, from one further, quadratic term."""
+    """Change of D over the range and its standard error, from an additional quadratic term in ln(scale)."""
     whiten = _whitening(chance + FLOOR**2 * _hang(x))
     t = x - x.mean()
     columns = [np.ones_like(t), t, t**2]

@@ -1,7 +1,7 @@
-"""Form removal and repair of a scan, each repair named and counted; its rms height and slope.
+"""Form removal and repair of a scan, and its rms height h and rms slope.
 
-h and slope are those of an isotropic surface, as the contact laws mean them. A line has the height of its
-surface where the surface has no longer waves, and 1/sqrt(2) of its slope.
+h and slope are those of an isotropic surface, as the contact laws need them. A profile has the same height as
+its surface if the surface has no longer waves, and its slope over sqrt(2).
 """
 
 from dataclasses import dataclass
@@ -15,16 +15,22 @@ from .heights import FLAT, FORMS, Areal, Heights
 
 Mask = NDArray[np.bool_]
 SPIKE = 8.0
-"""A spike deviates from the median of its neighbours by that many standard deviations."""
+"""Deviation of a spike from the median of its neighbours over the standard deviation [1]."""
 SWEEPS = 50
-"""Sweeps of the harmonic filling: holes up to about ten points wide become smooth."""
+"""Number of iterations of the harmonic filling: enough for gaps up to about ten points wide."""
 MOST_MISSING = 0.2
-"""Largest share of points that may be repaired."""
+"""Largest share of missing points [1] that can be filled."""
 
 
 @dataclass(frozen=True, slots=True)
 class Repair:
-    """What was repaired, how often, of how many points."""
+    """Repair of a scan, for messages.
+
+    name   : kind of repair
+    count  : number of repaired points
+    points : number of all points
+    effect : text on its effect
+    """
 
     name: str
     count: int
@@ -37,10 +43,11 @@ class Repair:
 
 
 def without_spikes(heights: Heights) -> tuple[Heights, list[Repair]]:
-    """Spikes become missing points: |z - median of neighbours| > SPIKE standard deviations of that.
+    """Replace spikes by missing points; return the heights and the repairs.
 
-    The median is over 5 points along a profile and 5 x 5 on a map; the standard deviation is a robust one,
-    the 0.9 quantile of the deviation over that of a normal distribution.
+    A spike deviates from the median of its neighbours by more than SPIKE_RATIO standard deviations. The
+    median is taken over 5 points of a profile, or 5 x 5 points of a map. The standard deviation is robust:
+    the 0.9 quantile of the deviation over the same quantile of a normal distribution.
     """
     from scipy.ndimage import median_filter
 
@@ -54,13 +61,16 @@ def without_spikes(heights: Heights) -> tuple[Heights, list[Repair]]:
     if not spikes.any():
         return heights, []
     clean = heights.with_heights(np.where(spikes, np.nan, z))
-    before, after = (float(np.nanstd(without_form(scan).z)) for scan in (heights, clean))
-    effect = f"; with them Sq is {before / after:.3g} times as large" if after > 0.0 else ""
+    rms_before, rms_after = (float(np.nanstd(without_form(scan).z)) for scan in (heights, clean))
+    effect = f"; with them Sq is {rms_before / rms_after:.3g} times as large" if rms_after > 0.0 else ""
     return clean, [Repair("spikes taken as missing", int(spikes.sum()), z.size, effect)]
 
 
 def without_form(heights: Heights, form: str = "tilt") -> Heights:
-    """Subtract the least-squares polynomial of the valid points: order 0, 1 or 2 in x (and y)."""
+    """Subtract the least-squares polynomial in x (and y) of the valid points.
+
+    form : "mean", "tilt" or "curvature": order 0, 1 or 2
+    """
     if form not in FORMS:
         raise ValueError(f"form = {form!r} is not one of {', '.join(FORMS)}")
     order = {"mean": 0, "tilt": 1, "curvature": 2}[form]
@@ -69,15 +79,16 @@ def without_form(heights: Heights, form: str = "tilt") -> Heights:
     valid = np.isfinite(heights.z)
     terms = _polynomial([np.broadcast_to(g, heights.z.shape) for g in grids], order)
     weights = [np.where(valid, t, 0.0).ravel() for t in terms]
-    normal, left = np.array([[a @ b for b in weights] for a in weights]), heights.z
-    for _ in range(2):  # what rounding leaves of a large form goes the second time
-        known = np.where(valid, left, 0.0).ravel()
-        coefficients = np.linalg.solve(normal, np.array([w @ known for w in weights]))
-        left = left - sum(c * t for c, t in zip(coefficients, terms, strict=True))
-    return heights.with_heights(left)
+    normal_matrix, residual = np.array([[a @ b for b in weights] for a in weights]), heights.z
+    for _ in range(2):  # the second pass removes the round-off of a large form
+        values = np.where(valid, residual, 0.0).ravel()
+        coefficients = np.linalg.solve(normal_matrix, np.array([w @ values for w in weights]))
+        residual = residual - sum(c * t for c, t in zip(coefficients, terms, strict=True))
+    return heights.with_heights(residual)
 
 
 def _polynomial(axes: list[Array], order: int) -> list[Array]:
+    """Monomials up to an order in one or two coordinates."""
     terms = [np.ones_like(axes[0])]
     if order >= 1:
         terms += axes
@@ -87,9 +98,10 @@ def _polynomial(axes: list[Array], order: int) -> list[Array]:
 
 
 def filled(heights: Heights) -> tuple[Heights, list[Repair]]:
-    """Missing points filled, for the spectrum: linearly along a profile, on a map harmonically.
+    """Fill missing points, for the spectrum: by linear interpolation in a profile, harmonically in a map.
 
-    Raises ValueError if more than MOST_MISSING of the points are missing.
+    Returns the heights and the repairs. Raises ValueError if more than MAX_MISSING_SHARE of the points are
+    missing.
     """
     z = heights.z
     valid = np.isfinite(z)
@@ -102,27 +114,28 @@ def filled(heights: Heights) -> tuple[Heights, list[Repair]]:
             f"at most {100.0 * MOST_MISSING:g} % can be filled"
         )
     if z.ndim == 1:
-        at = np.arange(z.size)
-        whole = np.interp(at, at[valid], z[valid])
+        index = np.arange(z.size)
+        complete = np.interp(index, index[valid], z[valid])
     else:
-        whole = _harmonic(_nearest(z, valid), ~valid)
-    how = "linearly" if z.ndim == 1 else "harmonically"
-    return heights.with_heights(whole), [Repair(f"missing points filled {how}", count, z.size)]
+        complete = _harmonic(_nearest(z, valid), ~valid)
+    method = "linearly" if z.ndim == 1 else "harmonically"
+    return heights.with_heights(complete), [Repair(f"missing points filled {method}", count, z.size)]
 
 
 def _harmonic(z: Array, missing: Mask) -> Array:
-    """Every missing point nears the mean of its four neighbours, from a first guess."""
+    """Solve Laplace's equation at the missing points by Jacobi iterations, from the initial heights z."""
     row, column = np.nonzero(missing)
     low, high = np.maximum(row - 1, 0), np.minimum(row + 1, z.shape[0] - 1)
     left, right = np.maximum(column - 1, 0), np.minimum(column + 1, z.shape[1] - 1)
-    whole = z.copy()
+    heights = z.copy()
     for _ in range(SWEEPS):
-        around = whole[low, column] + whole[high, column] + whole[row, left] + whole[row, right]
-        whole[row, column] = 0.25 * around
-    return whole
+        neighbours = heights[low, column] + heights[high, column] + heights[row, left] + heights[row, right]
+        heights[row, column] = 0.25 * neighbours
+    return heights
 
 
 def _nearest(z: Array, valid: Mask) -> Array:
+    """Fill missing points with the height of the nearest valid point."""
     if valid.all():
         return z
     from scipy.ndimage import distance_transform_edt
@@ -133,7 +146,12 @@ def _nearest(z: Array, valid: Mask) -> Array:
 
 @dataclass(frozen=True, slots=True)
 class Prepared:
-    """A surface without form: with gaps for the structure function, filled for the spectrum."""
+    """Scan without spikes and form.
+
+    gappy    : heights with missing points as NaN, for the structure function
+    complete : heights with missing points filled, for the spectrum
+    repairs  : repairs of spikes and gaps
+    """
 
     gappy: Heights
     whole: Heights
@@ -141,32 +159,35 @@ class Prepared:
 
 
 def prepare(heights: Heights, form: str = FORMS[0], keep_spikes: bool = False) -> Prepared:
-    """Take spikes as missing, unless they are kept; remove the form, fill.
+    """Prepare a scan: remove spikes (unless `keep_spikes`), remove the form, fill missing points.
 
-    Raises ValueError if the form leaves round-off alone, and as `filled`.
+    Raises ValueError if only round-off remains without the form, or if too many points are missing.
     """
     clean, spikes = (heights, []) if keep_spikes else without_spikes(heights)
     gappy = without_form(clean, form)
     if np.nanmax(np.abs(gappy.z)) <= FLAT * np.nanmax(np.abs(clean.z)):
         raise ValueError(f"{heights.name}: without its {form} the surface is smooth, it has no D and no G")
-    whole, gaps = filled(gappy)
-    return Prepared(gappy, whole, (*spikes, *gaps))
+    complete, gaps = filled(gappy)
+    return Prepared(gappy, complete, (*spikes, *gaps))
 
 
 FEWEST = 5.0
-"""Shortest wave of the slope, in spacings: shorter ones are noise and the instrument's (docs/surfaces.md)."""
+"""Shortest wavelength of the slope over the point spacing [1]. Shorter waves are noise or effects of the
+instrument (docs/surfaces.md)."""
 WAVES = 4.0
-"""Least longest wave over that shortest one."""
+"""Smallest ratio of the longest to the shortest wavelength [1]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ScanRoughness:
     """Roughness of one scan without form and spikes.
 
-    areal         : whether of a map
-    rms, mean     : [m] root mean square and mean absolute height of the scan (Sq, Sa; of a profile Rq, Ra)
-    h             : [m] rms height of its waves up to longest_wave [m]
-    slope         : [1] rms slope of the isotropic surface, of waves from longest_wave to shortest_wave [m]
+    is_areal      : whether the scan is an areal map
+    rms           : [m] root mean square height (Sq; Rq of a profile)
+    mean_absolute : [m] mean absolute height (Sa; Ra of a profile)
+    h             : [m] rms height of waves up to longest_wave
+    slope         : [1] rms slope of the isotropic surface, of waves from longest_wave down to shortest_wave
+    longest_wave, shortest_wave : wavelengths [m]
     """
 
     areal: bool
@@ -179,12 +200,12 @@ class ScanRoughness:
 
 
 def default_wave(heights: Heights) -> float:
-    """Longest wave [m] where none is stated: the length of a profile, the shorter side of a map."""
+    """Default of the longest wavelength [m]: the length of a profile, or the shorter side of a map."""
     return min(heights.lengths)
 
 
 def check_wave(heights: Heights, longest: float) -> None:
-    """Raise ValueError if a scan says nothing of waves that long [m]."""
+    """Raise ValueError if a scan cannot resolve waves up to this longest wavelength [m]."""
     low, high = WAVES * _shortest(heights), max(heights.lengths)
     if not low <= longest <= high * (1.0 + 1e-9):
         raise ValueError(
@@ -194,13 +215,14 @@ def check_wave(heights: Heights, longest: float) -> None:
 
 
 def of_scan(gappy: Heights, whole: Heights, longest: float) -> ScanRoughness:
-    """Roughness of a scan over a longest wave [m].
+    """Roughness of a scan from waves up to a longest wavelength [m].
 
-    gappy, whole : without form; missing points as NaN, and filled
+    gappy    : heights without form, missing points as NaN
+    complete : heights without form, missing points filled
 
-    The heights are a sum of cosines with 0, 1, 2, ... half waves along every side (type-II cosine transform:
-    no window, no jump at the ends, and the squares add up to the mean square of the heights). Those with
-    a wavelength up to the longest count.
+    The heights are decomposed into cosines with 0, 1, 2, ... half waves along each side (type-II cosine
+    transform). This needs no window and has no jump at the ends; the squared amplitudes add up to the mean
+    square height. Only waves up to the longest wavelength count.
     """
     from scipy.fft import dctn
 
@@ -227,4 +249,5 @@ def of_scan(gappy: Heights, whole: Heights, longest: float) -> ScanRoughness:
 
 
 def _shortest(heights: Heights) -> float:
+    """Shortest wavelength [m] of the slope."""
     return FEWEST * max((heights.dx, heights.dy) if isinstance(heights, Areal) else (heights.dx,))

@@ -1,6 +1,4 @@
-"""Height data on a uniform grid: a profile or an areal map, never one for the other; what files of columns
-and files that are plainly no surface need before.
-"""
+"""Height data on a uniform grid (profiles, areal maps), and checks of grids and of files."""
 
 import re
 from dataclasses import dataclass, replace
@@ -14,20 +12,22 @@ from jointfmu.quantity import Array
 from ..columns import CONTROL
 
 FORMS = ("tilt", "mean", "curvature")
-"""What is removed before anything else: a plane (default), the mean height, a surface of second order."""
+"""Forms that can be removed: a plane (default), the mean height, a surface of second order."""
 LEAST_PROFILE = 128
-"""Least number of points of a profile: the lags used then span 0.9 decades."""
+"""Smallest number of points of a profile: the lags of the structure function then span 0.9 decades."""
 LEAST_AREAL = 64
-"""Least number of points along either side of an areal map."""
+"""Smallest number of points along each side of an areal map."""
 FLAT = 1e-9
-"""Largest deviation of heights over the heights themselves [1] that is round-off."""
+"""Height variation over the absolute height [1], below which it is round-off."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Profile:
     """Heights along a line.
 
-    z : (n,) [m], NaN where missing; dx : spacing [m]; name : for messages
+    z    : heights (n,) [m], NaN where missing
+    dx   : spacing [m]
+    name : name for messages
     """
 
     z: Array
@@ -50,9 +50,11 @@ class Profile:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Areal:
-    """Heights over a rectangle.
+    """Heights over a rectangle (areal map).
 
-    z : (ny, nx) [m], NaN where missing; dx, dy : spacing [m]; name : for messages
+    z      : heights (ny, nx) [m], NaN where missing
+    dx, dy : spacing [m]
+    name   : name for messages
     """
 
     z: Array
@@ -81,6 +83,7 @@ Heights = Profile | Areal
 
 
 def _check(name: str, z: Array, *spacings: float) -> None:
+    """Raise ValueError if a spacing is not positive, or if all heights are missing or constant."""
     for spacing in spacings:
         if not (np.isfinite(spacing) and spacing > 0.0):
             raise ValueError(f"{name}: spacing = {spacing:g} m is outside (0, inf)")
@@ -95,56 +98,55 @@ def _check(name: str, z: Array, *spacings: float) -> None:
 Places = NDArray[np.int64]
 
 NOISE = 0.05
-"""Largest deviation from a regular grid [1], over its spacing, that needs no explanation."""
+"""Largest deviation of a position from a regular grid over the grid spacing [1]."""
 DIGITS = 1e9
-"""Largest number of units of the last digit that a position may have."""
+"""Largest position over the unit of its last digit [1]; beyond it, the last digit is unknown."""
 
 
 def places(path: Path, name: str, at: Array, factor: float, repeats: bool = False) -> tuple[Places, float]:
-    """Place of every position (n,) on a regular grid, from 0 on, and the spacing.
+    """Fit a regular grid to positions (n,); return the grid index of each position, from 0, and the spacing.
 
-    path, name : for messages
-    at         : rising positions as the file states them, in a unit of `factor` metres
-    repeats    : whether rounding may make neighbours equal
+    path, name    : file and axis, for messages
+    positions     : increasing positions as the file states them, in a unit of `factor` metres
+    allow_repeats : whether rounding may make neighbours equal
 
-    The spacing is (last - first)/(n - 1). Every position must lie where it belongs within NOISE of the
-    spacing, or within rounding: half a unit of its last digit, and half a unit of that of the ends, which
-    are rounded too. Where that fails, points are missing: the spacing is then the middle gap, and every
-    position a multiple of it. Raises ValueError if that fails as well.
+    First, the spacing is (last - first)/(n - 1). Each position must lie on the grid within GRID_TOLERANCE of
+    the spacing, or within rounding: half a unit of its last digit plus half a unit of the last digit of the
+    ends. If this fails, points are missing: the spacing is then the median gap, and each position must be a
+    multiple of it. Raises ValueError if this fails too.
     """
     if at.size < 2 or not np.all(np.isfinite(at)):
         raise ValueError(f"{path}: {name} has a gap or a single value; expected positions in rising order")
     gaps = np.diff(at)
     if at[-1] == at[0] or (not repeats and gaps.min() <= 0.0):
         raise ValueError(f"{path}: {name} repeats values; expected every position once")
-    whole = at - at[0]
-    step = float(whole[-1] / (at.size - 1))
-    place = np.arange(at.size)
+    offset = at - at[0]
+    step = float(offset[-1] / (at.size - 1))
+    index = np.arange(at.size)
     digit = last_digit(at)
     rounding = 0.5 * (digit + max(digit[0], digit[-1]))
-    if np.all(_off(whole, place, step) <= np.maximum(NOISE * step, rounding)):
-        return place, step
-    step = (
-        float(whole[-1] / max(np.rint(whole[-1] / np.median(gaps)), 1.0)) if np.median(gaps) > 0.0 else step
-    )
-    place = np.rint(whole / step).astype(np.int64)
-    if gaps.min() <= 0.0 or np.diff(place).min() < 1 or _off(whole, place, step).max() > NOISE * step:
+    if np.all(_off(offset, index, step) <= np.maximum(NOISE * step, rounding)):
+        return index, step
+    if np.median(gaps) > 0.0:
+        step = float(offset[-1] / max(np.rint(offset[-1] / np.median(gaps)), 1.0))
+    index = np.rint(offset / step).astype(np.int64)
+    if gaps.min() <= 0.0 or np.diff(index).min() < 1 or _off(offset, index, step).max() > NOISE * step:
         raise ValueError(
             f"{path}: the spacing of {name} varies ({gaps.min() * factor:.4g} to "
             f"{gaps.max() * factor:.4g} m); resample to a constant one"
         )
-    return place, step
+    return index, step
 
 
 def _off(at: Array, place: Places, step: float) -> Array:
-    """Distance of every position from its place."""
+    """Distance of each position from its grid point."""
     return np.asarray(np.abs(at - place * step))
 
 
 def last_digit(at: Array) -> Array:
-    """Unit of the last digit of every position (n,): of decimals or of significant digits, as they have.
+    """Unit of the last digit of each position (n,), for a fixed number of decimals or of significant digits.
 
-    0 where they have more than DIGITS.
+    0 if the positions have more digits than MAX_DIGIT_UNITS.
     """
     sizes = np.where(at == 0.0, 1.0, np.abs(at))
     decade = 10.0 ** np.floor(np.log10(sizes))
@@ -153,11 +155,14 @@ def last_digit(at: Array) -> Array:
 
 
 def _exact(numbers: Array) -> float:
-    """The largest power of ten, at most 1, of which all are multiples; 0 if that is more than DIGITS."""
-    most = float(np.abs(numbers).max())
+    """Largest power of ten, at most 1, of which all numbers are multiples.
+
+    0 if the largest number is more than MAX_DIGIT_UNITS times that power.
+    """
+    largest = float(np.abs(numbers).max())
     for power in range(0, -16, -1):
         scaled = numbers * 10.0**-power
-        if most * 10.0**-power > DIGITS:
+        if largest * 10.0**-power > DIGITS:
             break
         if np.abs(scaled - np.rint(scaled)).max() < 1e-6:
             return float(10.0**power)
@@ -165,7 +170,7 @@ def _exact(numbers: Array) -> float:
 
 
 SMALL = 2**22
-"""Size [B] of files whose numbers are counted."""
+"""Largest size [bytes] of a text file in which the check counts the numbers."""
 FOREIGN = {
     b"\x89PNG": "a PNG picture",
     b"\xff\xd8\xff": "a JPEG picture",
@@ -174,28 +179,28 @@ FOREIGN = {
     b"MZ": "a program",
     b"\x7fELF": "a program",
 }
-"""First bytes of files that are given by mistake."""
+"""First bytes of files that cannot be a surface, and what they are."""
 SIGNED = (
     *("al3d", "bcr", "bcrf", "datx", "frt", "gwy", "h5", "jpk", "lext", "mdt", "mi", "nc", "npy", "npz"),
     *("opd", "os3d", "qep", "sdf", "sur", "tmd", "vk3", "vk4", "vk6", "vk7", "x3p", "zmg", "zon"),
 )
-"""Suffixes of formats of SurfaceTopography that begin with known bytes."""
+"""Suffixes of formats of SurfaceTopography that begin with a known signature."""
 SIGNATURES = (
     *(b"aISO-1.0", b"bISO-1.0", b"\x01\xb0\x93\xff", b"PK\x03\x04", b"fileType", b"CDF", b"\x89HDF"),
     *(b"\x93NUMPY", b"II*\0", b"MM\0*", b"DIGITAL SURF", b"DSCOMPRESSED", b"Binary TrueMap", b"VK"),
     *(b"Zeta-Instruments", b"KPK", b"OmniSurf3D", b"AliconaImaging", b"fileformat = bcr", b"f\0i\0l\0e"),
     *(b"\xff\xfef\0i", b"\xfe\xff\0f\0i", b"\x88\x1b\x03", b"GWY", b"FRTM_GLIDERV", b"WSxM file copyright"),
 )
-"""First bytes of those formats; Wyko OPD has its name from the third byte on."""
+"""Signatures (first bytes) of these formats; Wyko OPD has its signature from the third byte on."""
 _NUMBER = re.compile(rb"\d+")
 
 
 def check(path: Path) -> None:
-    """Raise ValueError, one line, if a file is plainly no surface."""
+    """Raise ValueError (one line) if a file is no surface, by its first bytes or by too few numbers."""
     with path.open("rb") as file:
         start = file.read(64)
-    if what := next((text for mark, text in FOREIGN.items() if start.startswith(mark)), None):
-        raise ValueError(f"{path}: is no surface: it is {what}")
+    if kind := next((text for signature, text in FOREIGN.items() if start.startswith(signature)), None):
+        raise ValueError(f"{path}: is no surface: it is {kind}")
     if path.suffix[1:].lower() in SIGNED and not signed(start):
         raise ValueError(
             f"{path}: is no surface: it does not begin as a {path.suffix} file, nor as any other"
@@ -211,5 +216,5 @@ def check(path: Path) -> None:
 
 
 def signed(start: bytes) -> bool:
-    """Whether a file that starts so has one of the formats with known first bytes."""
+    """Whether the first bytes of a file are the signature of a known format."""
     return start.startswith(SIGNATURES) or start[2:].startswith(b"Directory")

@@ -1,4 +1,4 @@
-"""D and G of a surface, or of the equivalent surface of a pair, with confidence intervals and warnings."""
+"""Identify D and G of a surface, or of the equivalent surface of two, with confidence intervals."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -26,7 +26,7 @@ from .results import (
 from .spectrum import ScaleSeries, psd, structure
 
 LEVEL = 0.95
-"""Level of the confidence intervals."""
+"""Level of the confidence intervals [1]."""
 DRAWS = 4000
 
 
@@ -40,14 +40,16 @@ def identify(
 ) -> Identification:
     """Identify one surface, or the equivalent surface of two.
 
-    surfaces : one, or two of the same kind; of two independent surfaces the difference of heights counts,
-        whose structure function and spectrum are the sums of theirs
-    form     : what is removed, see `form.FORMS`
-    span     : scaling range [m] of lags and wavelengths; by default the longest straight one is searched
-    longest  : longest wave [m] of the roughness; by default the shortest `default_wave` of the surfaces
-    side     : of one surface, the side of the contact that it is, one of SIDES: on a smooth other side, or
-               on another one like it; of two surfaces the first is side 1
-    keep_spikes : whether spikes are heights like all others
+    The equivalent surface of two independent surfaces has the difference of their heights. Its structure
+    function is the sum of their structure functions, and its spectrum the sum of their spectra.
+
+    surfaces : one surface, or two of the same kind (profile or areal map)
+    form     : form that is removed, one of FORMS
+    scale_range : range [m] of lags and wavelengths; None: the longest self-affine range
+    longest_wave : longest wavelength [m] of the roughness; None: the smallest `default_wave` of the surfaces
+    side : for one surface, its side of the contact, one of SCAN_SIDES. "1" or "2": the other side is smooth;
+               "both": the other side is alike. Of two surfaces, the first is side 1
+    keep_spikes : do not remove spikes
     """
     if len(surfaces) not in (1, 2):
         raise ValueError(f"{len(surfaces)} files given, allowed are one surface or the two of a pair")
@@ -65,18 +67,18 @@ def identify(
     results = []
     for direction in directions:
         for method in (structure, psd):
-            parts = [
+            all_series = [
                 method(surface.gappy if method is structure else surface.whole, direction)
                 for surface in prepared
             ]
-            series = doubled(parts[0]) if side == "both" else parts[0]
-            if len(parts) == 2:
-                series = added(parts[0], parts[1])
+            series = doubled(all_series[0]) if side == "both" else all_series[0]
+            if len(all_series) == 2:
+                series = added(all_series[0], all_series[1])
             results.append(_result(series, fit(series, low, high)))
     repairs = [(surface.whole.name, repair) for surface in prepared for repair in surface.repairs]
-    repeats = [texture(surface.whole) for surface in prepared if isinstance(surface.whole, Areal)]
+    line_shares = [texture(surface.whole) for surface in prepared if isinstance(surface.whole, Areal)]
     names = tuple(surface.name for surface in surfaces)
-    textured = any(max(shares) > TEXTURE for shares in repeats)
+    textured = any(max(shares) > TEXTURE for shares in line_shares)
     wave = longest or min(default_wave(surface) for surface in surfaces)
     scans = tuple(of_scan(surface.gappy, surface.whole, wave) for surface in prepared)
     notes = tuple(warnings(results, textured))
@@ -84,33 +86,41 @@ def identify(
 
 
 def doubled(series: ScaleSeries) -> ScaleSeries:
-    """Series of the equivalent surface of two sides of one finish, of which one is known."""
+    """Series of the equivalent surface of two sides with the same finish, from the series of one side."""
     return replace(series, value=2.0 * series.value, raw=2.0 * series.raw)
 
 
 def added(first: ScaleSeries, second: ScaleSeries) -> ScaleSeries:
-    """Series of the equivalent surface: values add at equal scale, over the range both have."""
-    keep = (first.scale >= second.scale[0] * 0.999) & (first.scale <= second.scale[-1] * 1.001)
-    if keep.sum() < 4:
+    """Series of the equivalent surface of two surfaces: the sum of both over their common range of scales.
+
+    Raises ValueError if fewer than four scales are common.
+    """
+    common = (first.scale >= second.scale[0] * 0.999) & (first.scale <= second.scale[-1] * 1.001)
+    if common.sum() < 4:
         raise ValueError(
             f"the two surfaces share no scales: {first.scale[0]:.3g} to {first.scale[-1]:.3g} m and "
             f"{second.scale[0]:.3g} to {second.scale[-1]:.3g} m"
         )
-    first = first.within(keep)
-    x, known = np.log(first.scale), np.log(second.scale)
-    at = np.stack([np.interp(x, known, unit) for unit in np.eye(known.size)], axis=1)
-    value, raw = (np.exp(at @ np.log(a)) for a in (second.value, second.raw))
+    first = first.within(common)
+    x1, x2 = np.log(first.scale), np.log(second.scale)
+    interpolation = np.stack([np.interp(x1, x2, unit) for unit in np.eye(x2.size)], axis=1)
+    value, raw = (np.exp(interpolation @ np.log(a)) for a in (second.value, second.raw))
     share = first.value / (first.value + value)
 
     def covariance(H: float) -> Array:
-        covariance1, covariance2 = first.covariance(H), at @ second.covariance(H) @ at.T
+        """Covariance of ln(value) of the sum."""
+        covariance1 = first.covariance(H)
+        covariance2 = interpolation @ second.covariance(H) @ interpolation.T
         return np.asarray(np.outer(share, share) * covariance1 + np.outer(1 - share, 1 - share) * covariance2)
 
     return replace(first, value=first.value + value, raw=first.raw + raw, covariance=covariance)
 
 
 def _result(series: ScaleSeries, fitted: SelfAffineLaw) -> Result:
-    """Both kinds of parameters; the one that was not measured follows if the surface is isotropic."""
+    """Fractal parameters of the profile and of the surface, with intervals by Monte Carlo sampling.
+
+    Only one of the two is measured; the other follows for an isotropic surface.
+    """
     rng = np.random.default_rng(0)
     root = np.linalg.cholesky(fitted.covariance)
     draws = np.array([fitted.H, fitted.level]) + rng.standard_normal((DRAWS, 2)) @ root.T
@@ -137,6 +147,6 @@ def _result(series: ScaleSeries, fitted: SelfAffineLaw) -> Result:
 
 
 def _interval(values: Array) -> tuple[float, float, float]:
-    """The first value, and the interval of the others, the draws."""
+    """Estimate and confidence interval from values: the first is the estimate, the others are samples."""
     low, high = np.quantile(values[1:], [0.5 - 0.5 * LEVEL, 0.5 + 0.5 * LEVEL])
     return float(values[0]), float(low), float(high)

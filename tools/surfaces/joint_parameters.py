@@ -1,4 +1,4 @@
-"""Which parameters of a joint a surface decides, and a parameter file with them."""
+"""Parameters of a joint that follow from a measured surface, and their entry in a parameter file."""
 
 import math
 
@@ -13,9 +13,12 @@ from .results import Estimate, Identification, Result
 def changes(
     identified: Identification, joint: str, method: str | None = None
 ) -> dict[str, tuple[float, Result]]:
-    """{structured name: (value, result it comes from)} of the rough surfaces of a joint, a key of KINDS.
+    """D and G of the rough surfaces of a joint kind: {parameter name: (value, result it comes from)}.
 
-    Profiles are those along the surface's direction where the measured one is textured.
+    If the measured surface is textured, a profile is taken along the direction that the joint needs.
+
+    joint  : name of the joint kind, a key of KINDS
+    method : one of METHODS; None: the better one
     """
     if joint not in KINDS:
         raise ValueError(f"joint = {joint!r} is not one of {', '.join(KINDS)}")
@@ -28,36 +31,38 @@ def changes(
 
 
 def doubt(identified: Identification, joint: str) -> str | None:
-    """Why D and G of a joint's rough surfaces are not determined; None if all are."""
+    """Reason why D and G of the rough surfaces of a joint are not determined; None if they are."""
     directions = dict.fromkeys(_direction(identified, surface) for surface in KINDS[joint].surfaces)
     doubts = (identified.doubt(direction) for direction in directions)
     return next((text for text in doubts if text), None)
 
 
 def _direction(identified: Identification, surface: RoughSurface) -> str | None:
+    """Direction that the joint needs, if the measured surface is textured; else None: the whole surface."""
     return surface.direction if identified.textured else None
 
 
 def _dimension_and_roughness(result: Result, surface: RoughSurface) -> tuple[Estimate, Estimate]:
+    """D and G that the joint needs: of the surface or of the profile."""
     if surface.areal:
         return result.areal.D_s, result.areal.G_s
     return result.profile.D, result.profile.G
 
 
 def meaning(joint: str) -> str:
-    """What D of the joint's first rough surface is."""
+    """Meaning of D of the first rough surface of a joint, as text."""
     return "D_s of the surface" if KINDS[joint].surfaces[0].areal else "D of the profile"
 
 
 def with_surface(
     file: ParameterFile, identified: Identification, method: str | None = None, force: bool = False
 ) -> ParameterFile:
-    """The parameter file with what the surface decides, each with its source.
+    """Set the parameters of a file that follow from a measured surface, with their sources.
 
-    The heights of the known sides, of which the law `roughness` takes its h. With that law slope, longest
-    wave and, if it is determined, the Hurst exponent; else D and G, if they are determined.
+    These are the rms heights of the measured sides. With the law `roughness` also slope, longest wave and, if
+    it is determined, the Hurst exponent. With other laws also D and G, if they are determined.
 
-    force : D and G (the Hurst exponent) also if they are not determined; ValueError if one is no number
+    force : set D and G or the Hurst exponent even if they are not determined; ValueError if one is not finite
     """
     sure = force or doubt(identified, file.joint) is None
     if file.law == ROUGHNESS_LAW:
@@ -74,6 +79,7 @@ def with_surface(
 def _with_law(
     file: ParameterFile, identified: Identification, method: str | None, sure: bool
 ) -> ParameterFile:
+    """Set slope, longest wave and, if it is determined, the Hurst exponent of the law `roughness`."""
     shortest, longest = identified.scans[0].shortest_wave, identified.longest_wave
     source = f"measured: {_files(identified)}; waves up to {longest:.4g} m"
     file = file.with_values({"longest_wave": longest}, "user", source)
@@ -85,6 +91,7 @@ def _with_law(
 
 
 def _with_fractal(file: ParameterFile, identified: Identification, method: str | None) -> ParameterFile:
+    """Set D and G of the rough surfaces of the joint; ValueError if one is not finite."""
     surfaces = {surface.prefix: surface for surface in KINDS[file.joint].surfaces}
     for name, (value, result) in changes(identified, file.joint, method).items():
         if not math.isfinite(value):
@@ -93,14 +100,14 @@ def _with_fractal(file: ParameterFile, identified: Identification, method: str |
                 f"{name} of {' and '.join(identified.names)} is not determined (D = {D:.2f}, the interval of "
                 f"G spans {G.decades:.0f} decades): {file.joint} needs a number"
             )
-        prefix, _, which = name.rpartition(".")
-        source = _source(identified, result, surfaces[prefix], which)
+        prefix, _, symbol = name.rpartition(".")
+        source = _source(identified, result, surfaces[prefix], symbol)
         file = file.with_values({name: value}, "user", source)
     return file
 
 
 def _files(identified: Identification) -> str:
-    """The scanned files as text, with what they stand for."""
+    """Names of the scanned files and the sides that they represent, as text."""
     if len(identified.names) == 2:
         return f"{identified.names[0]} and {identified.names[1]} (equivalent surface)"
     side = identified.side
@@ -114,18 +121,20 @@ def _files(identified: Identification) -> str:
 
 
 def _band(identified: Identification, result: Result) -> str:
-    how = {"structure": "structure function, lags", "psd": "power spectral density, wavelengths"}
+    """Text for a source: files, method and range of scales of a result."""
+    methods = {"structure": "structure function, lags", "psd": "power spectral density, wavelengths"}
     return (
-        f"identified from {_files(identified)} by {how[result.method]} "
+        f"identified from {_files(identified)} by {methods[result.method]} "
         f"{result.fit.low:.3g} to {result.fit.high:.3g} m"
     )
 
 
 def _source(identified: Identification, result: Result, surface: RoughSurface, which: str) -> str:
+    """Text for the source of D or G: files, method, direction and confidence interval."""
     D, G = _dimension_and_roughness(result, surface)
-    shown = D if which == "D" else G
+    estimate = D if which == "D" else G
     if surface.areal:
         extent = "of the surface"
     else:
         extent = "of the profile" if result.direction in ("profile", "areal") else f"along {result.direction}"
-    return f"{_band(identified, result)}; {extent}; 95 % interval {shown.low:.4g} to {shown.high:.4g}"
+    return f"{_band(identified, result)}; {extent}; 95 % interval {estimate.low:.4g} to {estimate.high:.4g}"

@@ -1,4 +1,4 @@
-"""Height data from files: our CSV, and what instruments write (SurfaceTopography, extra `surface`)."""
+"""Read height data: CSV files, and files of instruments (package SurfaceTopography, extra `surface`)."""
 
 import contextlib
 import io
@@ -18,18 +18,17 @@ from . import heights as sift
 from .heights import Areal, Heights, Profile
 
 SHORTEST = 50e-6
-"""Shortest profile [m] that is taken without asking back: a stylus' cut-off is longer."""
+"""Shortest plausible profile [m]: the cut-off of a stylus instrument is longer."""
 ROUGHEST = 50e-6
-"""Largest root mean square height [m] of a surface that is taken without asking back: rough castings have
-less."""
+"""Largest plausible rms height of a surface [m]: rough castings have less."""
 USUAL = (1e-7, 1.0)
-"""Shortest and longest field [m] that is taken without asking back."""
+"""Shortest and longest plausible side of a scan [m]."""
 LIKELY = ("mm", "um", "nm")
-"""Units that may have been meant."""
+"""Units that a message may suggest instead of an implausible one."""
 TYPICAL = 1e-3
-"""Length [m] of a typical scan."""
+"""Length of a typical scan [m]."""
 TEXT = (".csv", ".txt", ".dat", ".xy", ".prf")
-"""Suffixes of files that may hold bare columns of numbers."""
+"""Suffixes of text files that may have columns of numbers without a header."""
 
 
 def read(
@@ -39,81 +38,86 @@ def read(
     unit_x: str | None = None,
     unit_z: str | None = None,
 ) -> Heights:
-    """Heights in metres of a profile or an areal map.
+    """Read a profile or an areal map, in metres.
 
-    unit     : length unit of a file that states none (x, y and z alike); refused beside one's own
-    unit_x   : the same of x and y in columns, in place of `unit`
-    unit_z   : the same of z
-    any_size : take a field beyond USUAL as it is
+    unit     : length unit of x, y and z, for a file without units
+    unit_x   : unit of x and y, for columns without units; instead of `unit`
+    unit_z   : unit of z, for columns without units; instead of `unit`
+    accept_any_size : accept a size outside of PLAUSIBLE_LENGTHS
 
-    Raises ValueError with one line: no file, no surface, unit missing or stated twice, too few points,
-    constant, all missing; a length that hints at another unit.
+    Raises ValueError (one line): no file, no surface, a unit is missing or given twice, too few points,
+    constant heights, all heights missing, a size that suggests another unit.
     """
     path = Path(path)
     check_regular(path, "height data")
     if not path.is_file():
         raise ValueError(f"{path}: is no file; expected height data")
-    given = {"x": unit_x or unit, "z": unit_z or unit}
-    for name, one in {"unit": unit, "unit_x": unit_x, "unit_z": unit_z}.items():
-        if one is not None and one not in csvfile.LENGTHS:
-            raise Refusal(f"{name} = {one!r} is not one of {csvfile.ALLOWED}", name)
+    option_units = {"x": unit_x or unit, "z": unit_z or unit}
+    for name, value in {"unit": unit, "unit_x": unit_x, "unit_z": unit_z}.items():
+        if value is not None and value not in csvfile.LENGTHS:
+            raise Refusal(f"{name} = {value!r} is not one of {csvfile.ALLOWED}", name)
     if path.stat().st_size == 0:
         raise ValueError(f"{path}: is no surface: the file is empty")
-    text = path.suffix.lower() in TEXT
+    is_text = path.suffix.lower() in TEXT
     if line := csvfile.header(path):
-        if any(given.values()):
-            one = next(filter(None, given.values()))
-            raise Refusal(f"{path}: states its units itself; leave the unit {one} out", "unit")
-        heights, stated = csvfile.read(path, line)
-    elif text and (titles := csvfile.titles(path)):
-        heights, stated = csvfile.titled(path, titles, given)
-    elif text and (count := _bare(path)):
-        if not all(given.values()):
+        if any(option_units.values()):
+            value = next(filter(None, option_units.values()))
+            raise Refusal(f"{path}: states its units itself; leave the unit {value} out", "unit")
+        heights, file_unit = csvfile.read(path, line)
+    elif is_text and (titles := csvfile.titles(path)):
+        heights, file_unit = csvfile.titled(path, titles, option_units)
+    elif is_text and (count := _bare(path)):
+        if not all(option_units.values()):
             raise _without_unit(path)
         names = csvfile.LAYOUTS["profile" if count == 2 else "points"]
-        heights, stated = csvfile.titled(path, [(name, None) for name in names], given, above=0)
+        heads = [(name, None) for name in names]
+        heights, file_unit = csvfile.titled(path, heads, option_units, above=0)
     elif unit_x or unit_z:
-        one = "unit_x" if unit_x else "unit_z"
-        raise Refusal(f"{path}: is no table of columns; expected one unit for all axes", one)
+        name = "unit_x" if unit_x else "unit_z"
+        raise Refusal(f"{path}: is no table of columns; expected one unit for all axes", name)
     else:
-        heights, stated = _instrument(path, unit)
+        heights, file_unit = _instrument(path, unit)
     if not any_size:
-        _usual(heights, stated)
+        _usual(heights, file_unit)
     return heights
 
 
 def _usual(heights: Heights, unit: str) -> None:
-    """Refuse a field that nobody scans, naming the unit that was probably meant."""
+    """Raise ValueError for an implausible size of a scan; the message suggests the likely unit."""
     low, high = USUAL if isinstance(heights, Areal) else (SHORTEST, USUAL[1])
     if max(heights.lengths) <= high and max(heights.lengths) >= low:
         return
     factor = _metres(unit)
     number = max(heights.lengths) / factor
-    meant = min(LIKELY, key=lambda name: abs(np.log(number * csvfile.LENGTHS[name] / TYPICAL)))
+    likely = min(LIKELY, key=lambda name: abs(np.log(number * csvfile.LENGTHS[name] / TYPICAL)))
     size = " x ".join(f"{length:.4g} m" for length in heights.lengths)
-    told = " x ".join(f"{length / factor:.4g} {meant}" for length in heights.lengths)
+    likely_size = " x ".join(f"{length / factor:.4g} {likely}" for length in heights.lengths)
     raise Refusal(
         f"{heights.name}: the field is {size} with lengths in {unit}, scans have {low:g} to {high:g} m; "
-        f"were lengths in {meant} meant ({told})? State the right unit, or that the size is right",
+        f"were lengths in {likely} meant ({likely_size})? State the right unit, or that the size is right",
         "force",
     )
 
 
 def _without_unit(path: Path) -> Refusal:
+    """Error for a file without a length unit."""
     return Refusal(f"{path}: states no length unit; state it, one of {csvfile.ALLOWED}", "unit")
 
 
 def _bare(path: Path) -> int:
-    """Number of columns, two or three, if a text file begins with a line of numbers; else 0."""
+    """Number of columns (2 or 3) of a text file that begins with a line of numbers; 0 for other files."""
     with path.open("rb") as file:
         first = file.readline(10000).decode("utf-8-sig", errors="replace").rstrip("\r\n")
-    mark = separator(first)
-    row = cells(first, mark) if mark else first.split()
+    delimiter = separator(first)
+    row = cells(first, delimiter) if delimiter else first.split()
     return len(row) if len(row) in (2, 3) and all(number(cell) is not None for cell in row) else 0
 
 
 def _instrument(path: Path, unit: str | None) -> tuple[Heights, str]:
-    """Any format of SurfaceTopography, the default channel, and its unit."""
+    """Read the default channel of any format of SurfaceTopography; return the heights and the length unit.
+
+    Raises ValueError if the package is missing or cannot read the file, or if the unit is unknown.
+    """
     sift.check(path)
     archives.check_zip(path)
     try:
@@ -134,23 +138,26 @@ def _instrument(path: Path, unit: str | None) -> tuple[Heights, str]:
         raise ValueError(
             f"{path}: is no surface: neither our CSV nor a format of SurfaceTopography"
         ) from None
-    except Exception as error:  # the readers raise what they like
+    except Exception as error:  # the readers raise exceptions of any kind
         reason = " ".join(str(error).split())[:120] or type(error).__name__
         raise ValueError(f"{path}: is no surface that SurfaceTopography can read ({reason})") from None
     if topography.unit is None and unit is None:
         raise _without_unit(path)
     if topography.unit is not None and unit is not None:
         raise Refusal(f"{path}: states its unit {topography.unit} itself; leave the unit {unit} out", "unit")
-    stated = str(unit or topography.unit)
+    file_unit = str(unit or topography.unit)
     try:
-        factor = _metres(stated)
+        factor = _metres(file_unit)
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from None
-    return _heights(path, topography, size, heights, factor), stated
+    return _heights(path, topography, size, heights, factor), file_unit
 
 
 def _metres(unit: str) -> float:
-    """A length unit in metres, ours or one of SurfaceTopography; also µm whose two bytes were read as two."""
+    """Size of a length unit in metres, also for units of SurfaceTopography and for µm in a wrong encoding.
+
+    Raises ValueError for an unknown unit.
+    """
     unit = unit.replace("Â", "").strip(" \0")
     if unit in csvfile.LENGTHS:
         return csvfile.LENGTHS[unit]
@@ -163,7 +170,7 @@ def _metres(unit: str) -> float:
 
 
 def _heights(path: Path, topography: Any, size: Any, heights: Any, factor: float) -> Heights:
-    """Heights on our axes (y, x), missing points as NaN."""
+    """Heights of SurfaceTopography as profile or areal map with axes (y, x), missing points as NaN."""
     z = np.ma.filled(np.ma.asarray(heights, dtype=np.float64), np.nan) * factor
     if size is None or any(length is None for length in size):
         raise ValueError(f"{path}: states no lateral size; resave it with its size, or as our CSV")

@@ -1,4 +1,4 @@
-"""What is identified: of profiles and of surfaces, never one for the other; warnings, picture."""
+"""Results of the identification of a surface: fractal parameters, roughness, warnings, plot."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -21,12 +21,12 @@ if TYPE_CHECKING:
 
 
 TEXTURE = 0.3
-"""Share of the mean line in the lines of a map above which the map is textured."""
+"""Mean-square share of the mean line in all lines of a map [1], above which the map is textured."""
 
 
 @dataclass(frozen=True, slots=True)
 class Estimate:
-    """A value with the ends of its confidence interval."""
+    """Estimated value with the limits of its confidence interval."""
 
     value: float
     low: float
@@ -35,27 +35,27 @@ class Estimate:
 
 @dataclass(frozen=True, slots=True)
 class RoughnessEstimate(Estimate):
-    """A roughness G [m] with its interval, worked out in logarithms.
+    """Estimated roughness G [m] with its confidence interval, from logarithms.
 
-    As D goes to 1 the interval spans hundreds of decades. Where it leaves the positive floating-point numbers
-    G is not determined: value, low and high are nan.
+    As D approaches 1, the interval spans hundreds of decades. If it exceeds the range of positive
+    floating-point numbers, G is not determined: value, low and high are nan.
 
-    decades : [1] length of the interval, whether or not G is determined
+    decades : length of the interval [decades], whether or not G is determined
     """
 
     decades: float
 
     @property
     def determined(self) -> bool:
-        """Whether the whole interval consists of positive floating-point numbers."""
+        """Whether the whole interval is in the range of positive floating-point numbers."""
         return bool(np.isfinite(self.value))
 
     @classmethod
     def of_logarithms(cls, value: float, low: float, high: float) -> "RoughnessEstimate":
-        """From the natural logarithms of the value and of the ends of its interval."""
+        """Estimate from the natural logarithms of the value and of the limits of its interval."""
         decades = (high - low) / np.log(10.0)
-        least, most = np.log([np.finfo(float).tiny, np.finfo(float).max])
-        if not least <= min(value, low) <= max(value, high) <= most:
+        smallest, largest = np.log([np.finfo(float).tiny, np.finfo(float).max])
+        if not smallest <= min(value, low) <= max(value, high) <= largest:
             return cls(np.nan, np.nan, np.nan, float(decades))
         return cls(float(np.exp(value)), float(np.exp(low)), float(np.exp(high)), float(decades))
 
@@ -78,7 +78,13 @@ class ArealFractal:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Result:
-    """What one method finds along one direction ("profile", "x", "y" or "areal")."""
+    """Result of one method in one direction ("profile", "x", "y" or "areal").
+
+    series  : structure function or spectrum over scale
+    fit     : self-affine law fitted to the series
+    profile : fractal parameters of the profile
+    areal   : fractal parameters of the surface
+    """
 
     method: str
     direction: str
@@ -90,9 +96,15 @@ class Result:
 
 @dataclass(frozen=True, slots=True)
 class Identification:
-    """All results, the repairs per file, the warnings, and the roughness of every file.
+    """Identification of one surface or of the equivalent surface of two.
 
-    side : of a single surface, the side of the contact that it is, one of SIDES
+    names       : names of the files
+    results     : results of all methods and directions
+    repairs     : (file, repair) of all repairs
+    warnings    : messages for the user
+    is_textured : whether a surface is textured (not isotropic)
+    scans       : roughness of each file
+    side        : for a single surface, its side of the contact, one of SCAN_SIDES; None: not given
     """
 
     names: tuple[str, ...]
@@ -105,56 +117,56 @@ class Identification:
 
     @property
     def sides(self) -> dict[int, ScanRoughness]:
-        """The roughness of every known side of the contact; a single one of no stated side is the first."""
+        """{side 1 or 2: roughness} of the measured sides; a single scan without a given side is side 1."""
         if len(self.scans) == 2 or self.side == "both":
             return {1: self.scans[0], 2: self.scans[-1]}
         return {int(self.side or 1): self.scans[0]}
 
     @property
     def h(self) -> float:
-        """Rms height [m] of both sides together over the longest wave; one that is not known is smooth."""
+        """Combined rms height [m] of both sides for waves up to longest_wave; unmeasured sides are smooth."""
         return float(np.sqrt(sum(scan.h**2 for scan in self.sides.values())))
 
     @property
     def slope(self) -> float:
-        """Rms slope [1] of both sides together."""
+        """Combined rms slope [1] of both sides; an unmeasured side is smooth."""
         return float(np.sqrt(sum(scan.slope**2 for scan in self.sides.values())))
 
     @property
     def longest_wave(self) -> float:
-        """Longest wave [m] of h and slope."""
+        """Longest wavelength [m] of h and slope."""
         return self.scans[0].longest_wave
 
     def best(self, direction: str | None = None, method: str | None = None) -> Result:
-        """The result with the smaller standard error of D; of a direction, by default the whole surface.
+        """Best result in a direction (None: the whole surface): self-affine, smallest standard error of D.
 
-        One at the end of D's interval comes last, as that end cuts its error off; then one not self-affine.
+        A result with D at an end of its interval comes last, because that end cuts its error off.
         """
-        fitting = [r for r in self.along(direction) if method in (None, r.method)]
-        return min(fitting, key=lambda r: (r.fit.at_bound, not r.fit.straight, r.fit.covariance[0, 0]))
+        candidates = [r for r in self.along(direction) if method in (None, r.method)]
+        return min(candidates, key=lambda r: (r.fit.at_bound, not r.fit.straight, r.fit.covariance[0, 0]))
 
     def along(self, direction: str | None = None) -> list[Result]:
-        """The results of all methods along a direction, by default of the whole surface."""
+        """Results of all methods in a direction (None: the whole surface)."""
         direction = direction or self.results[0].direction
         return [r for r in self.results if r.direction == direction]
 
     def doubt(self, direction: str | None = None) -> str | None:
-        """Why D and G along a direction are not determined; None if they are.
+        """Reason why D and G in a direction are not determined; None if they are.
 
-        Every method must find the surface self-affine with a D inside its interval, the intervals of all
-        methods must overlap, and that of G must be one of positive numbers.
+        They are determined if the surface is self-affine by all methods with D inside of its interval, if the
+        confidence intervals of D overlap, and if G is determined.
         """
-        found = self.along(direction)
-        for result in found:
+        results = self.along(direction)
+        for result in results:
             D = result.profile.D.value
             if result.fit.at_bound:
                 return f"D = {D:.2f} ({result.method}) lies at the end of 1 to 2"
             if not result.fit.straight:
                 return f"not self-affine ({result.method})"
-        if max(r.profile.D.low for r in found) > min(r.profile.D.high for r in found):
+        if max(r.profile.D.low for r in results) > min(r.profile.D.high for r in results):
             values = ", ".join(
                 f"{r.profile.D.value:.2f} [{r.profile.D.low:.2f}, {r.profile.D.high:.2f}] ({r.method})"
-                for r in found
+                for r in results
             )
             return f"the methods disagree, D = {values}"
         G = self.best(direction).profile.G
@@ -162,18 +174,24 @@ class Identification:
 
 
 def texture(heights: Areal) -> tuple[float, float]:
-    """Share of the mean line in the lines along x and along y: near 0 isotropic, 1 all lines alike."""
+    """Mean-square share of the mean line in the lines along x and along y [1].
+
+    Near 0: isotropic surface. 1: all lines are equal.
+    """
     shares = []
     for z in (heights.z, heights.z.T):
         lag = max(2, z.shape[1] // 32)
         second = z[:, 2 * lag :] - 2.0 * z[:, lag:-lag] + z[:, : -2 * lag]
-        whole = float(np.mean(second**2))
-        shares.append(float(np.mean(second.mean(axis=0) ** 2)) / whole if whole > 0.0 else 1.0)
+        total = float(np.mean(second**2))
+        shares.append(float(np.mean(second.mean(axis=0) ** 2)) / total if total > 0.0 else 1.0)
     return shares[0], shares[1]
 
 
 def warnings(results: Sequence[Result], textured: bool) -> list[str]:
-    """What a user must know about results of one surface, whole surface first."""
+    """Warnings for the user about the results of one surface.
+
+    results : of all directions and methods; the first two are of the whole surface
+    """
     lines = []
     if textured:
         lines.append(
@@ -181,21 +199,21 @@ def warnings(results: Sequence[Result], textured: bool) -> list[str]:
             "it, use D and G along x and y"
         )
     for result in results:
-        where = f"{result.method}, {result.direction}"
+        label = f"{result.method}, {result.direction}"
         if not (result.fit.straight or result.fit.runs):
             lines.append(
-                f"{where}: not self-affine over {result.fit.low:.3g} to {result.fit.high:.3g} m: D drifts by "
+                f"{label}: not self-affine over {result.fit.low:.3g} to {result.fit.high:.3g} m: D drifts by "
                 f"{result.fit.drift:+.2f}, deviation from the law {100.0 * result.fit.deviation:.0f} %"
             )
         if result.fit.decades < 1.0:
-            lines.append(f"{where}: the range spans {result.fit.decades:.2f} decades, less than one")
+            lines.append(f"{label}: the range spans {result.fit.decades:.2f} decades, less than one")
         if result.fit.runs:
             lines.append(
-                f"{where}: over all scales D runs through its interval from 1 to 2, and only a piece of "
+                f"{label}: over all scales D runs through its interval from 1 to 2, and only a piece of "
                 f"{result.fit.decades:.2f} decades is straight; state a range to take it"
             )
         if result.fit.at_bound:
-            lines.append(f"{where}: D = {result.profile.D.value:.2f} lies at the end of 1 to 2; no fractal")
+            lines.append(f"{label}: D = {result.profile.D.value:.2f} lies at the end of 1 to 2; no fractal")
     G = min(results[:2], key=lambda result: result.fit.covariance[0, 0]).profile.G
     if G.decades > 4.0:
         lines.append(
@@ -212,7 +230,7 @@ COLOURS = {"profile": plots.BLUE, "areal": plots.BLUE, "x": plots.RED, "y": plot
 
 
 def draw(identified: Identification, path: str | Path) -> None:
-    """Save the picture as .png or .svg."""
+    """Plot structure functions and spectra with the fitted laws, as .png or .svg."""
     with plots.drawing(path, (9.6, 5.0)) as figure:
         axes = dict(zip(("structure", "psd"), figure.subplots(1, 2), strict=True))
         for result in identified.results:
@@ -234,6 +252,7 @@ def draw(identified: Identification, path: str | Path) -> None:
 
 
 def _one(axes: "Axes", result: Result) -> None:
+    """Plot one result: all data, data in the range of the fit, and the fitted law."""
     x, y, law = _shown(result)
     inside = (result.series.scale >= result.fit.low * 0.999) & (
         result.series.scale <= result.fit.high * 1.001
@@ -255,7 +274,7 @@ def _one(axes: "Axes", result: Result) -> None:
 
 
 def _ticks(axis: Any) -> None:
-    """Labels at 1, 2, 5 of a decade where there are few decades, else at the decades."""
+    """Set tick labels of a logarithmic axis: at 1, 2, 5 in each decade below two decades, else at decades."""
     from matplotlib.ticker import LogFormatterSciNotation, LogLocator, NullFormatter
 
     low, high = axis.get_view_interval()
@@ -266,17 +285,17 @@ def _ticks(axis: Any) -> None:
 
 
 def _shown(result: Result) -> tuple[Array, Array, Array]:
-    """Abscissa, data and law, both freed of what the smoothing over scales does to a power law.
+    """Abscissa, data and fitted law of the plot, corrected for the smoothing over scales.
 
-    The structure function is that without tilt, V/(4 - 4^H).
+    The structure function is the one without tilt, V/(4 - 4^H).
     """
     series, fit = result.series, result.fit
     expected = series.expected(fit.H)
-    structure = series.method == "structure"
-    pure = power_law(series.scale, fit.H) if structure else series.scale ** (2.0 * fit.H)
+    is_structure = series.method == "structure"
+    unsmoothed = power_law(series.scale, fit.H) if is_structure else series.scale ** (2.0 * fit.H)
     first = expected[np.argmin(np.abs(series.scale - fit.low))]
     law = np.exp(fit.level) * fit.reference ** (-2.0 * fit.H) * (expected + fit.offset * first)
-    data, law = series.value * pure / expected, law * pure / expected
-    if structure:
+    data, law = series.value * unsmoothed / expected, law * unsmoothed / expected
+    if is_structure:
         return series.scale, data / second_difference(fit.H), law / second_difference(fit.H)
     return 1.0 / series.scale, data * series.scale, law * series.scale

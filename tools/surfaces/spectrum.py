@@ -1,7 +1,7 @@
-"""Power spectral density and structure function of a profile or a map.
+"""Power spectral density and structure function of a profile or an areal map.
 
-A `ScaleSeries` holds values over scale together with the expectation and the covariance that a Gaussian
-self-affine surface of the same size and sampling has, so that the fit knows how sure each value is.
+A `ScaleSeries` has values over scale. It also has the expectation and the covariance of these values for a
+Gaussian self-affine surface of the same size and sampling, with which the fit weights each value.
 """
 
 from collections.abc import Callable
@@ -19,23 +19,25 @@ from .heights import Areal, Heights
 
 METHODS = ("structure", "psd")
 SIDES = ("1", "2", "both")
-"""What one scan stands for: a side of the contact on a smooth other one, or both alike."""
+"""Side of the contact that a single scan represents: 1 or 2 (the other side is smooth), or both (alike)."""
 LEAST = 1e-200
-"""Least value of a series [m2], so that lines of one height have a logarithm."""
+"""Smallest value of a series [m2]: constant heights also have a logarithm."""
 KERNEL = 0.3
-"""Width of the Gaussian kernel in ln(frequency): it smooths the separate waves up to gamma = 2."""
+"""Standard deviation of the Gaussian kernel in ln(frequency) [1]; it smooths discrete waves with a frequency
+ratio up to 2."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ScaleSeries:
-    """Values over scale.
+    """Structure function or spectrum over J scales.
 
-    method : "structure" or "psd"; direction : "profile", "x", "y" or "areal"
-    scale  : (J,) [m] lag or wavelength, rising
-    value  : (J,) [m2] V(tau) = 4 S(tau) - S(2 tau), or Phi = frequency times power spectral density
-    raw    : (J,) [m2] or [m3] what is plotted: S(tau), or the power spectral density
-    expected   : H -> (J,) value where Phi(frequency) = frequency^(-2H)
-    covariance : H -> (J, J) [1] of ln(value)
+    method     : "structure" or "psd"
+    direction  : "profile", "x", "y" or "areal"
+    scale      : (J,) [m] lag or wavelength, increasing
+    value      : (J,) [m2] V(tau) = 4 S(tau) - S(2 tau), or Phi = frequency times power spectral density
+    function_value : (J,) S(tau) [m2], or power spectral density [m3]
+    expected   : function of H: value (J,) for Phi(frequency) = frequency^(-2H)
+    covariance : function of H: covariance (J, J) [1] of ln(value)
     """
 
     method: str
@@ -47,6 +49,7 @@ class ScaleSeries:
     covariance: Callable[[float], Array]
 
     def within(self, keep: NDArray[Any]) -> "ScaleSeries":
+        """Series at the selected scales, by mask or indices."""
         return replace(
             self,
             scale=self.scale[keep],
@@ -58,14 +61,14 @@ class ScaleSeries:
 
 
 MODES = 256
-"""Fourier modes per direction that enter a covariance; shorter waves hardly contribute."""
+"""Number of Fourier modes per direction in a covariance; shorter waves hardly contribute."""
 
 
 def structure(heights: Heights, direction: str) -> ScaleSeries:
-    """Structure function along a profile, along x or y of a map, or the mean of both ("areal").
+    """Structure function along a profile, along x or y of a map, or the mean of both directions ("areal").
 
-    S(tau) = <(z(x + tau) - z(x))^2>, V(tau) = <(z(x + tau) - 2 z(x) + z(x - tau))^2>. Pairs with a
-    missing point are left out. Lags from 2 spacings to an eighth of the length.
+    S(tau) = <(z(x + tau) - z(x))^2>, V(tau) = <(z(x + tau) - 2 z(x) + z(x - tau))^2>. Pairs with a missing
+    point are left out. Lags tau are from 2 spacings to an eighth of the length.
     """
     if direction == "areal" and isinstance(heights, Areal):
         return _mean_of_directions(heights)
@@ -78,7 +81,7 @@ def structure(heights: Heights, direction: str) -> ScaleSeries:
 
 
 def _differences(z: Array) -> tuple[Array, Array, Array]:
-    """Lags in points, V and S at them, averaged over the rows."""
+    """Lags in points, and V and S [m2] at these lags, averaged over the rows of z."""
     lags = np.unique(np.round(np.exp(np.arange(np.log(2.0), np.log(z.shape[1] // 8), 0.08))).astype(int))
     value, raw = np.empty(lags.size), np.empty(lags.size)
     for i, lag in enumerate(lags):
@@ -91,7 +94,7 @@ def _differences(z: Array) -> tuple[Array, Array, Array]:
 def _smoothed(
     direction: str, lag: Array, value: Array, raw: Array, covariance: Callable[[float], Array]
 ) -> ScaleSeries:
-    """The structure function smoothed over ln(lag) as the spectrum is over ln(frequency)."""
+    """Series of a structure function, smoothed over ln(lag) with the same kernel as the spectrum."""
     x = np.log(lag)
     scale = np.exp(np.arange(x[0] + KERNEL, x[-1], 0.2))
     weight = np.exp(-0.5 * ((np.log(scale)[:, None] - x) / KERNEL) ** 2) * np.gradient(x)
@@ -99,6 +102,7 @@ def _smoothed(
 
     @cache
     def spread(H: float) -> Array:
+        """Covariance of ln(value) after smoothing."""
         law = weight * power_law(lag, H)
         law = law / law.sum(axis=1, keepdims=True)
         return np.asarray(law @ covariance(H) @ law.T)
@@ -115,25 +119,29 @@ def _smoothed(
 
 
 def _mean_square(step: Array) -> float:
-    total = float(np.einsum("ij,ij->", step, step) / step.size)
-    if np.isfinite(total):
-        return total
-    known = step[np.isfinite(step)]
-    return float(np.einsum("i,i->", known, known) / known.size)
+    """Mean square of the finite values."""
+    mean = float(np.einsum("ij,ij->", step, step) / step.size)
+    if np.isfinite(mean):
+        return mean
+    finite = step[np.isfinite(step)]
+    return float(np.einsum("i,i->", finite, finite) / finite.size)
 
 
 def power_law(scale: Array, H: float) -> Array:
-    """V [m2] at lags [m] where Phi(frequency) = frequency^(-2H)."""
+    """V [m2] at lags [m] for Phi(frequency) = frequency^(-2H)."""
     return np.asarray(2.0 * structure_constant(H) * second_difference(H) * scale ** (2.0 * H))
 
 
 def _response(scale: Array, frequency: Array) -> Array:
-    """Weight of a wave in V: (1 - cos 2 pi f tau)^2."""
+    """Weight (lags, frequencies) [1] of a wave of frequency f in V(tau): (1 - cos 2 pi f tau)^2."""
     return np.asarray((1.0 - np.cos(2.0 * np.pi * np.multiply.outer(scale, frequency))) ** 2)
 
 
 def _line_covariance(scale: Array, length: float) -> Callable[[float], Array]:
-    """Over H, of one line; several lines of a map are taken as one, which is safe for a texture too."""
+    """Covariance of ln(V) as a function of H, for one line of this length [m].
+
+    Several lines of a map count as one line, which is conservative also for a textured map.
+    """
     frequency = np.arange(1, 4 * MODES) / length
     response = _response(scale, frequency)
 
@@ -146,16 +154,19 @@ def _line_covariance(scale: Array, length: float) -> Callable[[float], Array]:
 
 
 def _areal_covariance(scale: Array, lengths: tuple[float, ...]) -> Callable[[float], Array]:
-    """Over H, of the mean over all lines along x and along y of an isotropic surface."""
+    """Covariance of ln(V) as a function of H, for the mean over all lines along x and y.
+
+    The map is isotropic, with side lengths [m].
+    """
     fx, fy = (np.arange(1, MODES) / length for length in lengths)
     wx, wy = _response(scale, fx), _response(scale, fy)
     square = fx[None, :] ** 2 + fy[:, None] ** 2
 
     def covariance(H: float) -> Array:
-        power = square ** (-1.0 - H)  # a quarter of the plane; two of them count
+        power = square ** (-1.0 - H)  # a quarter of the plane; two quarters are independent
         squared = power**2
-        both = _times(_times(wx, squared), wy)
-        total = _times(wx * squared.sum(axis=0), wx) + _times(wy * squared.sum(axis=1), wy) + both + both.T
+        cross = _times(_times(wx, squared), wy)
+        total = _times(wx * squared.sum(axis=0), wx) + _times(wy * squared.sum(axis=1), wy) + cross + cross.T
         mean = wx @ power.sum(axis=0) + wy @ power.sum(axis=1)
         return np.asarray(0.5 * total / np.multiply.outer(mean, mean))
 
@@ -163,33 +174,33 @@ def _areal_covariance(scale: Array, lengths: tuple[float, ...]) -> Callable[[flo
 
 
 def _times(a: Array, b: Array) -> Array:
-    """a b', by one thread: those that BLAS wakes for so small matrices cost ten times the product."""
+    """Matrix product a b^T in one thread. For small matrices, the threads of BLAS take ten times as long."""
     return np.asarray(np.einsum("ik,jk->ij", a, b))
 
 
 def _mean_of_directions(heights: Areal) -> ScaleSeries:
-    """V and S averaged over x and y, at the lags along x that y has too."""
+    """Series of V and S averaged over both directions, at the lags along x that y covers too."""
     lag_x, *along_x = _differences(heights.z)
     lag_y, *along_y = _differences(heights.z.T)
     lag, lag_y = lag_x * heights.dx, lag_y * heights.dy
-    both = (lag >= lag_y[0] * 0.999) & (lag <= lag_y[-1] * 1.001)
-    lag = lag[both]
+    common = (lag >= lag_y[0] * 0.999) & (lag <= lag_y[-1] * 1.001)
+    lag = lag[common]
     value, raw = (
-        0.5 * (x[both] + np.exp(np.interp(np.log(lag), np.log(lag_y), np.log(y))))
+        0.5 * (x[common] + np.exp(np.interp(np.log(lag), np.log(lag_y), np.log(y))))
         for x, y in zip(along_x, along_y, strict=True)
     )
     return _smoothed("areal", lag, value, raw, _areal_covariance(lag, heights.lengths))
 
 
 HANN = 35.0 / 18.0
-"""Neighbouring Fourier modes of a Hann window that count as one, per direction."""
+"""Number of neighbouring Fourier modes that a Hann window correlates to one, per direction [1]."""
 
 
 def psd(heights: Heights, direction: str) -> ScaleSeries:
-    """Power spectral density of a profile, of the lines along x or y, or radial ("areal").
+    """Power spectral density of a profile, of the lines along x or y of a map, or radial ("areal").
 
-    Hann window; Phi = frequency times one-sided density, smoothed over ln(frequency) with a Gaussian
-    kernel. Wavelengths from 5 spacings to a third of the length. `heights` must have no missing point.
+    Phi = frequency times one-sided density, with a Hann window, smoothed over ln(frequency) with a Gaussian
+    kernel. Wavelengths are from 5 spacings to a third of the length. `heights` must have no missing points.
     """
     z = np.atleast_2d(heights.z)
     if direction == "areal" and isinstance(heights, Areal):
@@ -233,9 +244,10 @@ def psd(heights: Heights, direction: str) -> ScaleSeries:
 
 
 def _broadening(k: Array, H: float, areal: bool) -> Array:
-    """What a Hann window makes of a power law at k waves per length: it mixes a mode with its neighbours.
+    """Factor [1] of a Hann window on a power law at k waves per length: the window mixes neighbouring modes.
 
-    Along a line (1/6, 2/3, 1/6) of modes k - 1, k, k + 1; over an area the second order of that.
+    Along a line, the weights of modes k - 1, k, k + 1 are 1/6, 2/3, 1/6. Over an area, the factor is the
+    second-order expansion.
     """
     k = np.maximum(k, 2.0)
     if areal:
@@ -245,13 +257,13 @@ def _broadening(k: Array, H: float, areal: bool) -> Array:
 
 
 def _window(n: int) -> Array:
-    """Hann window with a mean square of 1."""
+    """Hann window (n,) with a mean square of 1."""
     window = np.sin(np.pi * (np.arange(n) + 0.5) / n) ** 2
     return np.asarray(window / np.sqrt(np.mean(window**2)))
 
 
 def _line_modes(z: Array, spacing: float) -> tuple[Array, Array, Array]:
-    """Frequency [1/m], variance [m2] and df/f [1] of every mode but the mean, averaged over lines."""
+    """Frequency [1/m], variance [m2] and df/f [1] of the Fourier modes, averaged over lines; no mean."""
     n = z.shape[1]
     window = _window(n)
     level = (z @ window) / window.sum()
@@ -262,7 +274,10 @@ def _line_modes(z: Array, spacing: float) -> tuple[Array, Array, Array]:
 
 
 def _areal_modes(z: Array, dx: float, dy: float) -> tuple[Array, Array, Array, float]:
-    """Frequency, variance and share df_x df_y/(pi f^2) of the modes of half the plane, and max(dx, dy)."""
+    """Fourier modes of a map in half of the frequency plane.
+
+    Returns their frequency f [1/m], variance [m2], share df_x df_y/(pi f^2) [1], and max(dx, dy) [m].
+    """
     ny, nx = z.shape
     window = np.multiply.outer(_window(ny), _window(nx))
     level = float(np.sum(z * window) / np.sum(window))

@@ -1,5 +1,5 @@
-"""Seeded Weierstrass-Mandelbrot surfaces of given D and G: isotropic (Hu 2023, Eq. 1), textured (Yu 2022,
-Eq. 3), profiles.
+"""Synthesis of Weierstrass-Mandelbrot surfaces with given D, G and seed: isotropic (Hu 2023, Eq. 1), textured
+(Yu 2022, Eq. 3), profiles.
 """
 
 from dataclasses import dataclass
@@ -13,10 +13,13 @@ from .heights import Areal, Profile
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Waves(Checked):
-    """Waves of a Weierstrass-Mandelbrot function over a length.
+    """Waves and sampling of a Weierstrass-Mandelbrot function.
 
-    size : longest wavelength and length of the sample; points : along that length. The shortest wavelength
-    is at least twice the spacing.
+    size   : longest wavelength and length of the sample L [m]
+    points : number of points along the length
+    gamma  : frequency ratio of neighbouring waves [1]
+
+    The shortest wavelength is at least twice the spacing.
     """
 
     size: float = quantity("m", "side length of the surface, and its longest wave", gt=0.0)
@@ -25,30 +28,30 @@ class Waves(Checked):
 
     @property
     def positions(self) -> Array:
-        """(points,) [m] along one side."""
+        """Positions (points,) [m] along one side."""
         return np.asarray(np.arange(self.points) * (self.size / self.points), dtype=np.float64)
 
     @property
     def frequencies(self) -> Array:
-        """(n_max + 1,) [1/m], gamma^n/L; n_max = int(ln(L/L_s)/ln gamma), L_s = 2 L/points."""
+        """Frequencies gamma^n/L (n_max + 1,) [1/m]; n_max = int(ln(L/L_s)/ln gamma), L_s = 2 L/points."""
         count = int(np.log(0.5 * self.points) / np.log(self.gamma) * (1.0 + 1e-12)) + 1
         return np.asarray(self.gamma ** np.arange(count) / self.size, dtype=np.float64)
 
     def amplitudes(self, H: float, G: float) -> Array:
-        """[m] G^(1-H) sqrt(ln gamma) l^H of every wave, l = 1/frequency."""
+        """Amplitude G^(1-H) sqrt(ln gamma) l^H [m] of each wave, with wavelength l and roughness G [m]."""
         return np.asarray(G ** (1.0 - H) * np.sqrt(np.log(self.gamma)) * self.frequencies**-H)
 
 
 def isotropic(waves: Waves, D: float, G: float, ridges: int, seed: int) -> Areal:
     """Isotropic surface of Hu 2023, Eq. 1.
 
-    D      : 1    fractal dimension of the surface, 2 < D < 3
-    G      : [m]  fractal roughness
-    ridges : M, number of directions pi m/M, m = 1 ... M
-    seed   : of the phases, uniform in [0, 2 pi)
+    D      : fractal dimension of the surface [1], 2 < D < 3
+    G      : fractal roughness [m]
+    direction_count : number M of wave directions pi m/M, m = 1 ... M
+    seed   : seed of the random phases, uniform in [0, 2 pi)
 
-    cos(a x + b y + c) = Re(exp(i a x) exp(i (b y + c))): the double sum over M (n_max + 1) waves is one
-    product of two matrices, so that its cost is hardly more than that of the cosines along the sides.
+    Because cos(a x + b y + c) = Re(exp(i a x) exp(i (b y + c))), the sum over M (n_max + 1) waves is one
+    product of two matrices. Its cost is hardly more than the cost of the cosines along the sides.
     """
     _interval("D", D, 2.0, 3.0, "fractal dimension of the surface")
     phases = np.random.default_rng(seed).uniform(0.0, 2.0 * np.pi, (ridges, waves.frequencies.size))
@@ -64,9 +67,11 @@ def isotropic(waves: Waves, D: float, G: float, ridges: int, seed: int) -> Areal
 
 
 def line(waves: Waves, D: float, G: float, rng: np.random.Generator) -> Array:
-    """Heights (points,) [m] of the profile function, Hu 2023, Eq. 2, and Yu 2022, Eq. 2 (with x and L).
+    """Heights (points,) [m] of a random profile: Hu 2023, Eq. 2, and Yu 2022, Eq. 2 (with x and L).
 
-    D : fractal dimension of the profile, 1 < D < 2; G : fractal roughness [m].
+    D   : fractal dimension of the profile [1], 1 < D < 2
+    G   : fractal roughness [m]
+    rng : generator of the random phases
     """
     _interval("D", D, 1.0, 2.0, "fractal dimension of the profile")
     z = np.zeros(waves.points)
@@ -79,15 +84,15 @@ def line(waves: Waves, D: float, G: float, rng: np.random.Generator) -> Array:
 
 
 def profile(waves: Waves, D: float, G: float, seed: int) -> Profile:
-    """One seeded profile."""
+    """Profile with random phases from a seed; D and G as in `profile_heights`."""
     z = line(waves, D, G, np.random.default_rng(seed))
     return Profile(z=z, dx=waves.size / waves.points, name="synthetic profile")
 
 
 def textured(waves: Waves, D: tuple[float, float], G: tuple[float, float], seed: int) -> Areal:
-    """Surface with two directions, Yu 2022, Eq. 3 (corrected): z(x, y) = z_1(x) + z_2(y).
+    """Textured surface with two directions, Yu 2022, Eq. 3 (corrected): z(x, y) = z_1(x) + z_2(y).
 
-    D, G : of the profiles along x and y
+    D, G : fractal dimension [1] and roughness [m] of the profiles along x and y
     """
     rng = np.random.default_rng(seed)
     along_x, along_y = (line(waves, d, g, rng) for d, g in zip(D, G, strict=True))
@@ -97,5 +102,6 @@ def textured(waves: Waves, D: tuple[float, float], G: tuple[float, float], seed:
 
 
 def _interval(name: str, value: float, low: float, high: float, doc: str) -> None:
+    """Raise ValueError if a value is outside the open interval (low, high)."""
     if text := Limit(name, Interval(low, high), doc).problem(value, "1"):
         raise ValueError(text)

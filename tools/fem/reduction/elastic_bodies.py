@@ -185,7 +185,7 @@ def _matched(
     mean_stiffness : (n) [N/m] of the few springs
     all_rigid      : (q, 3) displacement of all springs by rigid-body motions
     trace          : (q, k) displacement of all springs by the modes
-    stiffness      : (q) [N/m] of all springs
+    spring_stiffness : (q) [N/m] of all springs
     """
     few_rigid_part = np.linalg.solve(rigid.T @ (weight[:, None] * rigid), rigid.T @ (weight[:, None] * means))
     all_rigid_part = np.linalg.solve(

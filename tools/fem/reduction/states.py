@@ -123,7 +123,7 @@ class States:
 
     spring            : the reduced joint; it gives the law
     compliance        : of the bodies (3 n + b, 3 n + b) [m/N]
-    rigid             : (3 n + b, 6) displacement of cells and bolts by rigid-body motions of side 2
+    rigid_displacement : (3 n + b, 6) displacement of cells and bolts by rigid-body motions of side 2
     preload_approach  : approach (n) [m] of the cells in the preloaded joint
     preload           : [N] per bolt
     """
