@@ -1,4 +1,4 @@
-"""Compile what a wheel carries, so that FMUs are built without a compiler: run this, then `pip wheel .`."""
+"""Compile the models that a wheel contains, so that users need no compiler; then run `pip wheel .`."""
 
 import argparse
 import sys
