@@ -27,7 +27,7 @@ def licence() -> str:
 
 
 def licences() -> dict[str, bytes]:
-    """{path in the folder documentation: content} of all licence texts of an FMU; raises as `read_licence`."""
+    """{path in the folder documentation: content} of an FMU's licence texts; raises as `read_licence`."""
     return {"licenses/license.txt": licence().encode()} | dict(_others())
 
 

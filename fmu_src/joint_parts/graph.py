@@ -218,7 +218,7 @@ def law_functions(g: Graph, law: Any, table: Sequence[str], state: Any) -> None:
 
 
 def _bend_of_load(spots: Spots, u: Number) -> Number:
-    """F'' - m F' of the load F(u), u log-area: given by the largest spot alone, without the sum over spots."""
+    """F'' - m F' of the load F(u), u log-area: follows from the largest spot, without a sum over spots."""
     largest = sum(term.spot(u) for term in spots.terms["load"])
     return spots.m * spots.weight * ca.jacobian(largest, u)
 
