@@ -21,7 +21,7 @@ from .reference import Stimulus, results, rounded, start_of
 from .series import TimeSeries
 
 RAMP, FEW, LEAST = 20, 4, 2
-"""Number of load levels [1]: of the load ramp; of smoke test and shipped models; of boundary values and samples."""
+"""Number of levels [1] of: load ramp; smoke test and shipped models; boundary values and samples."""
 QUARTER, CYCLES = 6, 1
 """Number of levels of a quarter cycle of the loop [1], and of cycles after first loading [1]."""
 FRACTION = 0.25
@@ -180,7 +180,7 @@ def _neighbours(model: Model, parameters: ParameterFile) -> Iterator[ReferenceEx
 
 
 def _samples(model: Model, parameters: ParameterFile) -> Iterator[ReferenceExperiment]:
-    """Yield experiments with all real parameters varied within the half width, except those that the joint refuses.
+    """Yield experiments with all real parameters varied, except points that the joint refuses.
 
     The points are an additive recurrence with the square roots of primes (low discrepancy).
     """
