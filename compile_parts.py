@@ -1,4 +1,4 @@
-"""Compile what a wheel carries, so that FMUs are built without a compiler: run this, then `pip wheel .`."""
+"""Compile the models that a wheel contains, so that users need no compiler; then run `pip wheel .`."""
 
 import argparse
 import sys
@@ -17,8 +17,8 @@ if __name__ == "__main__":
     parser.add_argument("--out", type=Path, default=SHIPPED, metavar="DIR", help="default: in the package")
     arguments = parser.parse_args()
     try:
-        made = compile_ahead(arguments.names, arguments.out)
+        files = compile_ahead(arguments.names, arguments.out)
     except (ImportError, RuntimeError, ValueError) as error:
         sys.exit(f"compile_parts.py: {error}")
-    size = sum(file.stat().st_size for file in made)
-    print(f"{len(made)} files, {size / 1e6:.1f} MB in {arguments.out}")
+    size = sum(file.stat().st_size for file in files)
+    print(f"{len(files)} files, {size / 1e6:.1f} MB in {arguments.out}")

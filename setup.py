@@ -1,8 +1,8 @@
-"""What is found or given when a distribution is built; the rest stands in pyproject.toml.
+"""Packages, project URLs and long description of the distribution; other metadata is in pyproject.toml.
 
-Packages are found, so that adding a joint is adding folders. The address of the repository is given by the
-environment, JOINTFMU_URL (the release workflow states its own): with it the distribution has urls, and the
-links of its description lead there.
+All packages below the root folders are included, so a new joint needs new folders only. The environment
+variable JOINTFMU_URL is the address of the repository; the release workflow sets it. If it is set, the
+distribution has project URLs, and relative links of the README become links to the repository.
 """
 
 import os
@@ -20,11 +20,11 @@ ROOTS = {
 """{import name: folder}."""
 URL = os.environ.get("JOINTFMU_URL", "").rstrip("/")
 PAGES = {"Documentation": "/tree/HEAD/docs", "Changelog": "/blob/HEAD/CHANGELOG.md", "Issues": "/issues"}
-"""{name: path at the address of the repository}."""
+"""{label of a project URL: path below the address of the repository}."""
 
 
 def description() -> str:
-    """The README; its pictures and links, if an address is given, there."""
+    """Text of the README; with JOINTFMU_URL its relative pictures and links are absolute URLs."""
     text = Path(__file__).with_name("README.md").read_text(encoding="utf-8")
     if not URL:
         return text

@@ -1,1 +1,1 @@
-"""FMUs of jointfmu: the list of variables, the builders and what runs inside."""
+"""Builders of FMUs: model descriptions, C code, compiled libraries, documentation, reference results."""

@@ -1,4 +1,4 @@
-"""FMU files: zip archives whose bytes depend on their content alone, put in place in one go."""
+"""FMU files: reproducible zip archives, and atomic replacement of the target file."""
 
 import os
 import tempfile
@@ -12,19 +12,20 @@ from jointfmu.files.writing import made_folder
 
 @contextmanager
 def workshop(target: Path) -> Iterator[Path]:
-    """A temporary folder beside `target`; the file of that name made in it replaces `target` at the end, or
-    the file that it leads to as a symbolic link.
+    """Temporary folder next to `target`; on success the file made in it replaces `target` atomically.
 
-    Raises ValueError if the folder cannot be written; one that was made for it goes again on a failure.
+    The file must have the name of `target`. If `target` is a symbolic link, its destination is replaced.
+
+    Raises ValueError if the folder cannot be written. A parent folder created here is removed on failure.
     """
-    place = Path(os.path.realpath(target))
+    destination = Path(os.path.realpath(target))
     try:
         with (
-            made_folder(place.parent),
-            tempfile.TemporaryDirectory(dir=place.parent, prefix=".build-") as folder,
+            made_folder(destination.parent),
+            tempfile.TemporaryDirectory(dir=destination.parent, prefix=".build-") as folder,
         ):
             yield Path(folder)
-            (Path(folder) / target.name).replace(place)
+            (Path(folder) / target.name).replace(destination)
     except OSError as error:
         raise ValueError(
             f"{target}: cannot be written ({error.strerror}); expected a writable folder"
@@ -32,7 +33,7 @@ def workshop(target: Path) -> Iterator[Path]:
 
 
 def pack(members: Mapping[str, bytes], file: Path) -> None:
-    """Write an archive: members sorted, with one fixed date and system."""
+    """Write a zip archive of {path: content}, with sorted members, a fixed date and a fixed system."""
     with zipfile.ZipFile(file, "w") as archive:
         for name, content in sorted(members.items()):
             info = zipfile.ZipInfo(name, date_time=(1980, 1, 1, 0, 0, 0))

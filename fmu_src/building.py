@@ -1,4 +1,4 @@
-"""`jointfmu build`: names and flavours to FMU files."""
+"""Build FMUs by name and flavour, as `jointfmu build` does."""
 
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
@@ -32,19 +32,21 @@ def build(
     pool: Executor | None = None,
     force: bool = False,
 ) -> list[Path]:
-    """Build FMUs into `out/FLAVOUR/NAME.fmu`; with a parameter file and no names, those of its joint.
+    """Build FMUs into `out/FLAVOUR/NAME.fmu` and return their paths.
 
-    variability : of the parameters, one of VARIABILITIES
-    alias       : the name that one FMU has instead of its own
-    pool        : processes that share the work; None: this one does it
-    force       : replace FMUs of these names that jointfmu did not write
+    names       : FMUs to build; if empty: all FMUs of the joint of `parameters`, or of all joints
+    parameters  : None: the default parameter file of each joint
+    variability : of all parameters, one of VARIABILITIES
+    alias       : name of the FMU instead of its own; only for a single FMU
+    pool        : processes that build in parallel; None: build in this process
+    force       : also replace files that jointfmu did not write
 
     Raises ValueError for an unknown name or flavour, a parameter file of another joint, an alias that is
-    no identifier or for several FMUs, or files that may not or cannot be written,
-    before anything is built where that can be known.
+    no identifier or is given for several FMUs, and files that may not or cannot be replaced. These checks
+    come before the first build where possible.
     """
-    for noun, given, allowed in (("FMU", names, list(MODELS)), ("flavour", flavours, list(FLAVOURS))):
-        if unknown := [name for name in given if name not in allowed]:
+    for noun, values, allowed in (("FMU", names, list(MODELS)), ("flavour", flavours, list(FLAVOURS))):
+        if unknown := [value for value in values if value not in allowed]:
             raise ValueError(f"unknown {noun} {unknown[0]!r}, allowed are {', '.join(allowed)}")
     if not names:
         joint = parameters.joint if parameters else None
@@ -58,15 +60,15 @@ def build(
             MODELS[name].of(parameters.joint, parameters.values)
     titles = [alias or name for name in names]
     check_outputs((out / f / f"{title}.fmu" for f in flavours for title in titles), ARCHIVE, force)
-    how = {"variability": variability, "alias": alias or ""}
-    work = partial(_built, flavours, parameters, out, how)
-    built = each(pool, work, "build", names)
-    return [path for paths in zip(*built, strict=True) for path in paths]
+    options = {"variability": variability, "alias": alias or ""}
+    build_one = partial(_built, flavours, parameters, out, options)
+    paths_by_name = each(pool, build_one, "build", names)
+    return [path for paths in zip(*paths_by_name, strict=True) for path in paths]
 
 
 def _built(
     flavours: Sequence[str], parameters: ParameterFile | None, out: Path, how: Mapping[str, str], name: str
 ) -> list[Path]:
-    """Build an FMU in some flavours, which share what is compiled; `how`: its variability and alias."""
+    """Build one FMU in several flavours, which share the compiled model; return the paths of the files."""
     file = parameters or default(MODELS[name].joint)
     return [FLAVOURS[flavour](name, file, out / flavour, **how) for flavour in flavours]

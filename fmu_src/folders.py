@@ -1,4 +1,4 @@
-"""The parts and the folder of what is an FMU's own: those of its joint, or of the joints' partners."""
+"""Builder data and source folder of a model: of its joint, or of the partners (inertia, mass, loads)."""
 
 from pathlib import Path
 
@@ -10,9 +10,9 @@ from .joint_parts import Parts
 
 
 def parts_of(model: Model) -> Parts:
-    """What the builders know of a model.
+    """Builder data of a model: C code, flanges, charts of the page.
 
-    Raises ValueError if they know nothing of its joint.
+    Raises ValueError if the joint of the model has no builder data.
     """
     if model.joint not in KINDS:
         return partners.PARTS
@@ -23,14 +23,14 @@ def parts_of(model: Model) -> Parts:
 
 
 def own_folder(model: Model) -> Path:
-    """The folder."""
+    """Folder with the C sources, page and icons of a model."""
     return parts_of(model).folder
 
 
 def asset(model: Model, name: str) -> Path:
-    """A file that every FMU needs of its folder.
+    """Path of a required file (page or icon) in the folder of a model.
 
-    Raises ValueError if it is not there.
+    Raises ValueError if the file is missing.
     """
     folder = own_folder(model)
     if not (folder / name).is_file():

@@ -1,8 +1,8 @@
-"""The licences that every FMU carries: that of the package, and those of others' work in its binaries.
+"""Licence texts inside an FMU: of the package, and of third-party code in the binaries.
 
-No library of the compiler is linked in (`compiled/compiler.py`): Linux and macOS bind the system's libraries,
-Windows the system's runtime by import stubs of mingw-w64. Of others the binaries have what the headers
-of FMI and of mingw-w64 declare.
+No library of the compiler is linked (`compiled/compiler.py`). Binaries for Linux and macOS use the libraries
+of the system; those for Windows use its C runtime through import stubs of mingw-w64. So the only third-party
+code in a binary is what the headers of FMI and of mingw-w64 declare.
 """
 
 from collections.abc import Iterator
@@ -11,13 +11,13 @@ from importlib.metadata import PackageNotFoundError, files
 from pathlib import Path
 
 _OTHERS = Path(__file__).with_name("licenses")
-"""Folder of licence texts as their owners wrote them; the wheel lists them as its licence files too."""
+"""Folder of the third-party licence texts, unchanged; the wheel lists them as licence files too."""
 
 
 def licence() -> str:
-    """The licence text, from what is installed.
+    """Licence text of the installed package jointfmu.
 
-    Raises ValueError if it is missing.
+    Raises ValueError if the file is missing.
     """
     try:
         texts = [f for f in files("jointfmu") or () if f.name == "LICENSE"]
@@ -27,18 +27,18 @@ def licence() -> str:
 
 
 def licences() -> dict[str, bytes]:
-    """{path in the folder documentation of an FMU: content} of all licence texts. ValueError as `licence`."""
+    """{path in the folder documentation: content} of an FMU's licence texts; raises as `read_licence`."""
     return {"licenses/license.txt": licence().encode()} | dict(_others())
 
 
 _WASI = ("LICENSE", "LICENSE-MIT", "libc-top-half/musl/COPYRIGHT", "libc-bottom-half/cloudlibc/LICENSE")
-"""Licence files of the C library that the compiler links into WebAssembly modules."""
+"""Licence files of wasi-libc, the C library that is linked into WebAssembly modules."""
 
 
 def webassembly_licences() -> str:
-    """Licence texts of a WebAssembly module: the package's, and those of the C library linked in.
+    """Licence texts of a WebAssembly module: of the package and of wasi-libc.
 
-    Raises ImportError if ziglang is missing, ValueError as `licence`.
+    Raises ImportError if ziglang is missing, ValueError as `read_licence`.
     """
     folder = Path(str(import_module("ziglang").__file__)).parent / "lib" / "libc" / "wasi"
     texts = (f"wasi-libc, {name}\n\n{(folder / name).read_text(encoding='utf-8')}" for name in _WASI)
@@ -51,5 +51,5 @@ def _others() -> Iterator[tuple[str, bytes]]:
 
 
 def copyright_line() -> str:
-    """The line that names the copyright holder."""
+    """Copyright line of the licence text."""
     return next(line for line in licence().splitlines() if line.startswith("Copyright"))

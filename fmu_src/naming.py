@@ -1,21 +1,21 @@
-"""Names that users give FMUs and components: they name files, functions in C and classes in Modelica."""
+"""Valid names of FMUs and components, which become file names, C functions and Modelica classes."""
 
 import re
 from keyword import iskeyword
 
 LONGEST = 63
-"""Letters of a name [1]; what C tells apart everywhere."""
+"""Largest length of a name [1]: C compilers need not distinguish more characters."""
 ALLOWED = (
     f"at most {LONGEST} letters, digits and _, no digit first, no word of C, Python or Modelica, no device "
     "of Windows (con, nul, com1)"
 )
-"""Names that are allowed, for errors."""
+"""Rule for valid names, as error messages print it."""
 
 
 def checked_name(name: str) -> str:
-    """The name.
+    """Return the name if it is a valid identifier.
 
-    Raises ValueError if `is_identifier` says no.
+    Raises ValueError if it is not, see `is_identifier`.
     """
     if not is_identifier(name):
         shown = name if len(name) <= 80 else f"{name[:77]}..."
@@ -24,12 +24,12 @@ def checked_name(name: str) -> str:
 
 
 def is_identifier(name: str) -> bool:
-    """Whether C, Python, Modelica and Windows all take the name, and it is not too long."""
+    """Whether a name is valid in C, Python, Modelica and Windows, and not too long."""
     return bool(re.fullmatch(r"[A-Za-z_][A-Za-z0-9_]*", name)) and len(name) <= LONGEST and not reserved(name)
 
 
 def reserved(name: str) -> bool:
-    """Whether a language, or Windows for a device, keeps the name for itself."""
+    """Whether a name is a keyword of C, Python or Modelica, or a device name of Windows."""
     return iskeyword(name) or name in _C or name in _MODELICA or name.lower() in _DEVICES
 
 

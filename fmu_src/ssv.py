@@ -1,4 +1,4 @@
-"""Parameter sets of SSP (SSV): those of systems, and those of the experiments in FMUs."""
+"""SSV files (parameter sets of SSP), used by system archives and by the experiments inside FMUs."""
 
 from collections.abc import Mapping
 from typing import Any, NamedTuple
@@ -9,13 +9,13 @@ from jointfmu.quantity.units import UNITS
 from .xml_parts import serialized
 
 NUMBER = {"1.0": "Real", "2.0": "Float64"}
-"""Type of real numbers in a version of SSP."""
+"""{version of SSP: element name of a real number}."""
 SSP = "http://ssp-standard.org/SSP1/SystemStructure"
-"""Begin of its namespaces, in both versions."""
+"""Common prefix of the XML namespaces of SSP 1.0 and 2.0."""
 
 
 class Value(NamedTuple):
-    """A value in its unit, and where it comes from."""
+    """Value of a parameter with its unit and source."""
 
     value: Any
     unit: str
@@ -25,7 +25,7 @@ class Value(NamedTuple):
 def parameter_set(
     name: str, entries: Mapping[str, Value], version: str = "1.0", metadata: Mapping[str, str] | None = None
 ) -> bytes:
-    """An SSV file of a version of SSP; `metadata` are more attributes of its root."""
+    """Content of an SSV file of one SSP version; `metadata` gives further attributes of the root element."""
     spaces = {"xmlns:ssv": f"{SSP}ParameterValues", "xmlns:ssc": f"{SSP}Common"}
     root = Element("ssv:ParameterSet", {**spaces, "version": version, "name": name, **(metadata or {})})
     parameters = SubElement(root, "ssv:Parameters")
@@ -42,7 +42,7 @@ def parameter_set(
 
 
 def add_units(root: Element, prefix: str, names: set[str]) -> None:
-    """Define units in an SSP file, by the powers of the SI's."""
+    """Define units in an SSP file by their exponents of the SI base units."""
     if names:
         units = SubElement(root, f"{prefix}:Units")
         for name in sorted(names):

@@ -1,4 +1,4 @@
-"""Pages and C from jinja templates."""
+"""Jinja templates of documentation pages and generated C."""
 
 from base64 import b64encode
 from functools import cache
@@ -13,21 +13,22 @@ from jointfmu.contact.laws.roughness import FEW_SPOTS
 from jointfmu.parameters import ParameterFile
 
 FRAME = Path(__file__).with_name("native")
-"""Folder of the templates that the pages of joints extend."""
+"""Folder of the page templates that the pages of joints extend."""
 
 
 def template(path: Path, *shared: Path) -> jinja2.Template:
-    """A template; a page escapes what it prints, an unknown name is an error; `number` prints a value,
-    `policy` the Content-Security-Policy.
+    """Load a Jinja template; HTML templates escape their values, and an undefined name is an error.
 
-    shared : folders of templates that it extends or imports, beside its own
+    All templates can call `number` (format a value) and `policy` (Content-Security-Policy of a page).
+
+    shared : folders of further templates that this one extends or imports
     """
     return _environment((path.parent, *shared), path.suffix == ".html").get_template(path.name)
 
 
 @cache
 def _environment(folders: tuple[Path, ...], escapes: bool) -> jinja2.Environment:
-    """Kept, with the templates that it has compiled."""
+    """Jinja environment of template folders; cached, because it keeps compiled templates."""
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(folders),
         autoescape=escapes,
@@ -41,9 +42,9 @@ def _environment(folders: tuple[Path, ...], escapes: bool) -> jinja2.Environment
 
 
 def _policy(script: str = "", webassembly: bool = False, images: str = "data:") -> Markup:
-    """The Content-Security-Policy of a self-contained page: no network, and no script but the page's own.
+    """HTML meta element with the Content-Security-Policy of a page: no network, only the page's own script.
 
-    script      : the whole text of the page's script element
+    script      : full text of the script element; empty: no script is allowed
     webassembly : whether the script compiles WebAssembly
     images      : sources of images, as the policy names them
     """
@@ -57,12 +58,12 @@ def _policy(script: str = "", webassembly: bool = False, images: str = "data:") 
 
 
 def _number(value: float | str) -> str:
-    """A value as all pages print it: six digits."""
+    """Format a value for a page: six significant digits, booleans in lower case, text unchanged."""
     if isinstance(value, bool | str):
         return str(value).lower() if isinstance(value, bool) else value
     return f"{value:.6g}"
 
 
 def law_terms(parameters: ParameterFile) -> dict[str, object]:
-    """What the templates of joints ask of the law: its name, and `rough`, whether it is `roughness`."""
+    """Template variables of the contact law: its name, whether it is `roughness`, its least spot count."""
     return {"law": parameters.law, "rough": parameters.law == ROUGHNESS_LAW, "few_spots": FEW_SPOTS}

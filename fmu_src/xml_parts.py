@@ -1,4 +1,4 @@
-"""What the model descriptions of all flavours say alike: variables, units, dependencies."""
+"""Parts that the model descriptions of all flavours share: variables, units, model structure."""
 
 import math
 import re
@@ -12,15 +12,15 @@ from jointfmu.quantity import Interval
 from jointfmu.quantity.units import CELSIUS, KELVIN_AT_ZERO, UNITS, display_unit
 
 VARIABILITIES = ("tunable", "fixed")
-"""What a description may say of all parameters: set during a run too, or before it only."""
+"""Variability of all parameters of an FMU: tunable also during a run, or fixed after initialization."""
 
 
 class Listed(NamedTuple):
-    """One variable as a description lists it.
+    """Variable of a model description.
 
-    start      : None if it is calculated, a bool for a Boolean
-    attributes : of a number: unit, displayUnit, bounds and nominal value, as text
-    rate_of    : value reference of the state whose rate it is
+    start      : start value; None if the variable is calculated, a bool for a Boolean
+    attributes : of a real number, as text: unit, displayUnit, min, max, nominal
+    rate_of    : value reference of the state whose time derivative this variable is; None: not a derivative
     """
 
     name: str
@@ -32,12 +32,12 @@ class Listed(NamedTuple):
 
     @property
     def boolean(self) -> bool:
-        """Whether it is a Boolean; all others are real numbers."""
+        """Whether the variable is a Boolean; all other variables are real numbers."""
         return isinstance(self.start, bool)
 
 
 def listed(model: Model, parameters: ParameterFile) -> list[Listed]:
-    """All variables in the order of their value references, which count from 1."""
+    """List the inputs, outputs and parameters of a model in the order of their value references, from 1."""
     values = parameters.flat
     variables: list[Listed] = []
     for causality, group in (("input", model.inputs), ("output", model.outputs)):
@@ -64,22 +64,22 @@ def listed(model: Model, parameters: ParameterFile) -> list[Listed]:
 
 
 def text(value: float | bool) -> str:
-    """A start value, exact to the last bit."""
+    """Format a start value for XML; numbers are exact to the last bit."""
     return str(value).lower() if isinstance(value, bool) else repr(float(value))
 
 
 def stop_time(model: Model) -> float:
-    """End [s] of the default experiment, the load ramp."""
+    """Stop time [s] of the default experiment, which is the load ramp."""
     return round(model.ramp.end / model.ramp.step) * model.ramp.interval
 
 
 def units(variables: Sequence[Listed]) -> list[str]:
-    """Names of all units in use, sorted."""
+    """Sorted names of the units of some variables."""
     return sorted({v.attributes["unit"] for v in variables if "unit" in v.attributes})
 
 
 def unit_definitions(variables: Sequence[Listed]) -> Element:
-    """The element UnitDefinitions, the same in FMI 2.0 and 3.0."""
+    """XML element UnitDefinitions of some variables, the same in FMI 2.0 and 3.0."""
     definitions = Element("UnitDefinitions")
     for name in units(variables):
         unit = SubElement(definitions, "Unit", name=name)
@@ -92,51 +92,55 @@ def unit_definitions(variables: Sequence[Listed]) -> Element:
 
 
 def model_structure(model: Model, variability: str, version: str = "2") -> Element:
-    """The element ModelStructure of a version of FMI; in 2.0 a variable's index is its value reference.
+    """XML element ModelStructure: outputs, derivatives and initial unknowns with their dependencies.
 
-    variability : of the parameters
+    In FMI 2.0 the index of a variable equals its value reference.
+
+    variability : of all parameters, one of VARIABILITIES
+    version     : of FMI, "2" or "3"
     """
     outputs, parameters = [v.name for v in model.outputs], list(model.parameter_fields())
     names = [*(v.name for v in model.inputs), *outputs, *parameters]
     index = {name: reference for reference, name in enumerate(names, start=1)}
     rates = [name for i, name in enumerate(outputs) if model.rate(i)]
-    later = {"constant": "constant", "parameters": variability}
-    initial = {"constant": "constant"}  # parameters still change, so only a number is a known factor
+    dependency_kinds = {"constant": "constant", "parameters": variability}
+    initial_kinds = {"constant": "constant"}  # parameters can still change: only a number is a known factor
     root = Element("ModelStructure")
-    for fmi2, fmi3, unknowns, kinds, beside in (
-        ("Outputs", "Output", outputs, later, []),
-        ("Derivatives", "ContinuousStateDerivative", rates, later, []),
-        ("InitialUnknowns", "InitialUnknown", outputs[model.states :], initial, parameters),
+    for fmi2, fmi3, unknowns, kinds, further_knowns in (
+        ("Outputs", "Output", outputs, dependency_kinds, []),
+        ("Derivatives", "ContinuousStateDerivative", rates, dependency_kinds, []),
+        ("InitialUnknowns", "InitialUnknown", outputs[model.states :], initial_kinds, parameters),
     ):
         group = SubElement(root, fmi2) if unknowns and version == "2" else root
         tag, key = ("Unknown", "index") if version == "2" else (fmi3, "valueReference")
         for name in unknowns:
             linear = model.linear.get(name, {})
-            knowns = [*sorted(model.depends(name), key=index.__getitem__), *beside]
-            own = {
+            knowns = [*sorted(model.depends(name), key=index.__getitem__), *further_knowns]
+            dependencies = {
                 "dependencies": " ".join(str(index[known]) for known in knowns),
                 "dependenciesKind": " ".join(kinds.get(linear.get(n, ""), "dependent") for n in knowns),
             }
-            SubElement(group, tag, {key: str(index[name])} | own)
+            SubElement(group, tag, {key: str(index[name])} | dependencies)
     return root
 
 
 def serialized(root: Element) -> bytes:
-    """An XML file, indented, the same bytes for the same content."""
+    """Bytes of an indented XML file; equal content gives equal bytes."""
     indent(root)
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{tostring(root, encoding="unicode")}\n'.encode()
 
 
 def comment(lines: Sequence[str]) -> str:
-    """Lines as an XML comment, in which no two hyphens follow each other."""
+    """Format lines as an XML comment; double hyphens, which XML forbids there, are separated."""
     return "<!--\n" + "".join(f"  {re.sub('-(?=-)', '- ', line)}\n" for line in lines) + "-->\n"
 
 
 def _shown(unit: str, typical: float) -> dict[str, str]:
+    """Attributes unit and displayUnit; the display unit suits a typical value [SI]."""
     return {"unit": unit, "displayUnit": CELSIUS if unit == "K" else display_unit(unit, typical)}
 
 
 def _bounds(interval: Interval) -> dict[str, str]:
-    """The attributes min and max, where there is an end."""
+    """Attributes min and max of an interval, for its finite ends."""
     bounds = zip(("min", "max"), interval.closed_bounds(), strict=True)
     return {name: repr(bound) for name, bound in bounds if math.isfinite(bound)}

@@ -1,6 +1,6 @@
-"""What a joint gives the builders: how it becomes C, its flanges, what its page shows.
+"""Builder data of a joint: functions for its C code, flanges, charts of its documentation page.
 
-A joint's folder of `jointfmu_fmu_src.joints` fills in `Parts`; the builders above read them.
+Each folder in `jointfmu_fmu_src.joints` defines one object of `FmuParts`, which the builders read.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -17,11 +17,11 @@ if TYPE_CHECKING:
     from .native import NativePart
 
 Drawing = Callable[..., Sequence[chart.Panel]]
-"""(spring, end of the ramp) -> panels side by side."""
+"""(tabulated joint, end of the load ramp) -> panels side by side."""
 
 
 class RampPanel(NamedTuple):
-    """One chart of the page's ramp: quantities of one unit over an input or output."""
+    """Chart of the load ramp on the page: quantities of one unit against the input or output `over`."""
 
     over: str
     quantities: tuple[str, ...]
@@ -29,14 +29,15 @@ class RampPanel(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Parts:
-    """The parts of one joint; {FMU: ...} where its FMUs differ.
+    """Builder data of one joint; fields that differ between its FMUs are {FMU: ...}.
 
-    folder    : with its page, icons and C
-    native    : gives how it becomes C; called only then, as it needs CasADi. None: the native flavours refuse
-    data      : which of its parameters are data
-    terminals : flanges; none: signals are connected one by one
-    panels    : of the page's charts of the ramp; none: the first output over the ramped input
-    drawings  : {name: further charts} of the page
+    folder    : folder with page, icons and C sources of the joint
+    native    : function that loads the definition of the C code; it needs CasADi, so it is called only for
+        native FMUs. None: native flavours cannot be built
+    data      : which hidden parameters are stored as data
+    terminals : flanges of each FMU; none: signals are connected one by one
+    panels    : charts of the load ramp on the page; none: the first output against the ramped input
+    drawings  : {FMU: {name: function that draws further charts of the page}}
     """
 
     folder: Path
@@ -48,7 +49,7 @@ class Parts:
 
 
 def native_of(package: str) -> "Callable[[], NativePart]":
-    """Gives `PART` of the module `native` in a joint's folder."""
+    """Function that imports the module `native` of a joint's folder and returns its `NATIVE_PART`."""
 
     def load() -> "NativePart":
         part: NativePart = import_module(f"{package}.native").PART
@@ -58,7 +59,7 @@ def native_of(package: str) -> "Callable[[], NativePart]":
 
 
 def equations() -> "NativePart":
-    """That of a joint whose outputs are closed functions of inputs and parameters: there is no C to write."""
+    """C definition of a joint whose outputs are explicit functions: it needs no C sources of its own."""
     from .native import EQUATIONS
 
     return EQUATIONS

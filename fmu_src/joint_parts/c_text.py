@@ -1,4 +1,4 @@
-"""Numbers, texts and arrays as C writes them."""
+"""C source text of numbers, strings, comments and arrays."""
 
 import math
 import re
@@ -6,24 +6,24 @@ from collections.abc import Iterable
 
 
 def array(declaration: str, rows: Iterable[str]) -> str:
-    """The definition of an array, one row per line."""
+    """Define a C array with one row per line."""
     return f"{declaration} = {{\n" + "".join(f"    {row},\n" for row in rows) + "};\n"
 
 
 def number(value: float) -> str:
-    """A double, exact to the last bit."""
+    """C literal of a double, exact to the last bit."""
     if math.isinf(value):
         return "INFINITY" if value > 0 else "-INFINITY"
     return repr(float(value))
 
 
 def string(text: str) -> str:
-    """A string literal: plain ASCII without trigraphs; other characters as the bytes of UTF-8."""
+    """C string literal in ASCII without trigraphs; other characters as octal escapes of UTF-8 bytes."""
     return '"' + re.sub(rb'[^ -~]|["\\]|(?<=\?)\?', _escaped, text.encode()).decode("ascii") + '"'
 
 
 def comment(text: str) -> str:
-    """A text inside a comment: printable ASCII that neither ends nor begins a comment."""
+    """Text for the inside of a C comment: printable ASCII without comment delimiters and trigraphs."""
     plain = re.sub(r"[^ -~]", "?", text)
     return re.sub(r"\*(?=/)|/(?=\*)|\?(?=\?)", r"\g<0> ", plain)
 

@@ -1,4 +1,4 @@
-"""What a joint says of its parameters: which numbers are data beside its C, and which tables."""
+"""Split of a joint's parameters into FMU variables, data, and values that the C code depends on."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -8,9 +8,10 @@ from jointfmu.quantity import Array, flatten
 
 
 class DataTable(NamedTuple):
-    """Rows (n, k) of numbers that parameters decide, of which there is room for `most`.
+    """Table (n, k) of numbers that follow from the parameters.
 
-    digits : whether they are whole and have two bytes; a row of them is a multiple of 8 bytes
+    most   : largest number of rows; the data block reserves space for it
+    digits : whether the numbers are 2-byte integers; the size of a row is then a multiple of 8 bytes
     """
 
     rows: Array
@@ -24,13 +25,13 @@ NO_TABLES: Tables = {}
 
 @dataclass(frozen=True, slots=True)
 class DataPart:
-    """How those parameters that no tool may change become data: `Parts.data`.
+    """Conversion of parameters that are not FMU variables into data: `FmuParts.data`.
 
-    Without it every real number is data as it is, and all else (choices, series, whole numbers) is code.
+    By default every real number is data. All other values (choices, series, integers) select the C code.
 
-    stands : (parameter set) -> {structured name: value} of one that stands for it in the generated code
-    of     : (parameter set) -> the class of that one
-    tables : (parameter set) -> {name: table} that its C reads, `data.NAME` with `data.n_NAME` rows
+    stands : (parameter set) -> {structured name: value} of the parameter set that replaces it in the C code
+    of     : (parameter set) -> class of the replacing parameter set
+    tables : (parameter set) -> {name: table} that the C code reads as `data.NAME` with `data.n_NAME` rows
     """
 
     stands: Callable[..., Mapping[str, Any]] = flatten
@@ -39,13 +40,13 @@ class DataPart:
 
 
 class Split(NamedTuple):
-    """Parameters of an FMU by what they are in C.
+    """Parameters of an FMU, divided by their role in C.
 
-    exposed : variables, which a tool sets
-    fixed   : {name: value} numbers of the block
-    code    : {name: value} what the generated code depends on
-    of      : class of the parameter set that the code is generated with
-    tables  : {name: table} of the block
+    exposed : names of FMU variables, which a simulation tool can set
+    fixed   : {name: value} of real numbers in the data block
+    code    : {name: value} on which the generated code depends
+    of      : class of the parameter set with which the code is generated
+    tables  : {name: table} in the data block
     """
 
     exposed: Sequence[str]
@@ -56,6 +57,6 @@ class Split(NamedTuple):
 
     @property
     def structure(self) -> str:
-        """What parameter files with the same code have in common, as text."""
-        rooms = {name: (table.most, table.rows.shape[1]) for name, table in self.tables.items()}
-        return repr((sorted(self.code.items()), list(self.fixed), sorted(rooms.items())))
+        """Text that is equal for all parameter files with the same C code."""
+        shapes = {name: (table.most, table.rows.shape[1]) for name, table in self.tables.items()}
+        return repr((sorted(self.code.items()), list(self.fixed), sorted(shapes.items())))

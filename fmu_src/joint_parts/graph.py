@@ -1,7 +1,7 @@
-"""The laws as graphs: Python's own functions called with symbols, for C to be made of them.
+"""CasADi expression graphs of the joint laws, from which C code is generated.
 
-Everything here is a call into the package. What depends on parameters alone is taken out of all
-functions and computed once per parameter set, into the constants c.
+The package's own Python functions are called with CasADi symbols. Subexpressions of parameters alone are
+extracted from all functions and computed once per parameter set: the constants c.
 """
 
 from collections.abc import Callable, Sequence
@@ -22,9 +22,9 @@ Symbols = Sequence[Number]
 
 @dataclass(frozen=True, slots=True)
 class Function:
-    """`y = name(x)` besides the constants; `doc` says what x and y are.
+    """C function `y = name(x, c)`; c are the constants, `doc` names x and y.
 
-    looped : loops over many of them call it: it is inline, however long
+    looped : whether the C calls it inside loops: then it is inlined whatever its length
     """
 
     name: str
@@ -36,10 +36,13 @@ class Function:
 
 @dataclass(slots=True)
 class Graph:
-    """All functions of an FMU, and the parameters they depend on.
+    """C functions of an FMU as expression graphs, and the parameters on which they depend.
 
-    theta     : symbols of the parameters, in the order of the variable list, then of those that are fixed
-    constants : expressions of theta that the functions use; c is theta and then these
+    theta     : {name: symbol} of the parameters: FMU variables in their order, then data values
+    joint     : parameter set of the joint, with symbols as values
+    limits    : intervals of parameters that depend on other parameters
+    constants : expressions of theta extracted from the functions
+    symbols   : symbols of these constants in the functions
     """
 
     theta: dict[str, ca.SX]
@@ -54,15 +57,15 @@ class Graph:
         self.functions.append(Function(name, doc, x, [ca.SX(value) for value in y], looped))
 
     def add_with_seed(self, name: str, doc: str, x: Sequence[ca.SX], y: Symbols, fixed: int = 0) -> None:
-        """Add a function and `name_seed`: its derivative along a seed for all x but the first `fixed`."""
+        """Add a function, and its directional derivative `name_seed` in all x but the first `fixed`."""
         self.add(name, doc, x, y)
         self.add_seed(name, "x", x, y, fixed)
 
     def add_seed(self, name: str, doc: str, x: Sequence[ca.SX], y: Symbols, fixed: int) -> None:
-        """Add the derivative alone."""
-        moving = ca.vertcat(*x[fixed:])
+        """Add the directional derivative `name_seed` of y in all x but the first `fixed`."""
+        variables = ca.vertcat(*x[fixed:])
         seed = symbols("seed", len(x) - fixed)
-        slope = ca.densify(ca.jtimes(ca.vertcat(*map(ca.SX, y)), moving, ca.vertcat(*seed)))
+        slope = ca.densify(ca.jtimes(ca.vertcat(*map(ca.SX, y)), variables, ca.vertcat(*seed)))
         self.add(
             f"{name}_seed",
             f"Derivative along a seed: {doc}, seed -> y of {name}",
@@ -71,54 +74,55 @@ class Graph:
         )
 
     def settle(self) -> None:
-        """Take out what depends on parameters alone."""
+        """Replace subexpressions of parameters alone by constants in all functions."""
         everything = ca.cse(ca.densify(ca.vertcat(*(value for f in self.functions for value in f.y))))
         theta = ca.vertcat(*self.theta.values())
-        rest, self.symbols, self.constants = ca.extract_parametric(everything, theta)
-        values, settled = iter(ca.densify(rest).nz), []
+        reduced, self.symbols, self.constants = ca.extract_parametric(everything, theta)
+        values, functions = iter(ca.densify(reduced).nz), []
         for f in self.functions:
-            settled.append(replace(f, y=[next(values) for _ in f.y]))
-        self.functions = settled
+            functions.append(replace(f, y=[next(values) for _ in f.y]))
+        self.functions = functions
 
     @property
     def c(self) -> ca.SX:
-        """The constants' symbols."""
+        """Symbols of all constants of the C functions: theta, then the extracted expressions."""
         return ca.vertcat(*self.theta.values(), *self.symbols)
 
 
 def graph(model: Model, given: Split, functions: Callable[["Graph", Model], None], tabulated: bool) -> Graph:
-    """All functions of an FMU, of the parameters that are exposed or data; the others have their value.
+    """Build the C functions of an FMU. FMU variables and data are symbols; other parameters are numbers.
 
-    functions : adds those of the joint
-    tabulated : whether it has a curve, and so ends
+    functions : adds the functions of the joint
+    tabulated : whether the joint has a tabulated curve: then functions of its validity limits are added
     """
-    before = ca.GlobalOptions.getNumpyMode()
+    previous_mode = ca.GlobalOptions.getNumpyMode()
     ca.GlobalOptions.setNumpyMode(1)
     try:
         theta = {name: ca.SX.sym(name) for name in (*given.exposed, *given.fixed)}
         joint = build(given.of, {**given.code, **theta})
-        made = Graph(theta, joint, limits(joint))
-        functions(made, model)
+        g = Graph(theta, joint, limits(joint))
+        functions(g, model)
         if tabulated:
-            _bounds(made, model)
-        made.settle()
+            _bounds(g, model)
+        g.settle()
     finally:
-        ca.GlobalOptions.setNumpyMode(before)
-    return made
+        ca.GlobalOptions.setNumpyMode(previous_mode)
+    return g
 
 
 def symbols(name: str, count: int) -> list[ca.SX]:
-    """So many symbols."""
+    """Make `count` symbols `name0`, `name1`, ..."""
     return [ca.SX.sym(f"{name}{i}") for i in range(count)]
 
 
 def limits(joint: object) -> list[Limit]:
-    """Intervals of parameters that other parameters decide."""
+    """Intervals of parameters that depend on other parameters."""
     own = joint.limits() if hasattr(joint, "limits") else []
     return [*own, *(joint.table_limits() if hasattr(joint, "table_limits") else [])]
 
 
 def _bounds(g: Graph, model: Model) -> None:
+    """Add the functions of the parameter limits and of the limits beyond which warnings are logged."""
     ends = [end for limit in g.limits for end in (limit.interval.low, limit.interval.high)]
     g.add("parameter_limits", "-> low, high of every limit that parameters set each other", [], ends)
     v = {i.name: ca.SX.sym(i.name) for i in model.inputs}
@@ -130,7 +134,7 @@ def _bounds(g: Graph, model: Model) -> None:
 
 @dataclass(frozen=True, slots=True)
 class _Settled:
-    """A regime that ended below u: its integral is a constant."""
+    """Term of the contact law whose range ends below log-area u: its integral is a constant."""
 
     term: Smooth
 
@@ -150,9 +154,9 @@ class _Settled:
 
 
 def _regimes(spots: Spots) -> tuple[list[Number], list[Spots]]:
-    """Log-areas where a costly term (Gauss-Legendre) begins or ends, and the law in between.
+    """Log-areas at which a term with Gauss-Legendre quadrature begins or ends, and the law between them.
 
-    Between two of them only the terms that are under way need their quadrature.
+    Between two of these log-areas only the active terms need their quadrature.
     """
     terms = [t for row in spots.terms.values() for t in row if isinstance(t, Smooth)]
     ends: list[Number] = []
@@ -161,22 +165,23 @@ def _regimes(spots: Spots) -> tuple[list[Number], list[Spots]]:
             if not any(end is known for known in ends):
                 ends.append(end)
 
-    def place(end: Number) -> int:
+    def index(end: Number) -> int:
         return next(i for i, known in enumerate(ends) if known is end)
 
-    def at(term: Term, k: int) -> list[Term]:
+    def active_terms(term: Term, k: int) -> list[Term]:
         if not isinstance(term, Smooth):
             return [term]
-        if place(term.upper) < k:
+        if index(term.upper) < k:
             return [_Settled(term)]
-        return [term] if place(term.lower) < k else []
+        return [term] if index(term.lower) < k else []
 
-    nothing = Power(0.0, 1.0)
+    zero = Power(0.0, 1.0)
     return ends, [
         replace(
             spots,
             terms={
-                n: tuple(new for t in row for new in at(t, k)) or (nothing,) for n, row in spots.terms.items()
+                name: tuple(active for term in row for active in active_terms(term, k)) or (zero,)
+                for name, row in spots.terms.items()
             },
         )
         for k in range(len(ends) + 1)
@@ -184,7 +189,11 @@ def _regimes(spots: Spots) -> tuple[list[Number], list[Spots]]:
 
 
 def law_functions(g: Graph, law: Any, table: Sequence[str], state: Any) -> None:
-    """The interface law: what the inversion, the tables and the outputs need of it."""
+    """Add the functions of an interface law that its inversion, its tables and the outputs need.
+
+    table : names of the sums over contact spots, besides the load, that are tabulated
+    state : (law between two switches, log-area) -> quantities with first and second derivatives
+    """
     spots, u = law.spots(), ca.SX.sym("u")
     switches, regimes = _regimes(spots)
     g.add("law_switches", "-> log-areas between which law_..._0, 1, ... are valid", [], switches)
@@ -209,13 +218,13 @@ def law_functions(g: Graph, law: Any, table: Sequence[str], state: Any) -> None:
 
 
 def _bend_of_load(spots: Spots, u: Number) -> Number:
-    """F'' - m F': of the largest spot alone, without a sum over the others."""
+    """F'' - m F' of the load F(u), u log-area: follows from the largest spot, without a sum over spots."""
     largest = sum(term.spot(u) for term in spots.terms["load"])
     return spots.m * spots.weight * ca.jacobian(largest, u)
 
 
 def add_closing(g: Graph) -> None:
-    """The closing of the contact, of joints with the curve of pressure over approach."""
+    """Add the function of contact closing, for joints with a curve of pressure against approach."""
     p, k, bend, z = symbols("x", 4)
     doc = "p, k, dk/dx at the end of the closing, z -> displacement from there, load, stiffness, its slope"
     g.add("closing", doc, [p, k, bend, z], closing(p, k, bend, z))

@@ -1,4 +1,4 @@
-"""How a joint becomes C: its functions, the numbers that its C takes, the C it shares."""
+"""Definition of the C code of a joint: generated functions, constants, shared C files."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -16,20 +16,20 @@ from .c_text import number
 from .graph import Graph
 
 CURVE = ("tabulated", "curve")
-"""Shared C of every joint that has a curve."""
+"""Shared C files of a joint with a tabulated curve."""
 TABLES = (*CURVE, "spots")
-"""The same of a joint that inverts its interface law."""
+"""Shared C files of a joint that also inverts its interface law."""
 APPROACH = (*TABLES, "approach")
-"""The same with the curve of pressure over approach."""
+"""Shared C files of a joint that also has a curve of pressure against approach."""
 
 
 @dataclass(frozen=True, slots=True)
 class Definitions:
-    """Constants of C.
+    """Constants of the C code.
 
-    counts : {name: whole number}, as an enum
-    macros : {name: number}
-    arrays : {declaration: rows}, of double
+    counts : {name: integer}, written as an enum
+    macros : {name: number}, written as #define
+    arrays : {declaration: rows} of arrays of double
     """
 
     counts: Mapping[str, int] = field(default_factory=dict)
@@ -43,44 +43,44 @@ class Definitions:
 
 
 def column(name: str, size: str, values: Any) -> Definitions:
-    """An array `name[size]`."""
+    """Define a C array `name[size]` of double and its size."""
     return Definitions({size: len(values)}, {}, {f"{name}[{size}]": [number(x) for x in values]})
 
 
 def quadrature(prefix: str, nodes: Any) -> Definitions:
-    """Nodes `PREFIX[N_PREFIX]` and weights `PREFIX_WEIGHTS[N_PREFIX]` of a quadrature."""
-    places = column(prefix, f"N_{prefix}", nodes[0])
+    """Define quadrature nodes `PREFIX[N_PREFIX]` and weights `PREFIX_WEIGHTS[N_PREFIX]`."""
+    abscissas = column(prefix, f"N_{prefix}", nodes[0])
     weights = column(f"{prefix}_WEIGHTS", f"N_{prefix}", nodes[1])
-    return places | weights
+    return abscissas | weights
 
 
 Named = Mapping[ModuleType, Sequence[str]]
-"""{module: names} of numbers of the package that C has under the same name."""
+"""{module: names of its constants}, which have the same names in C."""
 NUMBERS: Named = {
     curve: ("MAX_ERROR",),
     interface: ("LEAST", "MOST", "FLATTEST", "STEEPEST", "CLOSE", "NOTHING", "SIDE"),
 }
 COUNTS: Named = {curve: ("FINEST",), interface: ("MOST_STEPS",)}
-"""Of every joint with tables: real numbers, and whole ones."""
+"""Python constants that the C of every joint with tables needs: integers (NUMBERS: real numbers)."""
 
 
 def named(numbers: Named, counts: Named) -> Definitions:
-    """Numbers of the package, as they are now."""
-    counted, real = (
-        {name: getattr(module, name) for module, names in given.items() for name in names}
-        for given in (counts, numbers)
+    """Definitions of constants of Python modules: real numbers and integers."""
+    count_values, number_values = (
+        {name: getattr(module, name) for module, names in names_by_module.items() for name in names}
+        for names_by_module in (counts, numbers)
     )
-    return Definitions(counted, real)
+    return Definitions(count_values, number_values)
 
 
 @dataclass(frozen=True, slots=True)
 class NativePart:
-    """How a joint becomes C.
+    """Definition of the C code of a joint.
 
-    functions   : adds the functions that its C calls to a graph
-    shared      : files of `runtime/law/` that it uses, beside those of every FMU
-    definitions : its constants
-    memory      : what it remembers, with room for the most that parameters can ask for; `AT_NAME` in C
+    functions   : adds the functions that the C of the joint calls to a graph
+    shared      : stems of files in `runtime/law/` that it needs, besides the files of every FMU
+    definitions : (graph, model) -> constants of its C
+    memory      : layout of the history variables, of the largest size possible; offsets are `AT_NAME` in C
     """
 
     functions: Callable[[Graph, Model], None]
@@ -90,11 +90,12 @@ class NativePart:
 
     @property
     def tabulated(self) -> bool:
-        """Whether the joint has a curve."""
+        """Whether the joint has a tabulated curve."""
         return "tabulated" in self.shared
 
 
 def _equations(g: Graph, model: Model) -> None:
+    """Add the outputs, and the event times if any, of a model with explicit equations."""
     names = ("time", *(v.name for v in model.inputs), *(v.name for v in model.outputs[: model.states]))
     v: dict[str, Any] = {name: ca.SX.sym(name) for name in names}
     outputs = model.evaluate(g.joint, v)
@@ -105,11 +106,11 @@ def _equations(g: Graph, model: Model) -> None:
 
 
 EQUATIONS = NativePart(_equations, ("equations",))
-"""Of a model whose outputs are closed functions of time, inputs and states."""
+"""C definition of a model whose outputs are explicit functions of time, inputs and states."""
 
 
 def shared_definitions(shared: Sequence[str]) -> Definitions:
-    """Constants of the shared C."""
+    """Constants that the shared C files need."""
     if "tabulated" not in shared:
         return Definitions()
     tables = named(NUMBERS, COUNTS) | Definitions({"CURVE_NODES": curve.MOST_NODES})

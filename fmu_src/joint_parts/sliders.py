@@ -1,4 +1,4 @@
-"""The rule of one slider as functions for C, which `law/sliders.c` calls in its loops."""
+"""Return mapping of one friction slider (Jenkins element) as C functions, called by `law/sliders.c`."""
 
 import casadi as ca
 
@@ -8,11 +8,11 @@ from jointfmu.quantity import where
 from .graph import Graph, symbols
 
 SLIDERS = ("sliders", "vectors")
-"""Shared C of joints that have sliders."""
+"""Shared C files of joints with friction sliders."""
 
 
 def add_sliders(g: Graph) -> None:
-    """Along one direction, with a limit that changes and with one that stays; in a plane."""
+    """Add the slider functions: in one direction with a constant or a changing limit, and in a plane."""
     force, shift, before, after, stiffness, compliance = symbols("x", 6)
     tried = trial([force], 1.0, stiffness, [shift])
     doc = "force, shift, limit, stiffness -> force if it sticks, whether that is at the limit or beyond"
@@ -33,6 +33,7 @@ def add_sliders(g: Graph) -> None:
 
 
 def _plane(g: Graph) -> None:
+    """Add the functions of a slider with two tangential directions."""
     x, (force, after, shift), slid = _slid()
     tried = trial(force, x[2], x[3], shift)
     doc = "force, part kept, gain, shift"
@@ -48,14 +49,18 @@ def _plane(g: Graph) -> None:
     g.add("slide_plane", f"{doc} -> force, tangent xx, xy, yy, loss, slip", x, y)
     g.add("return_plane", f"{doc} -> force", x, slid.force)
     g.add_seed("slide_plane", doc, x, y, fixed=2)
-    x, (_, after, shift), slid = _slid()  # of symbols of its own: it is written apart from the seed's
+    x, (_, after, shift), slid = _slid()  # new symbols: a separate function
     y = list(ca.densify(ca.jacobian(ca.vertcat(*slid.force), ca.vertcat(*shift, after))).T.nz)
     g.add("return_slopes", f"{doc} -> derivatives of the force by shift and limit after", x, y, looped=True)
 
 
 def _slid() -> tuple[list[ca.SX], tuple[list[ca.SX], ca.SX, list[ca.SX]], Slid]:
-    """A slider after a path in a plane: what it is made of (force, part kept, gain, shift, limits before and
-    after, stiffness, compliance), of this force, limit after and shift, and the result."""
+    """Return mapping of a slider with two tangential directions, for symbolic arguments.
+
+    Returns all arguments (force, fraction of the force retained, stiffness of the increment, displacement
+    increment, limits before and after, stiffness, compliance), among them (force, limit after, increment),
+    and the result.
+    """
     force, shift, (keeps, carries) = symbols("q", 2), symbols("u", 2), symbols("k", 2)
     before, after, stiffness, compliance = ends = symbols("x", 4)
     slid = slide(force, keeps, carries, shift, before, after, stiffness, compliance)

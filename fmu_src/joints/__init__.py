@@ -1,4 +1,4 @@
-"""What the builders know of each joint, a folder each for those of KINDS."""
+"""Builder data of each joint; every built-in joint of KINDS has its own folder."""
 
 from importlib import import_module
 
@@ -9,4 +9,4 @@ from ..joint_parts import Parts
 PARTS: dict[str, Parts] = {
     name: import_module(f".{name}", __name__).PARTS for name, kind in KINDS.items() if kind.own
 }
-"""{name of a joint: its parts}; a joint of another package is added."""
+"""{name of a joint: its builder data}; joints of other packages add an entry."""

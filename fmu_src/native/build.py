@@ -1,4 +1,4 @@
-"""Build the native flavours: FMI 2.0 and FMI 3.0, one set of C sources per joint, five platforms."""
+"""Build native FMUs (flavours fmi2 and fmi3): C sources and libraries for five platforms."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -29,13 +29,13 @@ def build(
     variability: str = VARIABILITIES[0],
     alias: str = "",
 ) -> Path:
-    """Write `out/name.fmu` for co-simulation and model exchange; an existing file is replaced in one go.
+    """Write `out/NAME.fmu` for co-simulation and model exchange; an existing file is replaced atomically.
 
-    Equal content gives an equal file.
+    Equal content gives equal files.
 
     version     : of FMI, "2" or "3"
-    variability : of the parameters, one of VARIABILITIES
-    alias       : the name that the FMU has instead of its own
+    variability : of all parameters, one of VARIABILITIES
+    alias       : name of the FMU instead of `name`; empty: `name`
 
     Raises ValueError if the parameters are of another joint or a folder cannot be written, ImportError
     if a package is missing, RuntimeError if the compiler fails.
@@ -48,18 +48,19 @@ def build(
 
 
 def _members(model: Model, parameters: ParameterFile, version: str, variability: str) -> dict[str, bytes]:
-    """{path: content} of an FMU."""
-    given = split(model, parameters)
-    part = part_of(model, parameters, given)
-    data, before = data_of(model, parameters, given, part.sources), placeholder(model, given)
-    files = part.sources | {"data.c": data.source(f" from the parameters {parameters.name!r}")}
-    built = {
-        platform: finished(library, before, data, model.title)
-        for platform, library in part.libraries[version].items()
+    """{path: content} of all files of a native FMU."""
+    parameter_split = split(model, parameters)
+    compiled_model = part_of(model, parameters, parameter_split)
+    data = data_of(model, parameters, parameter_split, compiled_model.sources)
+    placeholder_data = placeholder(model, parameter_split)
+    files = compiled_model.sources | {"data.c": data.source(f" from the parameters {parameters.name!r}")}
+    filled_libraries = {
+        platform: finished(library, placeholder_data, data, model.title)
+        for platform, library in compiled_model.libraries[version].items()
     }
     icons = terminals_and_icons(model)
     return (
-        core(model, parameters, version, files, data.token, built, variability)
+        core(model, parameters, version, files, data.token, filled_libraries, variability)
         | ({"model.png": icons["icon.png"]} if version == "2" else {})
         | _below("documentation", documentation(model, parameters))
         | _below("terminalsAndIcons", icons)
@@ -76,14 +77,15 @@ def core(
     built: Mapping[str, bytes],
     variability: str = VARIABILITIES[0],
 ) -> dict[str, bytes]:
-    """{path: content} of what every native FMU has: description, sources, binaries.
+    """{path: content} of the files that every native FMU has: description, sources, binaries.
 
-    files : {name: text} of all C
-    built : {platform of FMI 3.0: library}
+    files     : {name: text} of all C sources
+    token     : GUID (FMI 2.0) or instantiation token (FMI 3.0)
+    libraries : {platform of FMI 3.0: library}
     """
     units = exported(sorted(files), version)
-    own = {path: text.encode() for path, text in files.items() if path in units or path.endswith(".h")}
-    members = binaries(model.title, built, version) | _below("sources", own)
+    sources = {path: text.encode() for path, text in files.items() if path in units or path.endswith(".h")}
+    members = binaries(model.title, built, version) | _below("sources", sources)
     if version == "2":
         return members | {"modelDescription.xml": fmi2_xml(model, parameters, token, units, variability)}
     return members | {
@@ -93,21 +95,23 @@ def core(
 
 
 _FMI2 = {"x86_64-windows": "win64", "x86_64-linux": "linux64", "aarch64-linux": "aarch64-linux"}
-"""FMI 2.0's names of platforms."""
+"""{platform name of FMI 3.0: platform name of FMI 2.0}; for macOS see `place_libraries`."""
 _MACS = ("x86_64-darwin", "aarch64-darwin")
 
 
 def binaries(name: str, built: Mapping[str, bytes], version: str) -> dict[str, bytes]:
-    """{path in an FMU: content} of the libraries {platform of FMI 3.0: content}; in FMI 2.0 one file serves
-    every macOS."""
+    """{path in an FMU: content} of its libraries; in FMI 2.0 one universal file serves both macOS platforms.
+
+    libraries : {platform of FMI 3.0: content}
+    """
     if version == "3":
         return {f"binaries/{p}/{file_name(name, p)}": content for p, content in built.items()}
-    found = {
+    members = {
         f"binaries/{_FMI2[p]}/{file_name(name, p)}": content for p, content in built.items() if p in _FMI2
     }
     if macs := [built[p] for p in _MACS if p in built]:
-        found[f"binaries/darwin64/{name}.dylib"] = universal(macs)
-    return found
+        members[f"binaries/darwin64/{name}.dylib"] = universal(macs)
+    return members
 
 
 def _below(folder: str, files: Mapping[str, bytes]) -> dict[str, bytes]:

@@ -1,6 +1,6 @@
 """modelDescription.xml of FMI 2.0 and 3.0, and buildDescription.xml of FMI 3.0.
 
-Value references: 0 is the time, which FMI 2.0 does not list; then inputs, outputs and parameters.
+Value references: 0 is the time (not listed in FMI 2.0), then follow inputs, outputs and parameters.
 """
 
 from collections.abc import Sequence
@@ -65,9 +65,11 @@ _FMI3_INTERFACES = {
 def fmi2_xml(
     model: Model, parameters: ParameterFile, token: str, sources: Sequence[str], variability: str = "tunable"
 ) -> bytes:
-    """modelDescription.xml of FMI 2.0; `sources` are the C files to compile, in `sources/`.
+    """Content of modelDescription.xml of FMI 2.0.
 
-    variability : of the parameters, one of VARIABILITIES
+    token       : GUID
+    sources     : names of the C files to compile, in `sources/`
+    variability : of all parameters, one of VARIABILITIES
     """
     variables = listed(model, parameters)
     root = _root(model, "2.0", "guid", token)
@@ -93,7 +95,7 @@ def fmi2_xml(
 
 
 def fmi3_xml(model: Model, parameters: ParameterFile, token: str, variability: str = "tunable") -> bytes:
-    """modelDescription.xml of FMI 3.0; see `fmi2_xml`."""
+    """Content of modelDescription.xml of FMI 3.0; parameters as in `format_fmi2_description`."""
     variables = [_TIME, *listed(model, parameters)]
     root = _root(model, "3.0", "instantiationToken", token)
     for kind, flags in _FMI3_INTERFACES.items():
@@ -115,10 +117,10 @@ def fmi3_xml(model: Model, parameters: ParameterFile, token: str, variability: s
 
 
 def build_description(model: Model, sources: Sequence[str]) -> bytes:
-    """sources/buildDescription.xml of FMI 3.0: how to compile the C files in `sources/`.
+    """Content of sources/buildDescription.xml of FMI 3.0: how to compile the C files in `sources/`.
 
-    The first configuration is for any platform; where the mathematical functions are a library of
-    their own, a further one names it.
+    The first configuration is for any platform. On Linux the mathematical functions are a separate library:
+    a further configuration for each Linux platform names it.
     """
     root = Element("fmiBuildDescription", fmiVersion="3.0")
     for platform in (None, "x86_64-linux", "aarch64-linux"):
@@ -133,6 +135,7 @@ def build_description(model: Model, sources: Sequence[str]) -> bytes:
 
 
 def _root(model: Model, version: str, token_name: str, token: str) -> Element:
+    """Root element of a model description; `token_name` is the attribute that holds the token."""
     root = Element(
         "fmiModelDescription", {"fmiVersion": version, "modelName": model.title, token_name: token}
     )
@@ -145,13 +148,13 @@ def _root(model: Model, version: str, token_name: str, token: str) -> Element:
         "generationTool": f"jointfmu {__version__}",
         "variableNamingConvention": "structured",
     }
-    if when := fixed_time():  # else no date: two builds of the same content are the same file
+    if when := fixed_time():  # otherwise no date: builds of equal content give equal files
         root.set("generationDateAndTime", when.strftime("%Y-%m-%dT%H:%M:%SZ"))
     return root
 
 
 def _types(variables: Sequence[Listed]) -> dict[str, dict[str, str]]:
-    """Attributes of one type per quantity; a type shows the first display unit of its unit."""
+    """{quantity: attributes of its type definition}; its display unit is the first one of the unit."""
     return {
         UNITS[name].quantity: {
             "quantity": UNITS[name].quantity,
@@ -171,7 +174,7 @@ def _log_categories_and_experiment(root: Element, model: Model) -> None:
 
 
 def _heading(v: Listed, reference: int, parameters: str) -> dict[str, str]:
-    """What FMI says of a variable of any type; `parameters` is their variability."""
+    """XML attributes of a variable of any type; `parameter_variability` applies to parameters."""
     variability = parameters if v.causality == "parameter" else "continuous"
     heading = {"name": v.name, "valueReference": str(reference), "description": v.doc}
     heading |= {"causality": v.causality, "variability": variability}
@@ -181,7 +184,7 @@ def _heading(v: Listed, reference: int, parameters: str) -> dict[str, str]:
 
 
 def _value(v: Listed) -> dict[str, str]:
-    """What FMI says of a variable's values. The unit repeats the type's for importers that skip types."""
+    """XML attributes of the value of a variable; the unit is repeated for importers that ignore types."""
     value = {"declaredType": UNITS[v.attributes["unit"]].quantity} if v.attributes else {}
     if v.rate_of:
         value["derivative"] = str(v.rate_of)

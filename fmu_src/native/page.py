@@ -1,4 +1,4 @@
-"""The folder documentation: one page about the joint, its connection, law, limits and parameters."""
+"""Documentation page of an FMU: connection, law, limits, warnings and parameters of its joint."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -26,7 +26,7 @@ _POINTS = 41
 
 
 class _ParameterRow(NamedTuple):
-    """One line of a table of parameters, as text but for the value."""
+    """Row of the table of parameters; all fields but the value are text."""
 
     name: str
     value: Any
@@ -39,11 +39,15 @@ class _ParameterRow(NamedTuple):
 
 _STIFFNESS = {"N.m/rad": "kg.m2", "N/m": "kg"}
 _BODIES = {"kg.m2": (0.01, 0.1, 1.0, 10.0), "kg": (1.0, 10.0, 100.0, 1000.0)}
-"""Inertias and masses of which the page states the largest stable steps, by unit."""
+"""{unit: inertias or masses} for which the page lists the largest stable steps."""
 
 
 class _StableSteps(NamedTuple):
-    """Stiffness at the end of the ramp; (inertia, step at once, step side by side [s]) of bodies on it."""
+    """Largest stable steps of a body on the joint, with the stiffness at the end of the load ramp.
+
+    inertia : unit of the inertias
+    rows    : (inertia, step with a sequential master [s], step with a parallel master [s])
+    """
 
     name: str
     stiffness: float
@@ -54,14 +58,13 @@ class _StableSteps(NamedTuple):
 
 def documentation(model: Model, parameters: ParameterFile) -> dict[str, bytes]:
     """{path: content} of the folder documentation, the same for FMI 2.0 and 3.0."""
-    own = asset(model, "page.html")
-    given = model, parameters, own
-    page = plain_page(*given, terminals(model)) if model.moves else _page(*given)
+    source = model, parameters, asset(model, "page.html")
+    page = plain_page(*source, terminals(model)) if model.moves else _page(*source)
     return {"index.html": page.encode(), **licences()}
 
 
 def plain_page(model: Model, parameters: ParameterFile, page: Path, flanges: Sequence[Terminal] = ()) -> str:
-    """A page of the variables alone, of the template `page`."""
+    """Render a page that lists the variables only, from the template `page`."""
     return template(page, Path(__file__).parent).render(
         model=model,
         version=__version__,
@@ -71,7 +74,7 @@ def plain_page(model: Model, parameters: ParameterFile, page: Path, flanges: Seq
 
 
 def _page(model: Model, parameters: ParameterFile, page: Path) -> str:
-    """That of a joint; the template `page` may extend and import what lies beside this file."""
+    """Render the page of a joint from the template `page`, which may extend templates of this folder."""
     spring = model.spring(parameters.values)
     rest = {v.name: parameters.start(v.name) for v in model.inputs}
     model = model.loaded(spring, rest)
@@ -101,6 +104,7 @@ def _page(model: Model, parameters: ParameterFile, page: Path) -> str:
 
 
 def _rows(parameters: ParameterFile) -> list[_ParameterRow]:
+    """Rows of the table of all parameters."""
     fields, rows = dict(flat_fields(type(parameters.values))), []
     for name, value in parameters.flat.items():
         meta = fields[name].metadata
@@ -118,10 +122,10 @@ def _rows(parameters: ParameterFile) -> list[_ParameterRow]:
 def _steps(
     model: Model, spring: Spring, rest: Mapping[str, float], parameters: ParameterFile
 ) -> _StableSteps | None:
-    """Largest stable steps with a body on the joint, at the end of the ramp; None without motion as input.
+    """Largest stable steps with a body on the joint, at the end of the ramp; None if no input is a speed.
 
-    By `stable_steps` of the largest stiffness and its damping, for a master that passes on the force before
-    the body steps, and for one that steps all side by side with `lag_b` = 1.
+    They follow from the largest stiffness and its damping by `stable_steps`: for a sequential master, which
+    passes on the force before the body steps, and for a parallel master with `lag_b` = 1.
     """
     stiffnesses = [v for v in model.outputs if v.unit in _STIFFNESS]
     if not stiffnesses or not any(v.unit in ("rad/s", "m/s") for v in model.inputs):
@@ -129,12 +133,12 @@ def _steps(
     unit = stiffnesses[0].unit
     first, *others = (v.name for v in stiffnesses if v.unit == unit)
     axes = [name for name in others if re.fullmatch(r"K_(.)\1", first) and re.fullmatch(r"K_(.)\1", name)]
-    found = evaluated(model, spring, {**rest, model.ramp.input: model.ramp.end})
-    K, name = max((found[name], name) for name in (first, *axes))
+    outputs = evaluated(model, spring, {**rest, model.ramp.input: model.ramp.end})
+    K, name = max((outputs[name], name) for name in (first, *axes))
     if not K > 0.0:
         return None
-    acts = parameters.flat.get("damping", True)
-    d = float(parameters.flat.get("d", found.get(name.replace("K", "C", 1), 0.0))) if acts else 0.0
+    is_damped = parameters.flat.get("damping", True)
+    d = float(parameters.flat.get("d", outputs.get(name.replace("K", "C", 1), 0.0))) if is_damped else 0.0
     rows = []
     for J in _BODIES[_STIFFNESS[unit]]:
         at_once, side_by_side = stable_steps(K, d, 1.0 / J)
@@ -143,16 +147,17 @@ def _steps(
 
 
 def _short(number: float) -> float:
+    """Round a number to three significant digits."""
     return float(f"{number:.3g}")
 
 
 def _messages(model: Model, spring: Spring, rest: Mapping[str, float]) -> list[tuple[str, str, str]]:
-    """(level, example, meaning) of what an instance may log."""
+    """(level, example, meaning) of the messages that an instance may log."""
     name, item = next(iter(model.parameter_fields().items()))
     v = model.inputs[0]
-    wrong = problem(name, np.nan, item) or ""
+    parameter_error = problem(name, np.nan, item) or ""
     messages = [
-        ("error", wrong, "A parameter is outside its interval, not a number or infinite."),
+        ("error", parameter_error, "A parameter is outside its interval, not a number or infinite."),
         (
             "error",
             f"{v.name} = nan {v.unit} is outside {v.interval}: {v.doc}",
@@ -176,30 +181,30 @@ def _messages(model: Model, spring: Spring, rest: Mapping[str, float]) -> list[t
 
 
 def _warnings(model: Model, spring: Spring, rest: Mapping[str, float]) -> list[str]:
-    """An example of every warning: the end of the ramp, with one variable a tenth beyond its interval."""
+    """Example of each warning: end of the load ramp, one variable 10 % beyond its validity limit."""
     inputs = {**rest, model.ramp.input: model.ramp.end}
     values = inputs | evaluated(model, spring, inputs)
     warnings = []
     for i, outside in enumerate(model.outside):
         low, high = outside.interval(spring.joint, spring.curve.end, values)
-        beyond = 1.1 * high if np.isfinite(high) else low - 0.1 * model.ramp.end
-        warnings.append(model.warnings(spring, values | {outside.variable: float(beyond)})[i])
+        value = 1.1 * high if np.isfinite(high) else low - 0.1 * model.ramp.end
+        warnings.append(model.warnings(spring, values | {outside.variable: float(value)})[i])
     return warnings
 
 
 def evaluated(model: Model, spring: Spring, inputs: Mapping[str, float]) -> dict[str, float]:
-    """All outputs of a tabulated joint at inputs."""
+    """{output: value} of a tabulated joint at given inputs."""
     return {name: float(value) for name, value in model.evaluate(spring, inputs).items()}
 
 
 def panels(model: Model) -> tuple[RampPanel, ...]:
-    """What is drawn of the ramp; of a joint that does not say it, the first output over the driven input."""
-    own = parts_of(model).panels.get(model.name)
-    return own or (RampPanel(model.ramp.input, (model.outputs[0].name,)),)
+    """Charts of the load ramp; default: the first output against the ramped input."""
+    charts = parts_of(model).panels.get(model.name)
+    return charts or (RampPanel(model.ramp.input, (model.outputs[0].name,)),)
 
 
 def _figure(model: Model, spring: Spring, rest: Mapping[str, float]) -> str:
-    """The load ramp, evaluated by the package; the other inputs stay at rest, their start values."""
+    """HTML element with the charts of the load ramp; the other inputs keep their start values."""
     points = [{**rest, model.ramp.input: float(x)} for x in model.ramp.points(_POINTS)]
     rows = [point | evaluated(model, spring, point) for point in points]
     variables = {v.name: v for v in (*model.inputs, *model.outputs)}
@@ -212,12 +217,12 @@ def _figure(model: Model, spring: Spring, rest: Mapping[str, float]) -> str:
     for over, names in panels(model):
         x, y = (display_unit(variables[n].unit, variables[n].nominal) for n in (over, names[0]))
         lines = [chart.Series(name, column(over, x), column(name, y)) for name in names]
-        shown = ", ".join(names)
-        charts.append(chart.Panel(f"{shown} over {over}", f"{over} [{x}]", f"{shown} [{y}]", lines))
+        title = ", ".join(names)
+        charts.append(chart.Panel(f"{title} over {over}", f"{over} [{x}]", f"{title} [{y}]", lines))
     return chart.element(charts)
 
 
 def drawings(model: Model, spring: Spring) -> dict[str, str]:
-    """Further ones, as elements of the page by name."""
-    named = parts_of(model).drawings.get(model.name, {})
-    return {name: chart.element(panels(spring, model.ramp.end)) for name, panels in named.items()}
+    """{name: HTML element} of the further charts of a page."""
+    drawings = parts_of(model).drawings.get(model.name, {})
+    return {name: chart.element(panels(spring, model.ramp.end)) for name, panels in drawings.items()}

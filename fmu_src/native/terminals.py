@@ -1,8 +1,7 @@
-"""The folder terminalsAndIcons: flanges as in the Modelica Standard Library, and the icons.
+"""Folder terminalsAndIcons of an FMU: flanges as in the Modelica Standard Library, and icons.
 
-FMI 3.0 defines the folder; FMI 2.0 takes it over unchanged since 2.0.4. Flow variables are signed as
-the standard asks: an outflow is a force or torque that the element applies to what is connected, an
-inflow one that is applied to the element.
+FMI 3.0 defines the folder; FMI 2.0 allows it since 2.0.4. Signs of flow variables follow FMI 3.0:
+an outflow is a force or torque that the FMU applies to the connected part, an inflow is applied to the FMU.
 """
 
 from pathlib import Path
@@ -17,11 +16,11 @@ from ..xml_parts import serialized
 _COLORS = {ROTATIONAL: "0 0 0", TRANSLATIONAL: "0 127 0"}
 _HALF_SIZE = 10.0
 _FLANGES = Path(__file__).with_name("flanges")
-"""Their icons, 32 x 32 pixels: circle or square as in Modelica, filled for side a, open for side b."""
+"""Folder of the flange icons, 32 x 32 pixels: circle or square, filled for side a, open for side b."""
 
 
 def terminals(model: Model) -> tuple[Terminal, ...]:
-    """The flanges of an FMU; there may be none."""
+    """Flanges of an FMU; may be empty."""
     return parts_of(model).terminals.get(model.name, ())
 
 
@@ -34,7 +33,7 @@ def terminals_and_icons(model: Model) -> dict[str, bytes]:
 
 
 def terminals_xml(model: Model) -> bytes:
-    """terminalsAndIcons.xml."""
+    """Content of terminalsAndIcons.xml."""
     root = Element("fmiTerminalsAndIcons", fmiVersion="3.0")
     corners = {"x1": "-100", "y1": "-100", "x2": "100", "y2": "100"}
     graphics = SubElement(root, "GraphicalRepresentation")
@@ -70,5 +69,6 @@ def terminals_xml(model: Model) -> bytes:
 
 
 def _icon_name(terminal: Terminal) -> str:
+    """File name of the icon of a flange, without extension."""
     domain = "rotational" if terminal.kind == ROTATIONAL else "translational"
     return f"{domain}_{terminal.side}"

@@ -1,4 +1,4 @@
-"""The partners' FMUs: inertia, mass and loads that a system model needs beside a joint."""
+"""Builder data of the partners: FMUs of inertia, mass and loads that a system needs besides its joints."""
 
 from pathlib import Path
 
@@ -8,11 +8,11 @@ from .models import PARTNERS, parameters
 
 
 def _body(motion: str, rate: str, flow: str, kind: str, body: str) -> tuple[Terminal, ...]:
-    """Both flanges of a partner that moves; each takes a load of its own."""
-    known = {motion: (motion, "signal"), rate: (rate, "signal")}
+    """Two flanges of an inertia or mass; each has its own load input."""
+    members = {motion: (motion, "signal"), rate: (rate, "signal")}
     loads = {side: f"{flow}_{side}" for side in ("a", "b")}
     return tuple(
-        Terminal(f"flange_{side}", kind, side, f"{body}, load {load}", known | {flow: (load, "inflow")})
+        Terminal(f"flange_{side}", kind, side, f"{body}, load {load}", members | {flow: (load, "inflow")})
         for side, load in loads.items()
     )
 

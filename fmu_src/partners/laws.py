@@ -1,4 +1,4 @@
-"""What a joint meets in a system: inertia, mass and load; the equations of their FMUs."""
+"""Equations of the partner FMUs: inertia, mass, and prescribed loads and motions."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, make_dataclass
@@ -15,13 +15,14 @@ GRAVITY = 9.80665
 
 
 def _lag(flange: str) -> Any:
+    """Parameter `lag_...` of a body: delay of the load on a flange in communication steps [1]."""
     doc = f"communication steps by which the load on {flange} comes late: 1 from a joint in a parallel master"
     return quantity("1", doc, ge=0.0, le=1.0)
 
 
 @dataclass(frozen=True, kw_only=True)
 class RotationalInertia(Checked):
-    """An inertia under two torques, and under its weight."""
+    """Rotational inertia loaded by two torques and its weight."""
 
     inertia: ClassVar[str] = "J"
     J: float = quantity("kg.m2", "moment of inertia about the axis", gt=0.0)
@@ -31,14 +32,14 @@ class RotationalInertia(Checked):
     lag_b: float = _lag("b")
 
     def outputs(self, v: Mapping[str, Number]) -> dict[str, Number]:
-        """Angle [rad] from hanging down, speed [rad/s], acceleration [rad/s2]."""
+        """Angle [rad] from the hanging position, angular speed [rad/s], angular acceleration [rad/s2]."""
         weight = self.m * GRAVITY * self.l * np.sin(v["phi"])
         return {"phi": v["phi"], "w": v["w"], "a": (v["tau_a"] + v["tau_b"] - weight) / self.J}
 
 
 @dataclass(frozen=True, kw_only=True)
 class TranslationalMass(Checked):
-    """A mass under two forces."""
+    """Mass loaded by two forces."""
 
     inertia: ClassVar[str] = "m"
     m: float = quantity("kg", "mass", gt=0.0)
@@ -52,7 +53,7 @@ class TranslationalMass(Checked):
 
 @dataclass(frozen=True, kw_only=True)
 class _Load(Checked):
-    """A ramp that stays and a pulse, over time; subclasses give both heights a unit."""
+    """Load over time: a ramp that stays at its end value, and a pulse; subclasses define the heights."""
 
     ramp_start: float = quantity("s", "begin of the ramp")
     ramp_duration: float = quantity("s", "from the ramp's begin to its end", gt=0.0)
@@ -61,13 +62,13 @@ class _Load(Checked):
     pulse_hold: float = quantity("s", "time at the pulse's height", ge=0.0)
 
     def corners(self) -> tuple[Number, ...]:
-        """Times [s] at which an edge of ramp or pulse begins or ends."""
+        """Times [s] at which a ramp or an edge of the pulse begins or ends."""
         top, fall = self.pulse_start + self.pulse_rise, self.pulse_start + self.pulse_rise + self.pulse_hold
         ramp = (self.ramp_start, self.ramp_start + self.ramp_duration)
         return (*ramp, self.pulse_start, top, fall, fall + self.pulse_rise)
 
     def at(self, time: Number, ramp: Number, pulse: Number) -> Number:
-        """Ramp and pulse of these heights at a time [s]."""
+        """Load at a time [s], for given heights of ramp and pulse."""
         rise = smooth_step((time - self.pulse_start) / self.pulse_rise)
         fall = smooth_step((time - self.pulse_start - self.pulse_rise - self.pulse_hold) / self.pulse_rise)
         return ramp * smooth_step((time - self.ramp_start) / self.ramp_duration) + pulse * (rise - fall)
@@ -75,42 +76,42 @@ class _Load(Checked):
 
 @dataclass(frozen=True, kw_only=True)
 class TorqueProfile(_Load):
-    """A torque over time."""
+    """Torque over time: ramp and pulse."""
 
     ramp_height: float = quantity("N.m", "torque of the ramp")
     pulse_height: float = quantity("N.m", "torque of the pulse")
 
     def outputs(self, v: Mapping[str, Number]) -> dict[str, Number]:
-        """Torque [N.m], with that of the input."""
+        """Torque [N.m], including the input torque."""
         return {"tau": v["tau_in"] + self.at(v["time"], self.ramp_height, self.pulse_height)}
 
 
 @dataclass(frozen=True, kw_only=True)
 class ForceProfile(_Load):
-    """A force over time."""
+    """Force over time: ramp and pulse."""
 
     ramp_height: float = quantity("N", "force of the ramp")
     pulse_height: float = quantity("N", "force of the pulse")
 
     def outputs(self, v: Mapping[str, Number]) -> dict[str, Number]:
-        """Force [N], with that of the input."""
+        """Force [N], including the input force."""
         return {"f": v["f_in"] + self.at(v["time"], self.ramp_height, self.pulse_height)}
 
 
 @dataclass(frozen=True, kw_only=True)
 class AngleProfile(Checked):
-    """A turn from rest to rest, as a motor makes it that follows its command exactly."""
+    """Prescribed rotation from rest to rest, as of a motor that follows its command exactly."""
 
     start: float = quantity("s", "begin of the turn")
     duration: float = quantity("s", "from its begin to its end", gt=0.0)
     height: float = quantity("rad", "angle of the turn")
 
     def corners(self) -> tuple[Number, ...]:
-        """Times [s] at which the turn begins and ends."""
+        """Times [s] at which the rotation begins and ends."""
         return (self.start, self.start + self.duration)
 
     def outputs(self, v: Mapping[str, Number]) -> dict[str, Number]:
-        """Angle [rad] and speed [rad/s], with those of the inputs."""
+        """Angle [rad] and angular speed [rad/s], including the input angle and speed."""
         x = (v["time"] - self.start) / self.duration
         rate, _ = smooth_step_slopes(x)
         return {
@@ -120,7 +121,7 @@ class AngleProfile(Checked):
 
 
 POINTS = 17
-"""Of a TorqueCurve."""
+"""Number of control points of a TorqueCurve [1]."""
 
 
 _NAMES = [f"p{k + 1}" for k in range(POINTS)]
@@ -128,25 +129,28 @@ _NAMES = [f"p{k + 1}" for k in range(POINTS)]
 
 @dataclass(frozen=True, kw_only=True)
 class _Bernstein(Checked):
-    """A torque over time as a Bernstein polynomial, held before and after it."""
+    """Torque over time as a Bernstein polynomial; constant before its start and after its end."""
 
     start: float = quantity("s", "begin of the curve")
     duration: float = quantity("s", "from its begin to its end", gt=0.0)
 
     @staticmethod
     def shares(x: Number) -> list[Number]:
-        """Of each point in the torque, at a time over the duration [1]."""
+        """Bernstein basis: weight of each control point at the normalized time x [1]."""
         r = np.fmin(np.fmax(x, 0.0), 1.0)
         last = POINTS - 1
         return [comb(last, k) * r**k * (1.0 - r) ** (last - k) for k in range(POINTS)]
 
     @classmethod
     def fitted(cls, x: NDArray[np.float64], torque: NDArray[np.float64]) -> dict[str, float]:
-        """Points by name of the curve closest to torques [N.m] over x [1] from 0 to 1, exact at both ends."""
-        shares = np.stack(cls.shares(x), axis=1)
+        """Fit control points {name: torque [N.m]} to torques over x [1] from 0 to 1, exact at both ends.
+
+        Least squares at the given points.
+        """
+        weights = np.stack(cls.shares(x), axis=1)
         ends = [0, POINTS - 1]
-        rest = torque - shares[:, ends] @ torque[[0, -1]]
-        inner, *_ = np.linalg.lstsq(shares[:, 1:-1], rest, rcond=None)
+        remainder = torque - weights[:, ends] @ torque[[0, -1]]
+        inner, *_ = np.linalg.lstsq(weights[:, 1:-1], remainder, rcond=None)
         points = [torque[0], *inner, torque[-1]]
         return dict(zip(_NAMES, map(float, points), strict=True))
 
@@ -155,13 +159,14 @@ class _Bernstein(Checked):
         return (self.start, self.start + self.duration)
 
     def outputs(self, v: Mapping[str, Number]) -> dict[str, Number]:
-        """Torque [N.m], with that of the input."""
-        shares = self.shares((v["time"] - self.start) / self.duration)
-        points = [getattr(self, name) * share for name, share in zip(_NAMES, shares, strict=True)]
-        return {"tau": v["tau_in"] + sum(points)}
+        """Torque [N.m], including the input torque."""
+        weights = self.shares((v["time"] - self.start) / self.duration)
+        terms = [getattr(self, name) * weight for name, weight in zip(_NAMES, weights, strict=True)]
+        return {"tau": v["tau_in"] + sum(terms)}
 
 
 def _point(name: str) -> tuple[str, type, Any]:
+    """Dataclass field of one control point."""
     doc = f"torque at point {name[1:]} of {POINTS} of the Bernstein polynomial"
     return name, float, quantity("N.m", doc)
 

@@ -1,4 +1,4 @@
-"""The partners' FMUs: inertia, mass and loads that a system model needs beside a joint."""
+"""Models (variables, ramp, equations) and parameters of the partner FMUs: inertia, mass, loads."""
 
 from collections.abc import Sequence
 from importlib.resources import files
@@ -20,6 +20,7 @@ def _model(
     ramp: Ramp,
     states: int = 0,
 ) -> Model:
+    """Model of a partner, from its parameter class and variables."""
     return Model(
         name=parameters.__name__,
         joint="partner",
@@ -31,7 +32,7 @@ def _model(
         evaluate=lambda partner, values: partner.outputs(values),
         outside=(),
         ramp=ramp,
-        # states depend on no input, the rate of the speed on the inputs and the position
+        # states depend on no input; the acceleration depends on the inputs and the position
         dependencies={v.name: (v.name,) for v in outputs[:states]}
         | {v.name: (*(i.name for i in inputs), outputs[0].name) for v in outputs[states:] if states},
         states=states,
@@ -41,7 +42,7 @@ def _model(
 
 
 _TORQUE = (Variable("tau_in", "N.m", "torque that is added"),), (Variable("tau", "N.m", "torque"),)
-"""Inputs and outputs of a torque over time."""
+"""Inputs and outputs of models that prescribe a torque over time."""
 PARTNERS: dict[str, Model] = {
     model.name: model
     for model in (
@@ -109,7 +110,7 @@ PARTNERS: dict[str, Model] = {
 
 
 def parameters(name: str) -> ParameterFile:
-    """The parameters of a partner, models/partners/NAME.toml, in the form of a joint's.
+    """Load the parameter file of a partner, models/partners/NAME.toml.
 
     Raises ValueError with one line that names the file, the entry and what is allowed.
     """

@@ -1,1 +1,1 @@
-"""The proof inside an FMU: manifest, experiments, inputs and reference results after FMI-LS-REF."""
+"""Verification files inside an FMU: experiments, inputs and reference results by the standard FMI-LS-REF."""

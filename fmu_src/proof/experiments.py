@@ -1,4 +1,4 @@
-"""The experiments of an FMU: smoke test, load ramp, loop, shipped models, neighbours of refusals, samples."""
+"""Reference experiments of an FMU: smoke test, load ramp, loop, shipped models, boundary values, samples."""
 
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
@@ -21,20 +21,26 @@ from .reference import Stimulus, results, rounded, start_of
 from .series import TimeSeries
 
 RAMP, FEW, LEAST = 20, 4, 2
-"""Levels of the load ramp [1], of the smoke test and shipped models, of neighbours and samples."""
+"""Number of levels [1] of: load ramp; smoke test and shipped models; boundary values and samples."""
 QUARTER, CYCLES = 6, 1
-"""Levels of a quarter of a loop [1], and its cycles after first loading."""
+"""Number of levels of a quarter cycle of the loop [1], and of cycles after first loading [1]."""
 FRACTION = 0.25
-"""Interval of a model that moves by itself, over that of its ramp [1]: its profile has many instants."""
+"""Sampling interval of a time-dependent model over the interval of its ramp [1]."""
 SAMPLES = 6
+"""Number of experiments with varied parameters [1]."""
 _REFUSALS = (ValueError, RuntimeError, ArithmeticError)
 SPREAD = 0.01
-"""Half width of the uncertainty experiment [1]: a test plan; it does not say how well numbers are known."""
+"""Half width of the parameter variation [1]: a test plan, no statement on the uncertainty of parameters."""
 
 
 @dataclass(frozen=True, slots=True)
 class ReferenceExperiment:
-    """An experiment; `settings` are those that differ from the FMU's start values."""
+    """Experiment with its results.
+
+    purpose  : one of `standard.PURPOSES`
+    settings : {variable: value} that differ from the start values of the FMU
+    drive    : levels of the driven input
+    """
 
     purpose: str
     name: str
@@ -45,7 +51,7 @@ class ReferenceExperiment:
 
 
 def experiments(model: Model, parameters: ParameterFile) -> list[ReferenceExperiment]:
-    """All experiments, the smoke test first.
+    """Compute all experiments of an FMU, the smoke test first.
 
     Raises ValueError or RuntimeError if the joint refuses its own parameter file.
     """
@@ -55,8 +61,10 @@ def experiments(model: Model, parameters: ParameterFile) -> list[ReferenceExperi
         _experiment(model, parameters, "validation", "load ramp", "the default experiment", {}, RAMP),
         *_loop(model, parameters),
         *(
-            _experiment(model, parameters, "validation", f"model {file.name}", "a shipped model", own, FEW)
-            for file, own in models(model, parameters)[1:]
+            _experiment(
+                model, parameters, "validation", f"model {file.name}", "a shipped model", settings, FEW
+            )
+            for file, settings in models(model, parameters)[1:]
         ),
         *_neighbours(model, parameters),
         *_samples(model, parameters),
@@ -64,13 +72,13 @@ def experiments(model: Model, parameters: ParameterFile) -> list[ReferenceExperi
 
 
 def models(model: Model, parameters: ParameterFile) -> list[tuple[ParameterFile, dict[str, object]]]:
-    """The parameter file, and the shipped ones of the same joint, law and structure, each with what differs.
+    """The parameter file, and the shipped files with the same C code, each with {parameter: other value}.
 
-    Numbers that the FMU does not expose stay those of the parameter file; groups of them are structure.
+    Files that differ in a value that is neither an FMU variable nor a hidden number are left out.
     """
-    found = [(parameters, dict[str, object]())]
+    files_and_settings = [(parameters, dict[str, object]())]
     if model.joint not in KINDS:
-        return found
+        return files_and_settings
     fields = model.parameter_fields()
     for file in _shipped(model.joint, KINDS[model.joint].default_file().parent):
         if type(file.values) is not type(parameters.values) or file.flat.keys() != parameters.flat.keys():
@@ -78,26 +86,26 @@ def models(model: Model, parameters: ParameterFile) -> list[tuple[ParameterFile,
         differing = {name for name, value in file.flat.items() if value != parameters.flat[name]}
         settings = {name: file.flat[name] for name in fields if name in differing}
         if settings and differing <= fields.keys() | set(model.hidden):
-            found.append((file, settings))
-    return found
+            files_and_settings.append((file, settings))
+    return files_and_settings
 
 
 @cache
 def _shipped(joint: str, folder: Path) -> tuple[ParameterFile, ...]:
-    """The parameter files of a joint in a folder, and bought ones."""
+    """Parameter files of a joint in a folder, and in the catalogue of bought joints."""
     folders = [folder, Path(str(files("jointfmu_models") / "catalogue"))]
-    paths = sorted(path for one in folders if one.is_dir() for path in one.glob("*.toml"))
-    own = [path for path in paths if read_document(path, "a parameter file").get("joint") == joint]
-    return tuple(load(path, joint) for path in own)
+    paths = sorted(path for source in folders if source.is_dir() for path in source.glob("*.toml"))
+    joint_paths = [path for path in paths if read_document(path, "a parameter file").get("joint") == joint]
+    return tuple(load(path, joint) for path in joint_paths)
 
 
 def study(model: Model, parameters: ParameterFile) -> dict[str, str]:
-    """{parameter: its distribution} of the uncertainty experiment, as study files have them."""
+    """{parameter: distribution} of the uncertainty experiments, in the notation of study files."""
     return dict.fromkeys(_uncertain(model, parameters), f"+-{SPREAD:.0%}")
 
 
 def _uncertain(model: Model, parameters: ParameterFile) -> list[str]:
-    """Parameters that are real numbers other than zero."""
+    """Names of the real, nonzero parameters."""
     return [
         name
         for name, item in model.parameter_fields().items()
@@ -114,17 +122,17 @@ def _experiment(
     settings: Mapping[str, object],
     levels: int,
 ) -> ReferenceExperiment:
-    """The load ramp in some levels, but the first where it loads; a model with states rests under its end."""
+    """Compute a load ramp with a number of levels; a model with states gets the end load throughout."""
     settings = {**model.ramp.settings, **settings}
     start, end = start_of(model, parameters)[model.ramp.input], model.ramp.end
     if model.states:
-        places = np.full(levels + 1, end)
+        ramp_levels = np.full(levels + 1, end)
         settings = {**settings, model.ramp.input: end}
     else:
         loading = np.linspace(max(start, model.ramp.begin), end, levels + 1)[1:]
-        places = np.array([rounded(x) for x in (start, *loading)])
+        ramp_levels = np.array([rounded(x) for x in (start, *loading)])
     interval = model.ramp.interval * (FRACTION if model.moves else 1.0)
-    drive = Stimulus(model.ramp.input, places, interval)
+    drive = Stimulus(model.ramp.input, ramp_levels, interval)
     return ReferenceExperiment(
         purpose, name, doc, settings, drive, _results(model, parameters, settings, drive)
     )
@@ -133,52 +141,57 @@ def _experiment(
 def _results(
     model: Model, parameters: ParameterFile, settings: Mapping[str, Any], drive: Stimulus
 ) -> TimeSeries:
+    """Outputs of the package for an experiment with given parameters and start values."""
     start = start_of(model, parameters)
-    own = {name: value for name, value in settings.items() if name not in start}
-    values = changed(parameters.values, own) if own else parameters.values
+    changes = {name: value for name, value in settings.items() if name not in start}
+    values = changed(parameters.values, changes) if changes else parameters.values
     return results(model, values, start | {n: v for n, v in settings.items() if n in start}, drive)
 
 
 def _loop(model: Model, parameters: ParameterFile) -> Iterator[ReferenceExperiment]:
-    """From rest to the amplitude, and to and fro, in a triangle."""
+    """Yield the loop experiment of the model, if it has one: triangular cycles about the start value."""
     if (loop := model.loop) is None:
         return
     middle = dict(loop.settings).get(loop.input, start_of(model, parameters)[loop.input])
     phase = np.arange(QUARTER * (1 + 4 * CYCLES) + 1) / (4.0 * QUARTER)
-    turned = 1.0 - 4.0 * np.abs((phase + 0.25) % 1.0 - 0.5)
-    levels = np.array([rounded(middle + loop.amplitude * x) for x in turned])
+    triangle = 1.0 - 4.0 * np.abs((phase + 0.25) % 1.0 - 0.5)
+    levels = np.array([rounded(middle + loop.amplitude * x) for x in triangle])
     drive = Stimulus(loop.input, levels, model.ramp.interval)
     doc = f"{loop.input} to and fro by {loop.amplitude:g}, from rest"
     with suppress(*_REFUSALS):
-        found = _results(model, parameters, loop.settings, drive)
-        yield ReferenceExperiment("validation", "loop", doc, loop.settings, drive, found)
+        outputs = _results(model, parameters, loop.settings, drive)
+        yield ReferenceExperiment("validation", "loop", doc, loop.settings, drive, outputs)
 
 
 def _neighbours(model: Model, parameters: ParameterFile) -> Iterator[ReferenceExperiment]:
-    found: dict[tuple[str, object], ReferenceExperiment] = {}
+    """Yield an experiment for each parameter value just inside its allowed interval."""
+    computed: dict[tuple[str, object], ReferenceExperiment] = {}
 
-    def taken(name: str, value: object) -> bool:
-        shown = str(value).lower() if isinstance(value, bool) else f"{value:.9g}"
+    def is_accepted(name: str, value: object) -> bool:
+        value_text = str(value).lower() if isinstance(value, bool) else f"{value:.9g}"
         with suppress(*_REFUSALS):
-            found[name, value] = _experiment(
-                model, parameters, "validation", f"{name} = {shown}", "", {name: value}, LEAST
+            computed[name, value] = _experiment(
+                model, parameters, "validation", f"{name} = {value_text}", "", {name: value}, LEAST
             )
-        return (name, value) in found
+        return (name, value) in computed
 
-    for name, value, doc in neighbours(model, parameters, taken):
-        yield replace(found[name, value], doc=doc)
+    for name, value, doc in neighbours(model, parameters, is_accepted):
+        yield replace(computed[name, value], doc=doc)
 
 
 def _samples(model: Model, parameters: ParameterFile) -> Iterator[ReferenceExperiment]:
-    """Points of an additive recurrence by square roots of primes, but those that the joint refuses."""
+    """Yield experiments with all real parameters varied, except points that the joint refuses.
+
+    The points are an additive recurrence with the square roots of primes (low discrepancy).
+    """
     names = _uncertain(model, parameters)
     steps = np.sqrt(list(islice(_primes(), len(names))))
     doc = f"all real parameters within {SPREAD:.0%}"
     for number in range(1, SAMPLES + 1 if names else 1):
-        place = 2.0 * ((number * steps) % 1.0) - 1.0
+        point = 2.0 * ((number * steps) % 1.0) - 1.0
         settings = {
             name: rounded(parameters.flat[name] * (1.0 + SPREAD * x))
-            for name, x in zip(names, place, strict=True)
+            for name, x in zip(names, point, strict=True)
         }
         with suppress(*_REFUSALS):
             yield _experiment(
@@ -187,4 +200,5 @@ def _samples(model: Model, parameters: ParameterFile) -> Iterator[ReferenceExper
 
 
 def _primes() -> Iterator[int]:
+    """Yield the prime numbers."""
     return (n for n in count(2) if all(n % m for m in range(2, n)))

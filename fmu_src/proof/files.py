@@ -1,4 +1,4 @@
-"""The files of FMI-LS-REF: manifest, experiments (MA-HS-Experiments), parameter sets (SSV), series, texts."""
+"""Files of FMI-LS-REF: manifest, experiments (MA-HS-Experiments), parameter sets (SSV), time series, text."""
 
 import json
 import re
@@ -21,17 +21,20 @@ from .series import text
 from .standard import FLOOR, SOLVER
 
 TOLERANCE = 1e-5
-"""Of a reference result [1]. An importer that prints six digits rounds by 5e-6; the rest is for what differs
-between the package and a compiled law: measured, 1e-8 at neighbours of refusals and 1e-9 elsewhere, with the
-rounding of the files. Platforms differ by 1e-12; a solver adds 4e-10 where there are states."""
+"""Relative tolerance of reference results [1].
+
+An importer that prints six digits rounds by 5e-6. The difference between the package and the compiled law,
+including the rounding of the files, is 1e-8 at boundary values of parameters and 1e-9 elsewhere (measured).
+Platforms differ by 1e-12; a solver adds 4e-10 to models with states.
+"""
 TEXT = "documentation/fmi-ls-ref.txt"
-"""Where an FMU says what its experiments are."""
+"""Path in an FMU of the text that explains its experiments."""
 _INTERFACES = {
     standard.CO_SIMULATION: "steps of stepSize; each takes the inputs of its begin or of its end",
     standard.MODEL_EXCHANGE: f"a solver with {SOLVER:g} times the tolerance of the experiment as its own; "
     "a completed integrator step at each row of inputs and results",
 }
-"""{interface: how an experiment is run in it}."""
+"""{interface type: how an experiment is run}."""
 _TITLES = {
     "smoke-test": "Smoke test",
     "validation": "Load ramp, loop, shipped models, neighbours of refusals",
@@ -40,7 +43,7 @@ _TITLES = {
 
 
 class RelatedFile(NamedTuple):
-    """A line of the manifest; `labels` {interface: how it is run in it}, of experiments."""
+    """File listed in the manifest; experiments have `labels` {interface type: how they are run}."""
 
     source: str
     type: str
@@ -57,24 +60,29 @@ def archive(
     study: Mapping[str, str],
     native: bool,
 ) -> dict[str, bytes]:
-    """{path in the FMU: content}."""
+    """Make the files of FMI-LS-REF inside an FMU: {path: content}.
+
+    models : parameter files, each with the values that differ from the first
+    study  : {parameter: distribution} of the uncertainty experiments
+    native : whether the FMU is native: then it supports model exchange and has a documentation page
+    """
     members: dict[str, bytes] = {}
     related: list[RelatedFile] = []
-    offered = dict(list(_INTERFACES.items())[: 2 if native else 1])
+    interfaces = dict(list(_INTERFACES.items())[: 2 if native else 1])
 
     def add(source: str, kind: str, role: str, doc: str, content: bytes) -> None:
         members[source] = content
-        labels = offered if kind == standard.EXPERIMENTS else {}
+        labels = interfaces if kind == standard.EXPERIMENTS else {}
         related.append(RelatedFile(source, kind, role, doc, labels))
 
-    own, exposed = slug(parameters.name), model.parameter_fields()
+    file_stem, exposed = slug(parameters.name), model.parameter_fields()
     if native:
         address = "../../documentation/index.html"
         related.append(
             RelatedFile(address, "text/html", "requirement", "what the FMU takes, gives and refuses")
         )
     add(
-        f"parameters/{own}.toml",
+        f"parameters/{file_stem}.toml",
         "application/toml",
         "requirement",
         "each parameter with its source",
@@ -91,44 +99,51 @@ def archive(
         content = "\n".join(["schema = 1", "", "[parameters]", *lines, ""]).encode()
         doc = "distributions of the uncertainty experiment"
         add("parameters/study.toml", "application/toml", "method", doc, content)
-    for purpose in dict.fromkeys(one.purpose for one in experiments):
-        chosen = [(i, one) for i, one in enumerate(experiments) if one.purpose == purpose]
+    for purpose in dict.fromkeys(experiment.purpose for experiment in experiments):
+        numbered = [
+            (i, experiment) for i, experiment in enumerate(experiments) if experiment.purpose == purpose
+        ]
         root = Element("Experiments", name=_TITLES[purpose], description=model.doc)
         series: dict[str, bytes] = {}
-        for i, one in chosen:
-            series |= _experiment(model, root, f"{i:02d}", one, members | series)
+        for i, experiment in numbered:
+            series |= _experiment(model, root, f"{i:02d}", experiment, members | series)
         content = serialized(root)
         add(f"{purpose}.exp", standard.EXPERIMENTS, f"experiment/{purpose}", _TITLES[purpose], content)
         members |= series
         for path in series:
             if path.endswith("_ref.csv"):
                 related.append(RelatedFile(path, standard.CSV, "result", "reference result of the package"))
-    return placed(members, related, _text(own, experiments, native))
+    return placed(members, related, _text(file_stem, experiments, native))
 
 
 def placed(members: Mapping[str, bytes], related: Sequence[RelatedFile], page: str) -> dict[str, bytes]:
-    """{path in the FMU: content} of a proof: its files, their manifest, and the page that explains it."""
+    """Place reference files, their manifest and the explaining page: {path in the FMU: content}."""
     files = {**members, "fmi-ls-manifest.xml": _manifest(related)}
     return {f"{standard.FOLDER}/{path}": content for path, content in files.items()} | {TEXT: page.encode()}
 
 
 def slug(name: str) -> str:
-    """A name as part of a file name."""
+    """Convert a name to lower case letters, digits and _, for file names; at most 40 characters."""
     return re.sub(r"[^a-z0-9]+", "_", name.lower()).strip("_")[:40].strip("_") or "parameters"
 
 
 def _experiment(
     model: Model, root: Element, number: str, one: ReferenceExperiment, there: Mapping[str, bytes]
 ) -> dict[str, bytes]:
-    """Declare an experiment; its files. Inputs that another experiment has are taken from there."""
+    """Declare an experiment below `root`, and return its new files {path: content}.
+
+    members : files of other experiments; equal inputs are not stored twice
+    """
     stem = f"experiments/{number}_{slug(one.name)}"
     stimuli = text(one.drive.stimuli).encode()
-    same = (path for path, content in there.items() if path.endswith("_in.csv") and content == stimuli)
-    files = {"Stimuli": next(same, f"{stem}_in.csv"), "References": f"{stem}_ref.csv"}
-    written = {files["Stimuli"]: stimuli, files["References"]: text(one.results, DIGITS).encode()}
+    equal_inputs = (
+        path for path, content in there.items() if path.endswith("_in.csv") and content == stimuli
+    )
+    files = {"Stimuli": next(equal_inputs, f"{stem}_in.csv"), "References": f"{stem}_ref.csv"}
+    contents = {files["Stimuli"]: stimuli, files["References"]: text(one.results, DIGITS).encode()}
     if one.settings:
         files = {"Parameters": f"{stem}.ssv", **files}
-        written[files["Parameters"]] = _parameter_set(model, one.name, one.settings)
+        contents[files["Parameters"]] = _parameter_set(model, one.name, one.settings)
     node = SubElement(root, "Experiment", name=one.name, description=one.doc, tolerance=repr(TOLERANCE))
     times = {
         "startTime": 0.0,
@@ -138,31 +153,32 @@ def _experiment(
     SubElement(node, standard.TRANSIENT, {name: repr(time) for name, time in times.items()})
     for tag, path in files.items():
         SubElement(node, tag, source=path)
-    return {path: content for path, content in written.items() if path not in there}
+    return {path: content for path, content in contents.items() if path not in there}
 
 
 def _parameter_set(model: Model, name: str, values: Mapping[str, object]) -> bytes:
-    """An SSV file of parameters and inputs of a model."""
+    """Content of an SSV file with values of parameters and inputs of a model."""
     units = {v.name: v.unit for v in model.inputs}
     units |= {n: item.metadata.get("unit", "") for n, item in model.parameter_fields().items()}
     return parameter_set(name, {n: Value(value, units[n]) for n, value in values.items()})
 
 
 def _manifest(related: Sequence[RelatedFile]) -> bytes:
-    """The manifest of FMI-LS-REF."""
+    """Content of the manifest of FMI-LS-REF."""
     head = {"name": standard.NAME, "version": standard.VERSION, "description": standard.DESCRIPTION}
     root = Element("fmiReferences", {"xmlns:fmi-ls": standard.ATTRIBUTES})
     root.attrib |= {f"fmi-ls:fmi-ls-{name}": value for name, value in head.items()}
-    for line in related:
-        attributes = {"type": line.type, "source": line.source, "role": line.role, "description": line.doc}
+    for file in related:
+        attributes = {"type": file.type, "source": file.source, "role": file.role, "description": file.doc}
         node = SubElement(root, "Related", attributes)
-        for interface, doc in line.labels.items():
+        for interface, doc in file.labels.items():
             SubElement(node, "Label", name=standard.LABELS[interface], description=doc)
     return serialized(root)
 
 
 def _text(own: str, experiments: Sequence[ReferenceExperiment], native: bool) -> str:
-    counts = {p: sum(one.purpose == p for one in experiments) for p in standard.PURPOSES}
+    """Text that explains the experiments of an FMU."""
+    counts = {p: sum(experiment.purpose == p for experiment in experiments) for p in standard.PURPOSES}
     page = Path(__file__).with_name("page.txt").read_text(encoding="utf-8")
     return page.format(
         standard=standard.NAME,

@@ -1,4 +1,4 @@
-"""Files of the proof inside an FMU."""
+"""Verification files inside an FMU, with cached reference results."""
 
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile, dump
@@ -8,23 +8,23 @@ from .files import archive
 
 _MOST_KEPT = 16
 _kept: dict[tuple[str, str], tuple[ReferenceExperiment, ...]] = {}
-"""{(FMU, text of its parameter file): its experiments}, the latest last."""
+"""{(FMU, text of its parameter file): its experiments}; the newest entry is last."""
 
 
 def proof(model: Model, parameters: ParameterFile, native: bool = True) -> dict[str, bytes]:
-    """{path in the FMU: content}; reference results are the package's.
+    """Make the verification files of an FMU, {path: content}; the package computes the reference results.
 
-    native : whether of a native FMU, which has a page and model exchange; else of the python flavour
+    native : whether the FMU is native; False: python flavour, without page and model exchange
     """
-    given = model, parameters
-    return archive(*given, models(*given), computed(*given), study(*given), native)
+    source = model, parameters
+    return archive(*source, models(*source), computed(*source), study(*source), native)
 
 
 def computed(model: Model, parameters: ParameterFile) -> tuple[ReferenceExperiment, ...]:
-    """All experiments, computed once for the flavours of an FMU."""
+    """Experiments of an FMU, computed once for all flavours."""
     key = model.name, dump(parameters)
     if key not in _kept:
         _kept[key] = tuple(experiments(model, parameters))
-        for old in [*_kept][:-_MOST_KEPT]:
-            del _kept[old]
+        for old_key in [*_kept][:-_MOST_KEPT]:
+            del _kept[old_key]
     return _kept[key]

@@ -1,7 +1,7 @@
-"""The neighbours of refusals: values of parameters just inside their intervals, which an FMU must take.
+"""Boundary values of parameters, just inside their allowed intervals, which an FMU must accept.
 
-Where the joint itself refuses what lies just inside an interval, since other parameters narrow it, the
-neighbour is looked for between the interval's end and the value of the parameter file.
+Other parameters can narrow an interval further, so that the joint refuses a value just inside its end. Then
+bisection between the end and the value of the parameter file finds a value that is accepted.
 """
 
 import math
@@ -16,20 +16,21 @@ from jointfmu.quantity import Interval
 from .reference import rounded
 
 NEAR = 1e-6
-"""Distance from an open end, in widths of the interval [1]."""
+"""Distance of a boundary value from an open end over the width of the interval [1]."""
 HALVINGS = 5
+"""Bisection steps [1]."""
 INWARD = 0.02
-"""From the last value that the joint takes towards the file's [1]: round-off decides nothing there."""
+"""Shift from the last accepted value to that of the file, over their distance [1]: round-off margin."""
 
 
 def neighbours(
     model: Model, parameters: ParameterFile, taken: Callable[[str, object], bool]
 ) -> Iterator[tuple[str, Any, str]]:
-    """Name and value of a parameter, one at a time, and what it is near to.
+    """Yield (parameter, boundary value, description), for one parameter at a time.
 
-    taken : whether the joint takes a value of a parameter
+    is_accepted : (parameter, value) -> whether the joint accepts the value
 
-    An open end at zero of an interval without another end has no neighbour: nothing says what is near.
+    An open end at zero of an interval with an infinite other end is skipped: the interval has no scale.
     """
     for name, item in model.parameter_fields().items():
         value, meta = parameters.flat[name], item.metadata
@@ -48,19 +49,19 @@ def neighbours(
                 continue
             width = abs(other - end) if math.isfinite(other) else max(abs(value - end), 1.0)
             first = end + math.copysign(NEAR * width, value - end) if is_open else end
-            found = _inside(float(first), float(value), bool(meta["whole"]), partial(taken, name))
-            if found is not None and found != value:
-                yield name, found, f"inside {interval}"
+            boundary_value = _inside(float(first), float(value), bool(meta["whole"]), partial(taken, name))
+            if boundary_value is not None and boundary_value != value:
+                yield name, boundary_value, f"inside {interval}"
 
 
 def _inside(first: float, value: float, whole: bool, taken: Callable[[float], bool]) -> float | None:
-    """The value nearest to `first` that is taken; None if there is none beside the file's own."""
-    shown: Callable[[float], float] = round if whole else rounded
-    if taken(shown(first)):
-        return float(shown(first))
+    """Accepted value nearest to `first`, by bisection; None if only the value of the file is accepted."""
+    round_value: Callable[[float], float] = round if whole else rounded
+    if taken(round_value(first)):
+        return float(round_value(first))
     refused, accepted = first, value
     for _ in range(HALVINGS):
         middle = 0.5 * (refused + accepted)
-        refused, accepted = (refused, middle) if taken(shown(middle)) else (middle, accepted)
-    inward = float(shown(accepted + INWARD * (value - accepted)))
+        refused, accepted = (refused, middle) if taken(round_value(middle)) else (middle, accepted)
+    inward = float(round_value(accepted + INWARD * (value - accepted)))
     return inward if taken(inward) else None

@@ -1,4 +1,4 @@
-"""Time series as CSV after the rules of the FMI cross-check: names quoted, the time first, no units."""
+"""Time series, and their CSV files by the FMI cross-check rules: quoted names, time first, no units."""
 
 import csv
 import io
@@ -10,46 +10,48 @@ import numpy as np
 from jointfmu.quantity import Array
 
 TIME = "time"
+"""Name of the first column."""
 
 
 @dataclass(frozen=True, slots=True)
 class TimeSeries:
-    """Values over time: `time` (n) [s], `columns` {variable: (n)}."""
+    """Time series: `time` (n) [s], `columns` {variable: values (n)}."""
 
     time: Array
     columns: Mapping[str, Array]
 
     def at(self, name: str, times: Array) -> Array:
-        """A column at times (m), linear in between and held beyond the ends.
+        """Interpolate a column linearly at times (m) [s]; constant beyond the ends.
 
-        Where a time stands twice, the value jumps: there it is the last one.
+        A repeated time is a jump: there the result is the value after the jump.
         """
         return np.asarray(np.interp(times, self.time, self.columns[name]))
 
     def before(self, name: str, times: Array) -> Array:
-        """The same, but where it jumps the first one."""
+        """Interpolate a column as `interpolate`, but take the value before a jump."""
         return np.asarray(np.interp(-times, -self.time[::-1], self.columns[name][::-1]))
 
     def held(self, name: str, times: Array) -> Array:
-        """A column at times (m), each value held until the next row."""
+        """Values of a column at times (m) [s], constant from each row to the next."""
         rows = np.searchsorted(self.time, times, side="right") - 1
         return self.columns[name][np.maximum(rows, 0)]
 
 
 def text(series: TimeSeries, digits: int | None = None) -> str:
-    """The series as the text of a file; `digits` of the columns, None: exact."""
+    """Format a time series as CSV; `digits` are the significant digits of the columns, None: exact."""
     head = ",".join(f'"{name}"' for name in (TIME, *series.columns))
-    form = "%r" if digits is None else f"%.{digits}g"
+    number_format = "%r" if digits is None else f"%.{digits}g"
     rows = zip(*(column.tolist() for column in (series.time, *series.columns.values())), strict=True)
-    lines = (",".join([repr(time), *(form % (value + 0.0) for value in row)]) for time, *row in rows)
+    lines = (",".join([repr(time), *(number_format % (value + 0.0) for value in row)]) for time, *row in rows)
     return "\n".join([head, *lines, ""])
 
 
 def parse(content: str, where: str) -> TimeSeries:
-    """The series of a file's text.
+    """Read a time series from CSV text.
 
-    Raises ValueError, one line beginning with `where`: no time, a row of another length, no number, a time
-    that falls.
+    location : name of the file for errors
+
+    Raises ValueError, one line: missing column time, row of another length, no number, decreasing time.
     """
     rows = [row for row in csv.reader(io.StringIO(content)) if row]
     head = [name.strip() for name in rows[0]] if rows else []
@@ -64,7 +66,7 @@ def parse(content: str, where: str) -> TimeSeries:
         table = np.array([[float(cell) for cell in row] for row in rows[1:]])
     except ValueError as error:
         raise ValueError(f"{where}: {error}; expected rows of {len(head)} numbers") from None
-    times, named = table[:, 0], dict(zip(head[1:], table[:, 1:].T, strict=True))
+    times, columns = table[:, 0], dict(zip(head[1:], table[:, 1:].T, strict=True))
     if np.any(np.diff(times) < 0.0) or not np.all(np.isfinite(times)):
         raise ValueError(f"{where}: the time falls or is not finite; expected rising times")
-    return TimeSeries(times, named)
+    return TimeSeries(times, columns)

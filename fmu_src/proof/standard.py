@@ -1,26 +1,26 @@
-"""Names and rules of FMI-LS-REF, as an FMU with a proof states them."""
+"""Names, types and tolerances of FMI-LS-REF, as jointfmu writes and reads them."""
 
 NAME = "org.fmi-standard.fmi-ls-ref"
-"""Of the layered standard."""
+"""Name of the layered standard."""
 VERSION = "1.0.0-alpha.1"
 DESCRIPTION = "Layered Standard providing information on related files included in an FMU."
 FOLDER = f"extra/{NAME}"
 MANIFEST = f"{FOLDER}/fmi-ls-manifest.xml"
 ATTRIBUTES = "http://fmi-standard.org/fmi-ls-manifest"
-"""Namespace of the manifest's own attributes."""
+"""XML namespace of the attributes of the manifest."""
 EXPERIMENTS, SSV, CSV = "application/x-ma-hs-experiments", "application/x-ssp-parameter-set", "text/csv"
-"""Types of related files that are read."""
+"""MIME types of the related files that are read."""
 TRANSIENT = "TransientSimulation"
 CO_SIMULATION, MODEL_EXCHANGE = INTERFACES = ("co-simulation", "model exchange")
-"""Interfaces of FMUs."""
+"""Interface types of FMUs."""
 LABELS = {name: f"interface:{name.replace(' ', '-')}" for name in INTERFACES}
-"""{interface: label of a file of experiments for it}; without such a label it is for all."""
+"""{interface type: label of experiments for it}; experiments without such a label are for all types."""
 SCALES = "org.jointfmu.scales"
-"""Type of an experiment's annotation: the size of each output by which its tolerance counts."""
+"""Type of the annotation that gives for each output the scale to which its tolerance is relative."""
 PURPOSES = ("smoke-test", "validation", "uncertainty-analysis")
-"""What an experiment is for; the first where a manifest does not say."""
+"""Purposes of experiments; the first is the default of a manifest."""
 FLOOR = 1e-6
-"""Part of an output's nominal value [1] below which its round-off counts, not its own size."""
+"""Smallest scale of an output over its nominal value [1]: smaller values are dominated by round-off."""
 SOLVER = 1e-3
-"""Relative tolerance of a solver over that of the experiment [1]: its errors add up along the way, and
-what was large may be small after an event."""
+"""Relative tolerance of the solver over the tolerance of the experiment [1]: solver errors accumulate, and a
+large value can be small after an event."""

@@ -1,1 +1,1 @@
-"""The python flavour: pythonfmu slaves, FMI 2.0 co-simulation."""
+"""Flavour python: FMUs for FMI 2.0 co-simulation that run the package through pythonfmu."""

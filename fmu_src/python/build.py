@@ -1,4 +1,4 @@
-"""Build the python flavour: pythonfmu's wrapper around a private copy of the package."""
+"""Build FMUs of the flavour python: pythonfmu with a private copy of the package."""
 
 import re
 import sys
@@ -21,36 +21,39 @@ from jointfmu.joints.kind import Kind
 from jointfmu.parameters import ParameterFile, dump
 
 _PRIVATE = "PRIVATE_PACKAGE"
-"""Stands for the name that the digest of all sources gives."""
+"""Placeholder for the name of the private package, which contains a digest of all sources."""
 _ENTRY = Path(__file__).with_name("entry.txt")
-"""Text of an FMU's own module, with places for its names."""
+"""Template of the Python module that pythonfmu loads."""
 
 
 def runtime_sources(kind: Kind) -> dict[str, str]:
-    """{path inside the private package: text} of all that runs inside the FMU; numpy is its only need.
+    """{path inside the private package: text} of the Python code inside an FMU; it requires only numpy.
 
-    These are the slave, the joints and what they import. Imports of the public package names are rewritten
-    to a private one, so FMUs of different builds live side by side in one process.
+    The code is the slave, the joints and all modules that they import. Imports of the public packages are
+    rewritten to the private package, so FMUs of different builds can run in one process.
     """
-    own = [joint.package for joint in KINDS.values() if joint.own]
+    builtin_packages = [joint.package for joint in KINDS.values() if joint.own]
     roots = {"jointfmu", "jointfmu_fmu_src", kind.package.partition(".")[0]}
-    files = imported(["jointfmu_fmu_src.python.slave", *own, kind.package], roots)
+    files = imported(["jointfmu_fmu_src.python.slave", *builtin_packages, kind.package], roots)
     sources = {}
     for name, path in files.items():
-        inside = _inside(name).replace(".", "/")
+        path_inside = _inside(name).replace(".", "/")
         file = (
-            "/".join(filter(None, (inside, "__init__.py"))) if path.name == "__init__.py" else f"{inside}.py"
+            "/".join(filter(None, (path_inside, "__init__.py")))
+            if path.name == "__init__.py"
+            else f"{path_inside}.py"
         )
         sources[file] = _private(path.read_text(encoding="utf-8"), roots)
     return dict(sorted(sources.items()))
 
 
 def _inside(module: str) -> str:
-    """Name of a public module inside the private package; that of the package itself is empty."""
+    """Name of a public module inside the private package; empty for the package `jointfmu` itself."""
     return re.sub(r"^jointfmu\b\.?", "", re.sub(r"^jointfmu_fmu_src\b", "fmus", module))
 
 
 def _private(text: str, roots: Collection[str]) -> str:
+    """Rewrite the imports of public packages in a module text to the private package."""
     for root in roots:
         package = f"{_PRIVATE}.{_inside(root)}".rstrip(".")
         text = re.sub(rf"^from {root}\b", f"from {package}", text, flags=re.MULTILINE)
@@ -60,14 +63,14 @@ def _private(text: str, roots: Collection[str]) -> str:
 def build(
     name: str, parameters: ParameterFile, out: Path, variability: str = VARIABILITIES[0], alias: str = ""
 ) -> Path:
-    """Write `out/name.fmu`, or `out/alias.fmu` with that name; an existing file is replaced in one go.
+    """Write `out/NAME.fmu`, or `out/ALIAS.fmu` if an alias is given; an existing file is replaced atomically.
 
-    variability : of the parameters, one of VARIABILITIES
+    variability : of all parameters, one of VARIABILITIES
 
     Raises ValueError if the parameters are of another joint or the folder cannot be written,
-    ImportError if pythonfmu is missing, RuntimeError if its libraries are.
+    ImportError if pythonfmu is missing, RuntimeError if its libraries are missing.
     """
-    import pythonfmu  # noqa: F401  (missing: before anything is written)
+    import pythonfmu  # noqa: F401  (fails before anything is written)
 
     kind = KINDS[MODELS[name].joint]
     model = MODELS[name].of(parameters.joint, parameters.values)
@@ -82,9 +85,9 @@ def build(
         entry = {"package": package, "kind": _inside(kind.package), "digest": digest}
         entry["variability"] = variability
         _write(script, _ENTRY.read_text(encoding="utf-8").format(name=title, fmu=name, **entry))
-        for inside, text in sources.items():
-            root = work / "src" if inside == "parameters.toml" else work / "src" / package
-            _write(root / inside, text.replace(_PRIVATE, package) if inside.endswith(".py") else text)
+        for path, text in sources.items():
+            root = work / "src" if path == "parameters.toml" else work / "src" / package
+            _write(root / path, text.replace(_PRIVATE, package) if path.endswith(".py") else text)
         built = _pythonfmu(script, package, work / "out")
         with zipfile.ZipFile(built) as archive:
             members = {n: archive.read(n) for n in archive.namelist() if "__pycache__" not in n}
@@ -100,16 +103,16 @@ def build(
 
 
 def _pythonfmu(script: Path, package: str, out: Path) -> Path:
-    """Run pythonfmu as it is installed, and leave the process as it was: sys.path and modules are put back.
+    """Build an FMU with the installed pythonfmu, and restore sys.path and sys.modules afterwards.
 
-    An FMU that runs in this process brings a copy of pythonfmu without libraries, which may be in the place
-    of the installed one; if its content is equal its modules are there, too.
+    An FMU that runs in this process may have imported its own copy of pythonfmu, which has no libraries, in
+    place of the installed one. If that FMU has equal content, its modules are imported too.
     """
     import pythonfmu
 
     copied = Path(pythonfmu.__file__).parent != Path(_installed(), "pythonfmu")
     names = (package, script.stem, *(["pythonfmu"] if copied else []))
-    path, before = list(sys.path), _taken_out(names)
+    path, removed_modules = list(sys.path), _taken_out(names)
     sys.path.insert(0, _installed())
     try:
         from pythonfmu import FmuBuilder
@@ -125,12 +128,12 @@ def _pythonfmu(script: Path, package: str, out: Path) -> Path:
     finally:
         sys.path[:] = path
         _taken_out(names)
-        sys.modules.update(before)
+        sys.modules.update(removed_modules)
     return built
 
 
 def _pythonfmu_licence() -> bytes:
-    """Licence text of pythonfmu, whose code the FMU carries. Raises RuntimeError if it is missing."""
+    """Licence text of pythonfmu, whose code the FMU contains; RuntimeError if the file is missing."""
     files = [file for file in distribution("pythonfmu").files or () if file.name == "LICENSE"]
     if not files:
         raise RuntimeError(f"pythonfmu in {_installed()} has no file LICENSE; install it again")
@@ -138,16 +141,17 @@ def _pythonfmu_licence() -> bytes:
 
 
 def _installed() -> str:
-    """The folder in which pythonfmu is installed."""
+    """Folder in which pythonfmu is installed."""
     return str(distribution("pythonfmu").locate_file(""))
 
 
 def _taken_out(names: Collection[str]) -> dict[str, ModuleType]:
-    """Modules of packages, which have to be imported again from now on."""
-    found = [name for name in sys.modules if name.partition(".")[0] in names]
-    return {name: sys.modules.pop(name) for name in found}
+    """Remove the modules of packages from sys.modules and return them; the next import loads them again."""
+    loaded = [name for name in sys.modules if name.partition(".")[0] in names]
+    return {name: sys.modules.pop(name) for name in loaded}
 
 
 def _write(path: Path, text: str) -> None:
+    """Write a text file, and make its folder if missing."""
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(text, encoding="utf-8")

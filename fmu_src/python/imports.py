@@ -1,4 +1,4 @@
-"""Which modules a module imports, read from its text: what has to come along into an FMU."""
+"""Find the modules that a module imports, from its source text; an FMU must contain all of them."""
 
 import ast
 from collections.abc import Collection, Iterator, Sequence
@@ -8,44 +8,43 @@ from pathlib import Path
 
 
 def imported(start: Sequence[str], roots: Collection[str]) -> dict[str, Path]:
-    """{name: file} of modules and all that they import at their top, of the packages `roots`.
+    """Find {name: file} of modules and of all modules that they import at top level, in the packages `roots`.
 
-    Packages on the way to a module come along. Imports inside functions do not: what they need may be
-    missing where the module runs.
+    Parent packages of a module are included. Imports inside functions are not: they are optional at run time.
     """
     files: dict[str, Path] = {}
-    waiting = list(start)
-    while waiting:
-        name = waiting.pop()
+    pending = list(start)
+    while pending:
+        name = pending.pop()
         if name.partition(".")[0] not in roots or name in files:
             continue
         try:
             spec = find_spec(name)
-        except ModuleNotFoundError:  # a name inside a module
+        except ModuleNotFoundError:  # an object of a module
             continue
         if spec is None or spec.origin is None:
             continue
         files[name] = Path(spec.origin)
         parts = name.split(".")
-        waiting += [".".join(parts[:k]) for k in range(1, len(parts))]
+        pending += [".".join(parts[:k]) for k in range(1, len(parts))]
         package = name if spec.submodule_search_locations else name.rpartition(".")[0]
-        waiting += _imports(files[name].read_text(encoding="utf-8"), package)
+        pending += _imports(files[name].read_text(encoding="utf-8"), package)
     return files
 
 
 def _imports(text: str, package: str) -> Iterator[str]:
-    """Names that the top of a module imports; of `from A import B` both A and A.B, as B may be a module."""
+    """Yield the module names imported at top level; for `from A import B` A and A.B, as B may be a module."""
     for node in _parsed(text).body:
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
-            above = package.split(".")[: len(package.split(".")) - node.level + 1] if node.level else []
-            module = ".".join([*above, *([node.module] if node.module else [])])
+            parents = package.split(".")[: len(package.split(".")) - node.level + 1] if node.level else []
+            module = ".".join([*parents, *([node.module] if node.module else [])])
             yield module
             yield from (f"{module}.{alias.name}" for alias in node.names)
 
 
 @cache
 def _parsed(text: str) -> ast.Module:
-    """Kept for the next FMU, into which most of it comes as well."""
+    """Syntax tree of a module text; cached, as other FMUs contain mostly the same modules."""
     return ast.parse(text)

@@ -1,4 +1,4 @@
-"""The pythonfmu slave that serves every FMU. No physics lives here."""
+"""pythonfmu slave of all FMUs of the flavour python; the physics is in the package, not here."""
 
 import ctypes
 import json
@@ -27,7 +27,7 @@ T = TypeVar("T")
 
 
 class AcceptedPath(NamedTuple):
-    """The last way that a joint with memory went: memory before and after it, and the inputs it led to."""
+    """Last accepted load step of a joint with history: history before and after it, inputs at its end."""
 
     before: list[float]
     after: list[float]
@@ -35,10 +35,10 @@ class AcceptedPath(NamedTuple):
 
 
 def keep_references(method: Callable[..., T]) -> Callable[..., T]:
-    """Let an exception of a method pass without harm to its instance.
+    """Decorate a method that may raise: protect its instance from a reference count error of pythonfmu 0.7.
 
-    On every exception pythonfmu 0.7 gives back one reference each to instance, class and log queue too
-    many; after a few the process would crash.
+    On every exception pythonfmu 0.7 releases one reference too many to the instance, its class and its log
+    queue. After a few exceptions the process would crash.
     """
 
     @wraps(method)
@@ -46,30 +46,30 @@ def keep_references(method: Callable[..., T]) -> Callable[..., T]:
         try:
             return method(self, *args)
         except Exception:
-            for owned in (self, type(self), self.log_queue):
-                ctypes.pythonapi.Py_IncRef(ctypes.py_object(owned))
+            for released in (self, type(self), self.log_queue):
+                ctypes.pythonapi.Py_IncRef(ctypes.py_object(released))
             raise
 
     return guarded
 
 
 class JointSlave(Fmi2Slave):  # type: ignore[misc]
-    """Variables, checks, messages and state of one FMU around one call into the package.
+    """FMU instance: variables, checks, log messages and state around the model of the package.
 
-    Complete state is `values` (parameters and inputs), `initialized`, `warned` and `way`; all else is
-    computed from it when asked for.
+    The complete state is `values` (parameters and inputs), `initialized`, `warned_keys` and `accepted_step`.
+    Everything else is computed from it on demand.
     """
 
     kind: ClassVar[Kind]
     fmu: ClassVar[str]
     content: ClassVar[str]
-    """Digest of everything that runs inside; the GUID comes from it."""
+    """Digest of all code and parameters inside the FMU; the GUID follows from it."""
     variability: ClassVar[str]
-    """Of the parameters, one of `xml_parts.VARIABILITIES`."""
+    """Variability of all parameters, one of `xml_parts.VARIABILITIES`."""
 
     def __init__(self, **kwargs: object) -> None:
         super().__init__(**kwargs)
-        if self.kind.name not in KINDS:  # of another package
+        if self.kind.name not in KINDS:  # a joint of another package
             register(self.kind)
         file = load(Path(self.resources) / "parameters.toml", self.kind.name)
         self.model: Model = MODELS[self.fmu].of(file.joint, file.values)
@@ -97,6 +97,7 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
             self.register_variable(self._variable(item), nested=False)
 
     def _variable(self, item: Listed) -> object:
+        """pythonfmu variable of a listed variable."""
         name, output, parameter = item.name, item.causality == "output", item.causality == "parameter"
         initial = Fmi2Initial.calculated if output else Fmi2Initial.exact
         return (Boolean if item.boolean else Real)(
@@ -110,24 +111,24 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
         )
 
     def set(self, name: str, value: object) -> None:
-        """Take a parameter or an input; it is checked when it is used."""
+        """Set a parameter or an input; its value is checked at the next evaluation."""
         if name in self.fields:
             if self.initialized and self.variability == "fixed":
                 self.refuse(f"{name} is a fixed parameter: it can be set until initialization ends")
-            if self.way is not None:  # the path goes on from the inputs that were accepted
+            if self.way is not None:  # the next load step starts at the accepted inputs
                 self.way = AcceptedPath(self.way.after, self.way.after, {})
             self._spring = None
         self.values[name] = value
         self._outputs = None
 
     def output(self, name: str) -> float:
-        """An output at the present inputs."""
+        """Value of an output at the current inputs."""
         if self._outputs is None:
             self._outputs = self.evaluate()
         return self._outputs[name]
 
     def evaluate(self) -> dict[str, float]:
-        """All outputs; refuses inputs that are not finite or out of range."""
+        """Evaluate all outputs at the current inputs; fails if an input is not finite or out of range."""
         inputs = self.inputs()
         for v in self.model.inputs:
             if not v.interval.contains(inputs[v.name]):
@@ -139,9 +140,9 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
         except (ValueError, RuntimeError, OverflowError) as error:
             self.refuse(str(error))
         outputs = {name: float(value) for name, value in results.items()}
-        if bad := [name for name, value in outputs.items() if not math.isfinite(value)]:
-            given = ", ".join(f"{name} = {value:g}" for name, value in inputs.items() if value)
-            self.refuse(f"{given}: too large, {bad[0]} is not finite")
+        if not_finite := [name for name, value in outputs.items() if not math.isfinite(value)]:
+            inputs_text = ", ".join(f"{name} = {value:g}" for name, value in inputs.items() if value)
+            self.refuse(f"{inputs_text}: too large, {not_finite[0]} is not finite")
         for key, message in self.model.warnings(self.spring(), {**inputs, **outputs}).items():
             if key not in self.warned:
                 self.warned.add(key)
@@ -149,50 +150,53 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
         return outputs
 
     def inputs(self) -> dict[str, float]:
-        """The present inputs."""
+        """{input: current value}."""
         return {v.name: self.values[v.name] for v in self.model.inputs}
 
     def memory(self, inputs: dict[str, float]) -> Memory:
-        """What the path to inputs goes on from; at the accepted ones what the way to them began with."""
+        """History variables at the start of the load step to given inputs.
+
+        If these are the accepted inputs, the accepted load step is repeated from its start.
+        """
         if self.way is None:
             assert self.model.rest is not None
             return self.model.rest(self.spring())
         return np.array(self.way.before if inputs == self.way.inputs else self.way.after)
 
     def at(self, inputs: dict[str, float]) -> tuple[Mapping[str, Any], Memory | None]:
-        """What the joint gives at inputs, and its memory there, if it has one."""
+        """Outputs at given inputs, and the history variables there (None: the joint has none)."""
         if self.model.evolve is None:
             return self.model.evaluate(self.spring(), inputs), None
         return self.model.evolve(self.spring(), inputs, self.memory(inputs))
 
     def accept(self) -> None:
-        """Evaluate, and let the path go on from the present inputs."""
+        """Evaluate the outputs, and accept the load step to the current inputs."""
         self.output(self.model.outputs[0].name)
         inputs = self.inputs()
         if self._memory is not None and (self.way is None or inputs != self.way.inputs):
             self.way = AcceptedPath(self.memory(inputs).tolist(), self._memory.tolist(), inputs)
 
     def spring(self) -> Spring:
-        """The tabulated joint of the present parameters."""
+        """Tabulated joint for the current parameters."""
         if self._spring is None:
             parameters = {name: self.values[name] for name in self.start}
             self._spring = self.model.spring(build(self.model.parameters, parameters))
         return self._spring
 
     def refuse(self, message: str) -> NoReturn:
-        """Log an error and fail the call."""
+        """Log an error and raise it, so that the FMI call fails."""
         self.log(message, Fmi2Status.error, "logStatusError")
         raise ValueError(message)
 
     @keep_references
     def exit_initialization_mode(self) -> None:
-        """Check the parameters, tabulate the law, evaluate once."""
+        """End initialization: check the parameters, tabulate the joint, evaluate the outputs."""
         self.accept()
         self.initialized = True
 
     @keep_references
     def do_step(self, current_time: float, step_size: float) -> bool:
-        """The outputs follow the inputs, which become the past of a joint with memory. Refuses bad inputs."""
+        """Evaluate the outputs at the current inputs and accept the load step; fails for invalid inputs."""
         self.accept()
         return True
 
@@ -219,7 +223,7 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
 
     @staticmethod
     def _fmu_state_from_bytes(state: bytes) -> dict[str, object]:
-        """A state from its bytes; unreadable ones are refused when they are set."""
+        """Decode an FMU state; unreadable bytes give an empty state, which is refused when it is set."""
         try:
             values = json.loads(state.decode("utf-8"))
         except ValueError:
@@ -227,7 +231,7 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
         return values if isinstance(values, dict) else {}
 
     def to_xml(self, model_options: Any = None) -> Element:
-        """The model description with what pythonfmu leaves out: units, bounds, initial unknowns."""
+        """Model description with the parts that pythonfmu omits: units, bounds, initial unknowns."""
         root: Element = super().to_xml(dict(model_options or {}))
         root.set("generationDateAndTime", build_time().strftime("%Y-%m-%dT%H:%M:%SZ"))
         root.set("generationTool", f"jointfmu {__version__}")

@@ -1,4 +1,4 @@
-"""A joint between two flanges as MuJoCo's passive force: an FMU's own C sources, compiled to its plugin."""
+"""MuJoCo plugin of a joint between two flanges, a passive force compiled from the C sources of its FMU."""
 
 from importlib.util import find_spec
 from pathlib import Path
@@ -12,35 +12,38 @@ from jointfmu.files import archives
 from ..host import description
 
 INPUTS = ["phi1", "w1", "phi2", "w2"]
+"""First inputs of the FMU of a joint between two flanges."""
 TORQUES = ["tau1", "tau2"]
+"""First outputs of such an FMU."""
 
 
 def plugin(fmu: str | Path, out: str | Path) -> Path:
-    """Compile a native FMU (fmi3, or fmi2) to a plugin of the installed MuJoCo, for this machine.
+    """Compile a native FMU (fmi3 or fmi2) to a plugin of the installed MuJoCo, for this machine.
 
-    `mujoco.mj_loadPluginLibrary` takes the file, which is `out/NAME.so` (macOS: `.dylib`); the plugin is
-    `jointfmu.NAME`, with the FMU's parameters as its attributes, and the joints for `phi1` and `phi2`.
+    Returns the library `out/NAME.so` (macOS: `.dylib`), which `mujoco.mj_loadPluginLibrary` loads. The plugin
+    is called `jointfmu.NAME`. Its attributes are the parameters of the FMU, and `phi1` and `phi2`, the names
+    of the two MuJoCo joints.
 
-    Raises ValueError if the FMU is none of two flanges, has no sources or cannot be read, if there is no
-    library of MuJoCo to link to or `out` cannot be written; ImportError if mujoco or ziglang is missing;
-    RuntimeError with the compiler's first error.
+    Raises ValueError if the FMU is no joint with two flanges, has no sources or cannot be read, if MuJoCo has
+    no library to link to, or if `out` cannot be written; ImportError if mujoco or ziglang is missing;
+    RuntimeError with the first error of the compiler.
     """
     name, sources = _sources(Path(fmu))
     include, library = _mujoco()
-    own = Path(__file__).with_name("plugin.c")
-    files = sources | {own.name: own.read_text(encoding="utf-8")}
+    plugin_source = Path(__file__).with_name("plugin.c")
+    files = sources | {plugin_source.name: plugin_source.read_text(encoding="utf-8")}
     units = [path for path in files if path.endswith(".c") and path not in ("fmi2.c", "fmi3.c")]
     platform = fmpy.platform_tuple
-    (built,) = libraries(name, files, units, [platform], linked=(f"-I{include}", str(library))).values()
+    (content,) = libraries(name, files, units, [platform], linked=(f"-I{include}", str(library))).values()
     target = Path(out) / file_name(name, platform)
     with workshop(target) as work:
-        (work / target.name).write_bytes(built)
+        (work / target.name).write_bytes(content)
     return target
 
 
 def _sources(fmu: Path) -> tuple[str, dict[str, str]]:
-    """Name of an FMU and its C files."""
-    described = description(fmu)
+    """Name of an FMU and {file name: text} of its C sources; ValueError if it is not suitable."""
+    model_description = description(fmu)
     with archives.open_archive(fmu) as archive:
         sources = {
             member.removeprefix("sources/"): archives.read_member(archive, member).decode()
@@ -48,7 +51,7 @@ def _sources(fmu: Path) -> tuple[str, dict[str, str]]:
             if member.startswith("sources/") and member.endswith((".c", ".h"))
         }
     names = {
-        kind: [v.name for v in described.modelVariables if v.causality == kind]
+        kind: [v.name for v in model_description.modelVariables if v.causality == kind]
         for kind in ("input", "output")
     }
     if names["input"][: len(INPUTS)] != INPUTS or names["output"][:2] != TORQUES:
@@ -58,16 +61,16 @@ def _sources(fmu: Path) -> tuple[str, dict[str, str]]:
         )
     if "instance.h" not in sources:
         raise ValueError(f"{fmu}: has no C sources of jointfmu; expected an FMU of flavour fmi2 or fmi3")
-    return described.modelName, sources
+    return model_description.modelName, sources
 
 
 def _mujoco() -> tuple[Path, Path]:
-    """Headers and shared library of the installed MuJoCo."""
+    """Header folder and shared library of the installed MuJoCo."""
     spec = find_spec("mujoco")
     if spec is None or spec.origin is None:
         raise ImportError("mujoco is missing: pip install mujoco", name="mujoco")
     folder = Path(spec.origin).parent
-    found = [*folder.glob("libmujoco.so.*"), *folder.glob("libmujoco.*.dylib")]
-    if not found:
+    library_paths = [*folder.glob("libmujoco.so.*"), *folder.glob("libmujoco.*.dylib")]
+    if not library_paths:
         raise ValueError(f"{folder}: holds no libmujoco to link to; expected MuJoCo on Linux or macOS")
-    return folder / "include", found[0]
+    return folder / "include", library_paths[0]

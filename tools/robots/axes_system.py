@@ -1,4 +1,4 @@
-"""The elastic axes of a robot at a pose as a system's file: motor, drive and link each."""
+"""System file of the elastic axes of a robot at one pose: motor, drive and link inertia of each axis."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -15,9 +15,9 @@ from .plugged import spring_of
 from .poses import inertia, torques
 
 SETTLING, STOP = 0.5, 2.0
-"""Time [s] over which the weight comes, and of the experiment."""
+"""Time [s] in which the weight is applied, and stop time [s] of the experiment."""
 PER_PERIOD = 100
-"""Steps of the archives in the shortest period [1]."""
+"""Communication steps of the system in the shortest period of vibration [1]."""
 
 
 def text(
@@ -29,25 +29,29 @@ def text(
     payload: float,
     tip: int,
 ) -> str:
-    """The file.
+    """Format the system file.
 
-    Each axis is a motor whose angle is the system's input (it holds without), the drive with the parameter
-    file NAME.toml beside this one, and an inertia: what the axis turns at the pose with the payload, the
-    others held. On it acts the weight, which comes smoothly. Axes do not move each other.
+    Each axis consists of a motor, the drive and a link inertia. The motor angle is an input of the system; by
+    default it is constant. The drive has the parameter file NAME.toml in the same folder. The link inertia is
+    that about the axis at the pose, with the payload and the other axes locked. The torque of the weight acts
+    on it and is applied smoothly. The axes are not coupled.
+
+    files   : {joint: parameter file of its drive}
+    payload : mass [kg] at the body `tip`
     """
     load, _ = torques(model, axes, pose, payload, tip)
-    turned = np.diag(inertia(model, axes, pose, payload, tip))
-    stiff = np.array([axis.stiffness(t) for axis, t in zip(axes, load.tolist(), strict=True)])
-    step = 2.0 * np.pi / PER_PERIOD * float(np.sqrt(turned / stiff).min())
-    wires, parts = [], []
-    for axis, torque, J in zip(axes, load.tolist(), turned.tolist(), strict=True):
+    link_inertias = np.diag(inertia(model, axes, pose, payload, tip))
+    stiffness = np.array([axis.stiffness(t) for axis, t in zip(axes, load.tolist(), strict=True)])
+    step = 2.0 * np.pi / PER_PERIOD * float(np.sqrt(link_inertias / stiffness).min())
+    wires, sections = [], []
+    for axis, torque, J in zip(axes, load.tolist(), link_inertias.tolist(), strict=True):
         name, file = identifier(axis.joint), files[axis.joint]
         wires += [
             f'    ["{name}_motor", "{name}_drive.flange1"],',
             f'    ["{name}_drive.flange2", "{name}_link.flange_b"],',
             f'    ["{name}_weight", "{name}_link.flange_a"],',
         ]
-        parts += [
+        sections += [
             f'[{name}_motor]\nmodel = "AngleProfile"',
             _entry("height", 0.0, "rad", "the motor holds; its input phi_in turns it"),
             f'\n[{name}_drive]\nmodel = "{spring_of(file)}"\nparameters = "{identifier(file.name)}.toml"',
@@ -58,11 +62,13 @@ def text(
             _entry("ramp_duration", SETTLING, "s", "slow beside the axes' periods"),
             "",
         ]
-    at = ", ".join(f"{axis.joint} = {pose[model.joint(axis.joint).qposadr[0]]:.4g} rad" for axis in axes)
+    pose_text = ", ".join(
+        f"{axis.joint} = {pose[model.joint(axis.joint).qposadr[0]]:.4g} rad" for axis in axes
+    )
     head = [
         "schema = 1",
         f"name = {toml_string(f'Axes of {title}')}",
-        f"description = {toml_string(f'Elastic axes with {payload:g} kg at {at}')}",
+        f"description = {toml_string(f'Elastic axes with {payload:g} kg at {pose_text}')}",
         "connect = [",
         *wires,
         "]\n",
@@ -74,10 +80,11 @@ def text(
             "interval", float(f"{step:.2g}"), "s", f"{PER_PERIOD} in the shortest period, of the archives"
         ),
     ]
-    return "\n".join([*head, *parts, *tail, ""])
+    return "\n".join([*head, *sections, *tail, ""])
 
 
 def _entry(name: str, value: float, unit: str, source: str) -> str:
+    """TOML line of a derived value with unit and source."""
     return (
         f'{name} = {{ value = {value!r}, unit = "{unit}", kind = "derived", source = {toml_string(source)} }}'
     )

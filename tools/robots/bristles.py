@@ -1,13 +1,15 @@
-"""Friction of a drive's motor as MuJoCo 4's passive `dcmotor`: bristles, LuGre, Canudas de Wit et al. (1995).
+"""Motor friction of a drive as a passive `dcmotor` of MuJoCo 4: LuGre model, Canudas de Wit et al. (1995).
 
     friction = k z + c dz/dt,  dz/dt = w - k |w| z / g(w),  g(w) = dry + (static - dry) exp(-(w/w_s)^2)
 
-w is the motor's speed. From rest it is static (1 - exp(-angle/presliding)), as the FMU's, and so is every
-steady sliding; after a reversal it is Dahl's branch where the FMU has Masing's. Unlike `frictionloss` it is
-no constraint: nothing is solved. MuJoCo moves z by an explicit step, which an undamped bristle does not
-bear: c and the viscous friction damp it critically on the motor's inertia, and k is at most what one step of
-that inertia bears. What is beyond the static friction is cut off, or damped bristles would hold a turning
-motor; so at speed friction is there at once, presliding or not. The integrator RK4 does not bear them at all.
+w is the speed of the motor [rad/s], z the bristle deflection [rad]. From rest the friction torque is
+static (1 - exp(-angle/presliding)). This and steady sliding are as in the FMU. After a reversal the torque
+follows Dahl's branch, in the FMU Masing's. Unlike `frictionloss` it is a passive force without a constraint.
+
+MuJoCo integrates z explicitly, which is unstable without damping. So c and the viscous friction damp the
+bristle critically with the inertia of the motor, and k is limited to inertia/step^2. The torque is clipped at
+the static friction, since damped bristles would hold a turning motor; so at speed friction acts at once,
+without presliding. With the integrator RK4 the bristles are unstable.
 """
 
 from typing import Any
@@ -18,12 +20,13 @@ import numpy as np
 from .transmission import Transmission
 
 PASSIVE = 16
-"""mjINPUT_NONE, a `dcmotor` that has no control."""
+"""mjINPUT_NONE of MuJoCo: a `dcmotor` without control input."""
 
 
 def numbers(drive: Transmission, inertia: float, step: float) -> tuple[float, float, float, float, float]:
-    """The attribute `lugre` for a motor's inertia [kg.m2] and a time step [s]: stiffness [N.m/rad], damping
-    [N.m.s/rad], dry and static friction [N.m] and Stribeck's speed [rad/s].
+    """Parameters of the attribute `lugre`, for a motor inertia [kg.m2] and a time step [s].
+
+    Returns stiffness [N.m/rad], damping [N.m.s/rad], dry and static friction [N.m], Stribeck speed [rad/s].
     """
     stiffness = min(drive.static / drive.presliding, inertia / step**2)
     damping = max(2.0 * float(np.sqrt(stiffness * inertia)) - drive.viscous, 0.0)
@@ -31,19 +34,19 @@ def numbers(drive: Transmission, inertia: float, step: float) -> tuple[float, fl
 
 
 def presliding(drive: Transmission, inertia: float, step: float) -> float:
-    """Angle [rad] of the motor over which its friction builds up to 1 - 1/e: the drive's, or more."""
+    """Motor angle [rad] at which friction reaches 1 - 1/e of its limit; at least the value of the drive."""
     return drive.static / numbers(drive, inertia, step)[0]
 
 
 def borne(option: Any) -> bool:
-    """Whether the integrator of MuJoCo's options bears them."""
+    """Whether the integrator in MuJoCo's options is stable with bristles."""
     import mujoco
 
     return bool(option.integrator != mujoco.mjtIntegrator.mjINT_RK4)
 
 
 def element(drive: Transmission, joint: str, inertia: float, step: float) -> str:
-    """The same as MJCF, a child of `<actuator>`."""
+    """MJCF element of the motor friction, a child of `<actuator>`."""
     lugre = " ".join(f"{number:.9g}" for number in numbers(drive, inertia, step))
     return (
         f'<dcmotor name="friction" joint={quoteattr(joint)} input="none" resistance="1" motorconst="0 0" '
@@ -52,7 +55,7 @@ def element(drive: Transmission, joint: str, inertia: float, step: float) -> str
 
 
 def add(spec: Any, drive: Transmission, joint: str, inertia: float, step: float) -> None:
-    """Let the joint of a motor in MuJoCo's MjSpec have the dry friction of its drive."""
+    """Add the dry friction of a drive to the motor joint of an MjSpec."""
     import mujoco
 
     actuator = spec.add_actuator(name=f"{joint}_friction", target=joint, trntype=mujoco.mjtTrn.mjTRN_JOINT)

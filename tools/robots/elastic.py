@@ -1,4 +1,4 @@
-"""A robot as MJCF or URDF whose named joints become elastic: motor, tendons of the drive, actuators moved."""
+"""Robot (MJCF or URDF) with elastic drives in named joints: motors and tendons added, actuators moved."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -16,23 +16,23 @@ from .mjcf import check_version
 from .transmission import Transmission
 
 MOTOR = "_motor"
-"""What the motor's coordinate has after the name of the joint."""
+"""Suffix of the motor joint after the name of the driven joint."""
 MOTORS = "drive_motors"
-"""What the name of their bodies begins with."""
+"""Prefix of the names of the bodies that carry the motors."""
 _ROOM = 6
-"""Coordinates that MuJoCo allows in a body."""
+"""Largest number of joints of a body in MuJoCo [1]."""
 _BACK = 1e-6
-"""Step back [1] over the rated torque that small vibrations make."""
+"""Torque reversal over the rated torque [1], for the stiffness of small vibrations."""
 _LIGHT = 1e-12
-"""Mass [kg] and inertia [kg.m2] of the motors' body; their rotors are armatures."""
+"""Mass [kg] and inertia [kg.m2] of the bodies that carry the motors; the rotors are armatures."""
 
 
 @dataclass(frozen=True, slots=True)
 class ElasticAxis:
-    """A joint of the robot with its drive.
+    """Joint of the robot with its drive.
 
-    rotor : inertia at the output [kg.m2], that of the motor times the square of the ratio
-    noted : what is not as the robot or the drive has it
+    rotor : rotor inertia at the output [kg.m2]: that of the motor times the square of the ratio
+    noted : texts on deviations from the robot file or from the drive
     """
 
     joint: str
@@ -42,34 +42,34 @@ class ElasticAxis:
     noted: tuple[str, ...] = ()
 
     def wind_up(self, torque: float) -> float:
-        """[rad] by the drive's own law, on the way from rest at a torque [N.m]."""
+        """Wind-up [rad] at a torque [N.m] by the law of the drive, for first loading from rest."""
         return float(self.drive.wind_up([torque])[0])
 
     def stiffness(self, torque: float) -> float:
-        """[N.m/rad] of small vibrations about a torque [N.m]: what slides sticks again."""
-        back = float(np.copysign(_BACK * self.drive.rated_torque, torque))
-        there, after = self.drive.wind_up([torque, torque - back])
-        return back / float(there - after)
+        """Stiffness [N.m/rad] of small vibrations about a torque [N.m], with all sliders sticking."""
+        reversal = float(np.copysign(_BACK * self.drive.rated_torque, torque))
+        before, after = self.drive.wind_up([torque, torque - reversal])
+        return reversal / float(before - after)
 
     def overload(self, torque: float) -> Iterator[str]:
-        """What to say of a torque [N.m] beyond those of the drive."""
+        """Yield a warning if a torque [N.m] exceeds the rated or the largest torque of the drive."""
         drive, size = self.drive, abs(torque)
-        what = f"{self.joint}: {size:.4g} N.m is beyond the"
+        prefix = f"{self.joint}: {size:.4g} N.m is beyond the"
         if size > drive.max_torque:
-            yield f"{what} max_torque, {drive.max_torque:g} N.m, of {drive.name}, where its law ends"
+            yield f"{prefix} max_torque, {drive.max_torque:g} N.m, of {drive.name}, where its law ends"
         elif size > drive.rated_torque:
-            yield f"{what} rated torque, {drive.rated_torque:g} N.m, of {drive.name}"
+            yield f"{prefix} rated torque, {drive.rated_torque:g} N.m, of {drive.name}"
 
 
 def read(path: str | Path) -> Any:
-    """The robot of a file, MJCF or URDF, as MuJoCo's MjSpec. ValueError if it cannot be read."""
+    """Read a robot (MJCF or URDF) as an MjSpec of MuJoCo; raises ValueError if that fails."""
     import mujoco
 
     check_version()
     check_regular(path, "a robot (MJCF or URDF)")
     try:
         spec = mujoco.MjSpec.from_file(str(path))
-        spec.compiler.fusestatic = False  # of a URDF, whose tool frames are links that do not move
+        spec.compiler.fusestatic = False  # keep the tool frames of a URDF, which are fixed links
         spec.compile()
     except (ValueError, OSError, mujoco.FatalError) as error:
         line = " ".join(str(error).split())
@@ -78,9 +78,9 @@ def read(path: str | Path) -> Any:
 
 
 def axes(spec: Any, drives: Mapping[str, Transmission]) -> list[ElasticAxis]:
-    """The joints that get a drive, in the robot's order.
+    """Make the elastic axes of the joints in `drives`, in the order of the robot.
 
-    Raises ValueError for a name that is no hinge.
+    Raises ValueError for a name that is no hinge of the robot.
     """
     import mujoco
 
@@ -93,29 +93,28 @@ def axes(spec: Any, drives: Mapping[str, Transmission]) -> list[ElasticAxis]:
                 f"{name!r} is no hinge of the robot; allowed are {', '.join(filter(None, known))}"
             )
     matrix = mass_matrix(model, model.qpos0)
-    found = []
+    elastic_axes = []
     for joint in hinges:
         if joint.name in drives:
             drive, dof = drives[joint.name], joint.dofadr[0]
-            own = float(model.dof_armature[dof])
-            rotor, noted = own, []
-            if own <= 0.0:
+            rotor, notes = float(model.dof_armature[dof]), list[str]()
+            if rotor <= 0.0:
                 rotor = float(matrix[dof, dof])
-                noted.append("no armature; the rotor is taken as large as what the axis turns")
+                notes.append("no armature; the rotor is taken as large as what the axis turns")
             if drive.static and bristles.borne(model.opt):
                 angle = bristles.presliding(drive, rotor / drive.ratio**2, model.opt.timestep)
                 if angle > 1.01 * drive.presliding:
-                    noted.append(
+                    notes.append(
                         f"friction builds up over {angle:.3g} rad of the motor, as the step asks, "
                         f"{drive.presliding:g} rad in the FMU"
                     )
-            lines = tuple(f"{joint.name}: {line}" for line in noted)
-            found.append(ElasticAxis(joint.name, drive, fit(drive, drive.rated_torque), rotor, lines))
-    return found
+            lines = tuple(f"{joint.name}: {line}" for line in notes)
+            elastic_axes.append(ElasticAxis(joint.name, drive, fit(drive, drive.rated_torque), rotor, lines))
+    return elastic_axes
 
 
 def mass_matrix(model: Any, pose: Array) -> Array:
-    """Of all degrees of freedom (n, n) at a pose."""
+    """Mass matrix (n, n) of all degrees of freedom at a pose."""
     import mujoco
 
     data = mujoco.MjData(model)
@@ -130,45 +129,48 @@ def mass_matrix(model: Any, pose: Array) -> Array:
 
 
 def with_drives(spec: Any, chosen: list[ElasticAxis], springs: bool = True) -> Any:
-    """A copy of the robot with motors, drives as `mjcf` writes them, and the actuators at the motors.
+    """Copy the robot with motors, drives as tendons (see `mjcf`), and the actuators moved to the motors.
 
-    Keyframes are left out, whose positions are of fewer joints.
+    Keyframes are omitted: they have no positions for the motors.
 
-    springs : False leaves out the drives, and the friction of their motors
+    chosen  : axes with a drive
+    springs : whether to add the drives and the friction of the motors
     """
-    made, model = spec.copy(), spec.compile()
-    for key in [*made.keys]:
-        made.delete(key)
+    elastic_spec, model = spec.copy(), spec.compile()
+    for key in [*elastic_spec.keys]:
+        elastic_spec.delete(key)
     for i, axis in enumerate(chosen):
         if i % _ROOM == 0:
-            motors = _motors(made, f"{MOTORS}{i // _ROOM + 1}")
-        motor = _add_motor(made, motors, axis, model)
+            motors = _motors(elastic_spec, f"{MOTORS}{i // _ROOM + 1}")
+        motor = _add_motor(elastic_spec, motors, axis, model)
         if not springs:
             continue
         motor.damping = [axis.drive.viscous, 0.0, 0.0]
-        if not bristles.borne(made.option):
+        if not bristles.borne(elastic_spec.option):
             motor.frictionloss = axis.drive.dry
         elif axis.drive.static:
-            bristles.add(made, axis.drive, motor.name, motor.armature, made.option.timestep)
+            bristles.add(elastic_spec, axis.drive, motor.name, motor.armature, elastic_spec.option.timestep)
         for name, stiffness, damping, limit in _springs(axis):
-            tendon = made.add_tendon(name=name, stiffness=stiffness, damping=damping, springlength=[0.0, 0.0])
+            tendon = elastic_spec.add_tendon(
+                name=name, stiffness=stiffness, damping=damping, springlength=[0.0, 0.0]
+            )
             tendon.springyield = limit
             tendon.wrap_joint(axis.joint, 1.0)
             tendon.wrap_joint(axis.joint + MOTOR, -1.0 / axis.drive.ratio)
-    return made
+    return elastic_spec
 
 
 def _springs(axis: ElasticAxis) -> Iterator[tuple[str, list[float], list[float], float]]:
-    """Name, stiffness, damping and yield of each tendon."""
-    fitted, none = axis.fitted, [0.0, 0.0, 0.0]
+    """Yield name, stiffness, damping and yield wind-up of each tendon of a drive."""
+    fitted, zero = axis.fitted, [0.0, 0.0, 0.0]
     name = f"{axis.joint}_drive"
     yield name, [fitted.linear, 0.0, fitted.cubic], [axis.drive.damping, 0.0, 0.0], 0.0
     for i, (spring, limit) in enumerate(fitted.sliders, 1):
-        yield f"{name}_slider{i}", [spring, 0.0, 0.0], none, limit
+        yield f"{name}_slider{i}", [spring, 0.0, 0.0], zero, limit
 
 
 def _motors(spec: Any, name: str) -> Any:
-    """A body of the world for motors: what turns in it moves nothing else, as the rotor of an armature."""
+    """Add a body to the world for motors; its joints move no other body, so rotors act as armatures do."""
     body = spec.worldbody.add_body(name=name)
     body.mass, body.inertia, body.explicitinertial = _LIGHT, [_LIGHT] * 3, True
     body.ipos, body.iquat = [0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]
@@ -176,11 +178,13 @@ def _motors(spec: Any, name: str) -> Any:
 
 
 def _add_motor(spec: Any, motors: Any, axis: ElasticAxis, rigid: Any) -> Any:
-    """The motor's angle [rad], and the joint's actuators at it, each within the joint's own limit of all,
-    as friction is an actuator too. It is a slide, which costs MuJoCo no rotation and has a place of its own
-    on the diagonal of the mass matrix.
+    """Add the motor of an axis as a joint whose coordinate is the motor angle [rad], and move the actuators to it.
 
-    rigid : the robot's MjModel
+    The force of each actuator is limited by the limit of the robot's joint. This limit cannot be set for the
+    motor joint as a whole, since its friction is an actuator too. The joint is a slide: MuJoCo then computes no
+    rotation, and the motor is uncoupled in the mass matrix.
+
+    rigid : MjModel of the robot without drives
     """
     import mujoco
 
@@ -198,25 +202,27 @@ def _add_motor(spec: Any, motors: Any, axis: ElasticAxis, rigid: Any) -> Any:
 
 
 def _limit(actuator: Any, ends: Array) -> None:
-    """Keep an actuator's force between two ends, and its own where it has some."""
+    """Limit the force of an actuator to a range, and to its own range if it has one."""
     low, high = np.sort(ends)
-    own = np.asarray(actuator.forcerange)
-    if own[0] < own[1] and actuator.forcelimited != 0:
-        low, high = max(low, own[0]), min(high, own[1])
+    previous = np.asarray(actuator.forcerange)
+    if previous[0] < previous[1] and actuator.forcelimited != 0:
+        low, high = max(low, previous[0]), min(high, previous[1])
     actuator.forcelimited, actuator.forcerange = 1, [low, high]
 
 
 def unit(model: Any, name: str) -> str:
-    """Of the coordinate of a hinge or a slide."""
+    """Unit of the coordinate of a hinge (rad) or a slide (m)."""
     import mujoco
 
     return "m" if model.joint(name).type[0] == mujoco.mjtJoint.mjJNT_SLIDE else "rad"
 
 
 def posed(model: Any, angles: Mapping[str, str]) -> Array:
-    """Positions of the rigid robot: its first keyframe, or as it is drawn, with stated angles [rad].
+    """Joint positions of the rigid robot: first keyframe or default pose, with given angles replaced.
 
-    Raises ValueError for a joint that it has not or an angle that is no number within the joint's range.
+    angles : {joint: text of its position [rad or m]}
+
+    Raises ValueError for an unknown joint, or a position that is no number or outside the joint's range.
     """
     import mujoco
 
@@ -246,7 +252,7 @@ def posed(model: Any, angles: Mapping[str, str]) -> Array:
 
 
 def body(model: Any, name: str | None, chosen: list[ElasticAxis]) -> int:
-    """The body of a name; without one that at the end of what the last axis carries."""
+    """Index of the body with a name; None: the last body of the chain behind the last axis."""
     known = [model.body(i).name for i in range(model.nbody)]
     if name is not None:
         if name not in known:
@@ -259,6 +265,6 @@ def body(model: Any, name: str | None, chosen: list[ElasticAxis]) -> int:
 
 
 def keep_folders(spec: Any, path: Path) -> None:
-    """Let meshes and textures be found from another folder."""
+    """Make the folders of meshes and textures absolute, so that the robot can be saved elsewhere."""
     for name in ("meshdir", "texturedir"):
         setattr(spec, name, str((path.parent / getattr(spec, name)).resolve()))

@@ -1,8 +1,8 @@
-"""A drive as plain MJCF of MuJoCo 4: fixed tendons between the hinges of motor and link.
+"""Export of a drive to plain MJCF of MuJoCo 4: fixed tendons between the hinges of motor and link.
 
-The length of each tendon is the wind-up, link - motor/ratio. One has the elastic torque, stiffness with a
-linear and a cubic coefficient, and the damping; beside it lie springs that yield, Jenkins elements, for the
-hysteresis. Dry friction of the motor is that of `bristles`, its damping that of its hinge.
+The length of each tendon is the wind-up, link - motor/ratio. One tendon has the elastic torque (linear and
+cubic stiffness) and the damping. Parallel yielding springs (Jenkins elements) give the hysteresis. The dry
+friction of the motor is that of `lugre_friction`; its viscous friction is the damping of its hinge.
 """
 
 from collections.abc import Iterator
@@ -20,29 +20,30 @@ from .fitted import FittedTendons, fit
 from .transmission import RAMP, Transmission, area
 
 LOCKED = 1e12
-"""Armature [kg.m2] of hinges that are led: their speed stays whatever the torque."""
+"""Armature [kg.m2] of hinges with prescribed motion, so large that no torque changes their speed."""
 LEAD = 1e4
-"""Time [s] of a measured loop: damping adds nothing to it."""
+"""Duration [s] of a simulated loop: so slow that damping is negligible."""
 STEP = 0.002
-"""[s], MuJoCo's own, which the written file keeps."""
+"""Time step [s] of the written file, MuJoCo's default."""
 FREQUENCY = 60.0
-"""[Hz] of the link on the drive that the written file shows, motor locked."""
+"""Natural frequency [Hz] of the link in the written file, with locked motor; defines its inertia."""
 WIND_UP, AREA = 0.03, 0.05
-"""What is promised of wind-up at the torque of the fit and area of the loop [1]."""
+"""Relative tolerances [1] of the wind-up at the largest fit torque, and of the area of the loop."""
 
 
 @dataclass(frozen=True, slots=True)
 class Miss:
-    """How far MuJoCo is from the FMU.
+    """Relative errors of MuJoCo's drive against the FMU.
 
-    wind_up : [1] at the torque of the fit from rest, over that of the FMU, less 1
-    area    : [1] of the loop between both signs of that torque, likewise; None without hysteresis
+    wind_up : error of the wind-up [1] at the largest fit torque, for first loading
+    area    : error of the area of the loop [1] between both signs of this torque; None without hysteresis
     """
 
     wind_up: float
     area: float | None
 
     def lines(self, torque: float) -> Iterator[str]:
+        """Texts that compare the errors with their tolerances."""
         yield _verdict(f"wind-up at {torque:g} N.m", self.wind_up, WIND_UP)
         if self.area is None:
             yield "loop: none, the drive has no hysteresis"
@@ -51,12 +52,13 @@ class Miss:
 
 
 def _verdict(what: str, miss: float, most: float) -> str:
-    kept = "within" if abs(miss) <= most else "MISSED:"
-    return f"{what}: {100.0 * miss:+.2f} % of the FMU's, {kept} {100.0 * most:g} %"
+    """Text that compares a relative error [1] with its tolerance [1]."""
+    verdict = "within" if abs(miss) <= most else "MISSED:"
+    return f"{what}: {100.0 * miss:+.2f} % of the FMU's, {verdict} {100.0 * most:g} %"
 
 
 def tendons(drive: Transmission, fitted: FittedTendons, name: str, motor: str, link: str) -> str:
-    """The tendons between two hinges, children of `<tendon>`."""
+    """MJCF of the tendons between the hinges of motor and link, children of `<tendon>`."""
     joints = (
         f'<joint joint={quoteattr(link)} coef="1"/>'
         f'<joint joint={quoteattr(motor)} coef="{-1.0 / drive.ratio:.17g}"/>'
@@ -67,12 +69,13 @@ def tendons(drive: Transmission, fitted: FittedTendons, name: str, motor: str, l
         for i, (k, y) in enumerate(fitted.sliders, 1)
     ]
     return "\n".join(
-        f'    <fixed name={quoteattr(own)} springlength="0 0" {numbers}>{joints}</fixed>'
-        for own, numbers in springs
+        f'    <fixed name={quoteattr(tendon)} springlength="0 0" {numbers}>{joints}</fixed>'
+        for tendon, numbers in springs
     )
 
 
 def _model(drive: Transmission, fitted: FittedTendons, motor_inertia: float, link_inertia: float) -> str:
+    """MJCF of motor, drive and link."""
     torque = drive.max_torque / abs(drive.ratio)
     friction = element(drive, "motor", motor_inertia, STEP) if drive.static else ""
     small = '<inertial pos="0 0 0" mass="0.001" diaginertia="1e-9 1e-9 1e-9"/>'
@@ -100,39 +103,39 @@ damping="{drive.viscous:.9g}"/>
 
 
 def led(drive: Transmission, fitted: FittedTendons, wind_up: Array) -> Array:
-    """MuJoCo's torques (n) [N.m] of the drive while the link is led along wind-ups (n) [rad] from rest.
+    """Simulate the torques (n) [N.m] of the drive in MuJoCo along prescribed wind-ups (n) [rad] from rest.
 
-    Raises ImportError without mujoco, ValueError where it has no springs that yield.
+    Raises ImportError without mujoco, ValueError if MuJoCo has no yielding springs.
     """
     import mujoco
 
-    steps = LEAD / len(wind_up)
+    time_step = LEAD / len(wind_up)
     text = _model(drive, fitted, LOCKED, LOCKED)
-    made = mujoco.MjModel.from_xml_string(text)
-    made.opt.timestep, made.opt.gravity[:] = steps, 0.0
-    data, link = mujoco.MjData(made), made.joint("link").dofadr[0]
+    model = mujoco.MjModel.from_xml_string(text)
+    model.opt.timestep, model.opt.gravity[:] = time_step, 0.0
+    data, link = mujoco.MjData(model), model.joint("link").dofadr[0]
     torques = []
-    for x, ahead in zip(wind_up, [*wind_up[1:], wind_up[-1]], strict=True):
+    for x, next_x in zip(wind_up, [*wind_up[1:], wind_up[-1]], strict=True):
         data.qpos[link], data.qvel[:] = x, 0.0
-        data.qvel[link] = (ahead - x) / steps
-        mujoco.mj_forward(made, data)
+        data.qvel[link] = (next_x - x) / time_step
+        mujoco.mj_forward(model, data)
         torques.append(-data.qfrc_passive[link])
-        mujoco.mj_step(made, data)
+        mujoco.mj_step(model, data)
     return np.array(torques)
 
 
 def measured(drive: Transmission, fitted: FittedTendons) -> Miss:
-    """MuJoCo beside the FMU's spring on the way from rest to the torque of the fit and once round."""
+    """Compare MuJoCo's drive with the FMU's law along first loading to the largest fit torque and one loop."""
     torques, x = drive.loop(fitted.torque)
-    found = led(drive, fitted, x)
-    own, others = area(x, torques), area(x, found)
-    wide = 1.2 * x[: RAMP + 1]
-    reached = np.interp(fitted.torque, led(drive, fitted, wide), wide)
-    return Miss(float(reached / x[RAMP] - 1.0), others / own - 1.0 if fitted.sliders else None)
+    simulated = led(drive, fitted, x)
+    fmu_area, mujoco_area = area(x, torques), area(x, simulated)
+    ramp = 1.2 * x[: RAMP + 1]
+    wind_up = np.interp(fitted.torque, led(drive, fitted, ramp), ramp)
+    return Miss(float(wind_up / x[RAMP] - 1.0), mujoco_area / fmu_area - 1.0 if fitted.sliders else None)
 
 
 def check_version() -> None:
-    """Raise ValueError for a MuJoCo without springs that yield, ImportError without any."""
+    """Raise ValueError if MuJoCo has no yielding springs, ImportError if it is missing."""
     import mujoco
 
     if not hasattr(mujoco.MjModel, "tendon_springyield"):
@@ -140,6 +143,7 @@ def check_version() -> None:
 
 
 def _about_friction(drive: Transmission, motor: float) -> Iterator[str]:
+    """Comment lines on the motor friction of the written file."""
     angle = presliding(drive, motor, STEP)
     yield f"dry friction builds up over {angle:.3g} rad of the motor, {drive.presliding:g} rad in the FMU"
     yield "  and after a reversal as Dahl has it, not Masing; its numbers are of this motor"
@@ -147,7 +151,7 @@ def _about_friction(drive: Transmission, motor: float) -> Iterator[str]:
 
 
 def text(drive: Transmission, torque: float) -> tuple[str, Miss, list[str]]:
-    """The file of a drive fitted up to a torque [N.m], what running it showed, and what it lacks.
+    """MJCF text of a drive fitted up to a torque [N.m], its errors in MuJoCo, and texts on omitted effects.
 
     Raises ImportError without mujoco.
     """

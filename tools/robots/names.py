@@ -1,4 +1,4 @@
-"""Names of drives as those of plugins and files."""
+"""Valid names of plugins and files from names of drives."""
 
 import re
 from collections.abc import Mapping
@@ -9,14 +9,17 @@ from jointfmu.parameters import ParameterFile, dump
 
 
 def identifier(name: str) -> str:
-    """A name of letters, digits and _ that no language and no system keeps for itself."""
+    """Convert a name to a valid identifier of letters, digits and _ that is no keyword or device name."""
     return re.sub(
         r"\W", "_", f"_{name}" if not name[:1].isalpha() or reserved(name) else name, flags=re.ASCII
     )
 
 
 def check_names(files: Mapping[str, ParameterFile]) -> None:
-    """Raise ValueError if two drives of joints have one name and other numbers: each name is one plugin."""
+    """Raise ValueError if two drives have the same name but different parameters: one name is one plugin.
+
+    files : {joint: parameter file of its drive}
+    """
     first: dict[str, tuple[str, ParameterFile]] = {}
     for joint, file in files.items():
         other, known = first.setdefault(identifier(file.name), (joint, file))

@@ -1,4 +1,4 @@
-"""A robot with elastic axes whose drives are the plugin: all that the FMU has, beside the plain MJCF."""
+"""Robot model (MJCF) whose drives are MuJoCo plugins compiled from FMUs, with all effects of the FMU."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -17,38 +17,45 @@ from .names import identifier
 
 
 def spring_of(file: ParameterFile) -> str:
-    """The FMU of a drive's file that stands between two flanges."""
+    """Name of the FMU of a drive that connects two flanges."""
     models = KINDS[file.joint].models
-    return next(one.name for one in models if [v.name for v in one.inputs[: len(INPUTS)]] == INPUTS)
+    return next(model.name for model in models if [v.name for v in model.inputs[: len(INPUTS)]] == INPUTS)
 
 
 def plugins(files: Mapping[str, ParameterFile], out: Path) -> dict[str, Path]:
-    """{name of a drive: the plugin `jointfmu.NAME` of its FMU}, written to a folder.
+    """Compile the plugin `jointfmu.NAME` of each drive into a folder; returns {name of the drive: file}.
+
+    files : {joint: parameter file of its drive}
 
     Raises ImportError, RuntimeError and ValueError as `jointfmu_tools.mujoco.plugin`.
     """
-    found = {}
+    paths = {}
     with TemporaryDirectory() as folder:
         for file in files.values():
             name = identifier(file.name)
-            if name not in found:
+            if name not in paths:
                 (fmu,) = build([spring_of(file)], ["fmi3"], file, Path(folder), alias=name)
-                found[name] = plugin(fmu, out)
-    return found
+                paths[name] = plugin(fmu, out)
+    return paths
 
 
 def text(spec: Any, chosen: Sequence[ElasticAxis], files: Mapping[str, ParameterFile]) -> str:
-    """The MJCF; files : {joint: its drive}."""
-    made = with_drives(spec, list(chosen), springs=False)
-    made.compile()
-    root = ElementTree.fromstring(made.to_xml())
+    """Format the MJCF of a robot with plugins as drives.
+
+    chosen : axes with a drive
+    files  : {joint: parameter file of its drive}
+    """
+    model_spec = with_drives(spec, list(chosen), springs=False)
+    model_spec.compile()
+    root = ElementTree.fromstring(model_spec.to_xml())
     extension = ElementTree.Element("extension")
     root.insert(0, extension)
     for axis in chosen:
         name = f"jointfmu.{identifier(files[axis.joint].name)}"
-        found = extension.find(f"plugin[@plugin='{name}']")
-        own = ElementTree.SubElement(extension, "plugin", plugin=name) if found is None else found
-        drive = ElementTree.SubElement(own, "instance", name=f"{axis.joint}_drive")
+        node = extension.find(f"plugin[@plugin='{name}']")
+        if node is None:
+            node = ElementTree.SubElement(extension, "plugin", plugin=name)
+        drive = ElementTree.SubElement(node, "instance", name=f"{axis.joint}_drive")
         ElementTree.SubElement(drive, "config", key="phi1", value=axis.joint + MOTOR)
         ElementTree.SubElement(drive, "config", key="phi2", value=axis.joint)
     ElementTree.indent(root)

@@ -1,4 +1,4 @@
-"""What elastic axes make of a robot: natural frequencies over poses, wind-up and tip error under weight."""
+"""Natural frequencies, wind-up and tip error of a robot with elastic axes, at given poses."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -15,15 +15,16 @@ if TYPE_CHECKING:
 
 
 def dofs(model: "MjModel", axes: Sequence[ElasticAxis]) -> list[int]:
-    """The degrees of freedom of the axes in the rigid robot."""
+    """Indices (n) of the degrees of freedom of the axes in the rigid robot."""
     return [int(model.joint(axis.joint).dofadr[0]) for axis in axes]
 
 
 def torques(
     model: "MjModel", axes: Sequence[ElasticAxis], pose: Array, payload: float, tip: int
 ) -> tuple[Array, Array]:
-    """What weight asks of the drives (n) [N.m] with a payload [kg] at the origin of a body, and the rows of
-    the body's Jacobian (3, n) [m/rad].
+    """Static drive torques (n) [N.m] under weight, and the Jacobian (3, n) [m/rad] of the body `tip`.
+
+    A payload [kg] acts at the origin of this body.
     """
     import mujoco
 
@@ -32,26 +33,26 @@ def torques(
     mujoco.mj_forward(model, data)
     jacobian = np.zeros((3, model.nv))
     mujoco.mj_jac(model, data, jacobian, None, data.xpos[tip], tip)
-    own = dofs(model, axes)
+    indices = dofs(model, axes)
     weight = -data.qfrc_bias + jacobian.T @ (payload * model.opt.gravity)
-    return weight[own], jacobian[:, own]
+    return weight[indices], jacobian[:, indices]
 
 
 def inertia(model: "MjModel", axes: Sequence[ElasticAxis], pose: Array, payload: float, tip: int) -> Array:
-    """Mass matrix (n, n) [kg.m2] of the links, without rotors, with a payload [kg] as a point of a body."""
-    own = dofs(model, axes)
+    """Mass matrix (n, n) [kg.m2] of the links without rotors, with a point mass payload [kg] at `tip`."""
+    indices = dofs(model, axes)
     _, jacobian = torques(model, axes, pose, payload, tip)
-    mass = mass_matrix(model, pose)[np.ix_(own, own)] - np.diag(model.dof_armature[own])
+    mass = mass_matrix(model, pose)[np.ix_(indices, indices)] - np.diag(model.dof_armature[indices])
     return np.asarray(mass + payload * jacobian.T @ jacobian)
 
 
 def frequencies(
     model: "MjModel", axes: Sequence[ElasticAxis], pose: Array, payload: float, tip: int
 ) -> Array:
-    """Natural frequencies (n) [Hz], ascending, about a pose under weight: motors and other joints held.
+    """Natural frequencies (n) [Hz], ascending, at a pose under weight, with locked motors and other joints.
 
-    (K - omega^2 M) x = 0 with the drives' tangents K and the links' masses M, without rotors; the payload
-    is a point. What weight adds to K as the links turn is left out.
+    (K - omega^2 M) x = 0 with the tangent stiffness K of the drives and the mass matrix M of the links
+    without rotors; the payload is a point mass. The geometric stiffness of the weight is neglected.
     """
     load, _ = torques(model, axes, pose, payload, tip)
     mass = inertia(model, axes, pose, payload, tip)
@@ -61,13 +62,14 @@ def frequencies(
 
 
 def longest_step(model: "MjModel", axes: Sequence[ElasticAxis], pose: Array) -> float:
-    """Step [s] beyond which MuJoCo's default integrator diverges: 2 over the highest natural frequency of
-    links and free motors at a pose, its springs at the torques of their fits.
+    """Largest stable time step [s] of MuJoCo's default integrator, 2 over the highest natural frequency.
+
+    The frequency is that of links and free motors at a pose, with the stiffness at the largest fit torques.
     """
-    own = dofs(model, axes)
+    indices = dofs(model, axes)
     rotors = np.zeros(model.nv)
-    rotors[own] = model.dof_armature[own]
-    mobility = np.linalg.inv(mass_matrix(model, pose) - np.diag(rotors))[np.ix_(own, own)]
+    rotors[indices] = model.dof_armature[indices]
+    mobility = np.linalg.inv(mass_matrix(model, pose) - np.diag(rotors))[np.ix_(indices, indices)]
     mobility += np.diag([1.0 / axis.rotor for axis in axes])
     scale = np.sqrt([axis.fitted.stiffness(axis.fitted.torque) for axis in axes])
     return float(2.0 / np.sqrt(np.linalg.eigvalsh(scale[:, None] * mobility * scale)[-1]))
@@ -81,8 +83,9 @@ def sag(
     tip: int,
     springs: Sequence[FittedTendons] | None = None,
 ) -> tuple[Array, float]:
-    """Wind-ups (n) [rad] under weight at a pose, motors held, and how far the tip sinks by them [m]; with the
-    drives' own laws, or with springs (n) in their place.
+    """Wind-ups (n) [rad] under weight at a pose with locked motors, and the tip displacement [m] they cause.
+
+    springs : fitted springs (n) to use instead of the laws of the drives
     """
     load, jacobian = torques(model, axes, pose, payload, tip)
     laws: Sequence[ElasticAxis | FittedTendons] = springs or axes

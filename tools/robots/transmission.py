@@ -1,4 +1,4 @@
-"""What a joint's part `transmission` says: TRANSMISSION, its parameters -> a drive between motor and link."""
+"""Drive between motor and link, as a joint's tool module `transmission` defines it (TRANSMISSION)."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -13,24 +13,24 @@ from jointfmu.quantity import Array
 from ..joint_parts import part
 
 RAMP, LOOP = 200, 800
-"""Points of the ramp to the largest torque, and of the loop after it."""
+"""Number of points of the ramp to the largest torque, and of the loop after it [1]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Transmission:
     """A drive between a motor and a link.
 
-    name          : of its parameters
-    ratio         : [1] speed of the motor over that of the link, negative where they turn against each other
-    damping       : [N.m.s/rad] at the output
-    rated_torque  : [N.m] at the output
-    max_torque    : [N.m] at the output, to which the law is tabulated
-    dry, viscous  : friction of the motor [N.m], [N.m.s/rad]
-    static        : dry friction of the motor at rest [N.m], dry if speed takes nothing away
-    stribeck_speed, presliding : speed [rad/s] that leaves 1/e of what static is above dry, and angle [rad]
-                    of the motor over which dry friction builds up to 1 - 1/e
-    wind_up       : torques (n) [N.m] one after the other, from rest -> wind-ups (n) [rad], motor locked
-    lacks         : what of it is beyond springs, sliders and friction, in words with numbers
+    name           : name of the parameter file
+    ratio          : motor speed over link speed [1], negative for opposite directions
+    damping        : at the output [N.m.s/rad]
+    rated_torque   : at the output [N.m]
+    max_torque     : largest tabulated torque at the output [N.m]
+    dry, viscous   : Coulomb friction [N.m] and viscous friction [N.m.s/rad] of the motor
+    static         : static friction of the motor [N.m]; equals `dry` without Stribeck effect
+    stribeck_speed : motor speed [rad/s] at which static - dry has decreased to 1/e
+    presliding     : motor angle [rad] at which dry friction reaches 1 - 1/e of its limit
+    wind_up        : (history of torques (n) [N.m] from rest) -> wind-ups (n) [rad] with locked motor
+    lacks          : texts on effects of the drive other than springs, sliders and friction
     """
 
     name: str
@@ -47,25 +47,25 @@ class Transmission:
     lacks: Sequence[str] = ()
 
     def loop(self, torque: float) -> tuple[Array, Array]:
-        """Torques [N.m] and wind-ups [rad] (n) from rest to a torque and once round from there."""
-        up = np.linspace(0.0, torque, RAMP + 1)
-        turn = np.cos(np.linspace(0.0, 2.0 * np.pi, LOOP + 1)[1:]) * torque
-        torques = np.concatenate([up, turn])
+        """Torques (n) [N.m] and wind-ups (n) [rad] along a ramp from rest to `torque` and one full loop."""
+        ramp = np.linspace(0.0, torque, RAMP + 1)
+        cycle = np.cos(np.linspace(0.0, 2.0 * np.pi, LOOP + 1)[1:]) * torque
+        torques = np.concatenate([ramp, cycle])
         return torques, self.wind_up(torques)
 
 
 def area(wind_up: Array, torque: Array) -> float:
-    """Work [J] of the loop after the ramp."""
+    """Area [J] of the loop after the ramp: the energy dissipated in one cycle."""
     return float(np.trapezoid(torque[RAMP:], wind_up[RAMP:]))
 
 
 def transmission(file: ParameterFile) -> Transmission:
-    """The drive of a parameter file. ValueError for a joint that is none."""
-    own = part(KINDS[file.joint], "transmission")
-    if own is None:
-        able = [name for name, kind in KINDS.items() if part(kind, "transmission")]
+    """Drive of a parameter file. Raises ValueError if its joint is no drive."""
+    tool_module = part(KINDS[file.joint], "transmission")
+    if tool_module is None:
+        drives = [name for name, kind in KINDS.items() if part(kind, "transmission")]
         raise ValueError(
-            f"{file.name} is a {file.joint}, no drive of a motor; allowed is a {', '.join(able)}"
+            f"{file.name} is a {file.joint}, no drive of a motor; allowed is a {', '.join(drives)}"
         )
-    made: Transmission = own.TRANSMISSION(file.name, file.values)
-    return made
+    drive: Transmission = tool_module.TRANSMISSION(file.name, file.values)
+    return drive

@@ -1,4 +1,4 @@
-"""A drive as URDF: joint, friction, the motor's mimic pair, and what ros2_control reads of a transmission."""
+"""Export of a drive to URDF: joint, friction, mimic joint of the motor, transmission of ros2_control."""
 
 from collections.abc import Iterator
 from xml.sax.saxutils import quoteattr
@@ -10,7 +10,7 @@ from jointfmu import __version__
 from .transmission import Transmission, area
 
 RATED_SPEED = 209.44
-"""Speed [rad/s] of the motor at which catalogues state the rated torque: 2000 rpm."""
+"""Motor speed [rad/s] at which catalogues state the rated torque: 2000 rpm."""
 LIGHT = (
     '<inertial><mass value="0.001"/><inertia ixx="1e-6" ixy="0" ixz="0" iyy="1e-6" iyz="0" izz="1e-6"/>'
     "</inertial>"
@@ -18,12 +18,16 @@ LIGHT = (
 
 
 def text(drive: Transmission, torque: float) -> tuple[str, None, list[str]]:
-    """The file of a drive; nothing of it is measured; and what it lacks: springs, which URDF has not."""
+    """URDF text of a drive; None, as nothing is fitted; texts on omitted effects, as URDF has no springs."""
     torques, x = drive.loop(torque)
-    lossy = bool(drive.wind_up([torque, 0.0])[1])
+    has_hysteresis = bool(drive.wind_up([torque, 0.0])[1])
     lacks = [
         f"the wind-up, {x[: len(x) // 2].max():.4g} rad at {torque:g} N.m",
-        *([f"the hysteresis, {abs(area(x, torques)):.4g} J a loop at {torque:g} N.m"] if lossy else []),
+        *(
+            [f"the hysteresis, {abs(area(x, torques)):.4g} J a loop at {torque:g} N.m"]
+            if has_hysteresis
+            else []
+        ),
         f"the damping of the wind-up, {drive.damping:.4g} N.m.s/rad",
         *_friction(drive),
         *drive.lacks,
@@ -39,15 +43,17 @@ def text(drive: Transmission, torque: float) -> tuple[str, None, list[str]]:
 
 
 def _friction(drive: Transmission) -> Iterator[str]:
+    """Texts on omitted friction effects: Stribeck effect and presliding."""
     if drive.static > drive.dry:
-        more, speed = drive.static - drive.dry, drive.stribeck_speed
-        yield f"{more:.4g} N.m more dry friction at the motor below {speed:g} rad/s"
+        difference, speed = drive.static - drive.dry, drive.stribeck_speed
+        yield f"{difference:.4g} N.m more dry friction at the motor below {speed:g} rad/s"
     if drive.static:
         yield f"presliding over {drive.presliding:g} rad of the motor"
 
 
 def _robot(drive: Transmission) -> str:
-    size, most = abs(drive.ratio), drive.max_torque
+    """URDF element `robot` of a drive."""
+    ratio, max_torque = abs(drive.ratio), drive.max_torque
     return f"""<robot name={quoteattr(drive.name)}>
   <link name="base">{LIGHT}</link>
   <link name="output">{LIGHT}</link>
@@ -56,14 +62,14 @@ def _robot(drive: Transmission) -> str:
     <parent link="base"/>
     <child link="output"/>
     <axis xyz="0 0 1"/>
-    <limit effort="{most:.9g}" velocity="{RATED_SPEED / size:.9g}"/>
-    <dynamics damping="{drive.viscous * size**2:.9g}" friction="{drive.dry * size:.9g}"/>
+    <limit effort="{max_torque:.9g}" velocity="{RATED_SPEED / ratio:.9g}"/>
+    <dynamics damping="{drive.viscous * ratio**2:.9g}" friction="{drive.dry * ratio:.9g}"/>
   </joint>
   <joint name="motor" type="continuous">
     <parent link="base"/>
     <child link="rotor"/>
     <axis xyz="0 0 1"/>
-    <limit effort="{most / size:.9g}" velocity="{RATED_SPEED:.9g}"/>
+    <limit effort="{max_torque / ratio:.9g}" velocity="{RATED_SPEED:.9g}"/>
     <mimic joint="link" multiplier="{drive.ratio:.9g}" offset="0"/>
   </joint>
   <ros2_control name="drive" type="actuator">

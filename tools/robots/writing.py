@@ -1,4 +1,4 @@
-"""A drive as a file of a robot's simulator."""
+"""Export of a drive to robot formats: MJCF and URDF."""
 
 from dataclasses import asdict
 
@@ -8,23 +8,27 @@ from .transmission import transmission
 
 
 def written(form: str, source: str, torque: float | None) -> tuple[str, list[str], dict[str, object]]:
-    """A drive by its file or name in a format of robots, fitted up to a torque [N.m], rated unless stated.
+    """Write a drive in a robot format, fitted up to a torque.
 
-    Returns the text, what is worth saying about it, and the same as numbers (SI) with the name of the drive.
+    form   : a key of WRITERS
+    source : parameter file or name of the drive
+    torque : [N.m]; None: rated torque
 
-    Raises ValueError for what is no drive or a torque outside its table, ImportError without mujoco.
+    Returns the file text, notes on fit errors and omitted effects, and the same as values in SI units.
+
+    Raises ValueError if the source is no drive or the torque outside its table, ImportError without mujoco.
     """
     drive = transmission(load(source).file)
-    reached = drive.rated_torque if torque is None else torque
-    if not 0.0 < reached <= drive.max_torque:
+    fit_torque = drive.rated_torque if torque is None else torque
+    if not 0.0 < fit_torque <= drive.max_torque:
         raise ValueError(
-            f"--torque = {reached:g} N.m is outside (0, {drive.max_torque:g}] N.m of {drive.name}"
+            f"--torque = {fit_torque:g} N.m is outside (0, {drive.max_torque:g}] N.m of {drive.name}"
         )
-    text, miss, lacks = WRITERS[form](drive, reached)
-    lines = [*(miss.lines(reached) if miss else ()), *(f"not carried: {line}" for line in lacks)]
-    measured = asdict(miss) if miss else {}
-    return text, lines, {"drive": drive.name, "torque": reached, **measured, "lacks": lacks}
+    text, miss, lacks = WRITERS[form](drive, fit_torque)
+    lines = [*(miss.lines(fit_torque) if miss else ()), *(f"not carried: {line}" for line in lacks)]
+    errors = asdict(miss) if miss else {}
+    return text, lines, {"drive": drive.name, "torque": fit_torque, **errors, "lacks": lacks}
 
 
 WRITERS = {"mjcf": mjcf.text, "urdf": urdf.text}
-"""{format: (drive, torque [N.m]) -> text, what it misses where it has springs, what it lacks}."""
+"""{format: (drive, torque [N.m]) -> text, errors of the fit (None: no springs), omitted effects}."""

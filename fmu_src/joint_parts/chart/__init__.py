@@ -1,7 +1,7 @@
-"""Charts of all pages, drawn by one script: of an FMU's documentation, the report and the laboratory.
+"""Charts of HTML pages: FMU documentation, report and laboratory share one script that draws them.
 
-A page holds curves as JSON beside the script; pictures in files are matplotlib's (`jointfmu_tools.plots`).
-No plotting package is needed to build an FMU, and its bytes are the same everywhere.
+A page contains the curves as JSON and the script. So building an FMU needs no plotting package, and its bytes
+are the same on every platform. Image files are drawn by matplotlib instead (`jointfmu_tools.plots`).
 """
 
 import json
@@ -14,11 +14,11 @@ from numpy.typing import NDArray
 
 Values: TypeAlias = Sequence[float] | NDArray[np.float64]
 _DIGITS = 7
-"""Of the numbers of a curve: more than a screen shows."""
+"""Significant digits of the numbers of a curve: more than a screen resolves."""
 
 
 class Series(NamedTuple):
-    """A line, or marks, full or empty; `titles` names each mark."""
+    """Line or marks of a chart; `marks` is the kind of mark (empty: a line), `titles` names each mark."""
 
     name: str
     x: Values
@@ -29,7 +29,7 @@ class Series(NamedTuple):
 
 
 class Panel(NamedTuple):
-    """One pair of axes: title, their labels with units, what is drawn; `log`: over decades of x."""
+    """One pair of axes: title, axis labels with units, series; `log`: logarithmic x axis."""
 
     title: str
     x: str
@@ -39,7 +39,7 @@ class Panel(NamedTuple):
 
 
 def as_json(panels: Sequence[Panel]) -> str:
-    """Panels side by side as JSON, safe inside a page."""
+    """Encode panels side by side as JSON that is safe inside an HTML page."""
 
     def numbers(values: Any) -> list[float]:
         return [float(f"{x:.{_DIGITS}g}") for x in np.asarray(values, dtype=np.float64).tolist()]
@@ -52,17 +52,17 @@ def as_json(panels: Sequence[Panel]) -> str:
 
 
 def element(panels: Sequence[Panel]) -> str:
-    """Panels as an element of a page with `script("figures")`."""
+    """HTML element of panels, for a page that contains `read_script("figures")`."""
     return f'<div class="figure"><script type="application/json">{as_json(panels)}</script></div>'
 
 
 def script(*names: str) -> str:
-    """The charts, and with `figures` those of the page's elements of class `figure`."""
+    """JavaScript that draws charts; with `figures` also those of all page elements of class `figure`."""
     return '"use strict";\n' + "".join(_own(f"{name}.js") for name in ("text", "chart", *names))
 
 
 def style() -> str:
-    """Colours, charts and tables, the same on all pages."""
+    """CSS of colours, charts and tables, the same on all pages."""
     return _own("chart.css")
 
 

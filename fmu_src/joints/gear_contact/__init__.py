@@ -1,4 +1,4 @@
-"""What the builders know of the gear contact."""
+"""Builder data of the gear contact."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""What the builders know of the gear mesh."""
+"""Builder data of the gear mesh."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""The gear mesh in C: its functions and the steps of its table."""
+"""Functions and constants of the gear mesh for C code generation."""
 
 import casadi as ca
 import numpy as np
@@ -11,6 +11,7 @@ from ...joint_parts.native import APPROACH, Definitions, NativePart
 
 
 def _functions(g: Graph, model: Model) -> None:
+    """Add the functions that the C of the gear mesh calls."""
     mesh = g.joint
     law_functions(g, mesh, ("normal",), lambda spots, u: [])
     add_closing(g)

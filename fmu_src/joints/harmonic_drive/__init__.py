@@ -1,4 +1,4 @@
-"""What the builders know of the harmonic drive; the nodes of a measured midline are data."""
+"""Builder data of the harmonic drive; the nodes of a measured midline are data of the FMU."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -18,14 +18,14 @@ from ...joint_parts.terminals import ROTATIONAL, Terminal, shaft
 
 @dataclass(frozen=True, kw_only=True)
 class MidlineDrive(Measured):
-    """A drive with a measured midline whose nodes are data."""
+    """Harmonic drive with a measured midline (torque against wind-up) whose nodes are data."""
 
     end: float = quantity("N.m", "torque at the last point", gt=0.0)
     stiffest: float = quantity("N.m/rad", "twice the largest stiffness of the midline", gt=0.0)
 
     @property
     def reach(self) -> Number:
-        """Torque [N.m] at the last point."""
+        """Torque [N.m] at the last node of the midline."""
         return self.end
 
     @property
@@ -34,23 +34,26 @@ class MidlineDrive(Measured):
         return self.stiffest
 
     def nodes(self) -> list[Node]:
-        """None that the code knows."""
+        """Empty list: the nodes are read from the data block at run time."""
         return []
 
 
 def _of(drive: Drive) -> type[Drive]:
+    """Class of the parameter set with which the C code of a drive is generated."""
     return MidlineDrive if isinstance(drive, TableDrive) else type(drive)
 
 
 def _stands(drive: Drive) -> Mapping[str, Any]:
-    own = flatten(drive)
+    """{name: value} of the parameter set with which the C code of a drive is generated."""
+    values = flatten(drive)
     if not isinstance(drive, TableDrive):
-        return own
+        return values
     midline = {"end": drive.reach, "stiffest": drive.K_FTS}
-    return {name: value for name, value in own.items() if not name.startswith("table.")} | midline
+    return {name: value for name, value in values.items() if not name.startswith("table.")} | midline
 
 
 def _tables(drive: Drive) -> Mapping[str, DataTable]:
+    """{"midline": nodes of a measured midline}; empty for other drives."""
     if not isinstance(drive, TableDrive):
         return NO_TABLES
     return {"midline": DataTable(np.array(drive.nodes(), dtype=np.float64), MOST_POINTS + 1)}

@@ -1,4 +1,4 @@
-"""The harmonic drive in C: its functions and the numbers of its table."""
+"""Functions and constants of the harmonic drive for C code generation."""
 
 import casadi as ca
 
@@ -14,6 +14,7 @@ from ...joint_parts.sliders import SLIDERS, add_sliders
 
 
 def _functions(g: Graph, model: Model) -> None:
+    """Add the functions that the C of the harmonic drive calls."""
     drive = g.joint
     add_sliders(g)
     if isinstance(drive, CatalogueDrive):
@@ -62,7 +63,7 @@ def _functions(g: Graph, model: Model) -> None:
 
 
 def _given_torque(model: Model) -> bool:
-    """Whether the wave generator is locked, and the torque given."""
+    """Whether the torque is the input and the wave generator is locked."""
     return model.inputs[0].name == "tau"
 
 
@@ -72,20 +73,21 @@ NUMBERS: Named = {
     friction: ("TURNED",),
 }
 COUNTS: Named = {hysteresis: ("MOST_CORRECTIONS", "SLIDERS"), friction: ("BRAKES",)}
-"""Numbers of the package that the C has under the same name."""
+"""Python constants of the drive that have the same names in C: integers (NUMBERS: real numbers)."""
 
 
 def _definitions(g: Graph, model: Model) -> Definitions:
+    """Constants of the C of the harmonic drive."""
     counts = {"ARGUMENT_IS_LOAD": int(_given_torque(model)), "DRIVE_STEPS": spring.STEPS}
     counts["N_HARMONICS"] = len(HARMONICS)
     sliders = column("BRAKE_SPRINGS", "N_BRAKE_SPRINGS", friction.SPRINGS)
     sliders |= column("BRAKE_LIMITS", "N_BRAKE_LIMITS", friction.LIMITS)
-    given = named(NUMBERS, COUNTS) | Definitions(counts) | sliders
-    every = given | quadrature("DRIVE_GAUSS", spring.GAUSS)
+    constants = named(NUMBERS, COUNTS) | Definitions(counts) | sliders
+    constants |= quadrature("DRIVE_GAUSS", spring.GAUSS)
     if isinstance(g.joint, Measured):
-        return every | Definitions({}, {"MIDLINE_IS_DATA": 1})
+        return constants | Definitions({}, {"MIDLINE_IS_DATA": 1})
     nodes = sum(len(f.y) for f in g.functions if f.name == "given_nodes") // len(Node._fields)
-    return every | Definitions({}, {"GIVEN_NODES": nodes} if nodes else {})
+    return constants | Definitions({}, {"GIVEN_NODES": nodes} if nodes else {})
 
 
 PART = NativePart(_functions, (*CURVE, *SLIDERS), _definitions, spring.MEMORY)

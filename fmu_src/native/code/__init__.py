@@ -1,1 +1,1 @@
-"""The C of an FMU: hand-written, and generated from the list of variables and the laws."""
+"""C sources of an FMU: hand-written files, and files generated from the variables and the joint laws."""

@@ -1,4 +1,4 @@
-"""Tables of `law/elementary.c`, in decimal arithmetic of more digits than a double holds."""
+"""Tables for the elementary functions of `law/elementary.c`, computed with 60 decimal digits."""
 
 from collections.abc import Iterator, Sequence
 from decimal import Decimal, localcontext
@@ -8,12 +8,12 @@ from math import factorial
 from ...joint_parts.c_text import array, number
 
 PLACES = 32
-"""Of the tables of exponential and logarithm."""
+"""Number of intervals in the tables of exponential and logarithm [1]."""
 LOG_BEGIN = 0x3FE6AAAA00000000
-"""Bits of the number with which a binade of the logarithm's table begins; 1 lies inside of a place."""
+"""Bit pattern of the double at which the table of the logarithm begins; 1 lies inside an interval."""
 _ONE = 0x3FF0000000000000
 LOG_BITS = 47
-"""Of the mantissa that lie below a place, 52 less log2 of the places."""
+"""Mantissa bits below the interval index: 52 - log2(PLACES)."""
 _DIGITS = 60
 _PI = Decimal("3.1415926535897932384626433832795028841971693993751058209749445923078164")
 _ERF_PER_PLACE, _ERF_END, _N_ERF = 4, 6, 15
@@ -22,7 +22,7 @@ _N_EXPM1, _N_WAVE = 13, 8
 
 @cache
 def tables() -> str:
-    """Text of elementary_tables.h."""
+    """Text of elementary_tables.h; its numbers are exact to the last bit of a double."""
     with localcontext() as context:
         context.prec = _DIGITS
         log_2, quarter = Decimal(2).ln(), _PI / 2
@@ -37,7 +37,7 @@ def tables() -> str:
             "TURNS": float(1 / quarter),
         }
         arrays = {
-            "QUARTER[4]": [[part] for part in _parts(quarter)],
+            "QUARTER[4]": [[value] for value in _parts(quarter)],
             f"POWERS[{PLACES}][2]": [_pair((k * per_place).exp()) for k in range(PLACES)],
             f"LOGS[{PLACES}][3]": list(_logs()),
             f"EXPM1[{_N_EXPM1}]": [[1 / factorial(n + 2)] for n in range(_N_EXPM1)],
@@ -57,33 +57,37 @@ def tables() -> str:
 
 
 def _row(values: Sequence[float]) -> str:
+    """Format one row of a C array."""
     text = ", ".join(number(value) for value in values)
     return text if len(values) == 1 else f"{{{text}}}"
 
 
 def _first(value: Decimal, bits: int) -> float:
-    """A number rounded to a multiple of 2^-bits."""
+    """Round a number to a multiple of 2^-bits."""
     return float((value * 2**bits).to_integral_value()) * 2.0**-bits
 
 
 def _pair(value: Decimal) -> list[float]:
-    """A number and, over it, what it lacks."""
+    """Split a number into the nearest double and the relative error of that double."""
     high = float(value)
     return [high, float(value / Decimal(high) - 1)]
 
 
 def _parts(value: Decimal) -> Iterator[float]:
-    """A number as three of 33 bits, whose products with 20 bits are exact, and the rest."""
+    """Split a number into three doubles of 33 bits, whose products with 20 bits are exact, and the rest."""
     for bits in (32, 65, 98):
-        yield (part := _first(value, bits))
-        value -= Decimal(part)
+        yield (leading := _first(value, bits))
+        value -= Decimal(leading)
     yield float(value)
 
 
 def _logs() -> Iterator[list[float]]:
-    """1/c of few bits near the middle of each place, exactly 1 where 1 lies; log(c) in two parts."""
-    for place in range(PLACES):
-        begin, end = (LOG_BEGIN + (k << LOG_BITS) for k in (place, place + 1))
+    """Rows 1/c, high and low part of log(c) for each interval of the logarithm.
+
+    c is near the middle of the interval, and 1/c has few bits. In the interval of 1, c is exactly 1.
+    """
+    for interval in range(PLACES):
+        begin, end = (LOG_BEGIN + (k << LOG_BITS) for k in (interval, interval + 1))
         middle = 0.5 * (_double(begin) + _double(end))
         inverse = 1.0 if begin <= _ONE < end else round(2.0**16 / middle) * 2.0**-16
         log = -Decimal(inverse).ln()
@@ -92,22 +96,23 @@ def _logs() -> Iterator[list[float]]:
 
 
 def _double(bits: int) -> float:
+    """Positive double with a given bit pattern."""
     return float.fromhex(f"0x1.{bits & ((1 << 52) - 1):013x}p{(bits >> 52) - 1023}")
 
 
 def _erf() -> Iterator[list[float]]:
-    """Coefficients of Taylor's series of erf about each place: derivatives are Hermite's times a bell."""
-    for place in range(_ERF_PER_PLACE * _ERF_END + 1):
-        x = Decimal(place) / _ERF_PER_PLACE
-        bell = 2 / _PI.sqrt() * (-x * x).exp()
+    """Coefficients of the Taylor series of erf about each node: Hermite polynomials times a Gaussian."""
+    for node in range(_ERF_PER_PLACE * _ERF_END + 1):
+        x = Decimal(node) / _ERF_PER_PLACE
+        gaussian = 2 / _PI.sqrt() * (-x * x).exp()
         term = total = x
         n = 0
-        while term > Decimal(10) ** -_DIGITS:  # erf(x) = bell times the sum of 2^n x^(2n+1)/(2n+1)!!
+        while term > Decimal(10) ** -_DIGITS:  # erf(x) = Gaussian times the sum of 2^n x^(2n+1)/(2n+1)!!
             n += 1
             term *= 2 * x * x / (2 * n + 1)
             total += term
-        row, before, hermite = [float(bell * total)], Decimal(0), Decimal(1)
+        row, previous, hermite = [float(gaussian * total)], Decimal(0), Decimal(1)
         for n in range(_N_ERF - 1):
-            row.append(float((-1) ** n * hermite * bell / factorial(n + 1)))
-            before, hermite = hermite, 2 * x * hermite - 2 * n * before
+            row.append(float((-1) ** n * hermite * gaussian / factorial(n + 1)))
+            previous, hermite = hermite, 2 * x * hermite - 2 * n * previous
         yield row

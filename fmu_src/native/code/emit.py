@@ -1,6 +1,6 @@
-"""CasADi expressions as plain C: one static function of (x, c) -> y per function.
+"""C code from CasADi expressions: one C function (x, c) -> y for each function of a graph.
 
-What the laws take of the elementary functions gives the same bits everywhere, by `law/elementary.c`.
+Elementary functions are those of `law/elementary.c`, which give the same bits on every platform.
 """
 
 import re
@@ -75,70 +75,73 @@ static inline double root_of_squares(double a, double b)
     return sqrt(x * x + y * y) / scale;
 }
 """
-"""What the functions call besides libm and `law/elementary.c`."""
+"""C helper functions that the generated functions call, besides libm and `law/elementary.c`."""
 
 
 def function(name: str, doc: str, x: ca.SX, c: ca.SX, y: Sequence[ca.SX], derivative: bool = False) -> str:
-    """C of `static void name(const double *x, const double *c, double *y)`.
+    """C code of `void name(const double *x, const double *c, double *y)`.
 
-    Every intermediate value is a constant of its own, in the order of evaluation. In a `derivative`
-    nothing that changes makes no change, where the slope is infinite too: 0/0 is 0; and the slope of the
-    smaller or larger of two that are equal is that of the first. Elsewhere divisions by the same number are
-    products with its reciprocal.
+    Every intermediate value becomes a constant, in the order of evaluation. Repeated divisions by the same
+    number become products with its reciprocal, except in a derivative.
+
+    derivative : whether y is a directional derivative. Then 0/0 is 0, so that a zero seed gives zero even
+        at an infinite slope; and the derivative of min or max of two equal values is that of the first.
     """
     graph = ca.Function("f", [x, c], [ca.vertcat(*(ca.SX(value) for value in y))])
     inputs = "xc"
-    place: dict[int, str] = {}
+    names_of_values: dict[int, str] = {}
     body: list[str] = []
-    given: set[str] = set()
-    made: dict[str, tuple[int, list[str]]] = {}
+    used_inputs: set[str] = set()
+    operations: dict[str, tuple[int, list[str]]] = {}
     for k in range(graph.n_instructions()):
         code, out, args = graph.instruction_id(k), graph.instruction_output(k), graph.instruction_input(k)
         if code == ca.OP_OUTPUT:
-            body.append(f"y[{out[1]}] = {place[args[0]]};")
+            body.append(f"y[{out[1]}] = {names_of_values[args[0]]};")
         elif code == ca.OP_CONST:
-            place[out[0]] = _number(graph.instruction_constant(k))
+            names_of_values[out[0]] = _number(graph.instruction_constant(k))
         elif code == ca.OP_INPUT:
-            given.add(inputs[args[0]])
-            place[out[0]] = f"{inputs[args[0]]}[{args[1]}]"
+            used_inputs.add(inputs[args[0]])
+            names_of_values[out[0]] = f"{inputs[args[0]]}[{args[1]}]"
         else:
             form = _BINARY.get(code) or _UNARY.get(code)
             if derivative:
                 form = _IN_DERIVATIVES.get(code, form)
             if form is None:
                 raise NotImplementedError(f"{name}: the operation {code} of CasADi has no C here")
-            names = [place[a] for a in args]
-            simpler = _SIMPLER[code](names, made) if code in _SIMPLER else None
+            names = [names_of_values[a] for a in args]
+            simpler = _SIMPLER[code](names, operations) if code in _SIMPLER else None
             body.append(f"const double t{k} = {simpler or form.format(*names)};")
-            place[out[0]] = f"t{k}"
-            made[f"t{k}"] = (ca.OP_LE if code == ca.OP_DIV and simpler else code), names
-    unused = [name for name in inputs if name not in given] + ([] if y else ["y"])
+            names_of_values[out[0]] = f"t{k}"
+            operations[f"t{k}"] = (ca.OP_LE if code == ca.OP_DIV and simpler else code), names
+    unused = [name for name in inputs if name not in used_inputs] + ([] if y else ["y"])
     body += [f"(void){name};" for name in unused]
-    used = _used(body)
-    lines = "\n".join(f"    {line}" for line in (used if derivative else _shared_divisors(used)))
+    used_lines = _used(body)
+    lines = "\n".join(f"    {line}" for line in (used_lines if derivative else _shared_divisors(used_lines)))
     return f"/* {doc} */\nvoid {name}(const double *x, const double *c, double *y)\n{{\n{lines}\n}}\n"
 
 
 _Made = Mapping[str, tuple[int, list[str]]]
-"""{value: operation, what it is made of}."""
+"""{name of a value: (CasADi operation, names of its operands)}."""
 
 
 def _first_of_equal(names: Sequence[str], made: _Made) -> str | None:
-    """Slope of the smaller or larger of two in one of them, which CasADi shares between equal ones:
-    (a <= b)/((a <= b) + (b <= a))."""
-    one, both = names
-    code, terms = made.get(both, (None, [""]))
-    if code != ca.OP_ADD or one not in terms:
+    """C expression for (a <= b)/((a <= b) + (b <= a)), CasADi's derivative of min(a, b) or max(a, b).
+
+    CasADi gives 1/2 if a equals b; here the first argument gets all of it. None: another quotient.
+    """
+    numerator, denominator = names
+    code, terms = made.get(denominator, (None, [""]))
+    if code != ca.OP_ADD or numerator not in terms:
         return None
     first = terms[0]
     (first_code, ends), (second_code, others) = (made.get(name, (None, [])) for name in terms)
     if (first_code, second_code) != (ca.OP_LE, ca.OP_LE) or ends != others[::-1]:
         return None
-    return first if one == first else f"{first} == 0.0 ? 1.0 : 0.0"
+    return first if numerator == first else f"{first} == 0.0 ? 1.0 : 0.0"
 
 
 def _where(names: Sequence[str], made: _Made) -> str | None:
-    """A product with a condition, 1 or 0."""
+    """C conditional expression for the product of a value and a condition (1 or 0); None: another product."""
     for condition, value in (names, names[::-1]):
         if made.get(condition, (None, []))[0] in _CONDITIONS:
             return f"{condition} != 0.0 ? {value} : 0.0"
@@ -146,7 +149,10 @@ def _where(names: Sequence[str], made: _Made) -> str | None:
 
 
 def _choice(names: Sequence[str], made: _Made) -> str | None:
-    """`where(condition, a, b)`, which CasADi has as the sum of both, each 0 where it does not hold."""
+    """C conditional expression for CasADi's form of `condition ? a : b`: a sum with one term equal to 0.
+
+    None: another sum.
+    """
     (code, first), (other, second) = (made.get(name, (None, [])) for name in names)
     if code != ca.OP_IF_ELSE_ZERO or other != ca.OP_IF_ELSE_ZERO:
         return None
@@ -161,37 +167,38 @@ _CONDITIONS = (ca.OP_LT, ca.OP_LE, ca.OP_EQ, ca.OP_NE, ca.OP_AND, ca.OP_OR, ca.O
 
 
 def _used(body: Sequence[str]) -> list[str]:
-    """The lines without those whose value no later line takes."""
-    kept, taken = list[str](), set[str]()
+    """Remove the lines whose value no later line uses."""
+    lines, used_values = list[str](), set[str]()
     for line in reversed(body):
         name, _, value = line.removeprefix("const double ").partition(" = ")
-        if line.startswith("const ") and name not in taken:
+        if line.startswith("const ") and name not in used_values:
             continue
-        taken.update(re.findall(r"\bt\d+\b", value))
-        kept.append(line)
-    return kept[::-1]
+        used_values.update(re.findall(r"\bt\d+\b", value))
+        lines.append(line)
+    return lines[::-1]
 
 
 _DIVISION = re.compile(r"const double (t\d+) = (\S+) / (t\d+|x\[\d+\]);")
 
 
 def _shared_divisors(body: Sequence[str]) -> list[str]:
-    """The lines with one division by each number, which several quotients take."""
-    found = [_DIVISION.fullmatch(line) for line in body]
-    count = Counter(match[3] for match in found if match)
-    lines, known = list[str](), dict[str, str]()
-    for line, match in zip(body, found, strict=True):
+    """Replace several divisions by the same number by one reciprocal and products."""
+    divisions = [_DIVISION.fullmatch(line) for line in body]
+    count = Counter(match[3] for match in divisions if match)
+    lines, reciprocals = list[str](), dict[str, str]()
+    for line, match in zip(body, divisions, strict=True):
         if match and count[match[3]] > 1:
-            name, above, below = match.groups()
-            if below not in known:
-                known[below] = f"per_{name}"
-                lines.append(f"const double per_{name} = 1.0 / {below};")
-            line = f"const double {name} = {above} * {known[below]};"
+            name, numerator, divisor = match.groups()
+            if divisor not in reciprocals:
+                reciprocals[divisor] = f"per_{name}"
+                lines.append(f"const double per_{name} = 1.0 / {divisor};")
+            line = f"const double {name} = {numerator} * {reciprocals[divisor]};"
         lines.append(line)
     return lines
 
 
 def _number(value: float) -> str:
+    """C literal of a number; negative numbers are in parentheses."""
     if value != value or value in (float("inf"), float("-inf")):
         return {"inf": "INFINITY", "-inf": "-INFINITY"}.get(repr(value), "NAN")
     return f"({value!r})" if value < 0 else repr(value)

@@ -1,4 +1,4 @@
-"""All C sources of an FMU: the hand-written runtime and what is generated from the one list and the laws."""
+"""All C sources of an FMU: hand-written runtime, and code generated from the variables and joint laws."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -25,23 +25,23 @@ _laws: dict[tuple[object, ...], tuple[str, str]] = {}
 
 
 def runtime(law: Sequence[str] = ()) -> list[Path]:
-    """The hand-written C of every FMU, and the files of `runtime/law/` with these stems."""
+    """Paths of the hand-written C files of every FMU, and of files in `runtime/law/` with given stems."""
     return sorted(p for p in RUNTIME.rglob("*.[ch]") if p.parent.name != "law" or p.stem in law)
 
 
 def sources(name: str, parameters: ParameterFile) -> dict[str, str]:
-    """{file name: text} of all C sources of an FMU, for both FMI versions.
+    """{file name: text} of all C sources of an FMU with its data, for both FMI versions.
 
     Raises ValueError if the parameters are of another joint.
     """
     model = (MODELS | PARTNERS)[name].of(parameters.joint, parameters.values)
-    given = split(model, parameters)
-    files = code(model, parameters, given)
-    return files | {"data.c": data_of(model, parameters, given, files).source()}
+    parameter_split = split(model, parameters)
+    files = code(model, parameters, parameter_split)
+    return files | {"data.c": data_of(model, parameters, parameter_split, files).source()}
 
 
 def code(model: Model, parameters: ParameterFile, given: Split) -> dict[str, str]:
-    """The same without the data, for all parameter files of a structure."""
+    """{file name: text} of all C sources but data.c, the same for all parameter files of one structure."""
     native = native_part(model)
     files = _handwritten(model, native)
     files["law.h"], files["law.c"] = _law(model, given, native)
@@ -56,7 +56,7 @@ def code(model: Model, parameters: ParameterFile, given: Split) -> dict[str, str
 
 
 def _law(model: Model, given: Split, native: NativePart) -> tuple[str, str]:
-    """law.h and law.c, made once for all parameter files of a structure."""
+    """Texts of law.h and law.c, generated once for all parameter files of one structure."""
     key = model.name, model.parameters, given.of, given.structure
     if key not in _laws:
         _laws[key] = law_c(graph(model, given, native.functions, native.tabulated), model, native)
@@ -64,15 +64,16 @@ def _law(model: Model, given: Split, native: NativePart) -> tuple[str, str]:
 
 
 def token(files: Mapping[str, str]) -> str:
-    """The GUID or instantiation token of a set of sources."""
+    """GUID or instantiation token in the file data.c of C sources."""
     line = next(line for line in files["data.c"].splitlines() if ".token = " in line)
     return line.split('"')[1]
 
 
 def native_part(model: Model) -> NativePart:
-    """How a model becomes C.
+    """Definition of the C code of a model.
 
-    Raises ValueError if its joint's folder does not say so, or not what it remembers.
+    Raises ValueError if the builder data of its joint have none, or if only one of the Python model and the
+    C definition has history variables.
     """
     load = parts_of(model).native
     if load is None:
@@ -84,30 +85,31 @@ def native_part(model: Model) -> NativePart:
 
 
 def _handwritten(model: Model, native: NativePart) -> dict[str, str]:
-    """The C that is not generated: that of every FMU, what the joint shares, its own."""
+    """{file name: text} of hand-written C: runtime, shared files of the joint, its own files."""
     paths = runtime((*native.shared, "elementary"))
-    own = [path for path in own_folder(model).iterdir() if path.suffix in (".c", ".h")]
-    header = [path.name for path in own if path.suffix == ".h"]
+    joint_files = [path for path in own_folder(model).iterdir() if path.suffix in (".c", ".h")]
+    header = [path.name for path in joint_files if path.suffix == ".h"]
     files = {"kind.h": "".join(f'#include "{name}"\n' for name in header)} if header else {}
-    return files | {path.name: path.read_text(encoding="utf-8") for path in sorted([*paths, *own])}
+    return files | {path.name: path.read_text(encoding="utf-8") for path in sorted([*paths, *joint_files])}
 
 
 def _model(model: Model, parameters: object, memory: int) -> str:
-    moving = f"#define N_STATES {model.states}\n#define MOVES 1\n" if model.moves else ""
+    """Text of model.h: sizes of the model and indices of its inputs."""
+    macros = f"#define N_STATES {model.states}\n#define MOVES 1\n" if model.moves else ""
     fields = list(model.parameter_fields())
     if "lag_a" in fields:
         first = 1 + len(model.inputs) + len(model.outputs)
-        moving += f"#define LAGS {first + fields.index('lag_a')}\n"
+        macros += f"#define LAGS {first + fields.index('lag_a')}\n"
     if model.events:
-        moving += f"#define N_EVENTS {len(model.events(parameters))}\n"
-    places = ", ".join(f"INPUT_{v.name.upper()}" for v in model.inputs)
+        macros += f"#define N_EVENTS {len(model.events(parameters))}\n"
+    input_names = ", ".join(f"INPUT_{v.name.upper()}" for v in model.inputs)
     if memory:
-        moving += f"#define N_MEMORY {memory}\n"
+        macros += f"#define N_MEMORY {memory}\n"
     return f"""#ifndef JOINTFMU_MODEL_H
 #define JOINTFMU_MODEL_H
 
-{moving}
-enum {{ {places} }};
+{macros}
+enum {{ {input_names} }};
 
 enum {{
     N_INPUTS = {len(model.inputs)},
@@ -120,7 +122,7 @@ enum {{
 
 
 def variables_c(model: Model) -> str:
-    """variables.c: the list of variables with their intervals, and which output depends on what."""
+    """Text of variables.c: variables with their intervals, and the inputs that each output depends on."""
     rows = [_row("time", "s", "time", Interval())]
     rows += [_row(v.name, v.unit, v.doc, v.interval) for v in model.inputs]
     rows += [_row(v.name, v.unit, v.doc, Interval()) for v in model.outputs]
@@ -153,6 +155,7 @@ def _row(
     whole: bool = False,
     boolean: bool = False,
 ) -> str:
+    """C initializer of one variable."""
     flags = ", ".join(str(int(flag)) for flag in (allowed.low_open, allowed.high_open, whole, boolean))
     numbers = ", ".join(number(x) for x in (allowed.low, allowed.high))
     interval = "" if boolean else str(allowed)

@@ -1,4 +1,4 @@
-"""law.h and law.c: the functions of a graph, and the constants that the hand-written C takes."""
+"""Texts of law.h and law.c: functions of a graph, and constants for the hand-written C."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -14,13 +14,13 @@ from ...templates import template
 from .emit import HELPERS, function
 
 _SHORT = 150
-"""Lines of a function that is worth to be inline: what a step evaluates is short."""
+"""Largest number of lines of an inlined function [1]: functions evaluated in every step are short."""
 _SERIES = ("law_load", "law_table", "law_state")
-"""Functions of which there is one for every regime of the law."""
+"""Name prefixes of functions that exist once for each regime of the contact law."""
 
 
 def law_c(g: Graph, model: Model, part: NativePart) -> tuple[str, str]:
-    """Texts of law.h and law.c."""
+    """Format law.h and law.c of a graph."""
     count = {f.name: len(f.y) for f in g.functions}
     series = {name: [f for f in count if f.rsplit("_", 1)[0] == name] for name in _SERIES}
     series = {name: regimes for name, regimes in series.items() if regimes}
@@ -35,31 +35,31 @@ def law_c(g: Graph, model: Model, part: NativePart) -> tuple[str, str]:
             bodies.append(text)
             prototypes.append(name)
     bodies += [array(f"Law *const {name}[N_LAW_SWITCHES + 1]", rows) for name, rows in series.items()]
-    given = shared_definitions(part.shared) | part.definitions(g, model)
+    definitions = shared_definitions(part.shared) | part.definitions(g, model)
     variables = [v.name for v in (*model.inputs, *model.outputs)]
-    watched = [f"{{{variables.index(o.variable)}, {string(o.doc)}}}" for o in model.outside]
+    warnings = [f"{{{variables.index(o.variable)}, {string(o.doc)}}}" for o in model.outside]
     header = template(Path(__file__).with_name("law.h")).render(
-        counts={**_counts(g, model, part, count), **given.counts},
-        macros={name: number(value) for name, value in given.macros.items()},
+        counts={**_counts(g, model, part, count), **definitions.counts},
+        macros={name: number(value) for name, value in definitions.macros.items()},
         tabulated=part.tabulated,
-        warnings=array("static const Warning warnings[N_WARNINGS]", watched),
-        arrays=given.arrays,
+        warnings=array("static const Warning warnings[N_WARNINGS]", warnings),
+        arrays=definitions.arrays,
         prototypes=prototypes,
         series=series,
         helpers=HELPERS,
         inline=inline,
     )
     bodies += [_limits(g)] if part.tabulated else []
-    bodies += [array(f"const double {declared}", rows) for declared, rows in given.arrays.items()]
+    bodies += [array(f"const double {declared}", rows) for declared, rows in definitions.arrays.items()]
     return header + "\n", '#include "law.h"\n\n' + "\n".join(bodies)
 
 
 def _functions(g: Graph) -> dict[str, str]:
-    """C of all functions by name, `law_constants` first."""
-    theta, none = ca.vertcat(*g.theta.values()), ca.SX.sym("none", 1)
+    """{name: C code} of all functions, `law_constants` first."""
+    theta, no_constants = ca.vertcat(*g.theta.values()), ca.SX.sym("none", 1)
     texts = {
         "law_constants": function(
-            "law_constants", "parameters -> further constants", theta, none, g.constants
+            "law_constants", "parameters -> further constants", theta, no_constants, g.constants
         )
     }
     for f in g.functions:
@@ -69,7 +69,10 @@ def _functions(g: Graph) -> dict[str, str]:
 
 
 def _counts(g: Graph, model: Model, part: NativePart, count: Mapping[str, int]) -> dict[str, int]:
-    """Sizes of arrays in C, and places in the memory; `count` are results of the functions."""
+    """{name: integer} of array sizes in C and of offsets in the history variables.
+
+    output_counts : {function: number of its outputs}
+    """
     sizes = {"N_CONSTANTS": len(g.theta) + len(g.constants)}
     if not part.tabulated:
         return sizes
@@ -86,10 +89,10 @@ def _counts(g: Graph, model: Model, part: NativePart, count: Mapping[str, int]) 
 
 
 def _limits(g: Graph) -> str:
-    """The array of intervals that parameters decide for each other; one row at least, for C."""
-    place = {name: i for i, name in enumerate(g.theta)}
+    """C array of the limits between parameters; at least one row, since C has no empty arrays."""
+    index = {name: i for i, name in enumerate(g.theta)}
     rows = [
-        f"{{{place[m.name]}, {int(m.interval.low_open)}, {int(m.interval.high_open)}, {string(m.doc)}}}"
+        f"{{{index[m.name]}, {int(m.interval.low_open)}, {int(m.interval.high_open)}, {string(m.doc)}}}"
         for m in g.limits
     ]
     return array(f"const Limit limits[{max(len(rows), 1)}]", rows or ['{0, 0, 0, ""}'])

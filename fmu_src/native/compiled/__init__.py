@@ -1,1 +1,1 @@
-"""C compiled for five platforms: the compiler, parts that FMUs share, and what is put into them."""
+"""Shared libraries for five platforms: compiler, cache of compiled models, insertion of an FMU's data."""

@@ -1,4 +1,4 @@
-"""Compile ahead of time the parts that a wheel carries: of every law and choice that code depends on."""
+"""Compile the models that a wheel contains: one for each law and choice on which the C code depends."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
@@ -17,44 +17,47 @@ from .kept import part_of, shipped_name, written
 
 
 def compile_ahead(names: Sequence[str], out: Path) -> list[Path]:
-    """Write the parts of some FMUs, or of all, into a folder, whose other files go.
+    """Write the compiled models of FMUs into a folder and return the files; other files there are deleted.
 
-    Raises what `kept.part_of` raises, and ValueError for an unknown name.
+    names : of FMUs; empty: all
+
+    Raises as `compiled_models.get_compiled_model`, and ValueError for an unknown name.
     """
-    every = MODELS | PARTNERS
-    if unknown := [name for name in names if name not in every]:
-        raise ValueError(f"unknown FMU {unknown[0]!r}, allowed are {', '.join(every)}")
-    jobs = [job for name in names or every for job in structures(every[name])]
+    models = MODELS | PARTNERS
+    if unknown := [name for name in names if name not in models]:
+        raise ValueError(f"unknown FMU {unknown[0]!r}, allowed are {', '.join(models)}")
+    jobs = [job for name in names or models for job in structures(models[name])]
     out.mkdir(parents=True, exist_ok=True)
-    made = []
+    written_files = []
     for model, parameters in track(jobs, "compile", len(jobs)):
-        given = split(model, parameters)
-        part = part_of(model, parameters, given)
-        made.append(out / shipped_name(model, given))
-        made[-1].write_bytes(written(part))
-    for old in set(out.iterdir()) - set(made):
-        old.unlink()
-    return made
+        parameter_split = split(model, parameters)
+        compiled_model = part_of(model, parameters, parameter_split)
+        file = out / shipped_name(model, parameter_split)
+        file.write_bytes(written(compiled_model))
+        written_files.append(file)
+    for old_file in set(out.iterdir()) - set(written_files):
+        old_file.unlink()
+    return written_files
 
 
 def structures(model: Model) -> Iterator[tuple[Model, ParameterFile]]:
-    """An FMU and parameters for each of its structures."""
+    """Yield a model and parameters for each structure of an FMU, which has its own C code."""
     if model.name in PARTNERS:
         yield model, partner_parameters(model.name)
         return
     for law in KINDS[model.joint].laws:
         file = default(model.joint, law)
-        own = model.of(file.joint, file.values)
-        for choices in _choices(own, file):
+        law_model = model.of(file.joint, file.values)
+        for choices in _choices(law_model, file):
             try:
                 chosen = file.with_values(choices, "user", "compiled ahead")
-            except ValueError:  # a choice that goes with numbers which the file does not have
+            except ValueError:  # the choice needs parameters that the file does not have
                 continue
-            yield own, chosen
+            yield law_model, chosen
 
 
 def _choices(model: Model, file: ParameterFile) -> Iterator[Mapping[str, object]]:
-    """All values of the parameters that code depends on and that are choices."""
+    """Yield all combinations {name: value} of the choice parameters on which the C code depends."""
     code = split(model, file).code
     allowed = {
         name: item.metadata["allowed"]

@@ -1,8 +1,7 @@
-"""Compiled parts to the libraries of an FMU: its data and name in place of the placeholders, on any machine.
+"""Insert data and name of an FMU into a compiled library in place of the placeholders, on any machine.
 
-The same for ELF, PE and Mach-O: the block of data is found by its content, the placeholder of the name where
-the library names itself. Only macOS asks for more: a library has a number of its own, and on arm64 digests
-of its pages.
+ELF, PE and Mach-O are treated alike: the placeholder data block is found by its content, the placeholder name
+where the library names itself. A Mach-O library also gets a new UUID, and on arm64 new page digests.
 """
 
 import struct
@@ -13,18 +12,20 @@ from ..data import PLACEHOLDER, Data
 
 _MACHO = struct.pack("<I", 0xFEEDFACF)
 _UUID, _CODE_SIGNATURE = 0x1B, 0x1D
-"""Load commands of Mach-O."""
+"""Load commands of Mach-O (LC_UUID, LC_CODE_SIGNATURE)."""
 _CODE_DIRECTORY = 0xFADE0C02
 _DIGEST = 32
-"""Bytes of SHA-256."""
+"""Size of a SHA-256 digest [bytes]."""
 
 
 def finished(library: bytes, before: Data, after: Data, name: str) -> bytes:
-    """The library of an FMU.
+    """Insert data and name of an FMU into a compiled library.
 
-    library : compiled with the block `before` and the placeholder of the name
+    library          : compiled with the placeholder data and the placeholder name
+    placeholder_data : data block in the compiled library
+    data             : data block of the FMU
 
-    Raises ValueError if the block is not there once.
+    Raises ValueError if the library does not contain the placeholder data exactly once.
     """
     if library.count(before.content) != 1 or len(before.content) != len(after.content):
         raise ValueError(f"{name}: the compiled part is not that of these data; remove it")
@@ -37,48 +38,50 @@ def finished(library: bytes, before: Data, after: Data, name: str) -> bytes:
 
 
 def _rename(image: bytearray, name: bytes) -> None:
-    """Put the name where the placeholder stands, with what follows up to the end of the text."""
-    at = image.find(PLACEHOLDER.encode())
-    while at >= 0:
-        end = image.index(0, at)
-        image[at:end] = (name + image[at + len(PLACEHOLDER) : end]).ljust(end - at, b"\0")
-        at = image.find(PLACEHOLDER.encode(), end)
+    """Replace the placeholder name in every text of the library; the rest of the text is kept."""
+    start = image.find(PLACEHOLDER.encode())
+    while start >= 0:
+        end = image.index(0, start)
+        image[start:end] = (name + image[start + len(PLACEHOLDER) : end]).ljust(end - start, b"\0")
+        start = image.find(PLACEHOLDER.encode(), end)
 
 
 def _commands(image: bytes | bytearray) -> dict[int, int]:
-    """{load command: place}."""
+    """{load command: byte offset} of a Mach-O library."""
     (count,) = struct.unpack_from("<I", image, 16)
-    found, at = {}, 32
+    offsets, offset = {}, 32
     for _ in range(count):
-        command, size = struct.unpack_from("<II", image, at)
-        found[command] = at
-        at += size
-    return found
+        command, size = struct.unpack_from("<II", image, offset)
+        offsets[command] = offset
+        offset += size
+    return offsets
 
 
 def _identify(image: bytearray, uuid: UUID) -> None:
-    at = _commands(image)[_UUID] + 8
-    image[at : at + 16] = uuid.bytes
+    """Set the UUID of a Mach-O library."""
+    offset = _commands(image)[_UUID] + 8
+    image[offset : offset + 16] = uuid.bytes
 
 
 def _sign(image: bytearray) -> None:
-    """Compute the digests of an ad-hoc signature again, where there is one."""
+    """Recompute the digests of the ad-hoc signature of a Mach-O library, if it has one."""
     command = _commands(image).get(_CODE_SIGNATURE)
     if command is None:
         return
-    (at,) = struct.unpack_from("<I", image, command + 8)
-    (blobs,) = struct.unpack_from(">I", image, at + 8)
+    (signature,) = struct.unpack_from("<I", image, command + 8)
+    (blobs,) = struct.unpack_from(">I", image, signature + 8)
     for i in range(blobs):
-        (offset,) = struct.unpack_from(">I", image, at + 16 + 8 * i)
-        directory = at + offset
+        (offset,) = struct.unpack_from(">I", image, signature + 16 + 8 * i)
+        directory = signature + offset
         if struct.unpack_from(">I", image, directory) == (_CODE_DIRECTORY,):
             _digest_pages(image, directory)
 
 
 def _digest_pages(image: bytearray, directory: int) -> None:
+    """Recompute the page digests of the code directory at a byte offset."""
     digests, _, _, pages, limit = struct.unpack_from(">IIIII", image, directory + 16)
     page = 1 << image[directory + 39]
     for i in range(pages):
         digest = sha256(image[i * page : min((i + 1) * page, limit)]).digest()
-        place = directory + digests + _DIGEST * i
-        image[place : place + _DIGEST] = digest
+        start = directory + digests + _DIGEST * i
+        image[start : start + _DIGEST] = digest

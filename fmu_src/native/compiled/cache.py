@@ -1,6 +1,6 @@
-"""The folder of what is compiled: parts of FMUs, and the compiler's own files.
+"""Cache folder: compiled models of FMUs, and the cache of the compiler.
 
-What lies there gets into FMUs, so nobody but its user and root may write to it.
+Its files become part of FMUs, so only the user and root may have write access.
 """
 
 import os
@@ -11,15 +11,15 @@ from contextlib import suppress
 from pathlib import Path
 
 CACHE = "JOINTFMU_CACHE"
-"""Environment variable with the folder."""
+"""Environment variable with the path of the cache folder."""
 COMPILER = "ZIG_GLOBAL_CACHE_DIR"
-"""The compiler's own, which lies in the folder unless it is set."""
+"""Environment variable with the compiler's cache; not set: a subfolder of the cache folder."""
 
 
 def cache_folder() -> Path:
-    """JOINTFMU_CACHE, or `jointfmu` in the user's cache."""
-    if own := os.environ.get(CACHE):
-        return Path(own).absolute()
+    """Path of the cache folder: JOINTFMU_CACHE, or `jointfmu` in the user's cache folder."""
+    if path := os.environ.get(CACHE):
+        return Path(path).absolute()
     home = {
         "win32": os.environ.get("LOCALAPPDATA") or "~/AppData/Local",
         "darwin": "~/Library/Caches",
@@ -28,51 +28,51 @@ def cache_folder() -> Path:
 
 
 def parts() -> Path:
-    """Where compiled parts lie."""
+    """Folder of the compiled models."""
     return cache_folder() / "parts"
 
 
 def compiler_cache() -> Path:
-    """ZIG_GLOBAL_CACHE_DIR, or `zig` in the folder."""
-    own = os.environ.get(COMPILER)
-    return Path(own).absolute() if own else cache_folder() / "zig"
+    """Cache folder of the compiler: ZIG_GLOBAL_CACHE_DIR, or `zig` in the cache folder."""
+    path = os.environ.get(COMPILER)
+    return Path(path).absolute() if path else cache_folder() / "zig"
 
 
 def check_access(path: Path) -> None:
-    """Check who may write to a file or folder of the cache, and to the folders above it in the cache.
+    """Check the owner and write access of a file or folder in the cache, and of its parents in the cache.
 
-    What is missing or lies elsewhere passes; on Windows everything does.
+    A missing path, a path outside the cache, and any path on Windows pass.
 
-    Raises ValueError, one line, if it belongs to another user than this one and root, or every user may
-    write to it.
+    Raises ValueError, one line, if a path belongs to another user than this one and root, or is writable
+    for every user.
     """
     if sys.platform == "win32":
         return
     roots = {cache_folder(), compiler_cache()}
-    places = [path, *path.parents]
-    last = max((i for i, place in enumerate(places) if place in roots), default=-1)
-    for place in places[: last + 1]:
+    ancestors = [path, *path.parents]
+    last = max((i for i, ancestor in enumerate(ancestors) if ancestor in roots), default=-1)
+    for ancestor in ancestors[: last + 1]:
         try:
-            found = place.stat()
+            status = ancestor.stat()
         except FileNotFoundError:
             continue
         advice = f"expected a cache of your own (remove it, or set {CACHE} to another folder)"
-        if found.st_uid not in (os.geteuid(), 0):
-            raise ValueError(f"{place}: belongs to another user; {advice}")
-        if found.st_mode & stat.S_IWOTH:
-            raise ValueError(f"{place}: every user may write to it; {advice}")
+        if status.st_uid not in (os.geteuid(), 0):
+            raise ValueError(f"{ancestor}: belongs to another user; {advice}")
+        if status.st_mode & stat.S_IWOTH:
+            raise ValueError(f"{ancestor}: every user may write to it; {advice}")
 
 
 def make_folder(folder: Path) -> None:
-    """Make a folder of the cache; what is new belongs to this user alone. Raises OSError."""
-    for place in reversed([one for one in (folder, *folder.parents) if not one.exists()]):
-        place.mkdir(mode=0o700, exist_ok=True)
+    """Make a folder of the cache and its missing parents, accessible for this user only. Raises OSError."""
+    for missing in reversed([path for path in (folder, *folder.parents) if not path.exists()]):
+        missing.mkdir(mode=0o700, exist_ok=True)
 
 
 def content() -> tuple[int, int]:
-    """Files in the folder, and their bytes; what another build removes at the same time does not count."""
+    """Number of files in the cache and their total size [bytes], without files that vanish meanwhile."""
     sizes = []
-    for folder, _, names in (step for own in _own() for step in os.walk(own)):
+    for folder, _, names in (entry for root in _own() for entry in os.walk(root)):
         for name in names:
             with suppress(FileNotFoundError):
                 sizes.append(os.stat(os.path.join(folder, name)).st_size)
@@ -80,7 +80,7 @@ def content() -> tuple[int, int]:
 
 
 def clear() -> None:
-    """Remove what is in the folder; nothing is lost but time.
+    """Delete all files of the cache; later builds compile again.
 
     Raises ValueError if it cannot be removed.
     """
@@ -94,4 +94,5 @@ def clear() -> None:
 
 
 def _own() -> tuple[Path, Path]:
+    """Folders that jointfmu fills: compiled models, and the compiler's default cache."""
     return parts(), cache_folder() / "zig"

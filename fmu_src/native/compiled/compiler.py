@@ -1,4 +1,4 @@
-"""C sources to shared libraries for five platforms, on any machine, with the compiler of PyPI's ziglang."""
+"""Compile C to shared libraries for five platforms on any machine, with zig (package ziglang of PyPI)."""
 
 import os
 import struct
@@ -20,22 +20,22 @@ TARGETS = {
     "x86_64-darwin": "x86_64-macos.11.0-none",
     "aarch64-darwin": "aarch64-macos.11.0-none",
 }
-"""FMI's names of the platforms, and zig's with the oldest glibc or macOS."""
+"""{platform name of FMI: target of zig}, with the oldest supported glibc or macOS."""
 
 _COMPILED = (
     "-std=c11", "-O2", "-ffp-contract=off", "-fno-math-errno", "-fno-sanitize=undefined",
     "-fvisibility=hidden", "-DNDEBUG", "-s", "-ffunction-sections", "-fdata-sections",
 )  # fmt: skip
 _OPTIONS = (*_COMPILED, "-shared", "-mllvm", "-inline-threshold=100")
-"""Fewer copies of functions than the compiler's 225 makes: a fiftieth of the size, at no cost in time."""
+"""Options for shared libraries. The inline threshold of 100 (default 225) saves 2 % of size."""
 _WEB = (
     "-target", "wasm32-wasi", "-mexec-model=reactor", *_COMPILED,
     "-Wl,--export-dynamic", "-Wl,-z,stack-size=131072",
 )  # fmt: skip
-"""A module that takes nothing from its host but what the sources import: what is visible is exported, and
-`_initialize` comes first. No function needs a page of stack; zig would reserve 16 MB."""
+"""Options for WebAssembly: a reactor module that needs only the imports declared in the sources. Visible
+functions are exported; the host calls `_initialize` first. Stack of 128 kB, by default zig reserves 16 MB."""
 _UCRT = ("convert", "heap", "math", "private", "runtime", "stdio", "string", "utility")
-"""Parts of the C runtime that belongs to Windows 10 and newer."""
+"""Libraries of the Universal C Runtime, which is part of Windows 10 and newer."""
 
 
 def libraries(
@@ -46,11 +46,14 @@ def libraries(
     stem: str = "",
     linked: Sequence[str] = (),
 ) -> dict[str, bytes]:
-    """{platform: shared library} of the .c files `units`, with FMI's functions exported.
+    """Compile C sources to {platform: shared library}; the libraries export the FMI functions.
 
-    `sources` are all files by flat name, FMI's headers come from fmpy; `stem` is the libraries' file
-    name, `linked` are options for another library that they use. What units of the same sources share is
-    compiled once, in this and in later builds. Equal sources give equal bytes.
+    sources : {file name: text} of all C files and headers; the FMI headers come from fmpy
+    units   : names of the .c files to compile
+    stem    : file name of the libraries without extension; empty: `name`
+    linked  : compiler options for a further library
+
+    zig caches compiled units, also for later builds. Equal sources give equal bytes.
 
     Raises ImportError if ziglang is missing, ValueError if its cache cannot be written or others may write to
     it, RuntimeError with the compiler's first error.
@@ -58,8 +61,8 @@ def libraries(
     from concurrent.futures import ThreadPoolExecutor
 
     options = {platform: _options(platform, stem or name) for platform in platforms}
-    own = Path(__file__).with_name("windows.c")
-    folder = _folder({**_headers(), own.name: own.read_text(encoding="utf-8"), **sources})
+    windows = Path(__file__).with_name("windows.c")
+    folder = _folder({**_headers(), windows.name: windows.read_text(encoding="utf-8"), **sources})
 
     def library(platform: str) -> bytes:
         with tempfile.TemporaryDirectory() as out:
@@ -72,13 +75,13 @@ def libraries(
 
 
 def exported(files: Iterable[str], version: str) -> list[str]:
-    """C files of one FMI version."""
-    other = {"2": "fmi3.c", "3": "fmi2.c"}[version]
-    return [name for name in files if name.endswith(".c") and name != other]
+    """C files to compile for one FMI version."""
+    excluded = {"2": "fmi3.c", "3": "fmi2.c"}[version]
+    return [name for name in files if name.endswith(".c") and name != excluded]
 
 
 def webassembly(name: str, sources: Mapping[str, str], units: Sequence[str]) -> bytes:
-    """A WebAssembly module of the .c files `units`, a reactor; the rest and what is raised as `libraries`."""
+    """Compile the .c files `units` to a WebAssembly reactor module; errors as `compile_libraries`."""
     import_module("ziglang")
     folder = _folder({**_headers(), **sources})
     with tempfile.TemporaryDirectory() as out:
@@ -88,12 +91,12 @@ def webassembly(name: str, sources: Mapping[str, str], units: Sequence[str]) -> 
 
 
 def file_name(name: str, platform: str) -> str:
-    """The library's file name on a platform."""
+    """File name of a library on a platform."""
     return name + {"windows": ".dll", "linux": ".so", "darwin": ".dylib"}[platform.split("-")[1]]
 
 
 def universal(slices: Sequence[bytes]) -> bytes:
-    """One macOS file of libraries for several processors; each keeps its signature."""
+    """Join macOS libraries for several processors into one universal file; their signatures stay valid."""
     page = 1 << 14
     header, body = struct.pack(">II", 0xCAFEBABE, len(slices)), b""
     for library in slices:
@@ -105,31 +108,32 @@ def universal(slices: Sequence[bytes]) -> bytes:
 
 
 def _options(platform: str, name: str) -> tuple[str, ...]:
-    """Everything that zig is told besides the files."""
+    """Compiler options for a platform; `name` is the file name of the library without extension."""
     import ziglang
 
-    # In an order that suits processors with vectors of four numbers, on any.
+    # Instruction scheduling for processors with AVX2; the code still runs on every x86_64.
     tuned = ("-mtune=haswell",) if platform.startswith("x86_64") else ()
     common = ("-target", TARGETS[platform], *_OPTIONS, *tuned)
-    # The system's libraries alone: zig would compile its own runtime at first, of which nothing is linked.
-    # No tables for exceptions, which pass through no C; Windows' ABI asks for them.
-    own = ("-nostdlib", "-lc", "-fno-asynchronous-unwind-tables", "-fno-unwind-tables")
+    # Only libraries of the system: otherwise zig first compiles its own runtime, of which nothing is linked.
+    # No unwind tables: no C++ exception passes through this C; only the Windows ABI requires them.
+    unix = ("-nostdlib", "-lc", "-fno-asynchronous-unwind-tables", "-fno-unwind-tables")
     if platform.endswith("-linux"):
-        return (*common, *own, "-Wl,--gc-sections", "-Wl,--hash-style=gnu", "-lm")
+        return (*common, *unix, "-Wl,--gc-sections", "-Wl,--hash-style=gnu", "-lm")
     if platform.endswith("-darwin"):
-        return (*common, *own, f"-Wl,-install_name,@rpath/{file_name(name, platform)}", "-Wl,-dead_strip")
-    # Linked with the system's runtime alone: mingw's would take most of a minute to compile at first,
-    # and the library needs none of its start-up, nor stack probes, as no function needs a page of stack.
-    # Without sin and cos as built-in functions the compiler makes no sincos of both, which only mingw has.
+        return (*common, *unix, f"-Wl,-install_name,@rpath/{file_name(name, platform)}", "-Wl,-dead_strip")
+    # Only the C runtime of Windows is linked: compiling mingw's would take most of a minute, and the library
+    # needs neither its start-up code nor stack probes, as no function uses a page of stack.
+    # With built-in sin and cos the compiler would call sincos, which only mingw has.
     headers = Path(ziglang.__file__).parent / "lib" / "libc" / "include" / "any-windows-any"
     return (
         *common, "windows.c", "-nostdlib", "-Wl,--no-entry", "-fno-builtin-sin", "-fno-builtin-cos",
         "-D_UCRT", "-isystem", str(headers),
-        *(f"-lapi-ms-win-crt-{part}-l1-1-0" for part in _UCRT),
+        *(f"-lapi-ms-win-crt-{library}-l1-1-0" for library in _UCRT),
     )  # fmt: skip
 
 
 def _headers() -> dict[str, str]:
+    """{file name: text} of the FMI headers, from fmpy."""
     import fmpy
 
     folder = Path(fmpy.__file__).parent / "c-code"
@@ -137,7 +141,7 @@ def _headers() -> dict[str, str]:
 
 
 def _folder(files: Mapping[str, str]) -> Path:
-    """Folder with these files in zig's cache, where zig knows again what it has compiled: by its path."""
+    """Write files into a cache folder named by their digest; zig reuses results of the same path."""
     advice = f"set {COMPILER} to a writable folder"
     digest = sha256("\0".join(f"{k}\0{v}" for k, v in sorted(files.items())).encode()).hexdigest()[:32]
     folder = compiler_cache() / "jointfmu" / digest
@@ -155,8 +159,8 @@ def _folder(files: Mapping[str, str]) -> Path:
 
 
 def _run(what: str, folder: Path, *arguments: str) -> str:
-    """What zig prints, run in a folder; `what` it makes, for the error."""
-    done = subprocess.run(
+    """Run zig in a folder and return its output; `target` names the result in the RuntimeError."""
+    process = subprocess.run(
         [sys.executable, "-m", "ziglang", *arguments],
         cwd=folder,
         env={**os.environ, COMPILER: str(compiler_cache())},
@@ -166,8 +170,8 @@ def _run(what: str, folder: Path, *arguments: str) -> str:
         encoding="utf-8",
         errors="replace",
     )
-    if done.returncode:
-        lines = done.stderr.splitlines()
-        first = next((line for line in lines if "error" in line), done.stderr.strip() or "no message")
+    if process.returncode:
+        lines = process.stderr.splitlines()
+        first = next((line for line in lines if "error" in line), process.stderr.strip() or "no message")
         raise RuntimeError(f"{what}: {first}")
-    return done.stdout
+    return process.stdout

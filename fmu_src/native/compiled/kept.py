@@ -1,7 +1,7 @@
-"""Compiled parts of FMUs, which all parameter files of one structure share: shipped, kept or compiled now.
+"""Compiled models, shared by all parameter files of one structure: from the wheel, the cache or the compiler.
 
-A part is found by what went into it: the structure, and the content of every source that it is made of.
-Wheels carry parts in `native/parts`; what is compiled here is kept in the user's cache.
+The file name of a compiled model contains a digest of the structure and of all sources. Wheels contain
+compiled models in `native/parts`; models compiled on this machine are stored in the user's cache.
 """
 
 import io
@@ -32,22 +32,23 @@ from .cache import check_access, make_folder, parts
 from .compiler import exported, libraries
 
 SHIPPED = Path(__file__).parent.with_name("parts")
-"""Where wheels have theirs."""
+"""Folder of the compiled models in a wheel."""
 VERSIONS = ("2", "3")
+"""Versions of FMI."""
 MOST_KEPT = 200
-"""Files that are kept [1]; older ones go."""
+"""Largest number of files in a cache folder [1]; the oldest are deleted."""
 _SUFFIX, _KEPT = ".tar.xz", ".kept.xz"
 _COMPILERS = ("casadi", "ziglang")
 _SOURCES = (".py", ".c", ".h")
 _MEMBER = re.compile(r"sources/\w[\w.-]*|\d/[\w-]+")
-"""Names of members of a part: C files, and libraries by version of FMI and platform."""
+"""Pattern of member names in the file of a compiled model: C files, and libraries as FMI version/platform."""
 
 
 class Part(NamedTuple):
-    """What is the same for all FMUs of a structure.
+    """C sources and libraries that all FMUs of one structure share.
 
-    sources   : {file name: text} of all C files but the data
-    libraries : {FMI version: {platform: library}} with placeholders of data and name
+    sources   : {file name: text} of all C files but data.c
+    libraries : {FMI version: {platform: library}} with placeholders for data and name
     """
 
     sources: dict[str, str]
@@ -55,41 +56,41 @@ class Part(NamedTuple):
 
 
 def part_of(model: Model, parameters: ParameterFile, given: Split) -> Part:
-    """The part of an FMU.
+    """Get the compiled model of an FMU from the wheel or the cache, or compile and cache it.
 
-    Raises ImportError if it has to be compiled and a package is missing, ValueError if others may write to
-    the cache, ValueError and RuntimeError as `compiler.libraries`.
+    Raises ImportError if it must be compiled and a package is missing, ValueError if other users may write
+    to the cache, ValueError and RuntimeError as `compiler.compile_libraries`.
     """
-    places = _places(shipped_name(model, given))
-    for content in filter(None, map(_content, places)):
+    paths = _places(shipped_name(model, given))
+    for content in filter(None, map(_content, paths)):
         with suppress(lzma.LZMAError, tarfile.TarError, ValueError, EOFError):
             return read(content)
-    made = compiled(model, parameters, given)
-    with suppress(OSError):  # nothing is lost but time
-        _keep(places[-1], written(made))
-    return made
+    compiled_model = compiled(model, parameters, given)
+    with suppress(OSError):  # without cache the next build compiles again
+        _keep(paths[-1], written(compiled_model))
+    return compiled_model
 
 
 def keeping(what: str, model: Model, make: Callable[[], bytes]) -> bytes:
-    """What is made of a model, from the cache if it was made before of equal sources.
+    """Bytes that `make` computes from a model, read from the cache if the sources are unchanged.
 
-    what : what else it depends on
+    dependency : text of everything else on which the result depends
 
-    Raises ValueError if others may write to the cache, and what `make` raises.
+    Raises ValueError if other users may write to the cache, and what `make` raises.
     """
     name = sha256(f"{what} {_sources_of(model)}".encode()).hexdigest()[:32]
     file = _places(f"{model.name}-{name}{_KEPT}")[-1]
     if content := _content(file):
         with suppress(lzma.LZMAError):
             return lzma.decompress(content)
-    made = make()
+    result = make()
     with suppress(OSError):
-        _keep(file, lzma.compress(made))
-    return made
+        _keep(file, lzma.compress(result))
+    return result
 
 
 def _content(file: Path) -> bytes:
-    """Content of a kept file; empty if there is none. Raises ValueError as `check_access`."""
+    """Content of a cached file; empty if it is missing. Raises ValueError as `check_access`."""
     with suppress(OSError):
         check_access(file)
         return file.read_bytes()
@@ -98,52 +99,55 @@ def _content(file: Path) -> bytes:
 
 @contextmanager
 def _interrupt_after() -> Iterator[None]:
-    """Ctrl-C during the body, a second or two, raises KeyboardInterrupt at its end: CasADi swallows it."""
+    """Defer Ctrl-C to the end of the body, which takes a second or two: CasADi ignores the interrupt."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
-    heard: list[int] = []
-    before = signal.signal(signal.SIGINT, lambda number, frame: heard.append(number))
+    signals: list[int] = []
+    previous_handler = signal.signal(signal.SIGINT, lambda number, frame: signals.append(number))
     try:
         yield
     finally:
-        signal.signal(signal.SIGINT, before)
-    if heard:
+        signal.signal(signal.SIGINT, previous_handler)
+    if signals:
         raise KeyboardInterrupt
 
 
 def compiled(model: Model, parameters: ParameterFile, given: Split) -> Part:
-    """The same, compiled now."""
+    """Compile the model of an FMU for all platforms and FMI versions."""
     step(f"compile {model.name}")
     from ..code.generate import code
 
     with _interrupt_after():
         sources = code(model, parameters, given)
-    every = sources | {"data.c": placeholder(model, given).source()}
-    built = {v: libraries(model.name, every, exported(every, v), stem=PLACEHOLDER) for v in VERSIONS}
-    return Part(sources, built)
+    all_sources = sources | {"data.c": placeholder(model, given).source()}
+    libraries_by_version = {
+        fmi: libraries(model.name, all_sources, exported(all_sources, fmi), stem=PLACEHOLDER)
+        for fmi in VERSIONS
+    }
+    return Part(sources, libraries_by_version)
 
 
 def shipped_name(model: Model, given: Split) -> str:
-    """File name of a part in a wheel."""
+    """File name of a compiled model, with a digest of structure and sources."""
     law = model.parameters
     text = f"{model.name} {law.__module__}.{law.__qualname__} {given.structure} {_sources_of(model)}"
     return f"{model.name}-{sha256(text.encode()).hexdigest()[:32]}{_SUFFIX}"
 
 
 def _places(name: str) -> tuple[Path, Path]:
-    """Where a file may lie: in the wheel, and in the cache, there for each version of the compilers."""
-    used = []
+    """Paths of a file in the wheel and in the cache, which has one folder per set of compiler versions."""
+    compilers = []
     for package in _COMPILERS:
         with suppress(PackageNotFoundError):
-            used.append(f"{package}-{version(package)}")
-    return SHIPPED / name, parts() / "_".join(used or ["none"]) / name
+            compilers.append(f"{package}-{version(package)}")
+    return SHIPPED / name, parts() / "_".join(compilers or ["none"]) / name
 
 
 def _sources_of(model: Model) -> str:
-    """Digest of every file that code is generated of: the package, this builder, the joint's folders."""
-    own = KINDS.get(model.joint)
-    packages = {"jointfmu", own.package if own else "jointfmu"}
+    """Digest of all files that affect the generated code: packages, this builder, folder of the joint."""
+    kind = KINDS.get(model.joint)
+    packages = {"jointfmu", kind.package if kind else "jointfmu"}
     roots = [Path(str(files(package))) for package in sorted(packages)]
     here = Path(__file__).parent.parent
     return _digest((*roots, here, here.with_name("joint_parts"), own_folder(model)))
@@ -151,6 +155,7 @@ def _sources_of(model: Model) -> str:
 
 @cache
 def _digest(folders: tuple[Path, ...]) -> str:
+    """SHA-256 of all source files in folders."""
     digest = sha256()
     for folder in folders:
         for name, content in _files(folder):
@@ -159,17 +164,18 @@ def _digest(folders: tuple[Path, ...]) -> str:
 
 
 def _files(folder: Path) -> Iterator[tuple[str, bytes]]:
-    found = {
+    """Yield path and content of all source files below a folder, sorted by path."""
+    paths = {
         path.relative_to(folder).as_posix(): path for path in folder.rglob("*") if path.suffix in _SOURCES
     }
-    for name in sorted(found):
-        yield name, found[name].read_bytes()
+    for name in sorted(paths):
+        yield name, paths[name].read_bytes()
 
 
 def written(made: Part) -> bytes:
-    """A part as a file; equal parts give equal bytes."""
+    """Encode a compiled model as an archive; equal models give equal bytes."""
     members = {f"sources/{name}": text.encode() for name, text in made.sources.items()}
-    for platform in made.libraries[VERSIONS[0]]:  # what is alike lies side by side
+    for platform in made.libraries[VERSIONS[0]]:  # similar content is adjacent, for better compression
         members |= {f"{v}/{platform}": made.libraries[v][platform] for v in VERSIONS}
     buffer = io.BytesIO()
     with tarfile.open(fileobj=buffer, mode="w:xz", preset=9) as archive:
@@ -181,12 +187,12 @@ def written(made: Part) -> bytes:
 
 
 def read(content: bytes) -> Part:
-    """A part of a file.
+    """Decode a compiled model from an archive.
 
-    Raises ValueError, LZMAError or TarError if it is none, or has a member that would leave the FMU.
+    Raises ValueError, LZMAError or TarError if the archive is invalid or has a member of another name.
     """
     sources: dict[str, str] = {}
-    built: dict[str, dict[str, bytes]] = {}
+    libraries_by_version: dict[str, dict[str, bytes]] = {}
     with tarfile.open(fileobj=io.BytesIO(lzma.decompress(content))) as archive:
         for info in archive:
             folder, _, name = info.name.partition("/")
@@ -197,29 +203,29 @@ def read(content: bytes) -> Part:
             if folder == "sources":
                 sources[name] = member.decode()
             else:
-                built.setdefault(folder, {})[name] = member
-    if not sources or not built.keys() >= {*VERSIONS}:
+                libraries_by_version.setdefault(folder, {})[name] = member
+    if not sources or not libraries_by_version.keys() >= {*VERSIONS}:
         raise ValueError("no part")
-    return Part(sources, built)
+    return Part(sources, libraries_by_version)
 
 
 def _keep(file: Path, content: bytes) -> None:
-    """Put a file in place in one go, and remove the oldest beside it.
+    """Write a cache file atomically, and delete the oldest files of its folder beyond MAX_CACHED_FILES.
 
-    A folder that others write in may list a file more than once.
+    While other processes write into the folder, its listing can contain a file twice.
     """
     make_folder(file.parent)
     with tempfile.NamedTemporaryFile("wb", dir=file.parent, delete=False) as new:
         new.write(content)
     Path(new.name).replace(file)
-    others = {other: _written_at(other) for other in file.parent.glob("*.xz") if other != file}
-    there = sorted((at, other) for other, at in others.items() if at is not None)
-    for _, old in there[: max(len(there) + 1 - MOST_KEPT, 0)]:
-        old.unlink(missing_ok=True)
+    times = {other: _written_at(other) for other in file.parent.glob("*.xz") if other != file}
+    dated_files = sorted((time, other) for other, time in times.items() if time is not None)
+    for _, old_file in dated_files[: max(len(dated_files) + 1 - MOST_KEPT, 0)]:
+        old_file.unlink(missing_ok=True)
 
 
 def _written_at(file: Path) -> float | None:
-    """Time of a file; None if another process has just removed it."""
+    """Modification time of a file [s]; None if another process has just deleted it."""
     with suppress(FileNotFoundError):
         return file.stat().st_mtime
     return None
