@@ -178,10 +178,10 @@ def _motors(spec: Any, name: str) -> Any:
 
 
 def _add_motor(spec: Any, motors: Any, axis: ElasticAxis, rigid: Any) -> Any:
-    """Add the motor of an axis as a joint whose coordinate is the motor angle [rad], and move the actuators to it.
+    """Add the motor of an axis as a joint with the motor angle [rad] as coordinate; move the actuators there.
 
     The force of each actuator is limited by the limit of the robot's joint. This limit cannot be set for the
-    motor joint as a whole, since its friction is an actuator too. The joint is a slide: MuJoCo then computes no
+    motor joint as a whole, since its friction is an actuator too. The joint is a slide: MuJoCo computes no
     rotation, and the motor is uncoupled in the mass matrix.
 
     rigid : MjModel of the robot without drives

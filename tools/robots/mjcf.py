@@ -125,7 +125,7 @@ def led(drive: Transmission, fitted: FittedTendons, wind_up: Array) -> Array:
 
 
 def measured(drive: Transmission, fitted: FittedTendons) -> Miss:
-    """Compare MuJoCo's drive with the FMU's law along first loading to the largest fit torque and one loop."""
+    """Compare MuJoCo's drive with the FMU's law in first loading to the largest fit torque and one loop."""
     torques, x = drive.loop(fitted.torque)
     simulated = led(drive, fitted, x)
     fmu_area, mujoco_area = area(x, torques), area(x, simulated)

@@ -39,7 +39,7 @@ def angles(model: "MjModel", axis: ElasticAxis) -> Array:
 def over_poses(
     model: "MjModel", axes: Sequence[ElasticAxis], pose: Array, payload: float, tip: int
 ) -> tuple[list[Array], Array]:
-    """Angles [rad] of the grid axes, and frequencies (..., n) [Hz] over their grid; other axes keep `pose`."""
+    """Angles [rad] of the grid axes, and frequencies (..., n) [Hz] over their grid; others keep `pose`."""
     grid = [angles(model, axis) for axis in swept(axes)]
     poses = turned(model, axes, pose, grid)
     rows = [frequencies(model, axes, grid_pose, payload, tip) for grid_pose in poses]
