@@ -2,7 +2,7 @@
 
 import numpy as np
 from jointfmu_tools.fractal import wave_power
-from jointfmu_tools.surfaces.heights import Areal
+from jointfmu_tools.surfaces.heights import ArealMap
 
 
 def rms_height(H, G, longest, shortest):
@@ -43,4 +43,4 @@ def periodic(size, points, D, G, band, seed):
     noise = np.fft.rfft2(np.random.default_rng(seed).standard_normal((points, points)))
     waves = noise / np.abs(noise) * np.sqrt(wave_power(f, 3.0 - D, G) * cell)
     z = np.fft.irfft2(waves, s=(points, points)) * points**2
-    return Areal(z=z, dx=spacing, dy=spacing, name="synthetic periodic surface")
+    return ArealMap(z=z, dx=spacing, dy=spacing, name="synthetic periodic surface")

@@ -14,11 +14,11 @@ from pathlib import Path
 import box_specimen_lengths as box
 import numpy as np
 from jointfmu_tools import plots
-from jointfmu_tools.published.reference import points
+from jointfmu_tools.published.reference import read_points
 from numpy.typing import NDArray
 from published_marks import published_mark
 
-from jointfmu.parameters import default
+from jointfmu.parameters import load_default
 
 Array = NDArray[np.float64]
 STATES = [(9e3, 0.0), (15e3, 0.0), (15e3, 4500.0)]
@@ -44,7 +44,10 @@ START = (0.327, 0.257, 0.0192, 0.052, 0.036)
 
 def measured() -> Array:
     """Table 3 (states, modes) [Hz]."""
-    at = {(p.where["preload"], p.where["moment"], p.where["mode"]): p.value for p in points("zhao2018_modes")}
+    at = {
+        (p.where["preload"], p.where["moment"], p.where["mode"]): p.value
+        for p in read_points("zhao2018_modes")
+    }
     return np.array([[at[(*state, mode)] for mode in range(1, 7)] for state in STATES])
 
 
@@ -79,7 +82,7 @@ def table(found: Array, even: Array) -> None:
 
 def choices(assembly: box.Assembly) -> None:
     """Rise from 9 to 15 kN with every choice of the law, at the same lengths."""
-    joint = default("bolted_joint").values
+    joint = load_default("bolted_joint").values
     for area, spot in CHOICES:
         one = replace(joint, critical_area=area, spot_stiffness=spot)
         found = box.frequencies(assembly, one, STATES[:2])
@@ -89,7 +92,7 @@ def choices(assembly: box.Assembly) -> None:
 
 def levelling(assembly: box.Assembly, plot: Path | None) -> None:
     """f1 over the preload (Fig. 12)."""
-    joint = default("bolted_joint").values
+    joint = load_default("bolted_joint").values
     states = [(float(p), 0.0) for p in PRELOADS]
     found, even = (box.frequencies(assembly, joint, states, count=1, even=e) for e in (False, True))
     for preload, f, g in zip(PRELOADS, found[:, 0], even[:, 0], strict=True):
@@ -98,7 +101,7 @@ def levelling(assembly: box.Assembly, plot: Path | None) -> None:
     print(f"slope of f1: {slopes[1]:.2f} Hz/kN at 7.5 kN, {slopes[-1]:.2f} Hz/kN at 33 kN")
     if plot:
         target = measured()
-        with plots.drawing(plot) as figure:
+        with plots.open_figure(plot) as figure:
             axes = figure.subplots()
             axes.plot(PRELOADS / 1e3, found[:, 0], color=plots.BLUE, label="computed field")
             axes.plot(PRELOADS / 1e3, even[:, 0], "--", color=plots.GREY, label="uniform pressure")
@@ -111,7 +114,7 @@ def levelling(assembly: box.Assembly, plot: Path | None) -> None:
 def identify(assembly: box.Assembly) -> box.Assembly:
     """Fit the lengths anew."""
     start = box.specimen(assembly, START)
-    found = box.identify(start, default("bolted_joint").values, STATES[0][0], measured()[0])
+    found = box.identify(start, load_default("bolted_joint").values, STATES[0][0], measured()[0])
     for name, value in found.lengths.items():
         print(f"{name:17s} {1e3 * value:7.1f} mm, +- {100 * found.deviation[name]:.0f} %")
     row("error of the fit [%]", 100 * found.error, "8.1f")
@@ -128,7 +131,7 @@ def main() -> None:
     assembly = box.shipped()
     if args.identify:
         assembly = identify(assembly)
-    joint = default("bolted_joint").values
+    joint = load_default("bolted_joint").values
     found, even = (box.frequencies(assembly, joint, STATES, even=e) for e in (False, True))
     table(found, even)
     fine = box.frequencies(assembly, joint, STATES[:1], refinement=1.0)

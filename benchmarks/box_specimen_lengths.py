@@ -11,10 +11,10 @@ from typing import Any
 
 import numpy as np
 from jointfmu_tools.fem import modes
-from jointfmu_tools.fem.assembly import load
+from jointfmu_tools.fem.assembly import read_assembly
 from jointfmu_tools.fem.elasticity import Array
 from jointfmu_tools.fem.geometry import Assembly, BoltGrid, BoxSection
-from jointfmu_tools.fem.modes import REFINEMENT
+from jointfmu_tools.fem.modes import DEFAULT_REFINEMENT
 from jointfmu_tools.joints.bolted_joint.field import FREQUENCIES
 from scipy.optimize import least_squares
 
@@ -68,7 +68,7 @@ def specimen(start: Assembly, lengths: Sequence[float]) -> Assembly:
 
 def shipped() -> Assembly:
     """The assembly with the identified lengths."""
-    return load(FREQUENCIES.path)
+    return read_assembly(FREQUENCIES.path)
 
 
 def lengths_of(assembly: Assembly) -> Array:
@@ -82,7 +82,7 @@ def frequencies(
     assembly: Assembly, joint: BoltedJoint, states: Sequence[tuple[float, float]], **options: Any
 ) -> Array:
     """As those of assembly_modes, with the joint's own shear."""
-    return modes.frequencies(assembly, joint, float(joint.shear_ratio()), states, **options)
+    return modes.compute_frequencies(assembly, joint, float(joint.shear_ratio()), states, **options)
 
 
 def identify(
@@ -90,7 +90,7 @@ def identify(
     joint: BoltedJoint,
     preload: float,
     measured: Array,
-    refinement: float = REFINEMENT,
+    refinement: float = DEFAULT_REFINEMENT,
     trials: int = 8,
 ) -> Identification:
     """Least squares over the lengths.

@@ -14,17 +14,17 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from box_specimen import STATES, measured
-from jointfmu_tools.fem.contact import Interface, trace
+from jointfmu_tools.fem.contact import Interface, displacement_matrix
 from jointfmu_tools.fem.elasticity import ElasticBody
-from jointfmu_tools.fem.modes import NaturalModes, modes
+from jointfmu_tools.fem.modes import NaturalModes, compute_modes
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
 from skfem import MeshHex, MeshQuad
 
 from jointfmu.contact.interface import stiffness_curve
 from jointfmu.joints.bolted_joint.law import BoltedJoint
-from jointfmu.parameters import default
-from jointfmu.progress import track
+from jointfmu.parameters import load_default
+from jointfmu.progress import track_progress
 
 Array = NDArray[np.float64]
 NAMES = ("length", "height", "wall", "flange", "overhang", "ledge", "floor")
@@ -76,14 +76,14 @@ class Box:
         bolts = np.array([(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1) if i or j]) * ends
         return cls(
             ElasticBody(mesh.restrict(np.nonzero(solid)[0]), E, NU, DENSITY),
-            Interface.of(plan.restrict(np.nonzero(ring)[0])),
+            Interface.from_mesh(plan.restrict(np.nonzero(ring)[0])),
             bolts,
         )
 
     def pressure(self, joint: BoltedJoint, force: float) -> Array:
         """(q) [Pa] by the joint's decay around bolts of a force [N]."""
         apart = self.interface.position[:, None, :] - self.bolts
-        each = joint.pattern.decay(np.hypot(*np.moveaxis(apart, -1, 0)))
+        each = joint.pattern.pressure_decay(np.hypot(*np.moveaxis(apart, -1, 0)))
         return np.asarray(np.sum(force * each / (self.interface.area @ each), axis=1))
 
     def springs(self, joint: BoltedJoint, force: float) -> tuple[Array, Array]:
@@ -94,12 +94,12 @@ class Box:
 
     def modes(self, joint: BoltedJoint, force: float) -> NaturalModes:
         """Six modes of two such halves."""
-        return modes((self.body,), self.interface, *self.springs(joint, force))
+        return compute_modes((self.body,), self.interface, *self.springs(joint, force))
 
     def squares(self, joint: BoltedJoint, force: float, found: NaturalModes) -> Array:
         """Rayleigh quotients (6) [1/s2] of given shapes."""
         normal, tangential = self.springs(joint, force)
-        rows = [trace(self.body, self.interface, axis) for axis in range(3)]
+        rows = [displacement_matrix(self.body, self.interface, axis) for axis in range(3)]
         values = []
         for below, above in found.shape:
             u, gap = above.ravel(), (below - above).ravel()
@@ -155,7 +155,7 @@ def fit(joint: BoltedJoint, start: Array, target: Array) -> tuple[Array, Array]:
 def starts(joint: BoltedJoint, count: int, closed: bool, seed: int, target: Array) -> Iterator[Array]:
     """Random lengths, each the best of SAMPLES."""
     rng, size = np.random.default_rng(seed), 7 if closed else 6
-    for _ in track(range(count), "fits", count):
+    for _ in track_progress(range(count), "fits", count):
         tried: list[tuple[float, Array]] = []
         while len(tried) < SAMPLES:
             lengths = LEAST[:size] * (MOST[:size] / LEAST[:size]) ** rng.random(size)
@@ -174,7 +174,7 @@ def main() -> None:
     args = parser.parse_args()
     target = measured()
     for area, spot, ends in CASES:
-        joint = replace(default("bolted_joint").values, critical_area=area, spot_stiffness=spot)
+        joint = replace(load_default("bolted_joint").values, critical_area=area, spot_stiffness=spot)
         found = []
         for start in starts(joint, args.fits, ends == "closed", args.seed, target[0]):
             try:

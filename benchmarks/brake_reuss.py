@@ -17,7 +17,7 @@ from lap_beam_plan import Fineness
 from lap_beam_reduction import Structure, reduced, spectrum
 from validity_tables import IMAGES, heading, row
 
-from jointfmu.mechanics.curve import approach_curve
+from jointfmu.mechanics.curve import tabulate_approach
 
 FRICTION = 0.15
 """Of dry machined metal, what `jointfmu new` takes where nothing is stated (VDI 2230: 0.1 to 0.3) [1]."""
@@ -36,7 +36,7 @@ def joints(structure, gap=None):
     """{law: the reduced beam on its sliders}, of plane faces or with a gap [m] at places x, y."""
     preload, found = data()["beam"]["preload"], {}
     for name, law in laws().items():
-        curve, shear = approach_curve(law), float(law.shear_ratio())
+        curve, shear = tabulate_approach(law), float(law.shear_ratio())
         part = reduced(structure, curve, preload, shear, gap)
         found[name] = Joint(part, foundation(curve, shear, FRICTION))
     return found
@@ -109,7 +109,7 @@ def meshes():
     heading("Meshes", "near holes [mm]", "far [mm]", "layers", "patches", "f1 [Hz]")
     for near, far, layers in ((4e-3, 6e-3, 2), (2.6e-3, 3.6e-3, 2), (2.6e-3, 3.6e-3, 3), (2.6e-3, 3.6e-3, 4)):
         structure = Structure.of(beam(), Fineness(near=near, far=far, layers=layers))
-        normal = structure.tightened(approach_curve(law), preload).stiffness
+        normal = structure.tightened(tabulate_approach(law), preload).stiffness
         springs = np.outer(normal, [law.shear_ratio(), law.shear_ratio(), 1.0])
         found = spectrum(structure, springs, 1)[0][0]
         row(f"{1e3 * near:g}", f"{1e3 * far:g}", layers, normal.size, f"{found:.2f}")
@@ -159,7 +159,7 @@ def main():
 def picture(both):
     """Frequency and damping over amplitude, into docs/images."""
     viscous = data()["published"]["viscous"]
-    with plots.drawing(IMAGES / "brake_reuss.svg", (9.6, 3.8)) as figure:
+    with plots.open_figure(IMAGES / "brake_reuss.svg", (9.6, 3.8)) as figure:
         left, right = figure.subplots(1, 2)
         for (name, curve), color in zip(both.items(), (plots.BLUE, plots.RED), strict=True):
             left.plot(curve.q, curve.frequency, "o-", color=color, ms=3, label=name)

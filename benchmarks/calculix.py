@@ -19,11 +19,11 @@ from pathlib import Path
 
 import numpy as np
 from jointfmu_tools import cli
-from jointfmu_tools.export.placing import AXES
+from jointfmu_tools.export.placing import AXIS_ORDER
 
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
-from jointfmu.mechanics.curve import approach_curve
-from jointfmu.parameters import default
+from jointfmu.mechanics.curve import tabulate_approach
+from jointfmu.parameters import load_default
 
 DECKS = Path(__file__).resolve().parent.parent / "models/calculix"
 MM = "mm-N-MPa-t"
@@ -85,9 +85,9 @@ def rigid_bodies(folder: Path, preload: float, moment: float, normal: str = "z")
         *("calculix", "springs", "--preload", preload, "--moment", moment),
         *("--normal", normal, "--out", folder / "springs.inp"),
     )
-    x, y, z = AXES[normal]
-    spring = BoltedJointSpring.of_nodes(default("bolted_joint").values)
-    K = spring.motion(preload, moment, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    x, y, z = AXIS_ORDER[normal]
+    spring = BoltedJointSpring.of_nodes(load_default("bolted_joint").values)
+    K = spring.evaluate(preload, moment, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     deck = (DECKS / "two_bodies.inp").read_text()
     for axis, place in ((1, x), (3, z)):
         deck = deck.replace(f"900002, {axis}, 1000.\n", f"900002, {place + 1}, 1e3\n")
@@ -121,7 +121,7 @@ def meshed_blocks(folder: Path) -> list[Case]:
     (folder / "meshed.inp").write_text(deck)
     top = [row[2] for node, row in run(folder / "meshed.inp").items()]
     assert np.ptp(top) < 1e-4 * np.mean(top)
-    joint = default("bolted_joint").values
+    joint = load_default("bolted_joint").values
     spring = BoltedJointSpring.of_nodes(joint)
     k = spring.curve.derivatives(spring.curve.inverse(pressure * 1e6), 1)[1]
     expected = FORCE / (joint.A_0 * float(k)) * 1e3 + FORCE * 2.0 * HEIGHT / (E * area.sum())
@@ -176,7 +176,7 @@ def contact(folder: Path, joint: str, pressures: Sequence[float] = PRESSURES) ->
     The top moves by the compression p 2 h/E and by the law's approach from first touch.
     """
     export("calculix", "contact", "--joint", joint, "--out", folder / "contact.inp")
-    curve = approach_curve(default(joint).values)
+    curve = tabulate_approach(load_default(joint).values)
     deck, found = (DECKS / "two_blocks.inp").read_text(), []
     for p in pressures:
         (folder / "pressed.inp").write_text(deck.replace("2, P2, 2.", f"2, P2, {p}"))

@@ -10,7 +10,7 @@ from friction_sliders import levels
 from numpy.typing import NDArray
 
 from jointfmu.mechanics.curve import Curve
-from jointfmu.mechanics.jenkins import Moved
+from jointfmu.mechanics.jenkins import SliderUpdate
 
 Array = NDArray[np.float64]
 
@@ -54,7 +54,7 @@ class Springs:
         """Forces (count, 2, n) [Pa] of springs that have not moved."""
         return np.zeros((count, 2, self.edges.size - 1))
 
-    def moved(self, force: Array, before: Array, after: Array, shift: Array) -> Moved:
+    def moved(self, force: Array, before: Array, after: Array, shift: Array) -> SliderUpdate:
         """After a short straight path from approaches (P) to others [m], by shifts (P, 2) [m].
 
         A spring sticks, or its force returns along itself to friction times what presses it; heat is force
@@ -70,4 +70,4 @@ class Springs:
         x, y = np.moveaxis(trial / np.maximum(size, 1e-300)[:, None], 1, 0)
         bent, kept = np.where(slips, slope * part, 0.0), np.where(slips, 0.0, slope)
         tangent = [np.sum(t, axis=1) for t in (kept + bent * y * y, -bent * x * y, kept + bent * x * x)]
-        return Moved(trial * part[:, None], np.sum(limit * slip, axis=1), np.stack(tangent, axis=-1))
+        return SliderUpdate(trial * part[:, None], np.sum(limit * slip, axis=1), np.stack(tangent, axis=-1))

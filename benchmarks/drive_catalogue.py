@@ -9,22 +9,22 @@ import csv
 import math
 from importlib.resources import files
 
-from jointfmu_tools.catalogue import Item
+from jointfmu_tools.catalogue import CatalogueEntry
 from jointfmu_tools.joints.harmonic_drive import catalogue
 from jointfmu_tools.joints.harmonic_drive.efficiency import (
+    drives_with_friction,
+    friction_and_ratio,
     hysteresis_loss,
     lost_motion,
-    parameters,
-    printed_drives,
-    spring_bench,
+    make_python_test_rig,
 )
-from jointfmu_tools.joints.harmonic_drive.fit.drive import Row
-from jointfmu_tools.joints.harmonic_drive.friction import SPEED
+from jointfmu_tools.joints.harmonic_drive.fit.drive import CatalogueRow
+from jointfmu_tools.joints.harmonic_drive.friction import QUOTED_SPEED
 from jointfmu_tools.joints.harmonic_drive.new import NEW
 
 from jointfmu.joints import MODELS
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
-from jointfmu.parameters import default
+from jointfmu.parameters import load_default
 
 MODEL = MODELS["HarmonicDriveSpring"]
 ARCMIN = math.pi / 10800.0
@@ -36,7 +36,7 @@ LINES = ("K1", "K2", "K3", "T1", "T2")
 
 def made(name):
     """The parameter file of a drive of the catalogue."""
-    return NEW.run(dict.fromkeys(option.name for option in NEW.options) | {"catalogue": name}).file
+    return NEW.make_joint(dict.fromkeys(option.name for option in NEW.options) | {"catalogue": name}).file
 
 
 def table(head, rows):
@@ -48,16 +48,16 @@ def table(head, rows):
 
 def over_drives():
     """(drive, angles' errors [1], its lost motion [rad], with hysteresis at its limit, that loop [rad])."""
-    for item in catalogue.items():
+    for item in catalogue.list_drives():
         if "rated_torque" not in item.numbers:
             continue
         file, printed = made(item.name), item.numbers
-        spring = HarmonicDriveSpring.of(file.values)
-        row = Row(**{n: printed[n].value for n in LINES}, rated=printed["rated_torque"].value)
+        spring = HarmonicDriveSpring.tabulate(file.values)
+        row = CatalogueRow(**{n: printed[n].value for n in LINES}, rated=printed["rated_torque"].value)
         torques = [printed[n].value for n in ("T1", "T2", "rated_torque", "peak_torque") if n in printed]
-        miss = [float(spring.curve.inverse(T) / row.angle(T)) - 1.0 for T in torques]
+        miss = [float(spring.curve.inverse(T) / row.wind_up(T)) - 1.0 for T in torques]
         most = {"hysteresis_loss": printed["hysteresis_loss"].value}
-        opened = HarmonicDriveSpring.of(file.with_values(most, "user", "limit").values)
+        opened = HarmonicDriveSpring.tabulate(file.with_values(most, "user", "limit").values)
         yield item, miss, lost_motion(spring), lost_motion(opened), hysteresis_loss(opened)
 
 
@@ -78,7 +78,8 @@ def all_drives():
          "arcmin"),
     ]  # fmt: skip
     other = [
-        lost_motion(HarmonicDriveSpring.of(made(name).values)) / limit for name, limit in another_maker()
+        lost_motion(HarmonicDriveSpring.tabulate(made(name).values)) / limit
+        for name, limit in another_maker()
     ]
     text = f"{min(other):.2f} to {max(other):.2f} of it"
     rows.append(("lost motion 2 or 1 arcmin, another maker", f"{len(other)} drives", "predicted", text))
@@ -94,24 +95,24 @@ def another_maker():
 
 def single_drives():
     """Friction of the drives of which it is printed: as they are made, and without their efficiency."""
-    rows, both = [], [(item, made(item.name)) for item in printed_drives()]
+    rows, both = [], [(item, made(item.name)) for item in drives_with_friction()]
     for item, file in both:
-        n, drive = item.numbers, spring_bench(MODEL, file)
+        n, drive = item.numbers, make_python_test_rig(MODEL, file)
         back, rated = n["back_driving_torque"].value, n["rated_torque"].value
         found = drive.back_driving_torque(10.0 * back)
         guess = abs(n["ratio"].value) * n["starting_torque"].value
         cells = [
             item.name,
             f"{1e3 * drive.starting_torque():.0f}",
-            f"{1e3 * drive.motor_torque(SPEED, 0.0):.0f}",
+            f"{1e3 * drive.motor_torque(QUOTED_SPEED, 0.0):.0f}",
         ]
         cells += [f"{back:.3g}", f"{found:.3g}", f"{guess:.3g}"]
         if n["efficiency"].kind == "catalogue":
-            other = Item(item.name, {k: v for k, v in n.items() if k != "efficiency"})
-            freed = file.with_values(parameters(other), "user", "without efficiency")
+            other = CatalogueEntry(item.name, {k: v for k, v in n.items() if k != "efficiency"})
+            freed = file.with_values(friction_and_ratio(other), "user", "without efficiency")
             free = file.with_values({"load_loss": 0.0}, "user", "guess")
-            values = [n["efficiency"].value, drive.efficiency(SPEED, rated)]
-            values += [spring_bench(MODEL, f).efficiency(SPEED, rated) for f in (freed, free)]
+            values = [n["efficiency"].value, drive.efficiency(QUOTED_SPEED, rated)]
+            values += [make_python_test_rig(MODEL, f).efficiency(QUOTED_SPEED, rated) for f in (freed, free)]
             cells += [f"{100.0 * value:.1f}" for value in values]
         else:
             cells += ["-"] * 4
@@ -140,7 +141,7 @@ def points(drive, column):
 def turned(**friction):
     """A drive 1:50 of 172 N.m on the bench; its stiffness plays no part."""
     given = {"ratio": 50.0, "rated_torque": 172.0, **friction}
-    return spring_bench(MODEL, default("harmonic_drive").with_values(given, "user", "read"))
+    return make_python_test_rig(MODEL, load_default("harmonic_drive").with_values(given, "user", "read"))
 
 
 def over_load():
@@ -153,7 +154,7 @@ def over_load():
         drive = turned(friction_coulomb=no_load * carried, load_loss=1.0 / full - 1.0 - no_load)
         for share, factor in sorted(factors.items()):
             role = "set by it" if share in (0.5, 1.0) else "predicted"
-            computed = drive.efficiency(SPEED, share * 172.0) / full
+            computed = drive.efficiency(QUOTED_SPEED, share * 172.0) / full
             rows.append((name, share, f"{factor:.3f}", f"{computed:.3f}", role))
     table(("curve", "torque over rated", "efficiency over that at rated torque", "model", ""), rows)
 
@@ -180,7 +181,7 @@ def over_both():
     factors, carried = {share: k for (_, share), k in points("ATRIAS", "factor").items()}, 172.0 / 50.0
     no_load = (1.0 / factors[0.5] - 1.0) / known[2000.0]
     slope = (1.0 / known[3500.0] - 1.0 / known[500.0]) * carried / (3000.0 * RPM)
-    dry = no_load * carried - slope * SPEED
+    dry = no_load * carried - slope * QUOTED_SPEED
     loss = 1.0 / known[2000.0] - 1.0 - no_load
     drive = turned(friction_coulomb=dry, friction_viscous=slope, load_loss=loss)
     rows = []
@@ -199,7 +200,7 @@ def worked_examples():
         ((_, full),) = points(name, "efficiency").items()
         (((_, share), factor),) = points(name, "factor").items()
         drive = turned(load_loss=WITHOUT, friction_coulomb=(1.0 / full - 1.0 - WITHOUT) * 172.0 / 50.0)
-        computed = drive.efficiency(SPEED, share * 172.0) / full
+        computed = drive.efficiency(QUOTED_SPEED, share * 172.0) / full
         rows.append((name, f"{100.0 * full:.1f}", f"{share:.2f}", f"{factor:.2f}", f"{computed:.2f}"))
     head = ("example", "efficiency at rated torque [%]", "torque over rated", "factor", "model, predicted")
     table(head, rows)

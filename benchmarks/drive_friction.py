@@ -11,13 +11,13 @@ from importlib.resources import files
 
 import numpy as np
 from jointfmu_tools.joints.harmonic_drive import catalogue
-from jointfmu_tools.joints.harmonic_drive.friction import known, scaled
+from jointfmu_tools.joints.harmonic_drive.friction import collect_published, scale_friction
 from jointfmu_tools.joints.harmonic_drive.new import NEW
 from scipy.optimize import minimize_scalar
 
-from jointfmu.joints.harmonic_drive.friction import dry_factor, limits, viscous
+from jointfmu.joints.harmonic_drive.friction import dry_friction_factor, friction_limits, viscous_torque
 
-DRIVES = {name: each for name, (each, _) in known(catalogue.items()).items()}
+DRIVES = {name: each for name, (each, _) in collect_published(catalogue.list_drives()).items()}
 
 
 def table(head, rows):
@@ -30,10 +30,17 @@ def table(head, rows):
 def left_out():
     """Yields (drive, quantity, printed, Scaled from the others [N.m or 1])."""
     for name, drive in DRIVES.items():
-        law = scaled(drive.size, drive.ratio, [other for other in DRIVES.values() if other is not drive])
-        yield name, "starting torque", drive.starting, law.starting
-        if drive.running is not None:
-            yield name, "rise to running torque", drive.running - drive.starting, law.rise
+        law = scale_friction(
+            drive.size, drive.ratio, [other for other in DRIVES.values() if other is not drive]
+        )
+        yield name, "starting torque", drive.starting_torque, law.starting_torque
+        if drive.running_torque is not None:
+            yield (
+                name,
+                "rise to running torque",
+                drive.running_torque - drive.starting_torque,
+                law.viscous_torque,
+            )
         if drive.load_loss is not None:
             yield name, "`load_loss`", drive.load_loss, law.load_loss
         if drive.load_loss_back is not None:
@@ -64,13 +71,13 @@ def joint(name, drag):
     """Parameters of a drive of the robot by name, its flexspline fixed."""
     options = dict.fromkeys(option.name for option in NEW.options)
     options |= {"catalogue": name, "fixed": "flexspline", "temperature": f"{WARM}K", "motor_drag": drag}
-    return NEW.run(options).file.values
+    return NEW.make_joint(options).file.values
 
 
 def friction(drive):
     """Friction [N.m] at the motor at SPEEDS, without load."""
     speed = abs(drive.ratio) * np.array(SPEEDS)
-    return limits(drive, speed, 0.0, WARM)[0] + viscous(drive, speed, WARM)
+    return friction_limits(drive, speed, 0.0, WARM)[0] + viscous_torque(drive, speed, WARM)
 
 
 def reference(name):
@@ -91,7 +98,7 @@ def measured():
 def drag(name="CSG-25-100"):
     """Drag [N.m] at 20 degrees C that fits the base joint best: least squares in logarithms."""
     drive, base = joint(name, "0"), measured()
-    bare, part = friction(drive), float(dry_factor(drive, WARM))
+    bare, part = friction(drive), float(dry_friction_factor(drive, WARM))
 
     def cost(more):
         return np.sum(np.log((bare + more * part) / base) ** 2)

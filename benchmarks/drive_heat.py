@@ -11,7 +11,7 @@ import numpy as np
 from validity_tables import heading, row
 
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
-from jointfmu.parameters import default
+from jointfmu.parameters import load_default
 
 FRICTION = {
     "friction_coulomb": 0.03,
@@ -28,13 +28,13 @@ FINE = 20_000
 
 def heat(steps, speed, friction):
     """E_loss [J] of a motor that swings twice without load, with an amplitude [rad/s], and its work [J]."""
-    law = HarmonicDriveSpring.of(replace(default("harmonic_drive").values, **friction))
+    law = HarmonicDriveSpring.tabulate(replace(load_default("harmonic_drive").values, **friction))
     angle = 4.0 * np.pi * np.linspace(0.0, 1.0, steps + 1)
     w1, phi1 = speed * np.sin(angle), speed * TIME / (4.0 * np.pi) * (1.0 - np.cos(angle))
     ratio = law.joint.ratio
-    memory, begun, through, before = law.rest(), 0.0, 0.0, None
+    memory, begun, through, before = law.initial_history(), 0.0, 0.0, None
     for k in range(steps + 1):
-        out, memory = law.driven((phi1[k], w1[k], phi1[k] / ratio, w1[k] / ratio), memory)
+        out, memory = law.advance_motion((phi1[k], w1[k], phi1[k] / ratio, w1[k] / ratio), memory)
         if before is None:
             begun = float(out["E_loss"])
         else:

@@ -23,9 +23,9 @@ from fmpy.fmi1 import FMICallException
 from jointfmu_fmu_src.native.build import build
 from jointfmu_fmu_src.native.code import generate
 from jointfmu_fmu_src.native.compiled import compiler
-from jointfmu_tools.fem.reduction.states import Cells, States
-from jointfmu_tools.fem.whole_joint import Linear, WholeJoint
-from jointfmu_tools.host import Instance, opened, unpacked
+from jointfmu_tools.fem.reduction.states import CellJoint, CellLoads
+from jointfmu_tools.fem.whole_joint import JointFiniteElements, LinearJoint
+from jointfmu_tools.host import Instance, open_instance, unpack_fmu
 from jointfmu_tools.joints.bolted_joint.new import NEW, computed
 from lap_beam_reduction import patches as one_each
 from numpy.typing import NDArray
@@ -33,12 +33,12 @@ from patch_reduction import gross_slip, poles_inside
 from whole_joint import EXAMPLE
 
 from jointfmu.joints import MODELS
-from jointfmu.joints.bolted_joint.contact import Place
-from jointfmu.joints.bolted_joint.law import pressures
+from jointfmu.joints.bolted_joint.contact import RelativeDisplacement
+from jointfmu.joints.bolted_joint.law import preload_pressure
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
-from jointfmu.mechanics.footprint.bolts import pressure_shape
-from jointfmu.mechanics.footprint.patches import few_points
-from jointfmu.mechanics.footprint.shape import PressureShape
+from jointfmu.mechanics.footprint.bolts import pressure_distribution
+from jointfmu.mechanics.footprint.patches import reduce_points
+from jointfmu.mechanics.footprint.shape import PressureDistribution
 from jointfmu.parameters import ParameterFile
 
 Array = NDArray[np.float64]
@@ -67,7 +67,7 @@ class Joint:
 
     file: ParameterFile
     rigid: ParameterFile
-    linear: Linear
+    linear: LinearJoint
     normal: Array
     preload: float
     members: float
@@ -85,32 +85,32 @@ class Joint:
         elements : the contact has a point for each element in place of nine
         """
         seen: dict[str, object] = {}
-        real = computed.whole_joint
+        real = computed.compute_joint
 
         def watched(
-            file: ParameterFile, plates: computed.Plates, to: str, shape: PressureShape | None
+            file: ParameterFile, plates: computed.BoltedPlates, to: str, shape: PressureDistribution | None
         ) -> computed.ComputedJoint:
-            joint = WholeJoint.of(plates.assembly(file), to, refinement)
+            joint = JointFiniteElements.from_assembly(plates.make_assembly(file), to, refinement)
             if elements:
                 joint = replace(joint, interface=one_each(joint.interface))
-            springs = computed._springs(file, plates.preload, joint, shape)
-            linear = joint.linear(springs, file.values.bolt_stiffness)
+            springs = computed._interface_stiffness(file, plates.preload, joint, shape)
+            linear = joint.linearize(springs, file.values.bolt_stiffness)
             seen.update(rigid=file, preload=plates.preload, normal=springs[:, 2], linear=linear)
             if refinement != 1.0:
                 return real(file, plates, to, shape)
             with (  # the command's own finite elements are these
-                patch.object(WholeJoint, "of", lambda *_: joint),
-                patch.object(WholeJoint, "linear", lambda *_: linear),
+                patch.object(JointFiniteElements, "of", lambda *_: joint),
+                patch.object(JointFiniteElements, "linear", lambda *_: linear),
             ):
                 return real(file, plates, to, shape)
 
-        computed.whole_joint = watched
+        computed.compute_joint = watched
         try:
             given = dict.fromkeys(option.name for option in NEW.options) | dict(example)
             given["attached"] = attached
-            made = NEW.run(given)
+            made = NEW.make_joint(given)
         finally:
-            computed.whole_joint = real
+            computed.compute_joint = real
         facts: dict[str, tuple[float, str, str]] = dict(made.facts)
         return cls(file=made.file, members=facts["member_stiffness"][0], **seen)  # type: ignore[arg-type]
 
@@ -132,26 +132,28 @@ def along(
     spring: BoltedJointSpring, motions: Sequence[Array], preload: float, names: Sequence[str] = FORCES
 ) -> list[Array]:
     """Forces and moments, or other outputs, on the way through motions (6) from rest."""
-    memory, rows = spring.at_rest(), []
+    memory, rows = spring.initial_history(), []
     for six in motions:
-        out, memory = spring.evolve(preload, 0.0, Place(six), (0.0,) * 6, memory)
+        out, memory = spring.advance(preload, 0.0, RelativeDisplacement(six), (0.0,) * 6, memory)
         rows.append(np.array([float(out[name]) for name in names]))
     return rows
 
 
 def stiffnesses(joint: Joint) -> tuple[Array, Array]:
     """(6) of the reduced joint and of finite elements, each motion alone."""
-    out = joint.spring.motion(joint.preload, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    out = joint.spring.evaluate(joint.preload, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     return np.array([float(out[name]) for name in AXES]), joint.linear.stiffness.diagonal()
 
 
-def on_cells(joint: Joint, count: int) -> States:
+def on_cells(joint: Joint, count: int) -> CellJoint:
     """The joint with all compliances of some cells, without modes and patches."""
-    fine = few_points(pressure_shape(joint.rigid.values.pattern), count)
-    spring = BoltedJointSpring.of(joint.rigid.values).on(fine)
+    fine = reduce_points(pressure_distribution(joint.rigid.values.pattern), count)
+    spring = BoltedJointSpring.of(joint.rigid.values).on_nodes(fine)
     at = joint.linear.joint.interface
     bolts = joint.linear.joint.bolts - at.area @ at.position / at.area.sum()
-    return States.of(Cells.of(joint.linear.joint, spring, joint.normal), bolts, joint.preload)
+    return CellJoint.from_cells(
+        CellLoads.from_joint(joint.linear.joint, spring, joint.normal), bolts, joint.preload
+    )
 
 
 def first_way(joint: Joint, count: int) -> Array:
@@ -163,7 +165,7 @@ def first_way(joint: Joint, count: int) -> Array:
     unit, rows = joint.load() / stiffnesses(joint)[0], []
     for axis in (0, 1, 2, 4, 5):
         motions = [level * unit * (np.arange(6) == axis) for level in LEVELS]
-        expected = [states.rigid.T @ states.forces(six) for six in motions]
+        expected = [states.rigid_displacement.T @ states.solve_forces(six) for six in motions]
         found = along(joint.spring, motions, joint.preload)
         rows.append([(-f[axis] - e[axis]) / joint.load()[axis] for f, e in zip(found, expected, strict=True)])
     return np.array(rows)
@@ -172,8 +174,8 @@ def first_way(joint: Joint, count: int) -> Array:
 def pole_deviations(spring: BoltedJointSpring, preload: float, count: int) -> Array:
     """(2) deviation of the force in gross slip about poles from that of all nodes as tightened, over the
     friction [1]: of 95 %, largest."""
-    values, shape, found = spring.joint, pressure_shape(spring.joint.pattern), []
-    friction = values.mu * values.A_0 * shape.share * pressures(values, shape, preload, 0.0)
+    values, shape, found = spring.joint, pressure_distribution(spring.joint.pattern), []
+    friction = values.mu * values.A_0 * shape.share * preload_pressure(values, shape, preload, 0.0)
     poles = poles_inside(shape, count)
     for (x, y), force in zip(poles, gross_slip(shape.as_patches(), friction, poles), strict=True):
         motions = [turn * np.array([y, -x, 0.0, 0.0, 0.0, 1.0]) for turn in TURNS]
@@ -197,7 +199,7 @@ def times(joint: Joint, folder: Path) -> None:
             "BoltedJoint", files, compiler.exported(list(files), "3"), ["x86_64-linux"]
         )
         (folder / f"{name}.so").write_bytes(library["x86_64-linux"])
-        model = MODELS["BoltedJoint"].of(file.joint, file.values)
+        model = MODELS["BoltedJoint"].with_parameters(file.joint, file.values)
         made[name] = folder / f"{name}.so", generate.token(files), len(model.outputs)
         native_fmus.RANGES[name] = ranges
     for _ in range(native_fmus.ROUNDS):
@@ -216,14 +218,14 @@ def closed(joint: Joint, folder: Path, paths: int) -> None:
     path, unit = build("BoltedJoint", joint.file, folder, "3"), joint.load() / stiffnesses(joint)[0]
     print(f"\nFMU {size_of(path)}; {paths} closed paths\n")
     print("| of the load | steps | refused | least work over heat |\n|---|---|---|---|")
-    with unpacked(path) as (unzipped, described):
+    with unpack_fmu(path) as (unzipped, described):
         for part, steps in WAYS:
             rng, refused, least = np.random.default_rng(1), 0, np.inf
             for _ in range(paths):
                 a, b = part * rng.uniform(-1.0, 1.0, (2, 6)) * unit
                 angles = np.linspace(0.0, 2.0 * np.pi, steps + 1)
                 way = np.sin(angles)[:, None] * a + (1.0 - np.cos(angles))[:, None] * b
-                with opened(unzipped, described, path.name, []) as fmu:
+                with open_instance(unzipped, described, path.name, []) as fmu:
                     try:
                         force = np.array(followed(fmu, way, joint.preload))
                     except FMICallException:
@@ -242,14 +244,14 @@ def size_of(path: Path) -> str:
 
 def followed(fmu: Instance, way: Array, preload: float) -> list[list[float]]:
     """Forces, moments and heat on a way (n, 6)."""
-    fmu.begin()
-    fmu.set({"preload": preload})
+    fmu.enter_initialization()
+    fmu.set_values({"preload": preload})
     fmu.fmu.exitInitializationMode()
-    given, told, rows = fmu.reals(MOTIONS), fmu.reals((*FORCES, "E_loss")), []
+    given, told, rows = fmu.group_reals(MOTIONS), fmu.group_reals((*FORCES, "E_loss")), []
     for now, six in enumerate(way):
-        given.set(*six.tolist())
-        fmu.advance(float(now), 1.0)
-        rows.append(told.get())
+        given.set_values(*six.tolist())
+        fmu.do_step(float(now), 1.0)
+        rows.append(told.get_values())
     return rows
 
 

@@ -17,11 +17,11 @@ from jointfmu_tools import cli
 from jointfmu_tools.fields import nodal_result
 from jointfmu_tools.fields.joint_parameters import pressure_shape
 from jointfmu_tools.fields.nodal_result import ContactField
-from jointfmu_tools.fields.reduction import reduce
+from jointfmu_tools.fields.reduction import reduce_field
 
-from jointfmu.joints.bolted_joint.law import bolt_pattern, pressures
+from jointfmu.joints.bolted_joint.law import bolt_pattern, preload_pressure
 from jointfmu.mechanics.footprint import bolts
-from jointfmu.parameters import default
+from jointfmu.parameters import load_default
 
 PRELOAD = 9e3
 ACROSS = (10, 20, 66)
@@ -34,25 +34,25 @@ UNEVEN = 0.1
 
 def field(across: int, closed: float) -> ContactField:
     """The default frame with its pressure, uneven, open below `closed`."""
-    joint = default("bolted_joint").values
+    joint = load_default("bolted_joint").values
     bolts.CELLS_ACROSS = across
-    shape = bolt_pattern(joint).shape()
+    shape = bolt_pattern(joint).pressure_distribution()
     x = shape.position[:, 0]
-    p = np.maximum(shape.equal * (1.0 + UNEVEN * x / np.ptp(x)) - closed, 0.0)
+    p = np.maximum(shape.preload_shape * (1.0 + UNEVEN * x / np.ptp(x)) - closed, 0.0)
     p *= PRELOAD * joint.n_bolts / joint.A_0 / (shape.share @ p)
     return ContactField(shape.share * joint.A_0, shape.position, p)
 
 
 def main() -> None:
     """Print the table."""
-    joint = default("bolted_joint").values
+    joint = load_default("bolted_joint").values
     print("| nodes | open | points | deviation | s | s of the command |\n|---|---|---|---|---|---|")
     for across in ACROSS:
         for closed in (0.0, OPEN):
             one = field(across, closed)
             start = time.process_time()
             shape = pressure_shape(joint, one, PRELOAD)
-            found = reduce(replace(joint, A_0=float(one.area.sum())), shape, PRELOAD, pressures)
+            found = reduce_field(replace(joint, A_0=float(one.area.sum())), shape, PRELOAD, preload_pressure)
             took = time.process_time() - start
             with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()):
                 path = Path(folder) / "field.csv"
@@ -64,7 +64,7 @@ def main() -> None:
             part = float(np.mean(one.pressure == 0.0))
             times = f"{took:.1f} | {whole:.1f}"
             print(
-                f"| {found.nodes} | {part:.0%} | {found.points} | {found.deviation:.1e} | {times} |",
+                f"| {found.node_count} | {part:.0%} | {found.point_count} | {found.deviation:.1e} | {times} |",
                 flush=True,
             )
 

@@ -18,17 +18,17 @@ from typing import Any
 import numpy as np
 import scipy.sparse as sp
 from jointfmu_tools.fem import convergence
-from jointfmu_tools.fem.assembly import load
-from jointfmu_tools.fem.bolted_contact import TILT, BoltedContact, JointSolution
-from jointfmu_tools.fem.contact import trace
+from jointfmu_tools.fem.assembly import read_assembly
+from jointfmu_tools.fem.bolted_contact import DEFAULT_MOMENT_RATIO, BoltedContact, JointSolution
+from jointfmu_tools.fem.contact import displacement_matrix
 from jointfmu_tools.fem.elasticity import Cholesky
 from jointfmu_tools.fem.geometry import Assembly, BoxSection
 from scipy.sparse.linalg import splu
 from skfem import Basis, BilinearForm, ElementHexS2, ElementVector
 from skfem.models.elasticity import lame_parameters, linear_elasticity
 
-from jointfmu.mechanics.curve import Curve, approach_curve
-from jointfmu.parameters import default
+from jointfmu.mechanics.curve import Curve, tabulate_approach
+from jointfmu.parameters import load_default
 
 PRELOAD = 9e3
 MESHES = 4
@@ -52,7 +52,7 @@ class Hard:
 
 def law(assembly: Assembly) -> Curve:
     """The fractal law with the contact area of an assembly."""
-    return approach_curve(replace(default("bolted_joint").values, A_0=assembly.contact_area))
+    return tabulate_approach(replace(load_default("bolted_joint").values, A_0=assembly.contact_area))
 
 
 def meshes(assembly: Assembly) -> None:
@@ -60,32 +60,38 @@ def meshes(assembly: Assembly) -> None:
     other = replace(assembly, side1=replace(assembly.side1, E=1.01 * assembly.side1.E))
     for name, one in (("two equal bodies", assembly), ("two different bodies", other)):
         start, cpu = time.perf_counter(), time.process_time()
-        joint = BoltedContact.of(one)
+        joint = BoltedContact.from_assembly(one)
         solution = joint.solve(law(one), PRELOAD)
         steps = solution.contact.steps
         seconds, cpu = time.perf_counter() - start, time.process_time() - cpu
         memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6
-        unknowns = sum(body.size for body in joint.bodies)
+        unknowns = sum(body.unknown_count for body in joint.bodies)
         print(f"{name}, {unknowns} unknowns: {seconds:.1f} s, {cpu:.1f} s of processor time, ", end="")
         print(f"{memory:.2f} GB, {steps} steps of Newton's method", flush=True)
         start = time.process_time()
-        steps = solution.under(PRELOAD, TILT * one.most_moment(PRELOAD)).contact.steps
+        steps = solution.solve_load_case(
+            PRELOAD, DEFAULT_MOMENT_RATIO * one.max_moment(PRELOAD)
+        ).contact.steps
         print(f"with a moment, from there: {time.process_time() - start:.1f} s, {steps} steps", flush=True)
-    rows, _ = convergence.study(assembly, law(assembly), PRELOAD, 0.0, convergence.refinements(MESHES))
+    rows, _ = convergence.run_mesh_study(
+        assembly, law(assembly), PRELOAD, 0.0, convergence.refinements(MESHES)
+    )
     for row in rows:
-        values = "  ".join(f"{name} {row.values[name]:.6g}" for name in convergence.COLUMNS)
+        values = "  ".join(f"{name} {row.values[name]:.6g}" for name in convergence.RESULT_UNITS)
         print(f"refinement {row.refinement:.2f}, {row.unknowns} unknowns: {values}")
-    for change in convergence.changes(rows):
-        print("change [%]:", "  ".join(f"{name} {100 * change[name]:.3f}" for name in convergence.COLUMNS))
-    print("order:", {name: round(value, 1) for name, value in convergence.orders(rows).items()})
+    for change in convergence.relative_changes(rows):
+        print(
+            "change [%]:", "  ".join(f"{name} {100 * change[name]:.3f}" for name in convergence.RESULT_UNITS)
+        )
+    print("order:", {name: round(value, 1) for name, value in convergence.observed_orders(rows).items()})
 
 
 def pressures(solution: JointSolution) -> str:
     """Peak and the pressures midway between the bolts of a row and of a side [MPa]."""
-    places, between = solution.between
+    places, between = solution.pressure_between_bolts
     row = between[np.abs(places[:, 1]) > 0.14].mean() / 1e6
     side = between[np.abs(places[:, 1]) < 0.14].mean() / 1e6
-    return f"peak {solution.peak / 1e6:6.2f}  row {row:6.3f}  side {side:6.3f}"
+    return f"peak {solution.peak_pressure / 1e6:6.2f}  row {row:6.3f}  side {side:6.3f}"
 
 
 def boxes(assembly: Assembly) -> Iterator[tuple[str, Assembly]]:
@@ -114,15 +120,16 @@ def lengths(assembly: Assembly) -> None:
     """What the published pressures say about the lengths."""
     print("published: peak 7.98, between 0.62 MPa")
     print(
-        f"{pressures(BoltedContact.of(assembly).solve(Hard(), PRELOAD))}  default, hard contact", flush=True
+        f"{pressures(BoltedContact.from_assembly(assembly).solve(Hard(), PRELOAD))}  default, hard contact",
+        flush=True,
     )
     for name, one in boxes(assembly):
-        print(f"{pressures(BoltedContact.of(one).solve(law(one), PRELOAD))}  {name}", flush=True)
+        print(f"{pressures(BoltedContact.from_assembly(one).solve(law(one), PRELOAD))}  {name}", flush=True)
 
 
 def preload(assembly: Assembly) -> None:
     """How the shape p/p_mean changes with the preload."""
-    joint, curve = BoltedContact.of(assembly), law(assembly)
+    joint, curve = BoltedContact.from_assembly(assembly), law(assembly)
     first: Any = None
     for force in (9e3, 15e3, 24e3):
         solution = joint.solve(curve, force)
@@ -132,7 +139,7 @@ def preload(assembly: Assembly) -> None:
         change = np.sqrt(field.area @ (shape - first) ** 2 / (field.area @ first**2))
         mean = field.force / field.area.sum()
         print(
-            f"{force / 1e3:g} kN: peak/mean {solution.peak / mean:.3f}, {pressures(solution)} MPa, "
+            f"{force / 1e3:g} kN: peak/mean {solution.peak_pressure / mean:.3f}, {pressures(solution)} MPa, "
             f"shape differs from 9 kN by {100 * change:.2f} % rms"
         )
 
@@ -147,15 +154,17 @@ def timed(name: str, work: Callable[[], Any]) -> Any:
 
 def solvers(assembly: Assembly) -> None:
     """Processor time of the matrices of one body, and of solving with them on springs at its contact."""
-    joint = BoltedContact.of(assembly, SOLVERS)
+    joint = BoltedContact.from_assembly(assembly, SOLVERS)
     body = joint.bodies[0]
-    ours = timed(f"stiffness matrix, {body.size} unknowns", lambda: body.stiffness)
+    ours = timed(f"stiffness matrix, {body.unknown_count} unknowns", lambda: body.stiffness)
     form = BilinearForm(linear_elasticity(*lame_parameters(body.E, body.nu)))
     basis = Basis(body.mesh, ElementVector(ElementHexS2()), intorder=4)
     theirs = timed("the same by scikit-fem's loop", lambda: form.assemble(basis))
     print(f"largest difference {abs(ours - theirs).max() / abs(theirs).max():.1e}")
-    springs = trace(body, joint.interface).T @ sp.diags_array(joint.interface.area * 3e11)
-    matrix = (ours + springs @ trace(body, joint.interface) + 1e5 * sp.eye_array(body.size)).tocsc()
+    springs = displacement_matrix(body, joint.interface).T @ sp.diags_array(joint.interface.area * 3e11)
+    matrix = (
+        ours + springs @ displacement_matrix(body, joint.interface) + 1e5 * sp.eye_array(body.unknown_count)
+    ).tocsc()
     load = body.uniform_load(body.mesh.boundaries["head1"])
     factor = timed("CHOLMOD", lambda: Cholesky(matrix))
     timed("  solution", lambda: factor.solve(load))
@@ -184,7 +193,7 @@ def main() -> None:
         parser.error(f"no such study: {unknown[0]}; have {', '.join(STUDIES)}")
     for name in chosen or STUDIES:
         print(f"# {name}")
-        STUDIES[name](load(BOX))
+        STUDIES[name](read_assembly(BOX))
 
 
 if __name__ == "__main__":

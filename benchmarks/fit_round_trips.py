@@ -17,8 +17,8 @@ from jointfmu_tools.joints.bolted_joint.fit import preload
 from jointfmu_tools.joints.harmonic_drive.fit import torque_angle
 
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
-from jointfmu.parameters import default
-from jointfmu.progress import track
+from jointfmu.parameters import load_default
+from jointfmu.progress import track_progress
 
 SEEDS = 100
 DRIVE = {"K_FTS0": 18000.0, "drive_scale": 4.4, "zero_torque_pressure": 52e6}
@@ -42,12 +42,12 @@ def moved(values, amplitude):
     """Torque and angle of these loops as they are, values: ((name, value), ...)."""
     ends = amplitude * np.array([0.0, 1.0, -1.0, 1.0, -1.0, 1.0])
     torque = np.concatenate([np.linspace(a, b, 200, endpoint=False) for a, b in pairwise(ends)])
-    spring = HarmonicDriveSpring.of(
-        default("harmonic_drive").with_values(dict(values), "user", "synthetic").values
+    spring = HarmonicDriveSpring.tabulate(
+        load_default("harmonic_drive").with_values(dict(values), "user", "synthetic").values
     )
-    angle, memory = np.empty(torque.size), spring.rest()
+    angle, memory = np.empty(torque.size), spring.initial_history()
     for i, T in enumerate(torque):
-        state, memory = spring.loaded(T, memory)
+        state, memory = spring.advance_torque(T, memory)
         angle[i] = state["phi_rel"]
     return torque, angle
 
@@ -55,7 +55,7 @@ def moved(values, amplitude):
 def preloads(rng, of, noise, series=np.inf, points=20):
     """Preload [N] and stiffness [N/m] or frequency [Hz] with a relative noise."""
     P = np.geomspace(2e3, 30e3, points)
-    joint = default("bolted_joint").with_values(JOINT, "user", "synthetic").values
+    joint = load_default("bolted_joint").with_values(JOINT, "user", "synthetic").values
     K = 1.0 / (1.0 / preload.joint_stiffness(joint, P) + 1.0 / series)
     value = K if of == "stiffness" else np.sqrt(K / joint.mass) / (2.0 * np.pi)
     return P, value * np.exp(noise * rng.standard_normal(points))
@@ -89,8 +89,10 @@ def frequency_fit(rng, path):
 def series_fit(rng, path):
     """The same with the structure in series, to be found too; 0.2 % of noise."""
     save(path, "preload [N], frequency [Hz]", *preloads(rng, "frequency", 0.002, series=3e10))
-    free = ["surface.D", "surface.G", preload.SERIES]
-    return preload.fit(path, free=free, modal_mass=JOINT["mass"]), JOINT | {preload.SERIES: 3e10}
+    free = ["surface.D", "surface.G", preload.SERIES_STIFFNESS]
+    return preload.fit(path, fitted_names=free, modal_mass=JOINT["mass"]), JOINT | {
+        preload.SERIES_STIFFNESS: 3e10
+    }
 
 
 CASES = {
@@ -114,7 +116,7 @@ def main():
     print(f"{'measurement':36} within three deviations   middle error of each parameter")
     with tempfile.TemporaryDirectory() as folder:
         for name, case in (CASES | memory_measurements.CASES | drive_measurements.CASES).items():
-            found = [errors(case, seed, folder) for seed in track(range(SEEDS), name)]
+            found = [errors(case, seed, folder) for seed in track_progress(range(SEEDS), name)]
             hits = sum(all(abs(z) <= 3.0 for _, z in one.values()) for one in found)
             middle = {p: np.median([abs(one[p][0]) for one in found]) for p in found[0]}
             shown = ", ".join(f"{p} {100.0 * e:.2g} %" for p, e in middle.items())

@@ -15,11 +15,11 @@ from patch_reduction import pole_deviations
 from scipy.optimize import brentq
 
 from jointfmu.joints.bolted_joint import spring as spring_
-from jointfmu.joints.bolted_joint.law import Bolted, pressures
+from jointfmu.joints.bolted_joint.law import Bolted, preload_pressure
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.mechanics import sliders as sliders_
-from jointfmu.mechanics.footprint.bolts import pressure_shape
-from jointfmu.parameters import default
+from jointfmu.mechanics.footprint.bolts import pressure_distribution
+from jointfmu.parameters import load_default
 
 Array = NDArray[np.float64]
 
@@ -53,19 +53,25 @@ class Theorem:
     @classmethod
     def of(cls, spring: BoltedJointSpring, preload: float, moment: float) -> "Theorem":
         """Tightened."""
-        shape = pressure_shape(spring.joint.pattern)
-        return cls(spring, shape.share, spring.curve.inverse(pressures(spring.joint, shape, preload, moment)))
+        shape = pressure_distribution(spring.joint.pattern)
+        return cls(
+            spring, shape.share, spring.curve.inverse(preload_pressure(spring.joint, shape, preload, moment))
+        )
 
     def force(self, along: float) -> float:
         """Per area [Pa], at a displacement [m] from rest."""
         law = self.spring.foundation()
-        return float(self.share @ law.backbone(self.approach, along))
+        return float(self.share @ law.virgin_traction(self.approach, along))
 
     @property
     def gross(self) -> float:
         """Displacement [m] from which on all of it slips."""
         law = self.spring.foundation()
-        return float(law.friction * (np.max(self.approach) - self.spring.curve.displacement[0]) / law.ratio)
+        return float(
+            law.friction_coefficient
+            * (np.max(self.approach) - self.spring.curve.displacement[0])
+            / law.stiffness_ratio
+        )
 
     def displacement(self, part: float) -> float:
         """At which the force is a part of the friction [m]."""
@@ -74,7 +80,7 @@ class Theorem:
 
     def area(self, size: float) -> float:
         """Loss of a loop of an amplitude [m], per area [J/m2]."""
-        return float(self.share @ self.spring.foundation().loop(self.approach, size)[0])
+        return float(self.share @ self.spring.foundation().cycle_energies(self.approach, size)[0])
 
 
 def deviations(
@@ -85,14 +91,14 @@ def deviations(
     first : preload under which the joint first moved over the present one [1]
     """
     theorem, patches = Theorem.of(spring, preload, moment), spring.patches
-    approach = spring.curve.inverse(pressures(spring.joint, patches, preload, moment))
-    before = spring.curve.inverse(pressures(spring.joint, patches, first * preload, first * moment))
+    approach = spring.curve.inverse(preload_pressure(spring.joint, patches, preload, moment))
+    before = spring.curve.inverse(preload_pressure(spring.joint, patches, first * preload, first * moment))
     law = spring.foundation(before)
 
     def along(*ways: float) -> tuple[float, float]:
-        force, loss = law.at_rest(approach.size), 0.0
+        force, loss = law.virgin_forces(approach.size), 0.0
         for way in ways:
-            moved = law.moved(force, approach, approach, np.tile([way, 0.0], (approach.size, 1)))
+            moved = law.advance(force, approach, approach, np.tile([way, 0.0], (approach.size, 1)))
             force, loss = moved.force, float(patches.share @ moved.loss)
         return float(patches.share @ moved.traction[:, 0]), loss
 
@@ -105,22 +111,22 @@ def deviations(
 
 def joints() -> Iterator[tuple[str, Bolted]]:
     """The box specimen with both laws."""
-    yield "zhao2018", default("bolted_joint").values
-    yield "roughness", default("bolted_joint", "roughness").values
+    yield "zhao2018", load_default("bolted_joint").values
+    yield "roughness", load_default("bolted_joint", "roughness").values
 
 
 def print_counts() -> None:
     """The same number of sliders on more patches: the first table for each, and turns about poles."""
-    shape = pressure_shape(default("bolted_joint").values.pattern)
+    shape = pressure_distribution(load_default("bolted_joint").values.pattern)
     print("| patches | sliders each | force | " + " | ".join(f"loop {x:g}" for x in AMPLITUDES), end="")
     print(" | any pole: 95 %, all |\n" + "|---" * (4 + len(AMPLITUDES)) + "|")
     for counts in COUNTS:
         use(*counts)
-        spring = BoltedJointSpring.of(default("bolted_joint").values)
+        spring = BoltedJointSpring.of(load_default("bolted_joint").values)
         found = [deviations(spring, preload, moment) for preload in PRELOADS for moment in MOMENTS]
         cells = [f"{x:.1%}" for x in np.max([a for _, a in found], axis=0)]
         poles = "{:.1%}, {:.1%}".format(*pole_deviations(shape, spring.patches))
-        row = [str(counts[0]), str(spring.foundation().sliders), f"{max(f for f, _ in found):.2%}"]
+        row = [str(counts[0]), str(spring.foundation().slider_count), f"{max(f for f, _ in found):.2%}"]
         print("| " + " | ".join([*row, *cells, poles]) + " |", flush=True)
     use(*COUNTS[0])
     print()
@@ -128,8 +134,8 @@ def print_counts() -> None:
 
 def use(patches: int, below: int, above: int) -> None:
     """Joints from now on have so many patches and heights."""
-    spring_.PATCHES, sliders_.BELOW, sliders_.ABOVE = patches, below, above
-    spring_.patches.cache_clear()
+    spring_.MAX_PATCHES, sliders_.HEIGHTS_BELOW, sliders_.HEIGHTS_ABOVE = patches, below, above
+    spring_.friction_patches_of.cache_clear()
 
 
 def main() -> None:
@@ -143,16 +149,16 @@ def main() -> None:
             areas = np.max([a for _, a in found], axis=0)
             cells = [f"{max(f for f, _ in found):.2%}", *(f"{a:.1%}" for a in areas)]
             print("| " + " | ".join([name, f"{first:g}", *cells]) + " |", flush=True)
-    print(f"{spring.patches.share.size} patches, {spring.foundation().sliders} sliders each\n")
+    print(f"{spring.patches.share.size} patches, {spring.foundation().slider_count} sliders each\n")
     print_counts()
     print_swings()
 
 
 def print_swings() -> None:
     """Shear of the default joint at a shift that stays, while the normal force swings: over the first one."""
-    spring = BoltedJointSpring.of(default("bolted_joint").values)
+    spring = BoltedJointSpring.of(load_default("bolted_joint").values)
     share, whole = spring.patches.share, spring.foundation()
-    start = spring.curve.inverse(pressures(spring.joint, spring.patches, SWUNG, 0.0))
+    start = spring.curve.inverse(preload_pressure(spring.joint, spring.patches, SWUNG, 0.0))
 
     def load(apart: float) -> float:
         return float(share @ spring.curve.derivatives(start - apart, 0)[0])
@@ -163,15 +169,15 @@ def print_swings() -> None:
     print("|---" * (2 + len(CYCLES)) + "|")
     for part in (0.5, 0.7, 0.9):
         limit = spring.joint.mu * load(0.0)
-        shift = brentq(lambda u, most=part * limit: share @ whole.backbone(start, u) - most, 0.0, 1e-5)
-        exact = share @ whole.backbone(low, shift) / (share @ whole.backbone(start, shift))
+        shift = brentq(lambda u, most=part * limit: share @ whole.virgin_traction(start, u) - most, 0.0, 1e-5)
+        exact = share @ whole.virgin_traction(low, shift) / (share @ whole.virgin_traction(start, shift))
         along = np.outer(np.ones(share.size), [shift, 0.0])
-        moved = sliders.moved(sliders.at_rest(share.size), start, start, along)
+        moved = sliders.advance(sliders.virgin_forces(share.size), start, start, along)
         first, found, lowest = share @ moved.traction[:, 0], [], start
         for cycle in range(1, CYCLES[-1] + 1):
             for before, after in ((start, low), (low, start)):
                 lowest = np.minimum(lowest, before)
-                moved = spring.foundation(start, lowest).moved(moved.force, before, after, 0.0 * along)
+                moved = spring.foundation(start, lowest).advance(moved.force, before, after, 0.0 * along)
             if cycle in CYCLES:
                 found.append(share @ moved.traction[:, 0] / first)
         print(f"| {part:g} | {exact:.4f} | " + " | ".join(f"{x:.4f}" for x in found) + " |", flush=True)

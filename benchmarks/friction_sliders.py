@@ -145,12 +145,12 @@ def walk(
 ) -> tuple[Array, Array, Array]:
     """Forces (m, 2) [N] and losses (m) [J] on the way along a path (m + 1, 3) of approach and displacements
     [m] in `steps` steps per part, and the sliders' forces at its end."""
-    now = sliders.at_rest() if force is None else force
+    now = sliders.virgin_forces() if force is None else force
     tractions, losses = [], []
     for start, end in pairwise(path):
         loss = 0.0
         for a, b in pairwise(np.linspace(start, end, steps + 1)):
-            moved = sliders.moved(now, a[0], b[0], b[1:] - a[1:])
+            moved = sliders.advance(now, a[0], b[0], b[1:] - a[1:])
             now, loss = moved.force, loss + float(moved.loss)
         tractions.append(moved.traction)
         losses.append(loss)
@@ -205,7 +205,7 @@ def print_loops() -> None:
             u = float(displacement(APPROACH, part))
             path = np.array([[APPROACH, x, 0.0] for x in (0.0, u, -u, u)])
             areas.append(np.sum(walk(sliders, path)[1][1:]) / loop_area(APPROACH, part) - 1.0)
-        print(f"| {sliders.sliders} | {worst:.1e} | " + " | ".join(f"{a:+.1%}" for a in areas) + " |")
+        print(f"| {sliders.slider_count} | {worst:.1e} | " + " | ".join(f"{a:+.1%}" for a in areas) + " |")
 
 
 def print_motions() -> None:
@@ -220,7 +220,7 @@ def print_motions() -> None:
             largest = FRICTION * float(load(np.max(path[:, 0])))
             worst = np.max(np.abs(tractions - exact[name][0])) / largest
             cells.append(f"{worst:.1e} | {np.sum(losses) / exact[name][1] - 1.0:+.1%}")
-        print(f"| {sliders.sliders} | " + " | ".join(cells) + " |")
+        print(f"| {sliders.slider_count} | " + " | ".join(cells) + " |")
 
 
 def print_turns() -> None:

@@ -8,14 +8,14 @@ corrected law for the reading P = F_r/A_0, and the drives at the end.
 from dataclasses import replace
 
 import numpy as np
-from jointfmu_tools.published.reference import points
+from jointfmu_tools.published.reference import read_points
 from scipy.optimize import brentq
 
 from jointfmu.contact.interface import at_pressure
 from jointfmu.joints.harmonic_drive.law import drive_stiffness, pair_stiffness
-from jointfmu.parameters import default
+from jointfmu.parameters import load_default
 
-HU = {point.id: float(point.value) for point in points("hu2023")}
+HU = {point.id: float(point.value) for point in read_points("hu2023")}
 D, G, GAMMA, NU, E_BODY = 2.5304, 2.4248e-7, 1.5, (0.295, 0.3), (2.09e11, 2.19e11)
 E = 1.0 / sum((1.0 - nu**2) / e for nu, e in zip(NU, E_BODY, strict=True))
 SHEAR = 1.0 / sum(2.0 * (2.0 - nu) * (1.0 + nu) / e for nu, e in zip(NU, E_BODY, strict=True))
@@ -99,7 +99,7 @@ def over_area():
     """The other reading, P = F_r/A_0: exponents, and K over r_m at the mean pressure of 5 N.m."""
     powers = f"s_l^{0.5 * (D - 1):.3f} s_min^{1 - 0.5 * D:.3f}"
     print(f"P = F_r/A_0, all elastic: F ~ s_l^1.5, K ~ {powers}, so K ~ P^{(D - 1) / 3:.3f}")
-    drive = default("harmonic_drive").values
+    drive = load_default("harmonic_drive").values
     print("r_m [um]   K_N [N/m] of the pair at the mean pressure of 5 N.m")
     for r_m in (250e-6, 10e-6, 2e-6, 1e-6, 0.95e-6, 0.9e-6):
         law = replace(drive.law, surface=replace(drive.surface, r_m=r_m))
@@ -141,10 +141,10 @@ def physics():
         K = 268.0 / (0.48 * h)
         twist = K * 4 * SHEAR / E * RADIUS**2
         print(f"  h = {h * 1e6:.1f} um: K_N = {K:.3g} N/m, K_TS = {twist:.3g} N.m/rad")
-    rough, torque = default("harmonic_drive", "roughness").values, np.array([0.5, 5.0])
+    rough, torque = load_default("harmonic_drive", "roughness").values, np.array([0.5, 5.0])
     pair, whole = pair_stiffness(rough, torque)[0], drive_stiffness(rough, torque)[0]
     print("law roughness at 0.5 and 5 N.m: K_TS {:.0f}, {:.0f}; K_WTS {:.0f}, {:.0f}".format(*pair, *whole))
-    drive, torque = default("harmonic_drive").values, np.array([0.5, 5.0, 6.9, 10.0, 15.0, 30.0])
+    drive, torque = load_default("harmonic_drive").values, np.array([0.5, 5.0, 6.9, 10.0, 15.0, 30.0])
     print("default at 0.5, 5, 6.9, 10, 15, 30 N.m: K_WTS", np.round(drive_stiffness(drive, torque)[0]))
 
 

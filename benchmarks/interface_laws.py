@@ -7,10 +7,10 @@ from band_of_waves import periodic
 from boundary_element import bonded, press, refined, slope
 from jointfmu_tools.fractal import areal_roughness
 
-from jointfmu.contact.interface import at_pressure, largest_spot, stiffness_curve
+from jointfmu.contact.interface import at_pressure, solve_largest_spot, stiffness_curve
 from jointfmu.contact.laws import yu2022
 from jointfmu.contact.surface import contact_modulus
-from jointfmu.parameters import default
+from jointfmu.parameters import load_default
 
 SEEDS = range(4)
 POINTS, FINEST = 256, 8
@@ -39,7 +39,7 @@ class Case:
 
 def cases():
     """The three default parameter sets; the longer side is that of the joint's own nominal area."""
-    zhao, hu, yu = (default(j).values for j in ("bolted_joint", "harmonic_drive", "gear_contact"))
+    zhao, hu, yu = (load_default(j).values for j in ("bolted_joint", "harmonic_drive", "gear_contact"))
     hu = hu.law
     profile, flank = zhao.surface, yu.surface1
     return {
@@ -61,7 +61,7 @@ def cases():
         ),
         "yu2022": Case(
             yu,
-            yu2022.modulus(yu),
+            yu2022.effective_modulus(yu),
             flank.D + 1.0,
             areal_roughness(flank.G, 2.0 - flank.D),
             (1e-3, float(np.sqrt(yu.A_0))),
@@ -115,7 +115,7 @@ def against(case, side, seeds=SEEDS, **grid):
 def law_state(case, side):
     """The law on the same nominal area: k [N/m3], area and plastic share of the real area [1]."""
     law = case.on(side)
-    u = largest_spot(law, case.pressures)
+    u = solve_largest_spot(law, case.pressures)
     s, state = law.spots(), at_pressure(law, case.pressures)
     if "elastic_fraction" in state:
         elastic = state["elastic_fraction"]

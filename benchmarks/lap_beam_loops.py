@@ -60,7 +60,7 @@ class Joint:
     def at_rest(self):
         """The tightened beam."""
         count = self.beam.area.size
-        return State(0.0, 0.0, np.zeros((count, 3)), self.sliders.at_rest(count))
+        return State(0.0, 0.0, np.zeros((count, 3)), self.sliders.virgin_forces(count))
 
     def loaded(self, state, load):
         """The state after a straight path of the load; Newton's method on the patches.
@@ -90,14 +90,14 @@ class Joint:
         """Sliders, tractions (P, 3) [Pa] beyond those at tightening and their derivatives (P, 3, 3)."""
         before, after = (self.beam.approach + w[:, 2] for w in (state.moved, moved))
         shift = (moved - state.moved)[:, :2]
-        sliders = self.sliders.moved(state.force, before, after, shift)
+        sliders = self.sliders.advance(state.force, before, after, shift)
         pressure, normal = self.sliders.curve.derivatives(after, 1)
         first = self.sliders.curve.derivatives(self.beam.approach, 0)[0]
         tangent = np.zeros((len(moved), 3, 3))
         tangent[:, 0, 0], tangent[:, 0, 1], tangent[:, 1, 1] = sliders.tangent.T[:3]
         tangent[:, 1, 0], tangent[:, 2, 2] = tangent[:, 0, 1], normal
-        nudge = 1e-4 * self.sliders.height.std() / self.sliders.height.size
-        coupled = self.sliders.moved(state.force, before, after + nudge, shift).traction
+        nudge = 1e-4 * self.sliders.heights.std() / self.sliders.heights.size
+        coupled = self.sliders.advance(state.force, before, after + nudge, shift).traction
         tangent[:, :2, 2] = (coupled - sliders.traction) / nudge
         return sliders, np.column_stack([sliders.traction, pressure - first]), tangent
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import lap_beam
 import numpy as np
 import scipy.sparse as sp
-from jointfmu_tools.fem.contact import ContactModel, Interface, trace
+from jointfmu_tools.fem.contact import ContactModel, Interface, displacement_matrix
 from jointfmu_tools.fem.elasticity import Cholesky
 from lap_beam_plan import plan
 from lap_beam_shanks import shanks
@@ -42,7 +42,9 @@ class Structure:
         """Mesh a beam; one patch for each element of the contact."""
         view = plan(beam, size)
         bodies = lap_beam.bodies(beam, view, size)
-        return cls(beam, bodies, patches(Interface.of(lap_beam.contact(beam, view))), shanks(beam, bodies))
+        return cls(
+            beam, bodies, patches(Interface.from_mesh(lap_beam.contact(beam, view))), shanks(beam, bodies)
+        )
 
     @property
     def symmetric(self):
@@ -52,7 +54,10 @@ class Structure:
     def relative(self, axis):
         """Displacement (P, n) of half 1 against half 2 along an axis: along z the approach."""
         return sp.hstack(
-            [s * trace(b, self.interface, axis) for s, b in zip((1.0, -1.0), self.bodies, strict=True)]
+            [
+                s * displacement_matrix(b, self.interface, axis)
+                for s, b in zip((1.0, -1.0), self.bodies, strict=True)
+            ]
         )
 
     def tightened(self, law, preload, gap=None):
@@ -63,7 +68,7 @@ class Structure:
         first, second = self.symmetric
         slides = 3 * _ends(self.bodies[1])[0]
         held = (np.union1d(first, pins(self.bodies[0])), np.union1d(second, slides))
-        model = ContactModel(self.bodies, self.interface, law, gap, held=held)
+        model = ContactModel(self.bodies, self.interface, law, gap, fixed_unknowns=held)
         area = self.interface.area.sum()
         return model.solve(loads, 0.5 * preload * len(heads) / area)
 

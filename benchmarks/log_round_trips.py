@@ -16,7 +16,7 @@ from jointfmu_tools import columns
 from jointfmu_tools.joints.harmonic_drive.fit import log
 from jointfmu_tools.joints.harmonic_drive.new import NEW
 
-from jointfmu.joints.harmonic_drive.friction import limits, viscous
+from jointfmu.joints.harmonic_drive.friction import friction_limits, viscous_torque
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 
 TRUE = {
@@ -48,7 +48,7 @@ SPEEDS = (0.01, 0.05, 0.1, 0.2, 0.5, 0.8, 1.5, 2.2, 3.2)
 def drive():
     """The parameter file that the logs are made with."""
     given = dict.fromkeys(option.name for option in NEW.options) | {"catalogue": "CSG-25-100"}
-    return NEW.run(given).file.with_values(TRUE, "user", "made up")
+    return NEW.make_joint(given).file.with_values(TRUE, "user", "made up")
 
 
 def start():
@@ -71,17 +71,17 @@ def motion():
         for n in range(3)
     )
     temperature = 293.15 + 25.0 * t / TIME
-    spring = HarmonicDriveSpring.of(drive().values)
+    spring = HarmonicDriveSpring.tabulate(drive().values)
     ratio, load = spring.joint.ratio, ARM * ddq + GRAVITY * np.cos(q)
-    wound, phi = spring.rest(), np.empty(t.size)
+    wound, phi = spring.initial_history(), np.empty(t.size)
     for n, torque in enumerate(-load):
-        out, wound = spring.loaded(torque, wound)
+        out, wound = spring.advance_torque(torque, wound)
         phi[n] = float(out["phi_rel"])
     phi1 = ratio * (q - phi)
     w1 = np.gradient(phi1, t)
-    memory, torque = spring.rest(), np.zeros(t.size)
+    memory, torque = spring.initial_history(), np.zeros(t.size)
     for n, now in enumerate(zip(phi1, w1, q, dq, strict=True)):
-        out, memory = spring.driven(now, memory, temperature[n])
+        out, memory = spring.advance_motion(now, memory, temperature[n])
         torque[n] = -float(out["tau1"])
     return t, q, np.sign(ratio) * (torque + ROTOR * np.gradient(w1, t)), temperature, phi1
 
@@ -95,7 +95,7 @@ def moving(path, seed):
     motor = BITS * np.round(phi1 / BITS)
     heads = [("q_motor", "rad"), ("current", "A"), ("temperature", "degC"), ("q", "deg"), ("t", "s")]
     values = [motor, current, temperature - 273.15, np.degrees(seen), t]
-    path.write_text(columns.text(heads, values, 9))
+    path.write_text(columns.format_table(heads, values, 9))
 
 
 def steady(path, seed):
@@ -104,10 +104,14 @@ def steady(path, seed):
     dq = np.array([sign * speed for sign in (-1.0, 1.0) for speed in SPEEDS] * 2)
     temperature = np.repeat([293.15, 318.15], 2 * len(SPEEDS))
     w1, free = np.abs(drive().values.ratio) * dq, drive().values
-    torque = np.sign(dq) * limits(free, w1, 0.0, temperature)[0] + viscous(free, w1, temperature)
+    torque = np.sign(dq) * friction_limits(free, w1, 0.0, temperature)[0] + viscous_torque(
+        free, w1, temperature
+    )
     torque *= 1.0 + 0.02 * rng.standard_normal(dq.size)
     path.write_text(
-        columns.text([("tau", "N.m"), ("dq", "rad/s"), ("temperature", "K")], [torque, dq, temperature], 9)
+        columns.format_table(
+            [("tau", "N.m"), ("dq", "rad/s"), ("temperature", "K")], [torque, dq, temperature], 9
+        )
     )
 
 
@@ -141,7 +145,7 @@ def trips(make, options, seeds):
         fit = trip(make, options, seed)
         for label in fit.solution.values:
             errors, held = found.setdefault(label, ([], []))
-            errors.append(fit.parameters.flat[label] / TRUE[label] - 1.0)
+            errors.append(fit.parameters.values_by_name[label] / TRUE[label] - 1.0)
             if label in fit.intervals:
                 low, high = fit.intervals[label]
                 held.append(low <= TRUE[label] <= high)

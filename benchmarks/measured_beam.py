@@ -19,8 +19,8 @@ from lap_beam_reduction import Structure, reduced
 from measured_joints import joint_law, measured
 from scipy.stats import qmc
 
-from jointfmu.mechanics.curve import approach_curve
-from jointfmu.progress import track
+from jointfmu.mechanics.curve import tabulate_approach
+from jointfmu.progress import track_progress
 
 UNKNOWN = {
     "preload [N]": (3e3, 13e3, False),
@@ -58,7 +58,7 @@ def predicted(one, preload, friction, Ra, modulus, height):
     known, entries = measured("measured_beam"), data()
     one = replace(one, E=modulus)
     law = joint_law({"E": modulus, "nu": one.nu, "A_0": entries["A_0"], "Rq": 1.25 * Ra}, H=entries["H"])
-    curve, shear = approach_curve(law), float(law.shear_ratio())
+    curve, shear = tabulate_approach(law), float(law.shear_ratio())
     part = reduced(Structure.of(one, MESH), curve, preload, shear, crown(height, one.lap))
     joint = Joint(part, foundation(curve, shear, friction))
     states = joint.backbone(AMPLITUDES)
@@ -77,7 +77,7 @@ def main(arguments=None):
     known = measured("measured_beam")
     one = replace(beam(), side=known["thickness"], width=known["width"], density=DENSITY)
     rows = []
-    for draw in track(samples(), "samples"):
+    for draw in track_progress(samples(), "samples"):
         rows.append(predicted(one, *draw))
         print("  ".join(f"{value:.4g}" for value in (*draw, *rows[-1])), file=sys.stderr, flush=True)
     low, middle, high = np.quantile(np.array(rows), BAND, axis=0)

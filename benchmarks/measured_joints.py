@@ -7,7 +7,7 @@ from importlib.resources import files
 import numpy as np
 
 from jointfmu.contact.interface import at_pressure
-from jointfmu.contact.laws.roughness import Roughness
+from jointfmu.contact.laws.roughness import RoughnessLaw
 from jointfmu.contact.surface import Elastic
 
 HARDNESS, SLOPE, FRICTION = 2e9, 0.15, 0.15
@@ -27,7 +27,7 @@ def measured(name="measured_joints"):
 def joint_law(joint, **changes):
     """The law for an entry of models/reference with the roughness `Rq` of each of its two sides."""
     body = Elastic(E=joint["E"], nu=joint["nu"])
-    law = Roughness(
+    law = RoughnessLaw(
         h=np.sqrt(2.0) * joint["Rq"],
         gamma=GAMMA,
         longest_wave=LONGEST,

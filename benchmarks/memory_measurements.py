@@ -10,7 +10,7 @@ import numpy as np
 from jointfmu_tools.fitting.hysteresis import Oscillator
 from jointfmu_tools.joints.bolted_joint.fit import loop
 
-from jointfmu.parameters import default
+from jointfmu.parameters import load_default
 
 PRELOAD, MASS = 9e3, 50.0
 JOINT = {"mu": 0.22, "surface.G": 2.5e-8, "surface.D": 1.38}
@@ -24,7 +24,7 @@ DECAY_NOISE, RESPONSE_NOISE = 3e-3, 1e-2
 
 def file(kind, values):
     """The default parameter file with the true values."""
-    return default(kind).with_values(values, "user", "synthetic")
+    return load_default(kind).with_values(values, "user", "synthetic")
 
 
 @cache
@@ -106,7 +106,7 @@ def joint_decay():
 def response(law, inertia, forces, frequencies):
     """Frequency, force and amplitude at several levels."""
     f, F = (column.ravel() for column in np.meshgrid(frequencies, forces))
-    return f, F, Oscillator(law, inertia).response(f, F, F / law.equivalent(np.array([1e-9]))[0])
+    return f, F, Oscillator(law, inertia).response_amplitude(f, F, F / law.equivalent(np.array([1e-9]))[0])
 
 
 @cache

@@ -11,18 +11,18 @@ import math
 from dataclasses import replace
 
 import numpy as np
-from jointfmu_tools.joints.bolted_joint.modelica import tightened
+from jointfmu_tools.joints.bolted_joint.modelica import combine_nodes
 from scipy.integrate import solve_ivp
 from scipy.interpolate import BPoly
 from validity_tables import heading, row
 
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.joints.harmonic_drive.drive import kinematic_error
-from jointfmu.joints.harmonic_drive.friction import LIMITS, limits, viscous
-from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring, transmitted, wind_up
-from jointfmu.joints.harmonic_drive.spring import State as Spring
-from jointfmu.mechanics.sliders import SPREAD
-from jointfmu.parameters import default
+from jointfmu.joints.harmonic_drive.friction import LIMIT_SHARES, friction_limits, viscous_torque
+from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring, transmitted_torque, wind_up
+from jointfmu.joints.harmonic_drive.spring import SpringState as Spring
+from jointfmu.mechanics.sliders import UNIFORM_DEVIATION
+from jointfmu.parameters import load_default
 
 CHANGED, BENT, STILL = 0.02, 0.2, 1e-4
 """Of the bolted joint, as the component has them [1]."""
@@ -43,10 +43,10 @@ class Drive:
 
     def __init__(self, friction, turns):
         given = OTHERS | (FRICTION if friction else {})
-        self.law = HarmonicDriveSpring.of(replace(default("harmonic_drive").values, **given))
-        self.brakes, self.turns = LIMITS.size if friction else 0, turns
+        self.law = HarmonicDriveSpring.tabulate(replace(load_default("harmonic_drive").values, **given))
+        self.brakes, self.turns = LIMIT_SHARES.size if friction else 0, turns
         joint = self.law.joint
-        self.most = LAYER * max(limits(joint, 0.0, joint.rated_torque)) * LIMITS[: self.brakes]
+        self.most = LAYER * max(friction_limits(joint, 0.0, joint.rated_torque)) * LIMIT_SHARES[: self.brakes]
         self.held, self.place = np.zeros(self.law.hysteresis.limit.size), 0.0
 
     def seen(self, x):
@@ -65,15 +65,15 @@ class Drive:
         states = x[4 + self.brakes :]
         held = self.hysteresis(phi) if self.turns else np.clip(states, -found.limit, found.limit)
         load = math.copysign(float(self.law.curve.derivatives(np.array(abs(phi)), 0)[0]), phi)
-        tau = transmitted(joint, x[:4], Spring(phi, load, 0.0, held.sum(), 0.0, slope))
-        positive, negative = limits(joint, x[1], tau)
+        tau = transmitted_torque(joint, x[:4], Spring(phi, load, 0.0, held.sum(), 0.0, slope))
+        positive, negative = friction_limits(joint, x[1], tau)
         q = x[4 : 4 + self.brakes]
-        share = LIMITS[: self.brakes]
+        share = LIMIT_SHARES[: self.brakes]
         braked = np.clip(q, -negative * share, positive * share)
         stuck = self.law.friction.stiffness[: self.brakes]
         rate = stuck * (x[1] - abs(x[1]) * (q - braked) / self.most) - (q - braked) / FORGETS
         push = 0.03 * math.sin(26.179938779914945 * t) ** 3 if t < 0.24 else 0.0
-        torque = push + tau * (1.0 / joint.ratio + slope) - braked.sum() - viscous(joint, x[1])
+        torque = push + tau * (1.0 / joint.ratio + slope) - braked.sum() - viscous_torque(joint, x[1])
         own = [x[1], torque / MOTOR, x[3], -(tau + WEIGHT * math.sin(x[2])) / LINK]
         if self.turns:
             return np.concatenate([own, rate])
@@ -114,12 +114,12 @@ class Bolted:
     """The equations: states s, v, perhaps forces (2, n) of the sliders."""
 
     def __init__(self, kept):
-        spring = BoltedJointSpring.of_nodes(default("bolted_joint").values)
-        found = tightened(spring, 9e3, 0.0)
+        spring = BoltedJointSpring.of_nodes(load_default("bolted_joint").values)
+        found = combine_nodes(spring, 9e3, 0.0)
         rows, self.kept, self.tight = found.table.rows, kept, found.force
         self.load = BPoly.from_derivatives(rows[:, 0], rows[:, 1:4])
         self.curve = [self.load, self.load.derivative(), self.load.derivative(2)]
-        self.shear, self.mu, self.heights = found.shear, spring.joint.mu, found.heights
+        self.shear, self.mu, self.heights = found.shear_ratio, spring.joint.mu, found.pair_boundaries
         self.K, self.Q = found.sliders.T
         stiff = float(self.curve[1](0.0))
         self.reach = np.array([self.mu / self.shear, self.mu / self.shear, 1.0]) * self.tight / stiff
@@ -138,8 +138,8 @@ class Bolted:
         S = np.where(on, np.maximum(np.minimum(stiff, k[1:]) - k[:-1], 0.0), 0.0)
         grow = np.where(on & ~far, bend, 0.0)
         first = np.where(on, np.minimum(self.tight + load, g[1:]) - g[:-1] - k[:-1] * inside, 0.0)
-        apart = np.minimum(S * SPREAD * inside, np.maximum(first, 0.0))
-        widen = np.where(on & ~far, np.minimum(SPREAD * (S + grow * inside), S), 0.0)
+        apart = np.minimum(S * UNIFORM_DEVIATION * inside, np.maximum(first, 0.0))
+        widen = np.where(on & ~far, np.minimum(UNIFORM_DEVIATION * (S + grow * inside), S), 0.0)
         N = np.maximum(first, 0.0) + S * np.maximum(c - h[1:], 0.0)
         half = 0.5 * self.shear * np.array([S, S]), 0.5 * self.mu * np.array([N - apart, N + apart])
         rates = 0.5 * self.shear * np.array([grow, grow]), 0.5 * self.mu * np.array([S - widen, S + widen])

@@ -84,10 +84,10 @@ def python_time(fmu: Path, parameters: dict[str, float], folder: Path) -> float:
     unpacked = fmpy.extract(str(fmu), str(folder))
     slaves = []
     for i in range(JOINTS):
-        instance = Instance(unpacked, description, f"drive{i}", exchange=True)
+        instance = Instance(unpacked, description, f"drive{i}", model_exchange=True)
         instance.instantiate()
-        instance.set(parameters)
-        instance.begin()
+        instance.set_values(parameters)
+        instance.enter_initialization()
         slave = instance.fmu
         slave.exitInitializationMode()
         slave.enterContinuousTimeMode()

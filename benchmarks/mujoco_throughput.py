@@ -32,7 +32,7 @@ TARGETS = {"plain": 1.5, "plain, no friction": 1.5, "plugin": 2.5}
 
 def models(folder: Path, hysteresis: float | None) -> dict[str, mujoco.MjModel]:
     """The arm in all three forms."""
-    spec = elastic.read(ROBOT)
+    spec = elastic.read_robot(ROBOT)
     spec.option.timestep = STEP
     spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_EULERDAMP
     for actuator in [*spec.actuators]:

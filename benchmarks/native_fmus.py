@@ -28,12 +28,12 @@ from jointfmu_fmu_src.building import FLAVOURS, build
 from jointfmu_fmu_src.native import data
 from jointfmu_fmu_src.native.code import generate
 from jointfmu_fmu_src.native.compiled import compiler
-from jointfmu_fmu_src.native.compiled.binary import finished
-from jointfmu_fmu_src.native.compiled.kept import part_of
+from jointfmu_fmu_src.native.compiled.binary import fill_library
+from jointfmu_fmu_src.native.compiled.kept import compiled_model
 from jointfmu_tools.host import Instance
 
 from jointfmu.joints import MODELS
-from jointfmu.parameters import default
+from jointfmu.parameters import load_default
 
 HERE = Path(__file__).resolve().parent
 TESTS = HERE.parent / "tests"
@@ -144,12 +144,12 @@ class Linked(NamedTuple):
 def as_built(name: str) -> Linked:
     """Of an FMU with its default parameters, or of one of OTHERS."""
     own, changes = OTHERS.get(name, (name, {}))
-    file = default(MODELS[own].joint).with_values(changes, "user", "benchmark")
-    model = MODELS[own].of(file.joint, file.values)
+    file = load_default(MODELS[own].joint).with_values(changes, "user", "benchmark")
+    model = MODELS[own].with_parameters(file.joint, file.values)
     given = data.split(model, file)
-    part, before = part_of(model, file, given), data.placeholder(model, given)
+    part, before = compiled_model(model, file, given), data.placeholder(model, given)
     after = data.data_of(model, file, given, part.sources)
-    made = {f: finished(part.libraries[f[-1]][PLATFORM], before, after, own) for f in NATIVE}
+    made = {f: fill_library(part.libraries[f[-1]][PLATFORM], before, after, own) for f in NATIVE}
     return Linked(made, after.token)
 
 
@@ -201,14 +201,14 @@ def native_times(
 def python_times(fmu: Path, unpacked: Path) -> Times:
     """The same of the python flavour, in fmpy; all inputs and all outputs take one call each."""
     description = fmpy.read_model_description(str(fmu))
-    slave = Instance(fmpy.extract(str(fmu), str(unpacked)), description, "benchmark", exchange=False)
+    slave = Instance(fmpy.extract(str(fmu), str(unpacked)), description, "benchmark", model_exchange=False)
     refs = {
         kind: [v.valueReference for v in description.modelVariables if v.causality == kind]
         for kind in ("input", "output")
     }
     begin = perf_counter()
     slave.instantiate()
-    slave.begin()
+    slave.enter_initialization()
     slave.fmu.exitInitializationMode()
     times = {"start": perf_counter() - begin}
     calls = slave.fmu

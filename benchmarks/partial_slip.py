@@ -14,7 +14,7 @@ import slip_picture
 import slip_tables as tables
 from boundary_element import press, refined
 
-from jointfmu.progress import track
+from jointfmu.progress import track_progress
 
 NU = 0.3
 SEPARATIONS = {500: 1.0, 501: 1.5, 700: 1.0, 701: 1.5}
@@ -81,7 +81,7 @@ def main():
     with ProcessPoolExecutor() as pool:
         spheres = [pool.submit(cases.sphere_misses, points, nu) for nu, points in SPHERES]
         grids = pool.map(grid, GRIDS)
-        rough = track(pool.map(Surface.compared, surfaces), "surfaces", len(surfaces))
+        rough = track_progress(pool.map(Surface.compared, surfaces), "surfaces", len(surfaces))
         found = dict(zip(surfaces, rough, strict=True))
         tables.solver(*tamaas())
         tables.spheres(SPHERES, [one.result() for one in spheres])

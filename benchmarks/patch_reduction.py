@@ -12,17 +12,17 @@ from friction_sliders import at_levels, levels
 from numpy.typing import NDArray
 from scipy.stats import qmc
 
-from jointfmu.joints.bolted_joint.contact import shifts
+from jointfmu.joints.bolted_joint.contact import patch_displacement
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.mechanics.curve import Curve
-from jointfmu.mechanics.footprint.bolts import pressure_shape
-from jointfmu.mechanics.footprint.friction import friction_patches
-from jointfmu.mechanics.footprint.patches import few_points
+from jointfmu.mechanics.footprint.bolts import pressure_distribution
+from jointfmu.mechanics.footprint.friction import reduce_patches
+from jointfmu.mechanics.footprint.patches import reduce_points
 from jointfmu.mechanics.footprint.plate import BoltedPlate
-from jointfmu.mechanics.footprint.shape import FrictionPatches, NodalField, PressureShape
-from jointfmu.mechanics.jenkins import Moved
-from jointfmu.mechanics.sliders import SLIDERS, together, turning
-from jointfmu.parameters import default
+from jointfmu.mechanics.footprint.shape import FrictionPatches, NodalField, PressureDistribution
+from jointfmu.mechanics.jenkins import SliderUpdate
+from jointfmu.mechanics.sliders import FOUNDATION_SLIDERS, resultant, torsion_directions
+from jointfmu.parameters import load_default
 
 Array = NDArray[np.float64]
 
@@ -78,8 +78,8 @@ PLATES = 12
 """Random plates."""
 POLES = 400
 """Turns in gross slip about poles at random nodes of the contact, and beside them."""
-MANY = {"22 nodes": (22, few_points), "22": (22, friction_patches), "40": (40, friction_patches)}
-MANY |= {"60": (60, friction_patches), "120 nodes": (120, few_points)}
+MANY = {"22 nodes": (22, reduce_points), "22": (22, reduce_patches), "40": (40, reduce_patches)}
+MANY |= {"60": (60, reduce_patches), "120 nodes": (120, reduce_points)}
 """Patches of the last table, fitted or some of the nodes."""
 
 
@@ -93,14 +93,19 @@ def ranges(moment: float) -> dict[str, Range]:
     }
 
 
-def opening_moment(shape: PressureShape) -> float:
+def opening_moment(shape: PressureDistribution) -> float:
     """Factor of tilt [1] at which the first node that touches opens."""
-    touches = (shape.equal > 0.0) & (shape.tilt != 0.0)
-    return float(np.min(shape.equal[touches] / np.abs(shape.tilt[touches])))
+    touches = (shape.preload_shape > 0.0) & (shape.moment_shape != 0.0)
+    return float(np.min(shape.preload_shape[touches] / np.abs(shape.moment_shape[touches])))
 
 
 def deviation(
-    curve: Curve, mean: float, shape: PressureShape, points: PressureShape, states: Range, count: int = 64
+    curve: Curve,
+    mean: float,
+    shape: PressureDistribution,
+    points: PressureDistribution,
+    states: Range,
+    count: int = 64,
 ) -> tuple[float, float]:
     """Largest deviations [1] of forces and moments, and of stiffnesses, of points from those of a shape.
 
@@ -122,13 +127,13 @@ def deviation(
     return float(np.max(worst[:3])), float(np.max(worst[3:]))
 
 
-def tightened(curve: Curve, shape: PressureShape, load: tuple[float, float]) -> Array:
+def tightened(curve: Curve, shape: PressureDistribution, load: tuple[float, float]) -> Array:
     """Approaches (n) [m] under a mean pressure [Pa] and a factor of tilt [1]."""
-    return curve.inverse(load[0] * np.maximum(shape.equal + load[1] * shape.tilt, 0.0))
+    return curve.inverse(load[0] * np.maximum(shape.preload_shape + load[1] * shape.moment_shape, 0.0))
 
 
 def sums(
-    curve: Curve, shape: PressureShape, start: Array, motion: Array, reach: Array
+    curve: Curve, shape: PressureDistribution, start: Array, motion: Array, reach: Array
 ) -> tuple[Array, Array]:
     """The nine sums and their sizes, of nodes that begin at approaches (n) [m] and move by normal motion [m]
     and rotations [rad] about x and y."""
@@ -141,7 +146,7 @@ def sums(
     return values[0] @ shape.share, np.maximum(*sizes)
 
 
-def field() -> PressureShape:
+def field() -> PressureDistribution:
     """A nodal field without symmetry: one half of a plate that touches around three bolts."""
     unit = qmc.Sobol(2, rng=SEED).random(512)[:ROUND] - 0.5
     x, y = 0.2 * unit[:, 0], 0.1 * unit[:, 1]
@@ -153,20 +158,24 @@ def field() -> PressureShape:
     tilt = near[0] - near[1] + near[2]
     tilt = tilt - np.mean(tilt)
     rows = (tuple(values.tolist()) for values in (share, x, y, equal, tilt))
-    return NodalField(**dict(zip(("share", "x", "y", "equal", "tilt"), rows, strict=True))).shape()
+    return NodalField(
+        **dict(zip(("share", "x", "y", "equal", "tilt"), rows, strict=True))
+    ).pressure_distribution()
 
 
-def plate(*bolts: tuple[float, float], size: tuple[float, float], hole: float, cone: float) -> PressureShape:
+def plate(
+    *bolts: tuple[float, float], size: tuple[float, float], hole: float, cone: float
+) -> PressureDistribution:
     """Of a plate with bolts [m]."""
     x, y = zip(*bolts, strict=True)
     return BoltedPlate(
         length=size[0], width=size[1], x=x, y=y, hole_diameter=hole, cone_diameter=cone
-    ).shape()
+    ).pressure_distribution()
 
 
-def contacts() -> Iterator[tuple[str, PressureShape]]:
+def contacts() -> Iterator[tuple[str, PressureDistribution]]:
     """Contacts of the table."""
-    yield "frame, 8 bolts", pressure_shape(default("bolted_joint").values.pattern)
+    yield "frame, 8 bolts", pressure_distribution(load_default("bolted_joint").values.pattern)
     four = ((-0.1, 0.02), (0.0, -0.03), (0.1, 0.02), (0.1, -0.02))
     yield "plate, 4 bolts", plate(*four, size=(0.3, 0.1), hole=0.011, cone=0.03)
     square = ((-0.08, -0.03), (0.08, -0.03), (0.08, 0.03), (-0.08, 0.03))
@@ -177,7 +186,7 @@ def contacts() -> Iterator[tuple[str, PressureShape]]:
     yield "annulus", annulus()
 
 
-def annulus(around: int = 96, across: int = 8) -> PressureShape:
+def annulus(around: int = 96, across: int = 8) -> PressureDistribution:
     """A field of nodes of equal area on a ring, whose pressure falls from the inner to the outer edge."""
     inner, outer = 0.02, 0.05
     edge = np.linspace(inner**2, outer**2, 2 * across + 1)[1::2]
@@ -186,10 +195,12 @@ def annulus(around: int = 96, across: int = 8) -> PressureShape:
     share = np.full(x.size, 1.0 / x.size)
     equal = 1.0 - 0.7 * (radius.ravel() - inner) / (outer - inner)
     equal /= share @ equal
-    return PressureShape(share, np.column_stack([x, y]), equal, equal * y / (share @ (equal * y * y)) * outer)
+    return PressureDistribution(
+        share, np.column_stack([x, y]), equal, equal * y / (share @ (equal * y * y)) * outer
+    )
 
 
-def random_plate(seed: int) -> PressureShape:
+def random_plate(seed: int) -> PressureDistribution:
     """With three to eight bolts anywhere."""
     rng = np.random.default_rng(seed)
     hole = rng.uniform(0.006, 0.02)
@@ -205,14 +216,14 @@ def random_plate(seed: int) -> PressureShape:
     return plate(*((float(x), float(y)) for x, y in bolts), size=(size[0], size[1]), hole=hole, cone=cone)
 
 
-def sheared() -> Iterator[tuple[str, list[PressureShape]]]:
+def sheared() -> Iterator[tuple[str, list[PressureDistribution]]]:
     """Contacts of the table of the friction; of several the largest deviations are printed."""
     yield from ((name, [shape]) for name, shape in contacts())
     yield f"{PLATES} random plates", [random_plate(seed) for seed in range(PLATES)]
 
 
 def friction(
-    spring: BoltedJointSpring, shape: PressureShape, fine: bool, largest: float, motion: Motion
+    spring: BoltedJointSpring, shape: PressureDistribution, fine: bool, largest: float, motion: Motion
 ) -> tuple[Array, Array]:
     """Force or moment on 1 m2 [N], [N.m] from rest to the WAYS, and losses [J] of loops of the AMPLITUDES.
 
@@ -224,24 +235,26 @@ def friction(
     gyration = np.sqrt(shape.share @ np.sum(shape.position**2, axis=1) + shape.share @ patches.radius**2)
     start = tightened(spring.curve, shape, (mean_pressure(spring), motion.moment))
     approach = start - motion.tilt * largest * shape.position[:, 0] / gyration
-    along = shifts(patches, np.array([0.0, np.sqrt(1.0 - motion.turn**2), motion.turn / gyration]))
-    sliders = spring.on(shape).foundation(start)
+    along = patch_displacement(
+        patches, np.array([0.0, np.sqrt(1.0 - motion.turn**2), motion.turn / gyration])
+    )
+    sliders = spring.on_nodes(shape).foundation(start)
     if fine:
         sliders = at_levels(spring.curve, ratio, spring.joint.mu, FINE)
     gross = spring.joint.mu / ratio * largest * along
 
-    def moved(force: Array, way: float) -> Moved:
-        return sliders.moved(force, approach, approach, way * gross)
+    def moved(force: Array, way: float) -> SliderUpdate:
+        return sliders.advance(force, approach, approach, way * gross)
 
-    rest, losses = sliders.at_rest(approach.size), []
-    forces = [shape.share @ np.sum(together(moved(rest, way).force) * along, axis=1) for way in WAYS]
+    rest, losses = sliders.virgin_forces(approach.size), []
+    forces = [shape.share @ np.sum(resultant(moved(rest, way).force) * along, axis=1) for way in WAYS]
     for size in AMPLITUDES:
         back = moved(moved(rest, size).force, -2.0 * size)
         losses.append(shape.share @ (back.loss + moved(back.force, 2.0 * size).loss))
     return np.array(forces), np.array(losses)
 
 
-def poles_inside(shape: PressureShape, count: int) -> Array:
+def poles_inside(shape: PressureDistribution, count: int) -> Array:
     """Places (count, 2) [m] at random nodes of a contact, and beside them."""
     rng = np.random.default_rng(1)
     poles = shape.position[rng.choice(shape.share.size, count, p=shape.share)]
@@ -252,19 +265,20 @@ def poles_inside(shape: PressureShape, count: int) -> Array:
 
 def gross_slip(points: FrictionPatches, friction: Array, poles: Array) -> Array:
     """Forces (p, 2) along turns about poles (p, 2) [m] of points with a friction (n)."""
-    x, y = turning(SLIDERS if np.any(points.radius) else 2)
+    x, y = torsion_directions(FOUNDATION_SLIDERS if np.any(points.radius) else 2)
     places = points.position + points.radius[:, None] * np.column_stack([y, -x])[:, None]
     arm = places - poles[:, None, None]
     way = np.stack([-arm[..., 1], arm[..., 0]], axis=-1) / np.linalg.norm(arm, axis=-1)[..., None]
     return np.asarray(np.einsum("n,pkni->pi", friction, way)) / len(x)
 
 
-def pole_deviations(shape: PressureShape, patches: FrictionPatches) -> Array:
+def pole_deviations(shape: PressureDistribution, patches: FrictionPatches) -> Array:
     """(2) deviation of the force over the friction [1] in gross slip about POLES poles inside the contact: of
     95 %, largest."""
     poles = poles_inside(shape, POLES)
     both = (
-        gross_slip(points, points.share * points.equal, poles) for points in (shape.as_patches(), patches)
+        gross_slip(points, points.share * points.preload_shape, poles)
+        for points in (shape.as_patches(), patches)
     )
     off = np.linalg.norm(np.subtract(*both), axis=1)
     return np.quantile(off, [0.95, 1.0])
@@ -295,7 +309,7 @@ def print_normal(spring: BoltedJointSpring) -> None:
     for name, shape in contacts():
         for count in COUNTS:
             start = time.perf_counter()
-            points = few_points(shape, count)
+            points = reduce_points(shape, count)
             took = time.perf_counter() - start
             cells = [
                 "{:.0e}, {:.0e}".format(
@@ -314,20 +328,20 @@ def print_friction(spring: BoltedJointSpring) -> None:
     for name, shapes in sheared():
         found = [friction_deviations(spring, shape) for shape in shapes]
         for count, worst in zip(PATCHES, np.max(found, axis=0), strict=True):
-            poles = [pole_deviations(shape, friction_patches(shape, count)) for shape in shapes]
+            poles = [pole_deviations(shape, reduce_patches(shape, count)) for shape in shapes]
             cells = [f"{force:.1e}, {area:.1%}" for force, area in worst]
             cells.append("{:.1%}, {:.1%}".format(*np.max(poles, axis=0)))
             print(f"| {name} | {count} | " + " | ".join(cells) + " |", flush=True)
 
 
-def friction_deviations(spring: BoltedJointSpring, shape: PressureShape) -> Array:
+def friction_deviations(spring: BoltedJointSpring, shape: PressureDistribution) -> Array:
     """Largest deviations (counts, motions, 2) [1] of force over gross slip, and of areas of loops."""
     largest = float(np.max(tightened(spring.curve, shape, (mean_pressure(spring), 0.0))))
     largest -= float(spring.curve.displacement[0])
     exact = [friction(spring, shape, True, largest, motion) for motion in MOTIONS.values()]
     found = []
     for count in PATCHES:
-        patches = friction_patches(shape, count)
+        patches = reduce_patches(shape, count)
         for (force, loss), motion in zip(exact, MOTIONS.values(), strict=True):
             few, lost = friction(spring, patches, False, largest, motion)
             worst = np.max(np.abs(few - force)) / np.max(np.abs(force))
@@ -337,7 +351,7 @@ def friction_deviations(spring: BoltedJointSpring, shape: PressureShape) -> Arra
 
 def main() -> None:
     """Print the tables."""
-    spring = BoltedJointSpring.of(default("bolted_joint").values)
+    spring = BoltedJointSpring.of(load_default("bolted_joint").values)
     print_normal(spring)
     print()
     print_friction(spring)

@@ -14,17 +14,17 @@ from pathlib import Path
 
 import numpy as np
 from jointfmu_tools import cli
-from jointfmu_tools.drawing.tables import threads
+from jointfmu_tools.drawing.tables import read_threads
 from jointfmu_tools.fem.bolted_contact import BoltedContact
 from jointfmu_tools.fem.geometry import Assembly, BoltList, Plate, TappedPlate
 from jointfmu_tools.fields.joint_parameters import pressure_shape
 
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
-from jointfmu.mechanics.curve import approach_curve
+from jointfmu.mechanics.curve import tabulate_approach
 from jointfmu.mechanics.footprint import plate
-from jointfmu.mechanics.footprint.shape import PressureShape
-from jointfmu.parameters import ParameterFile, load
-from jointfmu.quantity import flatten
+from jointfmu.mechanics.footprint.shape import PressureDistribution
+from jointfmu.parameters import ParameterFile, load_parameter_file
+from jointfmu.quantity import flatten_parameters
 
 PLATES = {
     "four M12, 2 x 20 mm": "--plate 200x100 --bolts 4xM12 --at 160x60 --grip 40 --preload 30e3",
@@ -52,13 +52,13 @@ def made(options: str, folder: Path) -> ParameterFile:
     with redirect_stdout(StringIO()):
         if cli.main(words.split()):
             raise SystemExit(f"{words} failed")
-    return load(path).with_values({"bolt_stiffness": 0.0}, "user", "the interface alone")
+    return load_parameter_file(path).with_values({"bolt_stiffness": 0.0}, "user", "the interface alone")
 
 
-def computed(file: ParameterFile, options: str) -> PressureShape:
+def computed(file: ParameterFile, options: str) -> PressureDistribution:
     """The pressure of two elastic plates."""
     pattern, words = file.values.pattern, options.split()
-    thread = threads()[words[words.index("--bolts") + 1].rpartition("x")[2]]
+    thread = read_threads()[words[words.index("--bolts") + 1].rpartition("x")[2]]
     thickness = 0.5e-3 * float(words[words.index("--grip") + 1])
     side = Plate(
         length=pattern.length, width=pattern.width, thickness=thickness, E=210e9, nu=0.3, density=7850.0
@@ -68,39 +68,42 @@ def computed(file: ParameterFile, options: str) -> PressureShape:
         first, second = (1e-3 * float(word) for word in words[words.index("--thickness") + 1 :][:2])
         sides = [
             replace(side, thickness=first),
-            TappedPlate(**flatten(side) | {"thickness": second, "depth": thread.d}),
+            TappedPlate(**flatten_parameters(side) | {"thickness": second, "depth": thread.d}),
         ]
     bolts = BoltList(
         x=pattern.x, y=pattern.y, hole_diameter=pattern.hole_diameter, head_diameter=thread.hexagon
     )
-    contact, preload = BoltedContact.of(Assembly(file.name, *sides, bolts)), file.start("preload")
-    field = contact.solve(approach_curve(file.values), preload).field
+    contact, preload = (
+        BoltedContact.from_assembly(Assembly(file.name, *sides, bolts)),
+        file.start_value("preload"),
+    )
+    field = contact.solve(tabulate_approach(file.values), preload).field
     return pressure_shape(replace(file.values, A_0=float(field.area.sum())), field, preload)
 
 
-def shown(file: ParameterFile, shape: PressureShape, fine: PressureShape) -> str:
+def shown(file: ParameterFile, shape: PressureDistribution, fine: PressureDistribution) -> str:
     """Two lines: the shares inside the circles, and the joint's stiffness."""
     bolts = file.values.pattern.bolts
     apart = np.hypot(*np.moveaxis(fine.position[:, None, :] - bolts, -1, 0)).min(axis=1)
-    force, rest = fine.share * fine.equal, (0.0, 0.0, 0.0)
+    force, rest = fine.share * fine.preload_shape, (0.0, 0.0, 0.0)
     shares = "  ".join(f"{force[apart < r].sum():.3f} in {r * 1e3:g} mm" for r in RADII)
     shares += f"  radius of gyration {1e3 * np.sqrt(force @ apart**2):.4g} mm"
     spring = BoltedJointSpring.of_nodes(file.values, shape)
-    state = spring.motion(file.start("preload"), 0.0, rest, rest)
+    state = spring.evaluate(file.start_value("preload"), 0.0, rest, rest)
     return f"{shares}\n  {'':9} " + "  ".join(f"{name} {float(state[name]):.4g}" for name in OUTPUTS)
 
 
 def main() -> None:
     """Print both."""
-    usual = plate.ACROSS
+    usual = plate.MIN_CELLS_PER_RADIUS
     for name, options in PLATES.items():
         print(name)
         with tempfile.TemporaryDirectory() as folder:
             file = made(options, Path(folder))
         cones = file.values.pattern.shape()
-        plate.ACROSS = FINE
+        plate.MIN_CELLS_PER_RADIUS = FINE
         fine = file.values.pattern.shape()
-        plate.ACROSS = usual
+        plate.MIN_CELLS_PER_RADIUS = usual
         elastic = computed(file, options)
         for what, shape, finer in (("cones", cones, fine), ("computed", elastic, elastic)):
             print(f"  {what:9} {shown(file, shape, finer)}")

@@ -7,10 +7,10 @@ inversion alone, the inversion with all quantities, brentq, and the ratio of the
 from time import perf_counter
 
 import numpy as np
-from jointfmu_tools.laws import LAWS, law_parameters
+from jointfmu_tools.laws import LAWS, build_law_parameters
 from scipy.optimize import brentq
 
-from jointfmu.contact.interface import at_pressure, largest_spot
+from jointfmu.contact.interface import at_pressure, solve_largest_spot
 
 POINTS, OBVIOUS, REPEATS = 1_000_000, 300, 5
 
@@ -42,10 +42,10 @@ def main():
     print("pressures per second")
     print(f"{'law':10} {'inversion':>14} {'all quantities':>16} {'brentq':>12} {'ratio':>8}")
     for name in LAWS:
-        law = law_parameters(name, None, {})
+        law = build_law_parameters(name, None, {})
         few = pressures[:OBVIOUS]
-        np.testing.assert_allclose(largest_spot(law, few), by_brentq(law, few), atol=1e-9)
-        fast = POINTS / best(lambda law=law: largest_spot(law, pressures))
+        np.testing.assert_allclose(solve_largest_spot(law, few), by_brentq(law, few), atol=1e-9)
+        fast = POINTS / best(lambda law=law: solve_largest_spot(law, pressures))
         full = POINTS / best(lambda law=law: at_pressure(law, pressures), 2)
         slow = OBVIOUS / best(lambda law=law, few=few: by_brentq(law, few), 2)
         print(f"{name:10} {fast:14.3g} {full:16.3g} {slow:12.3g} {fast / slow:8.0f}")

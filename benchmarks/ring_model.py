@@ -18,14 +18,14 @@ from elastic_ring.forms import (
 )
 from elastic_ring.ring import Ring
 from jointfmu_tools import plots
-from jointfmu_tools.published.reference import points
+from jointfmu_tools.published.reference import read_points
 
 from jointfmu.joints.harmonic_drive.law import pair_stiffness, peak_pressure
-from jointfmu.parameters import default
-from jointfmu.progress import track
+from jointfmu.parameters import load_default
+from jointfmu.progress import track_progress
 
-DRIVE = default("harmonic_drive").values
-HU = {point.id: float(point.value) for point in points("hu2023")}
+DRIVE = load_default("harmonic_drive").values
+HU = {point.id: float(point.value) for point in read_points("hu2023")}
 TORQUES = (1.0, 3.0, 5.0)
 LEAST, BEST, MOST = 0.195e-3, 0.21e-3, 0.215e-3
 """Radial deformations [m] of Hu 2023, section 3.4."""
@@ -201,7 +201,7 @@ def variants():
     )
     print(f" {100 * (MAXIMA[0] / MINIMA[0] - 1):26.2f} {CHANGES[0]:14.2f}")
     best = replace(DRIVE, radial_deformation=BEST)
-    for name, changes in track(list(VARIANTS.items()), "estimates"):
+    for name, changes in track_progress(list(VARIANTS.items()), "estimates"):
         rings = replace(SIZE_14, **changes)
         K = [stiffness(best, rings, T) for T in TORQUES]
         low, high = (stiffness(replace(DRIVE, radial_deformation=w), rings, 1.0) for w in (LEAST, MOST))
@@ -213,7 +213,7 @@ def variants():
 
 def draw(path):
     """The field at the opening over the angle."""
-    with plots.drawing(path, (7.2, 3.4)) as figure:
+    with plots.open_figure(path, (7.2, 3.4)) as figure:
         axes = figure.subplots()
         for T, colour in zip((0.0, 1.0, 5.0), (plots.GREY, plots.BLUE, plots.RED), strict=True):
             one = opening(DRIVE, SIZE_14, T)
@@ -231,7 +231,7 @@ def main():
     parser.add_argument("--plot", help="picture of the field, .png or .svg")
     given = parser.parse_args()
     if given.plot:
-        plots.check(given.plot)
+        plots.check_picture(given.plot)
     for part in (checks, fields, forces, published, variants):
         part()
         print(flush=True)

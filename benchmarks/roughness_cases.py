@@ -14,7 +14,7 @@ from boundary_element import press, slope
 from measured_joints import FRICTION, GAMMA, joint_law, level, measured
 
 from jointfmu.contact.interface import at_pressure
-from jointfmu.contact.laws.roughness import Roughness
+from jointfmu.contact.laws.roughness import RoughnessLaw
 from jointfmu.contact.surface import Elastic, contact_modulus
 
 DEVELOPMENT = (*range(8), *range(100, 106), *range(200, 212))
@@ -36,7 +36,7 @@ MEASURED = np.array([0.1e6, 0.5e6, 1e6, 2e6, 8e6])
 def without_units(H, roll_off, h, gradient, hardness=NO_HARDNESS):
     """The law on the unit square of boundary_element.py, whose contact modulus is 1."""
     body = Elastic(E=2.0, nu=0.0)
-    return Roughness(
+    return RoughnessLaw(
         h=h,
         gamma=GAMMA,
         longest_wave=1.0 / roll_off,

@@ -14,7 +14,7 @@ from validity_laws import CHOICES
 from validity_tables import heading, row, spread
 
 from jointfmu.contact.interface import stiffness_curve
-from jointfmu.progress import track
+from jointfmu.progress import track_progress
 
 WAVES = (5e-3, 40e-3)
 """Longest waves [m] that are tried beside the usual one; the second is the side of the joints."""
@@ -38,7 +38,7 @@ def elastic():
     """The law over boundary elements on surfaces whose seeds were not used before."""
     print(f"\nseeds of development {list(cases.DEVELOPMENT)}, here {cases.SEEDS}")
     kinds = [(H, roll_off) for H in cases.HURST for roll_off in cases.LOADS]
-    found = {kind: cases.pressed(*kind) for kind in track(kinds, "surfaces")}
+    found = {kind: cases.pressed(*kind) for kind in track_progress(kinds, "surfaces")}
     beyond = all_cases = 0
     for roll_off, loads in cases.LOADS.items():
         title = f"law over boundary elements, mean (least to largest), waves up to {name(roll_off)}, at y (x)"
@@ -66,7 +66,7 @@ def plastic():
     """The law with a hardness over boundary elements."""
     names = ("longest wave", "H over E* h'", "p/H", "K_loading", "K_N", "A_r")
     heading("law over boundary elements with a hardness, H = 0.3 and 0.8", *names)
-    for roll_off in track((1, 4), "hardness"):
+    for roll_off in track_progress((1, 4), "hardness"):
         for hardness, load in ((0.5, 0.03), (0.5, 0.1), (0.15, 0.03), (0.15, 0.1), (0.05, 0.1), (0.05, 0.3)):
             both = [cases.plastic(H, roll_off, hardness, load, seeds=cases.SEEDS[16]) for H in (0.3, 0.8)]
             row(name(roll_off), hardness, load, *(spread(one) for one in np.concatenate(both, axis=1)))

@@ -11,10 +11,10 @@ import sys
 from pathlib import Path
 
 import numpy as np
-from jointfmu_tools.host import unpacked
-from jointfmu_tools.proof.manifest import Related
+from jointfmu_tools.host import unpack_fmu
+from jointfmu_tools.proof.manifest import RelatedFiles
 from jointfmu_tools.proof.plan import ExperimentPlan
-from jointfmu_tools.proof.run import _answers, _executed, _offered
+from jointfmu_tools.proof.run import _offered_interfaces, _run_worker, _usable_interfaces
 from validity_tables import heading, row
 
 SAME = 1e-12
@@ -23,17 +23,17 @@ SAME = 1e-12
 
 def runs(fmu, experiments):
     """{(experiment, interface): {output: course}, or what is wrong} of an FMU."""
-    with unpacked(fmu, exchange=True) as (folder, description):
+    with unpack_fmu(fmu, exchange=True) as (folder, description):
         plans = [
-            ExperimentPlan.of(fmu, folder, one, interface, description)
+            ExperimentPlan.create(fmu, folder, one, interface, description)
             for one in experiments
-            for interface in _executed(one, _offered(description))
+            for interface in _usable_interfaces(one, _offered_interfaces(description))
             if interface
         ]
-        answers = _answers("fmpy", [plan.task for plan in plans if plan.task])
+        answers = _run_worker("fmpy", [plan.task for plan in plans if plan.task])
         found = {}
         for plan in plans:
-            answer = next(answers) if plan.task else {"error": plan.refused}
+            answer = next(answers) if plan.task else {"error": plan.refusal}
             rows = [line for line in answer.get("rows", []) if line is not None]
             courses = dict(zip(plan.task.get("outputs", []), np.array(rows).T, strict=False))
             found[plan.experiment.name, plan.interface] = answer.get("error") or courses
@@ -59,7 +59,7 @@ def main(old, new):
     worst = 0.0
     for path in sorted(old.glob("*/*.fmu")):
         other = new / path.relative_to(old)
-        experiments = Related(path).experiments()
+        experiments = RelatedFiles(path).experiments()
         before = runs(path, experiments)
         after = runs(other, experiments) if other.exists() else {}
         share, what = max(differences(before, after), default=(0.0, ""))

@@ -7,7 +7,7 @@ import band_of_waves
 import numpy as np
 from jointfmu_tools import fractal
 from jointfmu_tools.surfaces import form
-from jointfmu_tools.surfaces.form import without_form
+from jointfmu_tools.surfaces.form import remove_form
 from surface_round_trip import FRESH, gaussian
 
 SHARES = (1.0, 0.5, 0.25)
@@ -16,11 +16,11 @@ SHARES = (1.0, 0.5, 0.25)
 
 def ratios(heights, D, G):
     """(2 x 3) h and slope over the spectrum's, at every longest wave."""
-    flat, H = without_form(heights), 2.0 - D
+    flat, H = remove_form(heights), 2.0 - D
     rows = []
     for share in SHARES:
         longest = share * heights.lengths[0]
-        found = form.of_scan(flat, flat, longest)
+        found = form.scan_roughness(flat, flat, longest)
         h = band_of_waves.rms_height(H, G, longest, 2.0 * heights.dx)
         slope = band_of_waves.rms_slope(H, G, longest, found.shortest_wave)
         rows.append((found.h / h, found.slope / slope))
@@ -37,7 +37,7 @@ def main(points=128, draws=100):
         mean, scatter = found.mean(axis=0), found.std(axis=0)
         cells = [f"{m:.2f} ± {s:.2f}" for m, s in zip(mean[0], scatter[0], strict=True)]
         print(f"| {D} | " + " | ".join([*cells, f"{mean[1, 0]:.2f} ± {scatter[1, 0]:.2f}"]) + " |")
-    h, own = (fractal.height(1.42, 1.21e-8, 1e-3, gamma=gamma) for gamma in (None, 1.5))
+    h, own = (fractal.rms_height(1.42, 1.21e-8, 1e-3, gamma=gamma) for gamma in (None, 1.5))
     print(f"specimen of Zhao 2018, waves up to 1 mm: h = {h:.3g} m, of a function with that wave {own:.3g} m")
 
 

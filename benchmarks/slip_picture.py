@@ -12,7 +12,7 @@ STATIONS = np.polynomial.legendre.leggauss(12)
 
 def draw(contact, found):
     """Loops of one contact beside its normal curve, and the loss of all over the amplitude."""
-    with plots.drawing(IMAGES / "validity_partial_slip.svg", (9.6, 4.0)) as figure:
+    with plots.open_figure(IMAGES / "validity_partial_slip.svg", (9.6, 4.0)) as figure:
         left, right = figure.subplots(1, 2)
         loops(left, contact)
         losses(right, found)

@@ -51,8 +51,8 @@ def sliders(curve, ratio, amplitudes):
     foundation = at_levels(curve, ratio, 1.0, HEIGHTS)
     delta, areas = curve.end[0], []
     for u in amplitudes:
-        there = foundation.moved(foundation.at_rest(), delta, delta, [u, 0.0])
-        back = foundation.moved(there.force, delta, delta, [-2.0 * u, 0.0])
-        again = foundation.moved(back.force, delta, delta, [2.0 * u, 0.0])
+        there = foundation.advance(foundation.virgin_forces(), delta, delta, [u, 0.0])
+        back = foundation.advance(there.force, delta, delta, [-2.0 * u, 0.0])
+        again = foundation.advance(back.force, delta, delta, [2.0 * u, 0.0])
         areas.append(float(back.loss + again.loss))
     return np.array(areas)

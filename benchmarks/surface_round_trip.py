@@ -10,7 +10,7 @@ from time import perf_counter
 import numpy as np
 from jointfmu_tools import fractal
 from jointfmu_tools.surfaces import synthesis
-from jointfmu_tools.surfaces.heights import Areal, Profile
+from jointfmu_tools.surfaces.heights import ArealMap, Profile
 from jointfmu_tools.surfaces.identify import identify
 
 DIMENSIONS = (1.2, 1.3, 1.4, 1.5, 1.6, 1.7, 1.8)
@@ -25,11 +25,11 @@ def made(shape, points, D, G, seed):
     """A Weierstrass-Mandelbrot surface whose profile (textured: along x) has the dimension D."""
     waves = synthesis.Waves(size=1e-3, points=points, gamma=1.5)
     if shape == "isotropic":
-        return synthesis.isotropic(waves, D + 1.0, G, 20, seed)
+        return synthesis.synthesize_isotropic(waves, D + 1.0, G, 20, seed)
     if shape == "textured":
-        square = synthesis.textured(waves, (D, 3.0 - D), (G, G), seed)
-        return Areal(z=square.z[:64], dx=square.dx, dy=square.dy, name=square.name)
-    return synthesis.profile(waves, D, G, seed)
+        square = synthesis.synthesize_textured(waves, (D, 3.0 - D), (G, G), seed)
+        return ArealMap(z=square.z[:64], dx=square.dx, dy=square.dy, name=square.name)
+    return synthesis.synthesize_profile(waves, D, G, seed)
 
 
 def gaussian(points, D, G, rng, areal):
@@ -46,14 +46,16 @@ def gaussian(points, D, G, rng, areal):
         noise * np.sqrt(0.5 * fractal.wave_power(f, H, G) * share * n**f.ndim), s=shape, axes=range(f.ndim)
     )
     if areal:
-        return Areal(z=z[:points, :points].copy(), dx=dx, dy=dx, name="Gaussian")
+        return ArealMap(z=z[:points, :points].copy(), dx=dx, dy=dx, name="Gaussian")
     return Profile(z=z[:points].copy(), dx=dx, name="Gaussian")
 
 
 def errors(heights, direction, D, G):
     """{method or "best": (error of D, D inside its interval, error of ln G, G inside)}; maps: G_s."""
     found = identify([heights])
-    results = {m: found.best(direction, m) for m in ("structure", "psd")} | {"best": found.best(direction)}
+    results = {m: found.select_best(direction, m) for m in ("structure", "psd")} | {
+        "best": found.select_best(direction)
+    }
     row = {}
     for name, one in results.items():
         d, g = one.profile.D, one.areal.G_s if direction == "areal" else one.profile.G

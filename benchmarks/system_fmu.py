@@ -19,7 +19,7 @@ import fmpy
 import numpy as np
 from fmpy.ssp.simulation import simulate_ssp
 from fmpy.ssp.ssd import read_ssv
-from jointfmu_tools.host import unpacked
+from jointfmu_tools.host import unpack_fmu
 from jointfmu_tools.systems import ssp
 from jointfmu_tools.systems.fmu.assembly import assembly
 from jointfmu_tools.systems.fmu.build import build_system
@@ -86,7 +86,7 @@ def worst(out: Path) -> None:
     """Print the median and the longest of random steps [us]."""
     print("system             median  1 in 1e4   longest  refused")
     for name, (step, loads) in LOADS.items():
-        with unpacked(whole(name, out)) as (folder, described):
+        with unpack_fmu(whole(name, out)) as (folder, described):
             refs = {v.name: v.valueReference for v in described.modelVariables}
             wanted = [refs[o] for o in loads]
             fmu = fmpy.instantiate_fmu(folder, described, "CoSimulation", logger=lambda *_: None)
@@ -125,7 +125,7 @@ def main() -> None:
             one = system(name)
             ssp.build_systems(out, [one])
             tolerance, interval = EXCHANGE[name]
-            with unpacked(whole(name, out)) as (unzipped, _):
+            with unpack_fmu(whole(name, out)) as (unzipped, _):
                 common = {"filename": unzipped, "stop_time": one.stop_time, "output": outputs}
                 expected = fmpy.simulate_fmu(
                     **common,

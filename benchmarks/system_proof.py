@@ -18,16 +18,16 @@ from pathlib import Path
 import fmpy
 import numpy as np
 from jointfmu_tools.interface import drive, load
-from jointfmu_tools.proof.manifest import Related
+from jointfmu_tools.proof.manifest import RelatedFiles
 from jointfmu_tools.proof.run import prove
 from jointfmu_tools.robots import axes_system, elastic
 from jointfmu_tools.robots.transmission import transmission
 from jointfmu_tools.systems.fmu.assembly import assembly
 from jointfmu_tools.systems.fmu.build import build_system
-from jointfmu_tools.systems.system import read, system
+from jointfmu_tools.systems.system import read_system, system
 from scipy.interpolate import CubicSpline
 
-from jointfmu.parameters import dump
+from jointfmu.parameters import format_parameter_file
 
 ROBOT = Path(__file__).parents[1] / "models/robots/six_axis.xml"
 SIZES = ("CSG-32-100", "CSG-40-100", "CSG-25-100", "CSG-20-100", "CSG-17-100", "CSG-14-100")
@@ -40,7 +40,7 @@ LONG = (0.03, 1.0, 40.0)
 
 def built(path: Path, out: Path) -> str:
     """The FMU of a system's file, unpacked."""
-    (file,) = build_system(assembly(read(path)), out, ("2",), (fmpy.platform_tuple,))
+    (file,) = build_system(assembly(read_system(path)), out, ("2",), (fmpy.platform_tuple,))
     return fmpy.extract(str(file))
 
 
@@ -55,14 +55,16 @@ def potential(joint, widest: float):
 
 def energy(folder: Path) -> None:
     """Print the drift at each tolerance."""
-    spec = elastic.read(ROBOT)
+    spec = elastic.read_robot(ROBOT)
     model = spec.compile()
     joints = {f"joint{i}": drive(size) for i, size in enumerate(SIZES, 1)}
     files = {name: joint.file for name, joint in joints.items()}
     axes = elastic.axes(spec, {name: transmission(file) for name, file in files.items()})
-    pose = elastic.posed(model, {"joint2": "0.7", "joint3": "0.8"})
+    pose = elastic.joint_positions(model, {"joint2": "0.7", "joint3": "0.8"})
     for file in files.values():
-        (folder / f"{file.name.replace('-', '_')}.toml").write_text(dump(file), encoding="utf-8")
+        (folder / f"{file.name.replace('-', '_')}.toml").write_text(
+            format_parameter_file(file), encoding="utf-8"
+        )
     path = folder / "swing.toml"
     path.write_text(axes_system.text("six_axis", model, axes, files, pose, 3.0, model.nbody - 1))
     unzipped = built(path, folder)
@@ -145,11 +147,11 @@ def long(folder: Path) -> None:
         column = replace(system("bolted_column"), stop_time=stop)
         (file,) = build_system(assembly(column), folder, ("2",), (fmpy.platform_tuple,))
         taken = time.perf_counter() - begin
-        rows = [e.references.time for e in Related(file).experiments() if e.references]
+        rows = [e.references.time for e in RelatedFiles(file).experiments() if e.references]
         found = prove(file)
         print(
             f"bolted_column over {stop:g} s: built in {taken:.0f} s, proved up to {rows[0][-1]:g} s, "
-            f"{', '.join(str(row.size) for row in rows)} rows, misses: {found.misses or 'none'}"
+            f"{', '.join(str(row.size) for row in rows)} rows, misses: {found.failures or 'none'}"
         )
 
 

@@ -9,11 +9,11 @@ from time import process_time
 
 import numpy as np
 from jointfmu_tools.uncertainty import propagate
-from jointfmu_tools.uncertainty.problem import pose
+from jointfmu_tools.uncertainty.problem import state_problem
 
 from jointfmu.joints import KINDS
-from jointfmu.parameters import default
-from jointfmu.quantity import build
+from jointfmu.parameters import load_default
+from jointfmu.quantity import build_parameter_set
 
 SAMPLES, POINTS, OBVIOUS = 131_072, 200, 8
 STUDIES = {
@@ -52,17 +52,18 @@ def main():
     print(f"{SAMPLES} samples, {POINTS} points; processor seconds")
     print(f"{'joint':16} {'bands':>8} {'obvious':>10} {'ratio':>8} {'difference':>12}")
     for joint, given in STUDIES.items():
-        task = pose(default(joint), given, None, POINTS)
-        points = propagate.design(task, SAMPLES, 0)[0]
+        task = state_problem(load_default(joint), given, None, POINTS)
+        points = propagate.sample_designs(task, SAMPLES, 0)[0]
         start = process_time()
-        propagate.bands(task, points)
+        propagate.compute_bands(task, points)
         fast = process_time() - start
-        outcome = propagate.run(task, points[:OBVIOUS], task.loads, "")
+        outcome = propagate.evaluate_samples(task, points[:OBVIOUS], task.loads, "")
         parameters = [
-            build(KINDS[joint].parameters, propagate.one_sample(task, points, i)[0]) for i in range(OBVIOUS)
+            build_parameter_set(KINDS[joint].parameters, propagate.one_sample(task, points, i)[0])
+            for i in range(OBVIOUS)
         ]
         start = process_time()
-        exact = [task.reduced.exact(one, task.loads) for one in parameters]
+        exact = [task.curves.exact(one, task.loads) for one in parameters]
         slow = (process_time() - start) * SAMPLES / OBVIOUS
         worst = difference(task, outcome, exact)
         print(f"{joint:16} {fast:8.1f} {slow:10.0f} {slow / fast:8.0f} {worst:12.1e}")

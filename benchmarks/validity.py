@@ -14,7 +14,7 @@ from boundary_element import hertz, westergaard
 from validity_pictures import GAMMA, HURST
 from validity_tables import heading, row, spread
 
-from jointfmu.progress import track
+from jointfmu.progress import track_progress
 
 ROLL_OFF = (1, 4)
 LOADS = (0.003, 0.006, 0.012, 0.025, 0.05, 0.1)
@@ -69,7 +69,7 @@ def laws():
     """The three laws on their own surfaces; returns {(law, side): (case, boundary elements, law)}."""
     results = {}
     for name, case in compare.cases().items():
-        for side in track(case.sides, name):
+        for side in track_progress(case.sides, name):
             b, law = compare.against(case, side), compare.law_state(case, side)
             results[name, side] = case, b, law
             title = f"{name}, side {side * 1e3:.3g} mm, h_rms {b['rms'].mean() * 1e6:.2g} µm"

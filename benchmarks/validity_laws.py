@@ -9,9 +9,9 @@ from measured_joints import measured
 from validity_pictures import GAMMA
 from validity_tables import heading, row
 
-from jointfmu.contact.interface import at_pressure, largest_spot, stiffness_curve
-from jointfmu.contact.roughness import height, level
-from jointfmu.parameters import default
+from jointfmu.contact.interface import at_pressure, solve_largest_spot, stiffness_curve
+from jointfmu.contact.roughness import combined_height, predicted_stiffness
+from jointfmu.parameters import load_default
 
 CHOICES = [(area, spot) for area in ("continuity", "printed", "yield") for spot in ("family", "hertz")]
 JUDGED = np.array([0.5e6, 1e6, 2e6, 8e6])
@@ -35,7 +35,7 @@ def sizes():
             level = p / (GAMMA * stiffness_curve(case.law, np.array([p]))[0][0]) * 1e6
             row(name, f"{p / 1e6:.3g}", f"{level:.2g}", *(f"{h:.2g}" for h in heights))
     zhao = compare.cases()["zhao2018"].law
-    s, u = zhao.spots(), largest_spot(zhao, 1e6)
+    s, u = zhao.spots(), solve_largest_spot(zhao, 1e6)
     term = replace(s.terms["normal"][0], upper=np.log(10.0))
     share = float(replace(s, terms={"normal": (term,)}).total("normal", u) / s.total("normal", u))
     print(f"\nzhao2018 at 1 MPa: {share:.0%} of k in spots of one to ten critical areas")
@@ -65,17 +65,17 @@ def parameters():
 def levels():
     """The choices of `zhao2018`, and the law `roughness`, beside the published R_a, boundary elements of the
     ratio K_T/K_N, and measured cast iron."""
-    file = default("bolted_joint")
-    h = height(file.roughness)
+    file = load_default("bolted_joint")
+    h = combined_height(file.roughness)
     names = [f"{p / 1e6:g} MPa" for p in JUDGED]
     heading(f"K over p/(0.45 h), h = {1e6 * h:.3g} um", "law", *names, "K_T/K_N", "measured rows within 2")
     laws = {f"{a} {s}": replace(file.values, critical_area=a, spot_stiffness=s) for a, s in CHOICES}
-    for name, law in {**laws, "roughness": default("bolted_joint", "roughness").values}.items():
+    for name, law in {**laws, "roughness": load_default("bolted_joint", "roughness").values}.items():
         state = at_pressure(law, JUDGED)
         k = state["K_N"] / law.A_0
         row(
             name,
-            *(f"{ratio:.2g}" for ratio in k / level(JUDGED, h)),
+            *(f"{ratio:.2g}" for ratio in k / predicted_stiffness(JUDGED, h)),
             f"{state['K_T'][-1] / state['K_N'][-1]:.3f}",
             _near(k),
         )

@@ -18,7 +18,7 @@ COLORS = (plots.BLUE, plots.RED, plots.GREEN)
 
 def elastic(found, loads):
     """Picture of alpha over the load."""
-    with plots.drawing(IMAGES / "validity_elastic.svg", (6.4, 4.0)) as figure:
+    with plots.open_figure(IMAGES / "validity_elastic.svg", (6.4, 4.0)) as figure:
         axes = figure.subplots()
         for (H, r), one in found.items():
             alpha, color = one["alpha"], COLORS[HURST.index(H)]
@@ -32,7 +32,7 @@ def elastic(found, loads):
 
 def laws(results):
     """Picture of the laws and of boundary elements on the same surfaces."""
-    with plots.drawing(IMAGES / "validity_laws.svg", (10.5, 4.0)) as figure:
+    with plots.open_figure(IMAGES / "validity_laws.svg", (10.5, 4.0)) as figure:
         panels = dict(zip(("zhao2018", "hu2023", "yu2022"), figure.subplots(1, 3), strict=True))
         for (name, side), (case, b, law) in results.items():
             axes, p = panels[name], case.pressures / 1e6
@@ -53,7 +53,7 @@ def laws(results):
 
 def joints():
     """Picture of the measured joints and of the laws."""
-    with plots.drawing(IMAGES / "validity_measured.svg", (7.6, 5.0)) as figure:
+    with plots.open_figure(IMAGES / "validity_measured.svg", (7.6, 5.0)) as figure:
         axes = figure.subplots()
         for i, joint in enumerate(measured()["normal"]):
             p = np.geomspace(0.1, joint["to"] * joint["pressure_unit"] / 1e6)

@@ -12,7 +12,7 @@ from pathlib import Path
 from time import perf_counter
 
 from jointfmu.joints import MODELS
-from jointfmu.parameters import default, dump
+from jointfmu.parameters import format_parameter_file, load_default
 
 VARIANTS = 5
 CHANGE = 1e-3
@@ -21,10 +21,10 @@ CHANGE = 1e-3
 
 def variant(name: str, k: int) -> str:
     """A parameter file that no other build has had."""
-    file = default(MODELS[name].joint)
-    number = next(n for n in MODELS[name].parameter_fields() if file.flat[n])
-    value = file.flat[number] * (1.0 - CHANGE * k)
-    return dump(file.with_values({number: value}, "user", "benchmark"))
+    file = load_default(MODELS[name].joint)
+    number = next(n for n in MODELS[name].parameter_fields() if file.values_by_name[n])
+    value = file.values_by_name[number] * (1.0 - CHANGE * k)
+    return format_parameter_file(file.with_values({number: value}, "user", "benchmark"))
 
 
 def built(name: str, k: int, work: Path) -> float:

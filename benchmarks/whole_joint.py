@@ -24,7 +24,7 @@ ROWS = ("xx", "yy", "zz", "rx", "ry", "rz")
 def facts(attached: str, example: dict[str, object] = EXAMPLE) -> dict[str, tuple[float, str, str]]:
     """What `jointfmu new bolted-joint` prints."""
     given = dict.fromkeys(option.name for option in NEW.options) | example | {"attached": attached}
-    return dict(NEW.run(given).facts)
+    return dict(NEW.make_joint(given).facts)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

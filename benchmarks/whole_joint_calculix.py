@@ -46,11 +46,11 @@ def deck(lap: Lap, spring: BoltedJointSpring, motion: float, levels: Sequence[fl
     for k, body in enumerate(joint.bodies):
         yield from body_lines(body, k + 1, starts[k], k * first.mesh.nelements, k * pressure / normal)
     yield "*SURFACE INTERACTION, NAME=LAW\n*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR"
-    yield f"{normal * 1e-9:.12g}\n*FRICTION\n{mu:.12g}, {normal * spring.foundation().ratio * 1e-9:.12g}"
+    yield f"{normal * 1e-9:.12g}\n*FRICTION\n{mu:.12g}, {normal * spring.foundation().stiffness_ratio * 1e-9:.12g}"
     yield "*CONTACT PAIR, INTERACTION=LAW, TYPE=SURFACE TO SURFACE\nFACE2, FACE1\n*NSET, NSET=MOVED"
-    yield from (f"{starts[1] + i // 3 + 1}," for i in joint.held[1] if i % 3 == 0)
+    yield from (f"{starts[1] + i // 3 + 1}," for i in joint.attachment_unknowns[1] if i % 3 == 0)
     yield "*BOUNDARY"
-    for side, held in enumerate(joint.held):
+    for side, held in enumerate(joint.attachment_unknowns):
         still = held[held % 3 > 0] if side else held
         yield from (f"{starts[side] + i // 3 + 1}, {i % 3 + 1}, {i % 3 + 1}" for i in still)
     yield f"{STEP}\n*CLOAD"
@@ -79,7 +79,7 @@ def compared(refinement: float, top: float) -> tuple[Array, dict[str, Array]]:
     """Motions [m], and forces [N] by CalculiX, by friction at every element and of the reduced joint."""
     lap = Lap.of(refinement)
     shear, spring, linear = lap.linear(REACH)
-    normal, friction = shear / spring.foundation().ratio, lap.values.mu * PRESS
+    normal, friction = shear / spring.foundation().stiffness_ratio, lap.values.mu * PRESS
     bodies = replace(lap.bodies, interface=patches(lap.bodies.interface))
     at = bodies.interface.area
     elements = Elements.of(bodies, np.full(at.size, PRESS / at.sum()), spring, friction, np.eye(6)[0])

@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from elastic_sides import AXES, Joint, along
 from jointfmu_tools.fem.geometry import Assembly, BoltList, Plate
-from jointfmu_tools.fem.reduction.elastic_bodies import elastic_bodies
-from jointfmu_tools.fem.whole_joint import Linear, WholeJoint
+from jointfmu_tools.fem.reduction.elastic_bodies import reduce_bodies
+from jointfmu_tools.fem.whole_joint import JointFiniteElements, LinearJoint
 from jointfmu_tools.joints.bolted_joint.new import NEW
 from lap_beam_reduction import patches
 from numpy.typing import NDArray
@@ -85,7 +85,9 @@ class Pulled:
         """By the reduced joint, step by step until it is open."""
         spring, preload, bolt = joint.spring, joint.preload, joint.file.values.bolt_stiffness
         alone = BoltedJointSpring.of(joint.rigid.values)
-        stiff = [float(each.motion(preload, 0.0, (0.0,) * 3, (0.0,) * 3)["K_zz"]) for each in (spring, alone)]
+        stiff = [
+            float(each.evaluate(preload, 0.0, (0.0,) * 3, (0.0,) * 3)["K_zz"]) for each in (spring, alone)
+        ]
         pulls = np.linspace(0.0, 1.5, PULLED) * preload / (stiff[0] - bolt)
         motions = [pull * np.eye(6)[2] for pull in pulls]
         rows = along(spring, motions, preload, ("f_z", "F_bolt[1]", "p_mean"))
@@ -141,7 +143,7 @@ class Lap:
     """Two thin plates, each held at one end and kept plane, on a linear interface."""
 
     assembly: Assembly
-    bodies: WholeJoint
+    bodies: JointFiniteElements
     values: RoughBoltedJoint
 
     @classmethod
@@ -149,13 +151,13 @@ class Lap:
         """With the ratio of stiffnesses and the friction of an interface of steel."""
         given = dict.fromkeys(option.name for option in NEW.options) | FACES
         given |= EXAMPLES["M12, grip 40, steel"] | {"tapped": True}  # so the command makes no bodies
-        values = NEW.run(given).file.values
+        values = NEW.make_joint(given).file.values
         plate = Plate(length=0.1, width=0.04, thickness=2e-3, E=206e9, nu=0.0, density=7850.0)
         bolts = BoltList(x=(0.0,), y=(0.0,), hole_diameter=2e-3, head_diameter=4e-3)
         assembly = Assembly("lap", plate, plate, bolts)
-        joint = WholeJoint.of(assembly, "edge", refinement)
+        joint = JointFiniteElements.from_assembly(assembly, "edge", refinement)
         held = []
-        for body, ends in zip(joint.bodies, joint.held, strict=True):
+        for body, ends in zip(joint.bodies, joint.attachment_unknowns, strict=True):
             z = np.abs(body.nodes[2])
             held.append(np.union1d(ends, 3 * np.flatnonzero(z > z.max() - 1e-9) + 2))
         joint = replace(joint, held=(held[0], held[1]))
@@ -168,20 +170,20 @@ class Lap:
         values = replace(values, pattern=field, A_0=area, n_bolts=1.0, row_bolts=1.0, bolt_stiffness=0.0)
         return cls(assembly, joint, values)
 
-    def linear(self, reach: float) -> tuple[float, BoltedJointSpring, Linear]:
+    def linear(self, reach: float) -> tuple[float, BoltedJointSpring, LinearJoint]:
         """[Pa/m] of the interface along it, the interface alone and the lap by finite elements."""
         plate, beta = self.assembly.side1, reach / self.assembly.side1.length
         shear = 0.5 * beta**2 * plate.E * plate.thickness
         spring = BoltedJointSpring.of(self.values)
-        normal = shear / spring.foundation().ratio
+        normal = shear / spring.foundation().stiffness_ratio
         spring = replace(spring, curve=linear_curve(normal, PRESS / self.values.A_0 / normal))
         springs = np.tile([shear, shear, normal], (self.bodies.interface.area.size, 1))
-        return shear, spring, self.bodies.linear(springs, 0.0)
+        return shear, spring, self.bodies.linearize(springs, 0.0)
 
-    def reduced(self, spring: BoltedJointSpring, linear: Linear, normal: float) -> BoltedJointSpring:
+    def reduced(self, spring: BoltedJointSpring, linear: LinearJoint, normal: float) -> BoltedJointSpring:
         """The joint on the modes of its bodies."""
         stiffness = np.full(self.bodies.interface.area.size, normal)
-        bodies = elastic_bodies(linear, spring, stiffness, PRESS)
+        bodies = reduce_bodies(linear, spring, stiffness, PRESS)
         whole = BoltedJointSpring.of(replace(self.values, sides="elastic", bodies=bodies))
         return replace(whole, curve=spring.curve)
 
@@ -189,11 +191,11 @@ class Lap:
         """[m/N] along x by the modes of the reduced joint, by finite elements and by shear lag."""
         shear, spring, linear = self.linear(reach)
         plate, beta = self.assembly.side1, reach / self.assembly.side1.length
-        whole = self.reduced(spring, linear, shear / spring.foundation().ratio)
-        out = whole.motion(PRESS, 0.0, (0.0,) * 3, (0.0,) * 3)
+        whole = self.reduced(spring, linear, shear / spring.foundation().stiffness_ratio)
+        out = whole.evaluate(PRESS, 0.0, (0.0,) * 3, (0.0,) * 3)
         per = plate.E * plate.thickness * plate.width
         form = (1.0 / (beta * np.tanh(0.5 * reach)) + 0.5 * plate.length) / per
-        return 1.0 / float(out[AXES[0]]), float(linear.compliances().whole[0]), form
+        return 1.0 / float(out[AXES[0]]), float(linear.compliances().total[0]), form
 
 
 def lap() -> None:

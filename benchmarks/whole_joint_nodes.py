@@ -22,8 +22,8 @@ from coulomb_springs import Springs
 from elastic_sides import Joint, along, on_cells
 from jointfmu_tools.fem.elasticity import Cholesky
 from jointfmu_tools.fem.reduction import elastic_bodies as reduction
-from jointfmu_tools.fem.reduction.states import closed_by
-from jointfmu_tools.fem.whole_joint import WholeJoint
+from jointfmu_tools.fem.reduction.states import approach_at_stiffness
+from jointfmu_tools.fem.whole_joint import JointFiniteElements
 from jointfmu_tools.joints.bolted_joint.new.computed import with_bodies
 from lap_beam_loops import Joint as Loops
 from lap_beam_reduction import AT_ONCE, Reduced
@@ -95,7 +95,12 @@ class Elements:
 
     @classmethod
     def of(
-        cls, whole: WholeJoint, pressure: Array, spring: BoltedJointSpring, force: float, wrench: Array
+        cls,
+        whole: JointFiniteElements,
+        pressure: Array,
+        spring: BoltedJointSpring,
+        force: float,
+        wrench: Array,
     ) -> "Elements":
         """Moved as small loads move it along forces and moments (6), until they are all of a force [N].
 
@@ -105,9 +110,11 @@ class Elements:
         values, ratio = spring.joint, float(spring.joint.shear_ratio())
         approach, at = spring.curve.inverse(pressure), whole.interface
         springs = np.outer(spring.curve.derivatives(approach, 1)[1], [ratio, ratio, 1.0])
-        linear = whole.linear(springs, values.bolt_stiffness)
-        matrix = linear.bodies + linear.contact + linear.shanks
-        apart = [sign * whole.apart(axis) for axis, sign in ((0, 1.0), (1, 1.0), (2, -1.0))]
+        linear = whole.linearize(springs, values.bolt_stiffness)
+        matrix = linear.body_matrix + linear.contact_matrix + linear.bolt_matrix
+        apart = [
+            sign * whole.relative_displacement_matrix(axis) for axis, sign in ((0, 1.0), (1, 1.0), (2, -1.0))
+        ]
         K = linear.stiffness
         motion = np.linalg.solve(K, wrench) * force
         beam = Reduced(
@@ -117,8 +124,8 @@ class Elements:
             springs,
             at.area,
             at.position,
-            np.stack([rows @ (linear.moved @ motion) for rows in apart], axis=1),
-            compliance(matrix.tocsr(), apart, whole.held, whole.bodies[0].size),
+            np.stack([rows @ (linear.displacement @ motion) for rows in apart], axis=1),
+            compliance(matrix.tocsr(), apart, whole.attachment_unknowns, whole.bodies[0].unknown_count),
         )
         loops = Loops(beam, Springs.of(spring.curve, ratio, values.mu))
         return cls(loops, motion, float(motion @ K @ motion))
@@ -127,7 +134,7 @@ class Elements:
     def clamped(cls, joint: Joint, wrench: Array) -> "Elements":
         """Of a joint under its bolts, to all friction."""
         spring = BoltedJointSpring.of(joint.rigid.values)
-        pressure = spring.curve.derivatives(closed_by(spring, joint.normal), 0)[0]
+        pressure = spring.curve.derivatives(approach_at_stiffness(spring, joint.normal), 0)[0]
         return cls.of(joint.linear.joint, pressure, spring, joint.load()[0], wrench)
 
     def along(self, loads: Sequence[float]) -> tuple[Array, Array]:
@@ -167,16 +174,16 @@ def finer(modes: int, count: int):
     """The reduction with so many modes and patches."""
     modules = bodies, memory, reduction, spring
     kept = [(module, "MODES", module.MODES) for module in modules]
-    kept.append((spring, "PATCHES", spring.PATCHES))
+    kept.append((spring, "PATCHES", spring.MAX_PATCHES))
     try:
         for module, name, _ in kept:
             setattr(module, name, count if name == "PATCHES" else modes)
-        spring.patches.cache_clear()
+        spring.friction_patches_of.cache_clear()
         yield
     finally:
         for module, name, value in kept:
             setattr(module, name, value)
-        spring.patches.cache_clear()
+        spring.friction_patches_of.cache_clear()
 
 
 def way(amplitude: float) -> Array:
@@ -219,7 +226,7 @@ def compared(name: str, why: bool, refinement: float) -> None:
                 one = joint.spring
             else:
                 base = BoltedJointSpring.of(joint.rigid.values)
-                made = reduction.elastic_bodies(joint.linear, base, joint.normal, joint.preload)
+                made = reduction.reduce_bodies(joint.linear, base, joint.normal, joint.preload)
                 one = BoltedJointSpring.of(with_bodies(joint.rigid, made, attached).values)
             found = {
                 key: along_motion(one, joint.preload, elements.motion, list(loads))
@@ -230,8 +237,8 @@ def compared(name: str, why: bool, refinement: float) -> None:
         firsts[label] = found["first"][0]
     for count in CELLS if why else ():
         states = on_cells(joint, count)
-        unit = states.rigid @ elements.motion
-        firsts[f"{count} cells"] = np.array([unit @ states.forces(x * elements.motion) for x in LEVELS])
+        unit = states.rigid_displacement @ elements.motion
+        firsts[f"{count} cells"] = np.array([unit @ states.solve_forces(x * elements.motion) for x in LEVELS])
     for label, force in firsts.items() if why else ():
         over = ", ".join(f"{x:.3f}" for x in force / full["first"][0])
         print(f"{name}, {label}: force on the first way over that of the elements {over}", flush=True)

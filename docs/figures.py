@@ -17,14 +17,14 @@ from tempfile import TemporaryDirectory
 
 from jointfmu_fmu_src.python.build import runtime_sources
 from jointfmu_tools import cli, plots
-from jointfmu_tools.job.checks import default_ramp
+from jointfmu_tools.job.checks import run_default_ramp
 from jointfmu_tools.joints.harmonic_drive import job
 from jointfmu_tools.joints.harmonic_drive.fit import catalogue
-from jointfmu_tools.joints.harmonic_drive.fit.drive import Row
+from jointfmu_tools.joints.harmonic_drive.fit.drive import CatalogueRow
 from jointfmu_tools.plots import BLUE, GREY, RED
 from jointfmu_tools.published import validation
-from jointfmu_tools.report.figure import drawn
-from jointfmu_tools.report.systems import SIZE, resonance_panels
+from jointfmu_tools.report.figure import draw_panels
+from jointfmu_tools.report.systems import RESONANCE_SIZE, resonance_panels
 from jointfmu_tools.systems import ringing, ssp
 from jointfmu_tools.systems.system import system
 from matplotlib.axes import Axes
@@ -57,9 +57,11 @@ def main() -> None:
         elastic(IMAGES / "robot_frequencies.png")
     if sys.argv[1:]:
         return
-    result = default_ramp("HarmonicDriveCompliance", ROOT / "dist" / "python")
-    panels = job.stiffness(result, validation.validate())
-    write_text(IMAGES / "harmonic_drive_ramp.svg", svg(lambda canvas: drawn(canvas, panels), SIZE))
+    result = run_default_ramp("HarmonicDriveCompliance", ROOT / "dist" / "python")
+    panels = job.stiffness_panels(result, validation.validate())
+    write_text(
+        IMAGES / "harmonic_drive_ramp.svg", svg(lambda canvas: draw_panels(canvas, panels), RESONANCE_SIZE)
+    )
     resonance(IMAGES / "tutorial_resonance.png")
 
 
@@ -84,14 +86,16 @@ def example(script: Path) -> None:
 
 def resonance(path: Path) -> None:
     """Draw the plot in which the tutorial ends."""
-    row = Row(K1=4700.0, K2=6100.0, K3=7100.0, T1=2.0, T2=6.9, rated=6.9)
-    drive = catalogue.fit_lines(row, printed=catalogue.stated_numbers(row, ratio=100.0)).parameters
+    row = CatalogueRow(K1=4700.0, K2=6100.0, K3=7100.0, T1=2.0, T2=6.9, rated=6.9)
+    drive = catalogue.make_line_drive_from_row(
+        row, numbers=catalogue.source_numbers(row, ratio=100.0)
+    ).parameters
     with TemporaryDirectory() as folder:
         ssp.build_systems(Path(folder), parameters=drive)
         one = ringing.vibrating_joint(system("robot_joint"))
         points = ringing.ring(one, Path(folder) / "fmi2")
-        with plots.drawing(path, SIZE) as canvas:
-            drawn(canvas, resonance_panels(points, one, Path(folder) / "fmi2"))
+        with plots.open_figure(path, RESONANCE_SIZE) as canvas:
+            draw_panels(canvas, resonance_panels(points, one, Path(folder) / "fmi2"))
 
 
 def house() -> str:
@@ -117,7 +121,7 @@ def house() -> str:
 
 def svg(draw: Callable[[Figure], None], size: tuple[float, float], layout: str | None = "constrained") -> str:
     """A figure of a size [inch] in few bytes: hundredths of a point, no description, no empty lines."""
-    with plots.style():
+    with plots.apply_style():
         figure, text = Figure(figsize=size, layout=layout), io.StringIO()
         draw(figure)
         figure.savefig(text, format="svg", metadata={"Date": None})
@@ -169,7 +173,7 @@ def _legend(axes: Axes, top: float) -> None:
     lines = (
         ("imports run downwards", GREY),
         ("red: a folder for each joint,", RED),
-        *((f"    {name}", RED) for name, kind in KINDS.items() if kind.own),
+        *((f"    {name}", RED) for name, kind in KINDS.items() if kind.is_builtin),
         ("blue: runs inside a Python FMU,", BLUE),
         ("needs numpy only", BLUE),
         ("C FMUs: generated from the same", "black"),

@@ -69,9 +69,9 @@ def laboratory() -> str:
     made = ROOT / "dist" / "report" / "laboratory.html"
     if made.is_file():
         return made.read_text(encoding="utf-8")
-    from jointfmu_tools.laboratory.assemble import page
+    from jointfmu_tools.laboratory.assemble import render_page
 
-    return page()
+    return render_page()
 
 
 def page_of(script: str) -> str:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from jointfmu.joints import MODELS
 from jointfmu.joints.model import Model, Variable
-from jointfmu.parameters import default
+from jointfmu.parameters import load_default
 
 
 def page() -> str:
@@ -15,13 +15,13 @@ def page() -> str:
 
 
 def _fmu(model: Model) -> str:
-    file = default(model.joint)
+    file = load_default(model.joint)
     parts = [f"## {model.name}", f"As shipped, the parameters are those of: {file.name}."]
     parts += ["**Inputs**", _table(_rows(model.inputs)), "**Outputs**", _table(_rows(model.outputs))]
     parameters = [
         (name, field.metadata.get("unit", ""), field.metadata["doc"])
         for name, field in model.parameter_fields().items()
-        if name in file.flat
+        if name in file.values_by_name
     ]
     return "\n\n".join([*parts, "**Parameters**", _table(parameters)])
 

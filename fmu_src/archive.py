@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
-from jointfmu.files.writing import made_folder
+from jointfmu.files.writing import existing_folder
 
 
 @contextmanager
@@ -21,7 +21,7 @@ def workshop(target: Path) -> Iterator[Path]:
     destination = Path(os.path.realpath(target))
     try:
         with (
-            made_folder(destination.parent),
+            existing_folder(destination.parent),
             tempfile.TemporaryDirectory(dir=destination.parent, prefix=".build-") as folder,
         ):
             yield Path(folder)

@@ -7,8 +7,8 @@ from pathlib import Path
 
 from jointfmu.files.outputs import ARCHIVE, check_outputs
 from jointfmu.joints import MODELS
-from jointfmu.parameters import ParameterFile, default
-from jointfmu.progress import each
+from jointfmu.parameters import ParameterFile, load_default
+from jointfmu.progress import map_jobs
 
 from .naming import checked_name
 from .native.build import build as build_native
@@ -57,18 +57,22 @@ def build(
         checked_name(alias)
     for name in names:
         if parameters:
-            MODELS[name].of(parameters.joint, parameters.values)
+            MODELS[name].with_parameters(parameters.joint, parameters.values)
     titles = [alias or name for name in names]
     check_outputs((out / f / f"{title}.fmu" for f in flavours for title in titles), ARCHIVE, force)
     options = {"variability": variability, "alias": alias or ""}
-    build_one = partial(_built, flavours, parameters, out, options)
-    paths_by_name = each(pool, build_one, "build", names)
+    build_one = partial(_build_flavours, flavours, parameters, out, options)
+    paths_by_name = map_jobs(pool, build_one, "build", names)
     return [path for paths in zip(*paths_by_name, strict=True) for path in paths]
 
 
-def _built(
-    flavours: Sequence[str], parameters: ParameterFile | None, out: Path, how: Mapping[str, str], name: str
+def _build_flavours(
+    flavours: Sequence[str],
+    parameters: ParameterFile | None,
+    out: Path,
+    options: Mapping[str, str],
+    name: str,
 ) -> list[Path]:
     """Build one FMU in several flavours, which share the compiled model; return the paths of the files."""
-    file = parameters or default(MODELS[name].joint)
-    return [FLAVOURS[flavour](name, file, out / flavour, **how) for flavour in flavours]
+    file = parameters or load_default(MODELS[name].joint)
+    return [FLAVOURS[flavour](name, file, out / flavour, **options) for flavour in flavours]

@@ -5,7 +5,7 @@ from keyword import iskeyword
 
 LONGEST = 63
 """Largest length of a name [1]: C compilers need not distinguish more characters."""
-ALLOWED = (
+NAME_RULE = (
     f"at most {LONGEST} letters, digits and _, no digit first, no word of C, Python or Modelica, no device "
     "of Windows (con, nul, com1)"
 )
@@ -19,7 +19,7 @@ def checked_name(name: str) -> str:
     """
     if not is_identifier(name):
         shown = name if len(name) <= 80 else f"{name[:77]}..."
-        raise ValueError(f"name {shown!r} is no model identifier, allowed are {ALLOWED}")
+        raise ValueError(f"name {shown!r} is no model identifier, allowed are {NAME_RULE}")
     return name
 
 

@@ -9,7 +9,7 @@ import jinja2
 from markupsafe import Markup
 
 from jointfmu.contact.laws import ROUGHNESS_LAW
-from jointfmu.contact.laws.roughness import FEW_SPOTS
+from jointfmu.contact.laws.roughness import FEW_SPOTS_FACTOR
 from jointfmu.parameters import ParameterFile
 
 FRAME = Path(__file__).with_name("native")
@@ -66,4 +66,4 @@ def _number(value: float | str) -> str:
 
 def law_terms(parameters: ParameterFile) -> dict[str, object]:
     """Template variables of the contact law: its name, whether it is `roughness`, its least spot count."""
-    return {"law": parameters.law, "rough": parameters.law == ROUGHNESS_LAW, "few_spots": FEW_SPOTS}
+    return {"law": parameters.law, "rough": parameters.law == ROUGHNESS_LAW, "few_spots": FEW_SPOTS_FACTOR}

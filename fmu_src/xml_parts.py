@@ -15,7 +15,7 @@ VARIABILITIES = ("tunable", "fixed")
 """Variability of all parameters of an FMU: tunable also during a run, or fixed after initialization."""
 
 
-class Listed(NamedTuple):
+class ListedVariable(NamedTuple):
     """Variable of a model description.
 
     start      : start value; None if the variable is calculated, a bool for a Boolean
@@ -36,19 +36,19 @@ class Listed(NamedTuple):
         return isinstance(self.start, bool)
 
 
-def listed(model: Model, parameters: ParameterFile) -> list[Listed]:
+def list_variables(model: Model, parameters: ParameterFile) -> list[ListedVariable]:
     """List the inputs, outputs and parameters of a model in the order of their value references, from 1."""
-    values = parameters.flat
-    variables: list[Listed] = []
+    values = parameters.values_by_name
+    variables: list[ListedVariable] = []
     for causality, group in (("input", model.inputs), ("output", model.outputs)):
         for i, v in enumerate(group):
-            attributes = _shown(v.unit, v.nominal) | _bounds(v.interval)
-            state = causality == "output" and i < model.states
-            rate = causality == "output" and model.rate(i)
-            rate_of = len(variables) + 1 - model.states // 2 if rate else None
+            attributes = _unit_attributes(v.unit, v.nominal) | _bounds(v.interval)
+            state = causality == "output" and i < model.state_count
+            rate = causality == "output" and model.is_rate(i)
+            rate_of = len(variables) + 1 - model.state_count // 2 if rate else None
             attributes["nominal"] = repr(v.nominal)
-            start = parameters.start(v.name) if causality == "input" else 0.0 if state else None
-            variables.append(Listed(v.name, causality, v.doc, start, attributes, rate_of))
+            start = parameters.start_value(v.name) if causality == "input" else 0.0 if state else None
+            variables.append(ListedVariable(v.name, causality, v.doc, start, attributes, rate_of))
     for name, item in model.parameter_fields().items():
         meta, value = item.metadata, values[name]
         doc = meta["doc"]
@@ -56,10 +56,10 @@ def listed(model: Model, parameters: ParameterFile) -> list[Listed]:
             doc += " (calibration parameter: fitted to published points)"
         attributes = {}
         if "unit" in meta:
-            attributes = _shown(meta["unit"], value) | _bounds(meta["interval"])
+            attributes = _unit_attributes(meta["unit"], value) | _bounds(meta["interval"])
             if value:
                 attributes["nominal"] = repr(abs(value))
-        variables.append(Listed(name, "parameter", doc, value, attributes))
+        variables.append(ListedVariable(name, "parameter", doc, value, attributes))
     return variables
 
 
@@ -73,12 +73,12 @@ def stop_time(model: Model) -> float:
     return round(model.ramp.end / model.ramp.step) * model.ramp.interval
 
 
-def units(variables: Sequence[Listed]) -> list[str]:
+def units(variables: Sequence[ListedVariable]) -> list[str]:
     """Sorted names of the units of some variables."""
     return sorted({v.attributes["unit"] for v in variables if "unit" in v.attributes})
 
 
-def unit_definitions(variables: Sequence[Listed]) -> Element:
+def unit_definitions(variables: Sequence[ListedVariable]) -> Element:
     """XML element UnitDefinitions of some variables, the same in FMI 2.0 and 3.0."""
     definitions = Element("UnitDefinitions")
     for name in units(variables):
@@ -102,20 +102,20 @@ def model_structure(model: Model, variability: str, version: str = "2") -> Eleme
     outputs, parameters = [v.name for v in model.outputs], list(model.parameter_fields())
     names = [*(v.name for v in model.inputs), *outputs, *parameters]
     index = {name: reference for reference, name in enumerate(names, start=1)}
-    rates = [name for i, name in enumerate(outputs) if model.rate(i)]
+    rates = [name for i, name in enumerate(outputs) if model.is_rate(i)]
     dependency_kinds = {"constant": "constant", "parameters": variability}
     initial_kinds = {"constant": "constant"}  # parameters can still change: only a number is a known factor
     root = Element("ModelStructure")
     for fmi2, fmi3, unknowns, kinds, further_knowns in (
         ("Outputs", "Output", outputs, dependency_kinds, []),
         ("Derivatives", "ContinuousStateDerivative", rates, dependency_kinds, []),
-        ("InitialUnknowns", "InitialUnknown", outputs[model.states :], initial_kinds, parameters),
+        ("InitialUnknowns", "InitialUnknown", outputs[model.state_count :], initial_kinds, parameters),
     ):
         group = SubElement(root, fmi2) if unknowns and version == "2" else root
         tag, key = ("Unknown", "index") if version == "2" else (fmi3, "valueReference")
         for name in unknowns:
-            linear = model.linear.get(name, {})
-            knowns = [*sorted(model.depends(name), key=index.__getitem__), *further_knowns]
+            linear = model.linear_factors.get(name, {})
+            knowns = [*sorted(model.list_dependencies(name), key=index.__getitem__), *further_knowns]
             dependencies = {
                 "dependencies": " ".join(str(index[known]) for known in knowns),
                 "dependenciesKind": " ".join(kinds.get(linear.get(n, ""), "dependent") for n in knowns),
@@ -135,7 +135,7 @@ def comment(lines: Sequence[str]) -> str:
     return "<!--\n" + "".join(f"  {re.sub('-(?=-)', '- ', line)}\n" for line in lines) + "-->\n"
 
 
-def _shown(unit: str, typical: float) -> dict[str, str]:
+def _unit_attributes(unit: str, typical: float) -> dict[str, str]:
     """Attributes unit and displayUnit; the display unit suits a typical value [SI]."""
     return {"unit": unit, "displayUnit": CELSIUS if unit == "K" else display_unit(unit, typical)}
 

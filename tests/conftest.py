@@ -21,7 +21,7 @@ import pytest
 from filelock import FileLock
 from fmpy import platform_tuple
 from hypothesis import settings
-from jointfmu_fmu_src.native.compiled.cache import COMPILER, compiler_cache, parts
+from jointfmu_fmu_src.native.compiled.cache import COMPILER, compiler_cache, parts_folder
 from jointfmu_fmu_src.native.compiled.compiler import TARGETS, libraries
 from jointfmu_tools.host import Instance
 
@@ -125,24 +125,24 @@ class Fmu(Instance):
 
     def begin(self, start: float = 0.0, stop: float | None = None) -> None:
         """Enter initialization mode."""
-        super().begin(start, stop)
+        super().enter_initialization(start, stop)
         self.time = start
 
     def start(self, values: Mapping[str, Any] | None = None) -> "Fmu":
         """Set start values in initialization mode and leave it."""
         self.begin()
-        self.set(values or {})
+        self.set_values(values or {})
         self.fmu.exitInitializationMode()
         return self
 
     def step(self, size: float = 1.0) -> None:
         """One step."""
-        self.advance(self.time, size)
+        self.do_step(self.time, size)
         self.time += size
 
     def at(self, values: Mapping[str, float]) -> dict[str, float]:
         """All outputs at inputs, without a step."""
-        self.set(values)
+        self.set_values(values)
         return self.get()
 
     def reset(self) -> None:
@@ -225,25 +225,25 @@ def here_alone(versions: str = "23") -> Iterator[None]:
     from jointfmu_fmu_src.native.compiled import kept
     from jointfmu_tools.systems.fmu import build as system
 
-    places, read = kept._places, kept.read
+    places, read = kept._places, kept.unpack_model
 
     def places_here(name: str) -> tuple[Path, ...]:
         *others, last = places(name)
-        return *others, last, parts() / f"here{versions}" / last.relative_to(parts())
+        return *others, last, parts_folder() / f"here{versions}" / last.relative_to(parts_folder())
 
     def libraries_here(*files: Any, **options: Any) -> dict[str, bytes]:
         return libraries(*files[:3], [platform_tuple], **options)
 
-    def read_here(content: bytes) -> kept.Part:
+    def read_here(content: bytes) -> kept.CompiledModel:
         part = read(content)
-        return kept.Part(
+        return kept.CompiledModel(
             part.sources, {v: {platform_tuple: built[platform_tuple]} for v, built in part.libraries.items()}
         )
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(kept, "VERSIONS", (*versions,))
         patch.setattr(kept, "_places", places_here)
-        patch.setattr(kept, "read", read_here)
+        patch.setattr(kept, "unpack_model", read_here)
         patch.setattr(kept, "libraries", libraries_here)
         patch.setattr(system, "libraries", libraries_here)
         yield
@@ -262,11 +262,11 @@ def fine_elements(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.fixture
 def few_points(monkeypatch: pytest.MonkeyPatch) -> None:
     """A page's ramp and loops have few points: of elastic plates all take 20 s, and are drawn alike."""
-    from jointfmu_tools.ramps.loops import Swing
+    from jointfmu_tools.ramps.loops import CyclicPath
     from jointfmu_tools.report import course
 
-    monkeypatch.setattr(course, "_POINTS", 11)
-    monkeypatch.setattr(course, "_SWING", Swing(points=8))
+    monkeypatch.setattr(course, "_RAMP_POINTS", 11)
+    monkeypatch.setattr(course, "_LOAD_CYCLE", CyclicPath(points=8))
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -293,22 +293,26 @@ def solved_once(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
 
         return found
 
-    solve = computed.whole_joint
+    solve = computed.compute_joint
     kept = once("whole", solve)
 
     def whole(*asked: Any) -> Any:
         try:
-            from jointfmu_tools.fem.whole_joint import WholeJoint
+            from jointfmu_tools.fem.whole_joint import JointFiniteElements
         except ImportError:  # a test hides a package
             return solve(*asked)
-        if not isinstance(vars(WholeJoint)["of"], classmethod):  # a test has elements of its own
+        if not isinstance(vars(JointFiniteElements)["of"], classmethod):  # a test has elements of its own
             return solve(*asked)
         with pytest.MonkeyPatch.context() as patch:
-            patch.setattr(WholeJoint, "of", partial(WholeJoint.of, refinement=REFINEMENT["bodies"]))
+            patch.setattr(
+                JointFiniteElements,
+                "of",
+                partial(JointFiniteElements.from_assembly, refinement=REFINEMENT["bodies"]),
+            )
             return kept(*asked)
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(computed, "whole_joint", whole)
+        patch.setattr(computed, "compute_joint", whole)
         for module in (spring, joint_parameters):
             patch.setattr(module, "friction_patches", once("patches", module.friction_patches))
         yield
@@ -342,7 +346,7 @@ def fmu(fmus: Path) -> Iterator[Callable[..., Fmu]]:
 
     yield instance
     for one in made:
-        one.free()
+        one.free_instance()
     sys.path[:] = path  # pythonfmu puts the resources of every instance in front
 
 
@@ -383,4 +387,4 @@ def host(native: Path) -> Iterator[Callable[..., Fmu]]:
 
     yield instance
     for one in made:
-        one.free()
+        one.free_instance()

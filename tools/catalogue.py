@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 
-class Printed(NamedTuple):
+class SourcedNumber(NamedTuple):
     """A number with its source.
 
     value    : [SI]
@@ -23,21 +23,21 @@ class Printed(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Column:
+class CatalogueColumn:
     """A column of a catalogue: name, SI unit, meaning, and display unit."""
 
     name: str
     unit: str
-    text: str
-    shown: str
+    meaning: str
+    display_unit: str
 
 
 @dataclass(frozen=True, slots=True)
-class Item:
+class CatalogueEntry:
     """An entry of a catalogue: name of the joint, and {column: number} of the known numbers."""
 
     name: str
-    numbers: dict[str, Printed]
+    numbers: dict[str, SourcedNumber]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -48,5 +48,5 @@ class Catalogue:
     entries : function that returns the joints in the order of the printed catalogue
     """
 
-    columns: Sequence[Column]
-    items: Callable[[], Sequence[Item]]
+    columns: Sequence[CatalogueColumn]
+    entries: Callable[[], Sequence[CatalogueEntry]]

@@ -16,14 +16,14 @@ def main(argv: Sequence[str] | None = None) -> int:
     """
     name = "jointfmu"
     try:
-        from .parser import parser
+        from .parser import build_parser
 
         words = list(sys.argv[1:] if argv is None else argv)
-        args = parser(words).parse_args(words)
+        args = build_parser(words).parse_args(words)
         name = f"jointfmu {args.command}"
-        return _run(args, name)
+        return _run_command(args, name)
     except (KeyboardInterrupt, ImportError) as error:
-        if not _interrupted(error):
+        if not _is_interrupted(error):
             raise
         hint = f"; {error}" if isinstance(error, KeyboardInterrupt) and error.args else ""
         print(f"{name}: interrupted{hint}", file=sys.stderr)
@@ -34,29 +34,29 @@ def main(argv: Sequence[str] | None = None) -> int:
         return 0
 
 
-def _interrupted(error: BaseException | None) -> bool:
+def _is_interrupted(error: BaseException | None) -> bool:
     """Return whether Ctrl-C caused an error. Some packages turn KeyboardInterrupt into ImportError."""
     while error is not None and not isinstance(error, KeyboardInterrupt):
         error = error.__cause__ or error.__context__
     return error is not None
 
 
-def _run(args: Any, name: str) -> int:
+def _run_command(args: Any, name: str) -> int:
     """Run a parsed command; returns the exit status. Errors of the command are printed on one line."""
-    from jointfmu.progress import told
-    from jointfmu.quantity.refusal import Refusal
+    from jointfmu.progress import show_status
+    from jointfmu.quantity.refusal import InputRefusal
 
     from .command_line import outputs
-    from .command_line.common import option
+    from .command_line.common import option_of_setting
 
     try:
-        with told(name):
-            outputs.check(args.outputs, args)
+        with show_status(name):
+            outputs.check_command_outputs(args.outputs, args)
             status = int(args.run(args).tell(args.json))
         print(end="", flush=True)
         return status
     except (ValueError, RuntimeError) as error:
-        hint = [f"({option(args, error.setting)})"] if isinstance(error, Refusal) else []
+        hint = [f"({option_of_setting(args, error.setting)})"] if isinstance(error, InputRefusal) else []
         print(f"{name}:", *str(error).splitlines(), *hint, file=sys.stderr)
         return 2 if isinstance(error, ValueError) else 1
     except OverflowError:

@@ -22,21 +22,23 @@ from numpy.typing import NDArray
 from jointfmu.files.outputs import MESH, FileKind
 from jointfmu.files.reading import read_bytes
 from jointfmu.quantity import Array
-from jointfmu.quantity.units import Sizes, measured
+from jointfmu.quantity.units import UnitSizes, unit_size_in
 
 Column: TypeAlias = NDArray[Any]
 """Array of real or whole numbers."""
-Head: TypeAlias = tuple[str, str | None]
+ColumnHead: TypeAlias = tuple[str, str | None]
 """Name and unit of a column; None if the column states no unit."""
 
-CONTROL = re.compile(rb"[\x00-\x08\x0e-\x1f]")
+CONTROL_CHARACTERS = re.compile(rb"[\x00-\x08\x0e-\x1f]")
 """Control characters: a file that has them is no text."""
 _HEADING = re.compile(r"\s*(?P<name>[^\[\]]*?)\s*(?:\[\s*(?P<unit>[^\[\]]*?)\s*\])?\s*$")
-_WRITTEN = re.compile(r"\S.* \[[^\[\]]+\]")
+_HEADING_WITH_UNIT = re.compile(r"\S.* \[[^\[\]]+\]")
 """Heading of one column as `format_table` writes it: `name [unit]`."""
-HEAD = 65536
+MAX_HEADING_BYTES = 65536
 """Bytes at the start of a file that are searched for its heading."""
-_OTHERWISE = re.compile(r"\s*(?P<name>[^()/]*?)\s*(?:\(\s*(?P<one>[^()]+?)\s*\)|/\s*(?P<two>\S+))\s*$")
+_ALTERNATIVE_HEADING = re.compile(
+    r"\s*(?P<name>[^()/]*?)\s*(?:\(\s*(?P<one>[^()]+?)\s*\)|/\s*(?P<two>\S+))\s*$"
+)
 """Alternative headings of a column: `name (unit)` and `name / unit`."""
 
 
@@ -54,13 +56,15 @@ class Columns:
     lines: Sequence[int] = ()
     units: Mapping[str, str] = field(default_factory=dict)
 
-    def require(self, name: str, spec: Mapping[str, Sizes]) -> Array:
+    def require_column(self, name: str, spec: Mapping[str, UnitSizes]) -> Array:
         """Return a column. Raises ValueError if the file does not have the column."""
         if name not in self.columns:
-            raise ValueError(f"{self.path}: has no column {name!r}; expected {heading({name: spec[name]})}")
+            raise ValueError(
+                f"{self.path}: has no column {name!r}; expected {format_heading({name: spec[name]})}"
+            )
         return self.columns[name]
 
-    def positive(self, names: Iterable[str], spec: Mapping[str, Sizes]) -> "Columns":
+    def check_positive(self, names: Iterable[str], spec: Mapping[str, UnitSizes]) -> "Columns":
         """Return self; raise ValueError with the line if a number of the named columns is not positive."""
         for name in names:
             if np.any(wrong := self.columns[name] <= 0.0):
@@ -73,26 +77,26 @@ class Columns:
 def is_table(path: Path) -> bool:
     """Return whether a file has a heading as `format_table` writes it: every column as `name [unit]`."""
     with path.open("rb") as file:
-        lines = file.read(HEAD).decode("utf-8", "replace").splitlines()
+        lines = file.read(MAX_HEADING_BYTES).decode("utf-8", "replace").splitlines()
     head = next((line for line in lines if not line.startswith("#")), "")
-    return all(_WRITTEN.fullmatch(cell) for cell in next(csv.reader([head]), [""]))
+    return all(_HEADING_WITH_UNIT.fullmatch(cell) for cell in next(csv.reader([head]), [""]))
 
 
 TABLE = FileKind("table", (".csv",), is_table)
 FIELD = FileKind("field", (".csv", ".vtu"), lambda path: is_table(path) or MESH.is_own(path))
 
 
-def heading(spec: Mapping[str, Sizes]) -> str:
+def format_heading(spec: Mapping[str, UnitSizes]) -> str:
     """Format the expected columns with their allowed units, for error messages."""
     return ", ".join(f"{name} [{' | '.join(units)}]" for name, units in spec.items())
 
 
-def read(
+def read_columns(
     path: str | Path,
-    spec: Mapping[str, Sizes],
-    least: int,
-    others: Mapping[str, Sequence[str]] | None = None,
-    stated: Mapping[str, Head] | None = None,
+    spec: Mapping[str, UnitSizes],
+    min_rows: int,
+    aliases: Mapping[str, Sequence[str]] | None = None,
+    stated_headings: Mapping[str, ColumnHead] | None = None,
 ) -> Columns:
     """Read from a file those columns of `spec` that the file has.
 
@@ -106,93 +110,93 @@ def read(
     fewer than `min_rows` rows.
     """
     path = Path(path)
-    lines = content(path)
+    lines = read_numbered_lines(path)
     if not lines:
-        raise ValueError(f"{path}: is empty; expected columns {heading(spec)}")
-    mark = separator(lines[0][1])
-    head = cells(lines[0][1], mark)
-    head = _renamed(path, head, stated or {})
-    places = _places(path, head, spec, others or {})
-    if len(lines) - 1 < least:
-        raise ValueError(f"{path}: has {len(lines) - 1} points, at least {least} are needed")
+        raise ValueError(f"{path}: is empty; expected columns {format_heading(spec)}")
+    mark = find_separator(lines[0][1])
+    head = split_cells(lines[0][1], mark)
+    head = _apply_stated_headings(path, head, stated_headings or {})
+    places = _find_columns(path, head, spec, aliases or {})
+    if len(lines) - 1 < min_rows:
+        raise ValueError(f"{path}: has {len(lines) - 1} points, at least {min_rows} are needed")
     numbers = [number for number, _ in lines[1:]]
-    rows = [cells(line, mark) for _, line in lines[1:]]
+    rows = [split_cells(line, mark) for _, line in lines[1:]]
     for line, row in zip(numbers, rows, strict=True):
-        check_length(path, line, row, len(head))
+        check_cell_count(path, line, row, len(head))
     columns = {
-        name: _column(path, name, numbers, [row[place] for row in rows]) * size
+        name: _parse_column(path, name, numbers, [row[place] for row in rows]) * size
         for name, (place, size, _) in places.items()
     }
     return Columns(path, columns, numbers, {name: unit for name, (_, _, unit) in places.items()})
 
 
-def names(path: str | Path) -> list[str]:
+def read_names(path: str | Path) -> list[str]:
     """Read the names of a file's columns in lower case; an empty list if the file is empty.
 
     Raises ValueError if the file cannot be read or is no text.
     """
-    lines = content(Path(path), 1)
+    lines = read_numbered_lines(Path(path), 1)
     if not lines:
         return []
-    return [head(cell)[0].lower() for cell in cells(lines[0][1], separator(lines[0][1]))]
+    return [parse_heading(cell)[0].lower() for cell in split_cells(lines[0][1], find_separator(lines[0][1]))]
 
 
-def head(cell: str) -> Head:
+def parse_heading(cell: str) -> ColumnHead:
     """Parse the heading of one column into name and unit: `angle [deg]`, `Angle (deg)` or `angle / deg`."""
     if match := _HEADING.match(cell):
-        if match["unit"] is None and (other := _OTHERWISE.match(cell)):
+        if match["unit"] is None and (other := _ALTERNATIVE_HEADING.match(cell)):
             return other["name"], other["one"] or other["two"]
         return match["name"], match["unit"]
     return cell.strip(), None
 
 
-def content(path: Path, most: int | None = None) -> list[tuple[int, str]]:
+def read_numbered_lines(path: Path, max_lines: int | None = None) -> list[tuple[int, str]]:
     """Read (line number, text) of a file's lines, without comments and empty lines.
 
     max_lines : number of lines to return; None: all
 
     Raises ValueError if the file cannot be read or is no text.
     """
-    lines = enumerate(text_lines(path), 1)
+    lines = enumerate(read_text_lines(path), 1)
     rows = ((i, line) for i, line in lines if line.strip() and not line.lstrip().startswith("#"))
-    return list(islice(rows, most))
+    return list(islice(rows, max_lines))
 
 
-def text_lines(path: Path) -> list[str]:
+def read_text_lines(path: Path) -> list[str]:
     """Read all lines of a file. Raises ValueError, one line, if the file cannot be read or is no text."""
     try:
-        return decoded(read_bytes(path, "a CSV file")).splitlines()
+        return decode_text(read_bytes(path, "a CSV file")).splitlines()
     except UnicodeDecodeError:
         raise ValueError(f"{path}: is no text file; expected CSV (UTF-8)") from None
 
 
-def decoded(raw: bytes) -> str:
+def decode_text(raw: bytes) -> str:
     """Decode UTF-8, else Latin-1. Raises UnicodeDecodeError if Latin-1 text has control characters."""
     try:
         return raw.decode("utf-8-sig")
     except UnicodeDecodeError:
-        if CONTROL.search(raw):
+        if CONTROL_CHARACTERS.search(raw):
             raise
         return raw.decode("latin-1")
 
 
-def separator(line: str) -> str | None:
+def find_separator(line: str) -> str | None:
     """Find the separator of a line: semicolon, else tab, else comma; None if the line has none of them."""
     return next((mark for mark in ";\t," if mark in line), None)
 
 
-def cells(line: str, mark: str | None) -> list[str]:
+def split_cells(line: str, delimiter: str | None) -> list[str]:
     """Split a line into cells. Without a separator the line is one cell: blanks do not separate."""
-    return next(csv.reader([line], delimiter=mark or ","))
+    return next(csv.reader([line], delimiter=delimiter or ","))
 
 
-def check_length(path: Path, line: int, row: Sequence[str], count: int) -> None:
+def check_cell_count(path: Path, line: int, row: Sequence[str], count: int) -> None:
     """Raise ValueError with the line number if a row does not have `count` cells."""
     if len(row) != count:
         raise ValueError(f"{path}: line {line} has {len(row)} columns, expected {count}")
 
 
-def number(cell: str) -> float | None:
+def parse_number(cell: str) -> float | None:
     """Parse a cell as a number with decimal point or comma; None if the cell is no number."""
     try:
         return float(cell if "." in cell else cell.replace(",", ".", 1))
@@ -200,36 +204,38 @@ def number(cell: str) -> float | None:
         return None
 
 
-def _renamed(path: Path, cells: Sequence[str], stated: Mapping[str, Head]) -> list[str]:
+def _apply_stated_headings(
+    path: Path, cells: Sequence[str], stated_headings: Mapping[str, ColumnHead]
+) -> list[str]:
     """Replace headings by the names and units that the caller states for them.
 
     Raises ValueError if the file does not have a stated heading.
     """
-    indices = {head(cell)[0].lower(): index for index, cell in enumerate(cells)}
+    indices = {parse_heading(cell)[0].lower(): index for index, cell in enumerate(cells)}
     headings = list(cells)
-    for name, (heading_in_file, unit) in stated.items():
+    for name, (heading_in_file, unit) in stated_headings.items():
         if heading_in_file.lower() not in indices:
             raise ValueError(
                 f"{path}: has no column {heading_in_file!r} for {name}; it has {', '.join(indices)}"
             )
         index = indices[heading_in_file.lower()]
-        unit = unit or head(cells[index])[1]
+        unit = unit or parse_heading(cells[index])[1]
         headings[index] = name if unit is None else f"{name} [{unit}]"
     return headings
 
 
-def _places(
-    path: Path, cells: Sequence[str], spec: Mapping[str, Sizes], others: Mapping[str, Sequence[str]]
+def _find_columns(
+    path: Path, cells: Sequence[str], spec: Mapping[str, UnitSizes], aliases: Mapping[str, Sequence[str]]
 ) -> dict[str, tuple[int, float, str]]:
     """Find the columns of `spec` in a heading: {name: (index, size of its unit in SI, unit)}.
 
     Raises ValueError for a column that stands twice, has no unit or a wrong unit, or if there is no column.
     """
     places: dict[str, tuple[int, float, str]] = {}
-    named = {head(cell)[0].lower() for cell in cells}
-    others = {name: words for name, words in others.items() if name not in named}
+    named = {parse_heading(cell)[0].lower() for cell in cells}
+    aliases = {name: words for name, words in aliases.items() if name not in named}
     for place, cell in enumerate(cells):
-        name, unit = _called(cell, spec, others)
+        name, unit = _identify_column(cell, spec, aliases)
         if name not in spec:
             continue
         allowed = ", ".join(spec[name])
@@ -240,7 +246,7 @@ def _places(
                 f"{path}: column {name!r} has no unit, expected e.g. {name} [{next(iter(spec[name]))}]"
             )
         try:
-            places[name] = place, measured(unit, spec[name]), unit
+            places[name] = place, unit_size_in(unit, spec[name]), unit
         except ValueError:
             raise ValueError(
                 f"{path}: column {name!r} has unit {unit!r}, allowed are {allowed} and others that "
@@ -248,53 +254,58 @@ def _places(
             ) from None
     if not places:
         shown = ", ".join(cell.strip() for cell in cells)[:80]
-        raise ValueError(f"{path}: the first line is {shown!r}; expected columns {heading(spec)}")
+        raise ValueError(f"{path}: the first line is {shown!r}; expected columns {format_heading(spec)}")
     return places
 
 
-def _called(cell: str, spec: Mapping[str, Sizes], others: Mapping[str, Sequence[str]]) -> Head:
+def _identify_column(
+    cell: str, spec: Mapping[str, UnitSizes], aliases: Mapping[str, Sequence[str]]
+) -> ColumnHead:
     """Identify the column of `spec` and the unit that a heading means.
 
     The unit may be the end of the name: `joint_speed_rad_per_s`.
     """
-    name, unit = head(cell)
-    found = name.lower() if name.lower() in spec else _meant(name.lower(), unit, spec, others)
+    name, unit = parse_heading(cell)
+    found = name.lower() if name.lower() in spec else _resolve_alias(name.lower(), unit, spec, aliases)
     if found in spec or unit is not None:
         return found, unit
     for mark in re.finditer("_", name):
         word, end = name[: mark.start()].lower(), name[mark.end() :].replace("_per_", "/")
-        meant = word if word in spec else _meant(word, end, spec, others)
+        meant = word if word in spec else _resolve_alias(word, end, spec, aliases)
         with suppress(ValueError, KeyError):
-            measured(end, spec[meant])
+            unit_size_in(end, spec[meant])
             return meant, end
     return found, unit
 
 
-def _meant(
-    word: str, unit: str | None, spec: Mapping[str, Sizes], others: Mapping[str, Sequence[str]]
+def _resolve_alias(
+    word: str, unit: str | None, spec: Mapping[str, UnitSizes], aliases: Mapping[str, Sequence[str]]
 ) -> str:
     """Return the column of `spec` that has `word` as an alias and allows the unit; else `word` itself."""
-    for name, words in others.items():
+    for name, words in aliases.items():
         if word in words and name in spec and unit is not None:
             with suppress(ValueError):
-                measured(unit, spec[name])
+                unit_size_in(unit, spec[name])
                 return name
     return word
 
 
-def _column(path: Path, name: str, numbers: Sequence[int], column: Sequence[str]) -> Array:
-    values = np.array([np.nan if (value := number(cell)) is None else value for cell in column])
+def _parse_column(path: Path, name: str, numbers: Sequence[int], texts: Sequence[str]) -> Array:
+    values = np.array([np.nan if (value := parse_number(cell)) is None else value for cell in texts])
     if np.any(wrong := ~np.isfinite(values)):
         first = int(np.argmax(wrong))
         raise ValueError(
-            f"{path}: line {numbers[first]}: {name} = {column[first].strip()!r} is no finite number with a "
+            f"{path}: line {numbers[first]}: {name} = {texts[first].strip()!r} is no finite number with a "
             "decimal point"
         )
     return values
 
 
-def text(
-    heads: Sequence[Head], columns: Sequence[Column], digits: int | None = None, above: Sequence[str] = ()
+def format_table(
+    heads: Sequence[ColumnHead],
+    columns: Sequence[Column],
+    digits: int | None = None,
+    header_lines: Sequence[str] = (),
 ) -> str:
     """Format columns (n) as CSV text: heading `name [unit]`, one line per row.
 
@@ -304,15 +315,15 @@ def text(
     first = io.StringIO()
     names = [name if unit is None else f"{name} [{unit}]" for name, unit in heads]
     csv.writer(first, lineterminator="").writerow(names)
-    return "\n".join([*above, first.getvalue(), *rows(columns, [digits] * len(heads)), ""])
+    return "\n".join([*header_lines, first.getvalue(), *format_rows(columns, [digits] * len(heads)), ""])
 
 
-def rows(columns: Iterable[Column], digits: Sequence[int | None], between: str = ",") -> list[str]:
+def format_rows(columns: Iterable[Column], digits: Sequence[int | None], delimiter: str = ",") -> list[str]:
     """Format columns (n) as lines, each column with its own digits. Rounded numbers have no negative zero."""
     formats, values = [], []
     for column, count in zip(columns, digits, strict=True):
         exact = count is None or column.dtype.kind != "f"
         formats.append("%r" if exact else f"%.{count}g")
         values.append((column if exact else column + 0.0).tolist())
-    pattern = between.join(formats)
+    pattern = delimiter.join(formats)
     return [pattern % row for row in zip(*values, strict=True)]

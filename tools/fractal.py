@@ -30,7 +30,7 @@ def structure_constant(H: Number) -> Number:
     return 0.5 * np.pi * np.exp(log) / np.sin(np.pi * H)
 
 
-def second_difference(H: Number) -> Number:
+def second_difference_ratio(H: Number) -> Number:
     """V(tau)/S(tau) = 4 - 4^H [1] for a power-law structure function S, with V(tau) = 4 S(tau) - S(2 tau).
 
     V is the mean square of the second difference of heights at the lag tau.
@@ -38,7 +38,7 @@ def second_difference(H: Number) -> Number:
     return 4.0 - 4.0**H
 
 
-def profile_share(H: Number) -> Number:
+def profile_power_ratio(H: Number) -> Number:
     """kappa [1], ratio of the power Phi of a profile of an isotropic surface to that of the surface.
 
     kappa = mean of |cos a|^(2H) over all directions a = Gamma(H + 1/2)/(sqrt(pi) Gamma(H + 1)). A wave that
@@ -51,7 +51,7 @@ def profile_share(H: Number) -> Number:
 
 def areal_roughness(G: Number, H: Number) -> Number:
     """G [m] of the isotropic surface (Hu 2023, Eq. 1) whose profiles have the given G [m]."""
-    return G * profile_share(H) ** (-0.5 / (1.0 - H))
+    return G * profile_power_ratio(H) ** (-0.5 / (1.0 - H))
 
 
 def zhao_roughness(G: Number, H: Number, gamma: Number) -> Number:
@@ -59,12 +59,14 @@ def zhao_roughness(G: Number, H: Number, gamma: Number) -> Number:
     return G * np.log(gamma) ** (0.5 / (1.0 - H))
 
 
-def hurst(D: Number, areal: bool = False) -> Number:
+def hurst_exponent(D: Number, is_areal: bool = False) -> Number:
     """Hurst exponent H [1] from the fractal dimension D: 2 - D of a profile, 3 - D of a surface."""
-    return (3.0 if areal else 2.0) - D
+    return (3.0 if is_areal else 2.0) - D
 
 
-def height(D: Number, G: Number, longest: Number, areal: bool = False, gamma: Number | None = None) -> Number:
+def rms_height(
+    D: Number, G: Number, longest_wave: Number, is_areal: bool = False, gamma: Number | None = None
+) -> Number:
     """Rms height h [m] of an isotropic surface with D [1] and G [m], for all waves up to the longest one.
 
     longest_wave : longest wavelength L [m]
@@ -77,12 +79,12 @@ def height(D: Number, G: Number, longest: Number, areal: bool = False, gamma: Nu
     Phi = G_s^(2(1-H)) L^(2H)/2 is `wave_power` at 1/L. Every profile of the surface has the same height if
     the surface has no longer waves.
     """
-    H = hurst(D, areal)
-    power = wave_power(1.0 / longest, H, _surface(G, H, areal))
+    H = hurst_exponent(D, is_areal)
+    power = wave_power(1.0 / longest_wave, H, _to_areal_roughness(G, H, is_areal))
     share = 0.5 / H if gamma is None else np.log(gamma) / (1.0 - gamma ** (-2.0 * H))
     return np.sqrt(power * share)
 
 
-def _surface(G: Number, H: Number, areal: bool) -> Number:
+def _to_areal_roughness(G: Number, H: Number, is_areal: bool) -> Number:
     """G [m] of the isotropic surface, from the G [m] of the surface or of its profiles."""
-    return G if areal else areal_roughness(G, H)
+    return G if is_areal else areal_roughness(G, H)

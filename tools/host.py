@@ -18,7 +18,7 @@ from jointfmu.files import archives
 if TYPE_CHECKING:
     from fmpy.model_description import ModelDescription
 
-_LOADS = Lock()
+_LIBRARY_LOCK = Lock()
 """Lock while a library is loaded: loading changes the working folder, which all threads share."""
 
 
@@ -47,7 +47,7 @@ class Instance:
         folder: str,
         description: "ModelDescription",
         name: str,
-        exchange: bool,
+        model_exchange: bool,
         lines: list[str] | None = None,
     ) -> None:
         from fmpy import fmi2, fmi3
@@ -55,13 +55,16 @@ class Instance:
         self.description = description
         self.variables = {v.name: v for v in description.modelVariables}
         self.version = int(description.fmiVersion[0])
-        self.exchange = exchange
+        self.exchange = model_exchange
         self.messages: list[Message] = []
         self._lines = [] if lines is None else lines
         kinds = {2: (fmi2.FMU2Slave, fmi2.FMU2Model), 3: (fmi3.FMU3Slave, fmi3.FMU3Model)}
-        interface = description.modelExchange if exchange else description.coSimulation
-        with _LOADS, chdir("."):  # fmpy changes to the library's folder, and stays there after a failure
-            self.fmu: Any = kinds[self.version][exchange](
+        interface = description.modelExchange if model_exchange else description.coSimulation
+        with (
+            _LIBRARY_LOCK,
+            chdir("."),
+        ):  # fmpy changes to the library's folder, and stays there after a failure
+            self.fmu: Any = kinds[self.version][model_exchange](
                 guid=description.guid,
                 unzipDirectory=folder,
                 modelIdentifier=interface.modelIdentifier,
@@ -92,7 +95,7 @@ class Instance:
         if status:
             self._lines.append(" ".join(shown.split()))
 
-    def begin(self, start: float = 0.0, stop: float | None = None) -> None:
+    def enter_initialization(self, start: float = 0.0, stop: float | None = None) -> None:
         """Enter initialization mode at a start time [s]."""
         if self.version == 2:
             self.fmu.setupExperiment(startTime=start, stopTime=stop)
@@ -100,29 +103,29 @@ class Instance:
         else:
             self.fmu.enterInitializationMode(startTime=start, stopTime=stop)
 
-    def set(self, values: Mapping[str, object]) -> None:
+    def set_values(self, values: Mapping[str, object]) -> None:
         """Set variables of any type, one call each."""
         for name, value in values.items():
-            getattr(self.fmu, f"set{self._type(name)}")([self.variables[name].valueReference], [value])
+            getattr(self.fmu, f"set{self._fmi_type(name)}")([self.variables[name].valueReference], [value])
 
-    def value(self, name: str) -> Any:
+    def get_value(self, name: str) -> Any:
         """Read the value of a variable of any type."""
-        return getattr(self.fmu, f"get{self._type(name)}")([self.variables[name].valueReference])[0]
+        return getattr(self.fmu, f"get{self._fmi_type(name)}")([self.variables[name].valueReference])[0]
 
-    def _type(self, name: str) -> str:
+    def _fmi_type(self, name: str) -> str:
         """FMI type by which a variable is set and read. Values of an enumeration are whole numbers."""
         declared = str(self.variables[name].type)
         return declared if declared != "Enumeration" else "Integer" if self.version == 2 else "Int64"
 
-    def reals(self, names: Sequence[str]) -> "Reals":
+    def group_reals(self, names: Sequence[str]) -> "RealVariables":
         """Group real variables, so that one call sets or reads all of them."""
-        return Reals(self, names)
+        return RealVariables(self, names)
 
-    def advance(self, time: float, size: float) -> None:
+    def do_step(self, time: float, step_size: float) -> None:
         """Do one co-simulation step: from `time` [s], with step size `size` [s]."""
-        self.fmu.doStep(currentCommunicationPoint=time, communicationStepSize=size)
+        self.fmu.doStep(currentCommunicationPoint=time, communicationStepSize=step_size)
 
-    def update(self) -> tuple[Any, ...]:
+    def update_discrete_states(self) -> tuple[Any, ...]:
         """Do one event iteration.
 
         Returns the results of FMI: whether another iteration is needed, whether to terminate, ..., the time
@@ -130,12 +133,12 @@ class Instance:
         """
         return tuple(self.fmu.newDiscreteStates() if self.version == 2 else self.fmu.updateDiscreteStates())
 
-    def free(self) -> None:
+    def free_instance(self) -> None:
         """Free the instance."""
         self.fmu.freeInstance()
 
 
-class Reals:
+class RealVariables:
     """Real variables of an instance that are set or read in one call. The arrays are reused."""
 
     def __init__(self, instance: Instance, names: Sequence[str]) -> None:
@@ -150,20 +153,24 @@ class Reals:
             else (fmu.fmi3SetFloat64, fmu.fmi3GetFloat64)
         )
 
-    def set(self, *values: float) -> None:
+    def set_values(self, *values: float) -> None:
         """Set all variables."""
         self._values[:] = list(values)
         self._set(*self._arguments)
 
-    def get(self) -> list[float]:
+    def get_values(self) -> list[float]:
         """Read all variables."""
         self._get(*self._arguments)
         return list(self._values)
 
 
 @contextmanager
-def opened(
-    folder: str, described: "ModelDescription", source: str, lines: list[str], exchange: bool = False
+def open_instance(
+    folder: str,
+    model_description: "ModelDescription",
+    source: str,
+    lines: list[str],
+    model_exchange: bool = False,
 ) -> Iterator[Instance]:
     """Context with an instance of an unpacked FMU, which is freed at the end.
 
@@ -175,7 +182,7 @@ def opened(
     line.
     """
     try:
-        instance = Instance(folder, described, "host", exchange, lines)
+        instance = Instance(folder, model_description, "host", model_exchange, lines)
     except Exception as error:  # fmpy raises bare Exception, ctypes its own
         reason = " ".join(str(error.__context__ or error).replace(f"{folder}{os.sep}", "").split())
         raise ValueError(f"{source}: its library cannot be loaded ({reason.rstrip('.')})") from None
@@ -186,10 +193,10 @@ def opened(
     try:
         yield instance
     finally:
-        instance.free()
+        instance.free_instance()
 
 
-def description(fmu: str | Path) -> "ModelDescription":
+def read_description(fmu: str | Path) -> "ModelDescription":
     """Read the model description of an FMU with fmpy, without validation. Results are cached per file.
 
     Raises ValueError, one line, if the file does not exist, cannot be opened safely, or is no FMU of FMI 2.0
@@ -199,15 +206,15 @@ def description(fmu: str | Path) -> "ModelDescription":
         file = os.stat(fmu)
     except OSError:
         raise ValueError(f"{fmu}: there is no such file; expected an FMU") from None
-    return _description(str(fmu), (file.st_ino, file.st_size, file.st_mtime_ns))
+    return _read_cached_description(str(fmu), (file.st_ino, file.st_size, file.st_mtime_ns))
 
 
 @lru_cache(16)
-def _description(fmu: str, file: tuple[int, ...]) -> "ModelDescription":
+def _read_cached_description(fmu: str, file_version: tuple[int, ...]) -> "ModelDescription":
     from fmpy import read_model_description
 
     with archives.open_archive(fmu) as archive:
-        text = archives.read_member(archive, archives.DESCRIPTION)
+        text = archives.read_member(archive, archives.DESCRIPTION_NAME)
     try:  # fmpy fails on descriptions of FMI 1.0, which lack some attributes
         version = ElementTree.fromstring(text).get("fmiVersion", "none")
         if version.startswith(("2.", "3.")):
@@ -218,7 +225,7 @@ def _description(fmu: str, file: tuple[int, ...]) -> "ModelDescription":
 
 
 @contextmanager
-def unpacked(fmu: str | Path, exchange: bool = False) -> "Iterator[tuple[str, ModelDescription]]":
+def unpack_fmu(fmu: str | Path, model_exchange: bool = False) -> "Iterator[tuple[str, ModelDescription]]":
     """Context with the folder of an unpacked FMU and its model description; the folder is removed at the end.
 
     model_exchange : whether an FMU for model exchange only is accepted
@@ -227,13 +234,13 @@ def unpacked(fmu: str | Path, exchange: bool = False) -> "Iterator[tuple[str, Mo
     of FMI, no co-simulation, or binaries for other platforms only.
     """
     path = Path(fmu)
-    described = description(path)
-    _check_interface(described, path, exchange)
+    described = read_description(path)
+    _check_interface(described, path, model_exchange)
     folder = tempfile.mkdtemp()
     resources = Path(folder) / "resources"
     try:
         with archives.open_archive(path) as archive:
-            archives.extract(archive, folder, runs)
+            archives.extract_members(archive, folder, is_needed_to_run)
         _check_python_flavour(resources, path)
         yield folder, described
     finally:
@@ -242,7 +249,7 @@ def unpacked(fmu: str | Path, exchange: bool = False) -> "Iterator[tuple[str, Mo
         shutil.rmtree(folder, ignore_errors=True)
 
 
-def runs(member: str) -> bool:
+def is_needed_to_run(member: str) -> bool:
     """Return whether a file inside an FMU is needed to run it here: description, resources, binaries."""
     from fmpy import platform, platform_tuple
 
@@ -250,11 +257,11 @@ def runs(member: str) -> bool:
     return member.startswith(needed)
 
 
-def _check_interface(described: "ModelDescription", source: Path, exchange: bool) -> None:
+def _check_interface(model_description: "ModelDescription", source: Path, model_exchange: bool) -> None:
     """Raise ValueError if the FMU has no co-simulation, or no binary for this platform."""
     from fmpy import platform, supported_platforms
 
-    if described.coSimulation is None and not (exchange and described.modelExchange):
+    if model_description.coSimulation is None and not (model_exchange and model_description.modelExchange):
         raise ValueError(f"{source}: has no co-simulation; expected an FMU for co-simulation")
     if platform not in (built_for := supported_platforms(str(source))):
         raise ValueError(f"{source}: has no binary for {platform}, only for {', '.join(built_for) or 'none'}")

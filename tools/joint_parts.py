@@ -13,9 +13,9 @@ from types import ModuleType
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:  # the command line imports this module first: no slow imports
-    from jointfmu.joints.kind import Kind
+    from jointfmu.joints.kind import JointKind
 
-TOOLS = (
+TOOL_NAMES = (
     "catalogue",
     "checks",
     "export",
@@ -48,14 +48,16 @@ class ToolParts:
     module with the name of a tool that is not in `module_names`.
     """
 
-    def __init__(self, package: str, names: Sequence[str], **modules: str) -> None:
-        self.package, self.modules = package, {name: name for name in names} | modules
+    def __init__(self, package: str, module_names: Sequence[str], **modules: str) -> None:
+        self.package, self.modules = package, {name: name for name in module_names} | modules
         existing = {module.name for module in iter_modules([str(self.folder)])}
-        faults = {name: "is of no tool" for name in self.modules if name not in TOOLS}
-        faults |= dict.fromkeys(existing & {*TOOLS} - {*names}, "is a part that its __init__.py must name")
+        faults = {name: "is of no tool" for name in self.modules if name not in TOOL_NAMES}
+        faults |= dict.fromkeys(
+            existing & {*TOOL_NAMES} - {*module_names}, "is a part that its __init__.py must name"
+        )
         faults |= {name: "is not there" for name in self.modules.values() if name not in existing}
         for name, text in faults.items():
-            raise ImportError(f"{package}.{name} {text}; parts are {', '.join(TOOLS)}")
+            raise ImportError(f"{package}.{name} {text}; parts are {', '.join(TOOL_NAMES)}")
 
     @property
     def folder(self) -> Path:
@@ -86,24 +88,24 @@ class Option:
     """
 
     name: str
-    text: str
+    help_text: str
     metavar: str = "VALUE"
     _: KW_ONLY
     default: float | str | None = None
     choices: Sequence[str] = ()
-    many: bool = False
-    by: str = ""
-    flag: bool = False
-    required: bool = False
-    number: bool = False
-    unit: str = ""
-    unit_by: str = ""
+    is_list: bool = False
+    separator: str = ""
+    is_flag: bool = False
+    is_required: bool = False
+    is_number: bool = False
+    default_unit: str = ""
+    unit_option: str = ""
 
 
 PARTS: dict[str, ToolParts] = {}
 """{name of a joint: its tool modules}. `jointfmu_tools.joints` fills it; other packages add their joints."""
 
 
-def part(kind: "Kind", tool: str) -> ModuleType | None:
+def load_tool_module(kind: "JointKind", tool: str) -> ModuleType | None:
     """Import the module of a joint for a tool; None if the joint has no such module."""
     return PARTS[kind.name].load(tool) if kind.name in PARTS else None

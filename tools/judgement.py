@@ -10,18 +10,18 @@ from typing import Any
 
 import numpy as np
 
-from jointfmu.contact.interface import InterfaceLaw, beyond, stiffness_curve
-from jointfmu.contact.roughness import GAMMA, ROUGHEST, height, level
+from jointfmu.contact.interface import InterfaceLaw, find_validity_violations, stiffness_curve
+from jointfmu.contact.roughness import GAMMA, MAX_HEIGHT, combined_height, predicted_stiffness
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array, Number
 
-FACTOR = 3.0
+MAX_RATIO = 3.0
 """Factor [1] above or below the estimate p/(GAMMA h) that makes a stiffness doubtful (docs/validity.md)."""
 
 
 @dataclass(frozen=True, slots=True)
-class Level:
+class StiffnessComparison:
     """Stiffness of an interface law, compared with the estimate p/(GAMMA h) from roughness.
 
     h         : [m] rms height of both surfaces combined
@@ -36,66 +36,66 @@ class Level:
     @property
     def ratio(self) -> Array:
         """Ratio (n) [1] of the stiffness to p/(GAMMA h)."""
-        return np.asarray(self.stiffness / level(self.pressure, self.h))
+        return np.asarray(self.stiffness / predicted_stiffness(self.pressure, self.h))
 
     @property
-    def doubtful(self) -> bool:
+    def is_doubtful(self) -> bool:
         """Whether the ratio is above MAX_RATIO or below 1/MAX_RATIO at any pressure."""
-        return bool(np.any((self.ratio > FACTOR) | (self.ratio < 1.0 / FACTOR)))
+        return bool(np.any((self.ratio > MAX_RATIO) | (self.ratio < 1.0 / MAX_RATIO)))
 
     def __str__(self) -> str:
-        at = f"at {_span(self.pressure / 1e6)} MPa, h = {1e6 * self.h:.3g} um"
-        return f"the law's K is {_span(self.ratio)} times p/({GAMMA:g} h) {at}"
+        at = f"at {_format_range(self.pressure / 1e6)} MPa, h = {1e6 * self.h:.3g} um"
+        return f"the law's K is {_format_range(self.ratio)} times p/({GAMMA:g} h) {at}"
 
-    def document(self) -> dict[str, Any]:
+    def to_json(self) -> dict[str, Any]:
         """Convert to a JSON object."""
-        columns = (self.pressure, self.stiffness, level(self.pressure, self.h), self.ratio)
+        columns = (self.pressure, self.stiffness, predicted_stiffness(self.pressure, self.h), self.ratio)
         names = ("pressure", "stiffness", "expected", "ratio")
         points = [dict(zip(names, map(float, row), strict=True)) for row in zip(*columns, strict=True)]
         return {"h": self.h, "gamma": GAMMA, "points": points}
 
 
 @dataclass(frozen=True, slots=True)
-class Judgement:
+class Plausibility:
     """Plausibility of a stiffness: comparison with the roughness, and warnings.
 
     comparison : None if the roughness is unknown
     """
 
-    level: Level | None
+    comparison: StiffnessComparison | None
     warnings: tuple[str, ...]
 
-    def lines(self) -> Iterator[str]:
+    def format_lines(self) -> Iterator[str]:
         """Readable lines, without the warnings."""
-        if self.level is not None:
-            yield str(self.level)
+        if self.comparison is not None:
+            yield str(self.comparison)
 
-    def with_warnings(self, more: Sequence[str]) -> "Judgement":
+    def with_warnings(self, extra_warnings: Sequence[str]) -> "Plausibility":
         """Copy with further warnings before the present ones."""
-        return Judgement(self.level, (*more, *self.warnings))
+        return Plausibility(self.comparison, (*extra_warnings, *self.warnings))
 
-    def document(self) -> dict[str, Any]:
+    def to_json(self) -> dict[str, Any]:
         """Convert to a JSON object: {"level": object or null, "warnings": [...]}."""
-        return {"level": self.level and self.level.document(), "warnings": list(self.warnings)}
+        return {"level": self.comparison and self.comparison.to_json(), "warnings": list(self.warnings)}
 
 
-def known_height(file: ParameterFile) -> float | None:
+def find_height(file: ParameterFile) -> float | None:
     """Combined rms height h [m] of both surfaces, from the law or else from the surface data of the file.
 
     None if the file has neither.
     """
-    h = law_height(KINDS[file.joint].law_of(file.values))
-    return height(file.roughness) if h is None else h
+    h = law_height(KINDS[file.joint].extract_law(file.values))
+    return combined_height(file.roughness) if h is None else h
 
 
-def judge(
+def assess_law(
     law: InterfaceLaw,
     pressures: Sequence[float],
     h: float | None,
     peak: float = 0.0,
     scale: Sequence[float] | float = 1.0,
-    limits: bool = True,
-) -> Judgement:
+    check_limits: bool = True,
+) -> Plausibility:
     """Assess the stiffness of an interface law at nominal pressures [Pa]. Zero and infinite ones are ignored.
 
     h            : [m] combined rms height of both surfaces; None: unknown
@@ -108,21 +108,21 @@ def judge(
     p, factor = nominal[in_contact], np.broadcast_to(scale, nominal.shape)[in_contact]
     comparison = None
     if h is not None and p.size:
-        comparison = Level(h, p, factor * stiffness_curve(law, p)[0])
+        comparison = StiffnessComparison(h, p, factor * stiffness_curve(law, p)[0])
     highest = float(np.max(p, initial=peak))
     lowest = float(np.min(p, initial=highest))
-    warnings = beyond(law, highest, lowest) if limits and highest > 0.0 else []
-    if h is not None and h > 2.0 * ROUGHEST:
+    warnings = find_validity_violations(law, highest, lowest) if check_limits and highest > 0.0 else []
+    if h is not None and h > 2.0 * MAX_HEIGHT:
         warnings.insert(
-            0, f"h = {h:.3g} m is no roughness: faces that are joined have up to {ROUGHEST:g} m each"
+            0, f"h = {h:.3g} m is no roughness: faces that are joined have up to {MAX_HEIGHT:g} m each"
         )
-    if comparison is not None and comparison.doubtful:
+    if comparison is not None and comparison.is_doubtful:
         warnings.append(
-            f"the law's K is {_span(comparison.ratio)} times that of the roughness, "
-            f"K/A_0 = p/({GAMMA:g} h) with h = {1e6 * comparison.h:.3g} um: beyond a factor of {FACTOR:g} a "
+            f"the law's K is {_format_range(comparison.ratio)} times that of the roughness, "
+            f"K/A_0 = p/({GAMMA:g} h) with h = {1e6 * comparison.h:.3g} um: beyond a factor of {MAX_RATIO:g} a "
             "measurement decides, and without one believe the roughness (docs/validity.md)"
         )
-    return Judgement(comparison, tuple(warnings))
+    return Plausibility(comparison, tuple(warnings))
 
 
 def law_height(law: InterfaceLaw) -> Number | None:
@@ -130,6 +130,6 @@ def law_height(law: InterfaceLaw) -> Number | None:
     return getattr(law, "h", None)
 
 
-def _span(values: Array) -> str:
+def _format_range(values: Array) -> str:
     low, high = float(np.min(values)), float(np.max(values))
     return f"{low:.3g}" if f"{low:.3g}" == f"{high:.3g}" else f"{low:.3g} to {high:.3g}"

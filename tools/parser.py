@@ -9,9 +9,9 @@ from typing import Any
 
 from jointfmu import __version__
 
-from .command_line.common import IMPLIED, Parser, nearest
+from .command_line.common import DEFAULT_SUBCOMMANDS, Parser, suggest_word
 
-GROUPS = {
+COMMAND_GROUPS = {
     "make a parameter file": ("new", "catalogue", "surface", "fit", "footprint", "parameters"),
     "build": ("build", "system", "robot", "modelica", "export", "report", "cache"),
     "run": ("law", "ramp", "ring", "modes"),
@@ -19,9 +19,9 @@ GROUPS = {
     "study": ("uncertainty", "sweep"),
 }
 """{heading: commands}. The function `add` of the module `commands.COMMAND` declares each command."""
-COMMANDS = tuple(name for names in GROUPS.values() for name in names)
+COMMANDS = tuple(name for names in COMMAND_GROUPS.values() for name in names)
 SHELLS = ("bash", "zsh")
-BESIDE = {
+COMMAND_MODULES = {
     "cache": "build",
     "catalogue": "new",
     "footprint": "assembly.footprint",
@@ -37,10 +37,10 @@ class CommandLine(Parser):
 
     def parse_args(self, args: Any = None, namespace: Any = None) -> Any:
         """Parse arguments. Insert the default sub-command, suggest an option similar to an unknown one."""
-        words = _explicit(list(sys.argv[1:] if args is None else args))
+        words = _insert_subcommand(list(sys.argv[1:] if args is None else args))
         parsed, unknown = super().parse_known_args(words, namespace)
         if unknown:
-            hint = nearest(unknown[0].partition("=")[0], _options(self, words))
+            hint = suggest_word(unknown[0].partition("=")[0], _option_names(self, words))
             self.error(f"unrecognized arguments: {' '.join(unknown)}{hint}")
         return parsed
 
@@ -49,8 +49,8 @@ class CommandLine(Parser):
         formatter = self._get_formatter()
         formatter.add_usage(self.usage, self._actions, self._mutually_exclusive_groups)
         formatter.add_text(self.description)
-        actions = {action.dest: action for sub in _subs(self) for action in sub._choices_actions}
-        for title, names in GROUPS.items():
+        actions = {action.dest: action for sub in _subparser_actions(self) for action in sub._choices_actions}
+        for title, names in COMMAND_GROUPS.items():
             formatter.start_section(title)
             formatter.add_arguments([actions[name] for name in names if name in actions])
             formatter.end_section()
@@ -70,7 +70,7 @@ class Completion(argparse.Action):
             import shtab
         except ImportError:
             parser.error(f"{option}: the package shtab is missing; install it with: pip install shtab")
-        for command in _all(parser):
+        for command in _iterate_parsers(parser):
             for action in command._actions:
                 if action.type is Path:
                     action.complete = shtab.FILE  # type: ignore[attr-defined]
@@ -78,38 +78,38 @@ class Completion(argparse.Action):
         parser.exit()
 
 
-def _subs(parser: argparse.ArgumentParser) -> "list[argparse._SubParsersAction[Any]]":
+def _subparser_actions(parser: argparse.ArgumentParser) -> "list[argparse._SubParsersAction[Any]]":
     """Actions of argparse that hold the sub-commands of a parser."""
     return [a for a in parser._actions if isinstance(a, argparse._SubParsersAction)]
 
 
-def _all(parser: argparse.ArgumentParser) -> Iterator[argparse.ArgumentParser]:
+def _iterate_parsers(parser: argparse.ArgumentParser) -> Iterator[argparse.ArgumentParser]:
     """Yield a parser and, recursively, the parsers of all its sub-commands."""
     yield parser
-    for action in _subs(parser):
+    for action in _subparser_actions(parser):
         for sub in action.choices.values():
-            yield from _all(sub)
+            yield from _iterate_parsers(sub)
 
 
-def _options(parser: argparse.ArgumentParser, words: Sequence[str]) -> list[str]:
+def _option_names(parser: argparse.ArgumentParser, words: Sequence[str]) -> list[str]:
     """Long options of the command that the words name."""
     for word in words:
-        subs = [sub for sub in _subs(parser) if word in sub.choices]
+        subs = [sub for sub in _subparser_actions(parser) if word in sub.choices]
         if not subs:
             break
         parser = subs[0].choices[word]
     return [name for action in parser._actions for name in action.option_strings if name.startswith("--")]
 
 
-def _explicit(words: list[str]) -> list[str]:
+def _insert_subcommand(words: list[str]) -> list[str]:
     """Insert the default sub-command into the words if they name none."""
-    names = IMPLIED.get(words[0]) if words else None
+    names = DEFAULT_SUBCOMMANDS.get(words[0]) if words else None
     if names is None or (words[1:2] and words[1] in (*names, "-h", "--help")):
         return words
     return [words[0], names[0], *words[1:]]
 
 
-def parser(words: Sequence[str] = ()) -> CommandLine:
+def build_parser(words: Sequence[str] = ()) -> CommandLine:
     """Build the parser of the command that the words begin with.
 
     If the words name no command, the parser has all commands; building it takes longer.
@@ -120,6 +120,6 @@ def parser(words: Sequence[str] = ()) -> CommandLine:
     top.add_argument("--completion", action=Completion, choices=SHELLS, metavar="SHELL", help=text)
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND", parser_class=Parser)
     for name in words[:1] if {*words[:1]} & {*COMMANDS} else COMMANDS:
-        module = import_module(f"jointfmu_tools.commands.{BESIDE.get(name, name)}")
-        (getattr(module, f"add_{name}") if name in BESIDE else module.add)(commands)
+        module = import_module(f"jointfmu_tools.commands.{COMMAND_MODULES.get(name, name)}")
+        (getattr(module, f"add_{name}") if name in COMMAND_MODULES else module.add)(commands)
     return top

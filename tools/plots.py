@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from jointfmu.files.outputs import MARK
+from jointfmu.files.outputs import PROGRAM_MARK
 from jointfmu.files.writing import write_bytes
 from jointfmu.quantity.units import UNITS, display_unit
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 BLUE, RED, GREEN, GREY = "#1f5fa8", "#c1442e", "#2f7d4f", "#777777"
 FORMATS = (".png", ".svg")
-STYLE: Any = {
+STYLE_SETTINGS: Any = {
     "svg.hashsalt": "jointfmu",
     "svg.fonttype": "path",
     "font.family": "DejaVu Sans",
@@ -34,7 +34,7 @@ RESOLUTION = 150
 """Dots per inch of a PNG."""
 
 
-def check(path: str | Path) -> None:
+def check_picture(path: str | Path) -> None:
     """Raise ValueError if the file name has no picture format, or if matplotlib is missing.
 
     Call it before long work.
@@ -44,35 +44,35 @@ def check(path: str | Path) -> None:
     _rc_context()
 
 
-def shown(unit: str, values: NDArray[np.float64]) -> tuple[str, float]:
+def choose_unit(unit: str, values: NDArray[np.float64]) -> tuple[str, float]:
     """Choose a display unit by the largest of the values; returns the unit and the factor to it."""
     name = display_unit(unit, float(np.max(np.abs(values))))
     return name, UNITS[unit].display[name]
 
 
 @contextmanager
-def drawing(path: str | Path, size: tuple[float, float] = (7.2, 4.2)) -> Iterator["Figure"]:
+def open_figure(path: str | Path, size: tuple[float, float] = (7.2, 4.2)) -> Iterator["Figure"]:
     """Create a figure of a size [inch] in the common style; it is saved at the end of the `with` block.
 
     with plots.drawing("ramp.png") as figure:
         axes = figure.subplots()
     """
-    check(path)
+    check_picture(path)
     from matplotlib.figure import Figure
 
-    with style():
+    with apply_style():
         figure = Figure(figsize=size, layout="constrained")
         yield figure
-        save(figure, path)
+        save_figure(figure, path)
 
 
 @contextmanager
-def style() -> Iterator[None]:
+def apply_style() -> Iterator[None]:
     """Apply the common style in a `with` block, or as a decorator of a function that draws.
 
     Raises ValueError if matplotlib is missing.
     """
-    with _rc_context()(STYLE):
+    with _rc_context()(STYLE_SETTINGS):
         yield
 
 
@@ -86,7 +86,7 @@ def _rc_context() -> Callable[..., AbstractContextManager[None, bool | None]]:
     return rc_context
 
 
-def figure(size: tuple[float, float]) -> "Figure":
+def create_figure(size: tuple[float, float]) -> "Figure":
     """Create an empty figure of a size [inch] that `pyplot.show` and notebooks display."""
     from matplotlib import get_backend, pyplot
 
@@ -96,11 +96,13 @@ def figure(size: tuple[float, float]) -> "Figure":
     return canvas
 
 
-def save(figure: "Figure", path: str | Path) -> None:
+def save_figure(figure: "Figure", path: str | Path) -> None:
     """Save a figure as .png or .svg. A failure leaves no file."""
-    check(path)
+    check_picture(path)
     suffix = Path(path).suffix.lower()
     data = io.BytesIO()
-    metadata = {"Date": None, "Description": MARK} if suffix == ".svg" else {"Description": MARK}
+    metadata = (
+        {"Date": None, "Description": PROGRAM_MARK} if suffix == ".svg" else {"Description": PROGRAM_MARK}
+    )
     figure.savefig(data, format=suffix[1:], dpi=RESOLUTION, metadata=metadata)
     write_bytes(path, data.getvalue())

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from jointfmu.joints import KINDS
-from jointfmu.joints.kind import Kind
+from jointfmu.joints.kind import JointKind
 from jointfmu.parameters import ParameterFile
 
-from .joint_parts import part
-from .judgement import Judgement, judge, known_height
+from .joint_parts import load_tool_module
+from .judgement import Plausibility, assess_law, find_height
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -29,32 +29,35 @@ class NominalPressure:
                       not known
     """
 
-    load: str
-    usual: Callable[..., float]
-    mean: Callable[..., float]
-    peak: Callable[..., float]
-    scale: Callable[..., float] = lambda parameters, load: 1.0
-    borne: Callable[..., tuple[float, str] | None] = lambda parameters: None
+    load_variable: str
+    default_load: Callable[..., float]
+    mean_pressure: Callable[..., float]
+    peak_pressure: Callable[..., float]
+    stiffness_ratio: Callable[..., float] = lambda parameters, load: 1.0
+    load_capacity: Callable[..., tuple[float, str] | None] = lambda parameters: None
 
 
-def over_area(parameters: Any, load: float) -> float:
+def pressure_over_area(parameters: Any, load: float) -> float:
     """Pressure [Pa] of a load [N] distributed uniformly over the nominal area."""
     return float(load / parameters.A_0)
 
 
-FLANKS = NominalPressure(
-    load="f", usual=lambda joint: min(3e3, 0.1 * joint.hardness * joint.A_0), mean=over_area, peak=over_area
+FLANK_PRESSURE = NominalPressure(
+    load_variable="f",
+    default_load=lambda joint: min(3e3, 0.1 * joint.hardness * joint.A_0),
+    mean_pressure=pressure_over_area,
+    peak_pressure=pressure_over_area,
 )
 """Nominal pressure of gear flanks under a normal force f [N]."""
 
 
-def nominal_pressure(kind: Kind) -> NominalPressure | None:
+def nominal_pressure(kind: JointKind) -> NominalPressure | None:
     """Nominal pressure that the joint's folder defines; None if it defines none."""
-    module = part(kind, "pressure")
+    module = load_tool_module(kind, "pressure")
     return module.PRESSURE if module else None
 
 
-def judge_file(file: ParameterFile, loads: Sequence[float] | None = None) -> Judgement:
+def judge_file(file: ParameterFile, loads: Sequence[float] | None = None) -> Plausibility:
     """Judge the stiffness of a joint under loads.
 
     loads : values of `NominalPressure.load_variable` [SI]; None: the start value in the file, or, if it is
@@ -62,27 +65,27 @@ def judge_file(file: ParameterFile, loads: Sequence[float] | None = None) -> Jud
     """
     kind = KINDS[file.joint]
     nominal = nominal_pressure(kind)
-    if nominal is None or kind.law_of(file.values) is None:
-        return Judgement(None, ())
-    if loads is None and file.start(nominal.load) > 0.0:
-        loads = [file.start(nominal.load)]
-    law, h, limits = kind.law_of(file.values), known_height(file), loads is not None
+    if nominal is None or kind.extract_law(file.values) is None:
+        return Plausibility(None, ())
+    if loads is None and file.start_value(nominal.load_variable) > 0.0:
+        loads = [file.start_value(nominal.load_variable)]
+    law, h, limits = kind.extract_law(file.values), find_height(file), loads is not None
     if loads is None:
-        loads = [nominal.usual(file.values)]
+        loads = [nominal.default_load(file.values)]
     loads = [load for load in loads if load > 0.0]
-    judgement = judge(
+    judgement = assess_law(
         law,
-        [nominal.mean(file.values, load) for load in loads],
+        [nominal.mean_pressure(file.values, load) for load in loads],
         h,
-        max((nominal.peak(file.values, load) for load in loads), default=0.0),
-        [nominal.scale(file.values, load) for load in loads],
+        max((nominal.peak_pressure(file.values, load) for load in loads), default=0.0),
+        [nominal.stiffness_ratio(file.values, load) for load in loads],
         limits,
     )
-    capacity = nominal.borne(file.values)
-    return judgement.with_warnings(overload(nominal.load, max(loads, default=0.0), capacity))
+    capacity = nominal.load_capacity(file.values)
+    return judgement.with_warnings(warn_overload(nominal.load_variable, max(loads, default=0.0), capacity))
 
 
-def without_members(file: ParameterFile) -> list[str]:
+def warn_missing_members(file: ParameterFile) -> list[str]:
     """Warning that the written file has only the interface of a joint with elastic members; else empty."""
     if not getattr(file.values, "elastic", False):
         return []
@@ -92,11 +95,11 @@ def without_members(file: ParameterFile) -> list[str]:
     ]
 
 
-def overload(name: str, load: float, borne: tuple[float, str] | None) -> list[str]:
+def warn_overload(name: str, load: float, capacity: tuple[float, str] | None) -> list[str]:
     """Warning if a load [N] is above the load capacity; else empty.
 
     capacity : (largest load [N], name of this limit), or None if not known
     """
-    if borne is None or load <= borne[0]:
+    if capacity is None or load <= capacity[0]:
         return []
-    return [f"{name} = {load:g} N is above {borne[0]:.4g} N, {borne[1]}"]
+    return [f"{name} = {load:g} N is above {capacity[0]:.4g} N, {capacity[1]}"]

@@ -6,51 +6,51 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from jointfmu.contact.roughness import DECLARED
+from jointfmu.contact.roughness import HEIGHT_FIELDS
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile
-from jointfmu.quantity import flat_fields, span
-from jointfmu.quantity.units import display_unit, factor
+from jointfmu.quantity import describe_range, flat_fields
+from jointfmu.quantity.units import conversion_factor, display_unit
 
-STIFFNESSES = {"N.m/rad": "N.m/rad", "N/m": "N/um"}
+STIFFNESS_UNITS = {"N.m/rad": "N.m/rad", "N/m": "N/um"}
 """{SI unit: display unit on all pages} of stiffnesses. Other display units depend on the value."""
 
 
-def shown_unit(unit: str, typical: float) -> str:
+def choose_display_unit(unit: str, typical: float) -> str:
     """Choose the display unit of a variable by its typical value."""
-    return STIFFNESSES.get(unit) or display_unit(unit, typical)
+    return STIFFNESS_UNITS.get(unit) or display_unit(unit, typical)
 
 
-def spelled(unit: str) -> str:
+def format_unit(unit: str) -> str:
     """Format a unit for display: N m, µm; empty for 1."""
     return "" if unit == "1" else re.sub(r"\bu(?=[mNsJr])", "µ", unit.replace(".", " "))
 
 
-def quantity(value: Any, unit: str | None, digits: int = 6) -> tuple[str, str]:
+def format_quantity(value: Any, unit: str | None, digits: int = 6) -> tuple[str, str]:
     """Format a value in a display unit; returns the text and the unit."""
     if isinstance(value, bool | str):
         return str(value).lower(), ""
     if np.ndim(value):
-        return span(value), spelled(unit or "1") if len(value) else ""
+        return describe_range(value), format_unit(unit or "1") if len(value) else ""
     if unit is None:
         return f"{value:g}", ""
-    shown = shown_unit(unit, value)
-    return f"{factor(unit, shown) * value:.{digits}g}", spelled(shown)
+    shown = choose_display_unit(unit, value)
+    return f"{conversion_factor(unit, shown) * value:.{digits}g}", format_unit(shown)
 
 
-def aligned(rows: Sequence[Sequence[str]], words: int | None = None) -> list[str]:
+def align_columns(rows: Sequence[Sequence[str]], word_columns: int | None = None) -> list[str]:
     """Format rows of cells as lines, columns as wide as their widest cell.
 
     word_columns : number of columns of words at the left, aligned left; the others are aligned right; None:
                    all columns are words
     """
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    signs = ["<" if words is None or i < words else ">" for i in range(len(widths))]
+    signs = ["<" if word_columns is None or i < word_columns else ">" for i in range(len(widths))]
     pattern = "  ".join(f"{{:{sign}{width}}}" for sign, width in zip(signs, widths, strict=True))
     return [pattern.format(*row).rstrip() for row in rows]
 
 
-def fact_lines(facts: Mapping[str, tuple[float, str, str]]) -> list[str]:
+def format_facts(facts: Mapping[str, tuple[float, str, str]]) -> list[str]:
     """Format {name: (value, unit, meaning)} as lines."""
     return [
         f"{name:18} {value:.4g}{'' if unit == '1' else f' {unit}'}  {text}"
@@ -63,7 +63,7 @@ def fact_document(facts: Mapping[str, tuple[float, str, str]]) -> dict[str, obje
     return {name: {"value": v, "unit": u, "text": t} for name, (v, u, t) in facts.items()}
 
 
-class Stated(NamedTuple):
+class FileEntry(NamedTuple):
     """Entry of a parameter file: a number in SI units or a choice, with meaning, origin and source.
 
     unit : SI unit; None for a choice
@@ -78,32 +78,32 @@ class Stated(NamedTuple):
     source: str
 
 
-def _source(file: ParameterFile, name: str) -> str:
+def _format_source(file: ParameterFile, name: str) -> str:
     """Format the source of a number, with the range that the file states for it."""
     text = file.sources.get(name, "default choice")
     low, high = file.ranges.get(name, (0.0, 0.0))
     return f"{low:g} to {high:g}; {text}" if high > low else text
 
 
-def stated(file: ParameterFile) -> list[Stated]:
+def list_entries(file: ParameterFile) -> list[FileEntry]:
     """List all entries of a parameter file: parameters, start values of inputs, roughnesses."""
     fields: dict[str, Mapping[str, Any]] = {
         name: item.metadata for name, item in flat_fields(type(file.values))
     }
-    fields |= {file.surfaces + name: item.metadata for name, item in DECLARED.items()}
+    fields |= {file.heights_prefix + name: item.metadata for name, item in HEIGHT_FIELDS.items()}
     inputs = (v for model in KINDS[file.joint].models for v in model.inputs)
     fields |= {f"inputs.{v.name}": {"unit": v.unit, "doc": v.doc} for v in inputs}
-    values = dict(file.flat)
+    values = dict(file.values_by_name)
     values |= {f"inputs.{name}": value for name, value in file.inputs.items()}
-    values |= {file.surfaces + name: value for name, value in file.roughness.items()}
+    values |= {file.heights_prefix + name: value for name, value in file.roughness.items()}
     return [
-        Stated(
+        FileEntry(
             name,
             value,
             fields[name].get("unit"),
             fields[name]["doc"],
             file.origins.get(name, "user"),
-            _source(file, name),
+            _format_source(file, name),
         )
         for name, value in values.items()
     ]

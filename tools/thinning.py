@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 
-def kept(stops: Collection[int], fits: Callable[[int, int], bool]) -> NDArray[np.intp]:
+def decimate(fixed_nodes: Collection[int], segment_fits: Callable[[int, int], bool]) -> NDArray[np.intp]:
     """Select nodes of a table, from 0 to the last fixed node, with segments as long as allowed.
 
     fixed_nodes  : indices of nodes that must be kept
@@ -15,7 +15,7 @@ def kept(stops: Collection[int], fits: Callable[[int, int], bool]) -> NDArray[np
     Returns the indices of the selected nodes. The length of a segment is doubled while the segment fits, then
     refined by halving the increment. Neighbouring nodes are always a valid segment.
     """
-    ends = sorted(stops)
+    ends = sorted(fixed_nodes)
     nodes = [0]
     while nodes[-1] < ends[-1]:
         i = nodes[-1]
@@ -23,7 +23,7 @@ def kept(stops: Collection[int], fits: Callable[[int, int], bool]) -> NDArray[np
         j, step = i + 1, 1
         while step:
             end = min(j + step, stop)
-            if end > j and fits(i, end):
+            if end > j and segment_fits(i, end):
                 j, step = end, 2 * step
             else:
                 step //= 2

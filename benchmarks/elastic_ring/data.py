@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointfmu.joints.harmonic_drive.law import HarmonicDrive
-from jointfmu.quantity import check, quantity
+from jointfmu.quantity import check_fields, quantity_field
 
 Array = NDArray[np.float64]
 Traction = Callable[[Array], tuple[Array, Array]]
@@ -18,22 +18,26 @@ Traction = Callable[[Array], tuple[Array, Array]]
 class Rings:
     """What the ring model needs beside the drive's parameters."""
 
-    wall: float = quantity("m", "thickness of the flexspline under its teeth, these smeared", gt=0.0)
-    race: float = quantity("m", "thickness of the bearing's outer ring", gt=0.0)
-    cup_length: float = quantity("m", "length over which the radial deformation tapers to zero", gt=0.0)
-    balls: int = quantity("1", "number of balls", ge=3.0, whole=True)
-    ball_diameter: float = quantity("m", "diameter of a ball", gt=0.0)
-    first_ball: float = quantity("1", "angle of a ball from the major axis")
-    interference: float = quantity("m", "radius of the bearing ring over that of the flexspline's bore")
-    zone: float = quantity("1", "half of the angle in which teeth carry load", gt=0.0, le=0.5 * np.pi)
-    zone_centre: float = quantity("1", "angle of the most loaded tooth from the major axis")
-    pressure_angle: float = quantity("1", "angle of the tooth force from the tangent", ge=0.0, lt=0.5 * np.pi)
-    eccentric_angle: float = quantity("1", "angle of the drive's eccentricity from the major axis")
-    lateral_stiffness: float = quantity("N/m", "of the cup's opening against its bottom", gt=0.0)
-    elements_per_ball: int = quantity("1", "elements of a ring from ball to ball", ge=2.0, whole=True)
+    wall: float = quantity_field("m", "thickness of the flexspline under its teeth, these smeared", gt=0.0)
+    race: float = quantity_field("m", "thickness of the bearing's outer ring", gt=0.0)
+    cup_length: float = quantity_field("m", "length over which the radial deformation tapers to zero", gt=0.0)
+    balls: int = quantity_field("1", "number of balls", ge=3.0, is_integer=True)
+    ball_diameter: float = quantity_field("m", "diameter of a ball", gt=0.0)
+    first_ball: float = quantity_field("1", "angle of a ball from the major axis")
+    interference: float = quantity_field("m", "radius of the bearing ring over that of the flexspline's bore")
+    zone: float = quantity_field("1", "half of the angle in which teeth carry load", gt=0.0, le=0.5 * np.pi)
+    zone_centre: float = quantity_field("1", "angle of the most loaded tooth from the major axis")
+    pressure_angle: float = quantity_field(
+        "1", "angle of the tooth force from the tangent", ge=0.0, lt=0.5 * np.pi
+    )
+    eccentric_angle: float = quantity_field("1", "angle of the drive's eccentricity from the major axis")
+    lateral_stiffness: float = quantity_field("N/m", "of the cup's opening against its bottom", gt=0.0)
+    elements_per_ball: int = quantity_field(
+        "1", "elements of a ring from ball to ball", ge=2.0, is_integer=True
+    )
 
     def __post_init__(self) -> None:
-        check(self)
+        check_fields(self)
 
 
 SIZE_14 = Rings(

@@ -20,7 +20,7 @@ from scipy import sparse
 
 from jointfmu.contact.interface import at_pressure
 from jointfmu.joints.harmonic_drive.law import HarmonicDrive
-from jointfmu.mechanics.curve import Curve, approach_curve
+from jointfmu.mechanics.curve import Curve, tabulate_approach
 
 from .contact import Contact, ContactLaw, Spring, equilibrium, hertz_contact
 from .data import Rings, Traction, ball_stiffness, contact_length
@@ -75,7 +75,7 @@ def section(
         rows=sparse.hstack([-circle.value, none, circle.value, none]).tocsr(),
         start=np.full(circle.theta.size, rings.interference),
         weight=circle.weight,
-        law=_interface(curve or approach_curve(drive.law)),
+        law=_interface(curve or tabulate_approach(drive.law)),
     )
     n = circle.value.shape[1]
     nodes = rings.elements_per_ball * np.arange(rings.balls)
@@ -104,7 +104,7 @@ def section(
 
 def field(drive: HarmonicDrive, rings: Rings, traction: Traction) -> tuple[Footprint, list[Section]]:
     """Nodes (n) of the whole contact under a traction, from six sections along it, and the sections."""
-    curve = approach_curve(drive.law)
+    curve = tabulate_approach(drive.law)
     z = HEIGHTS * contact_length(drive)
     sections = [section(drive, rings, height, traction, curve) for height in z.tolist()]
     return footprint(drive, rings, sections, z, HEIGHT_WEIGHTS), sections

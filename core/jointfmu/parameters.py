@@ -21,24 +21,32 @@ from typing import Any, TypeVar
 
 from .contact import roughness
 from .files.reading import read_bytes
-from .files.text import MAX_NAME_LENGTH, check_document, check_text, toml_string
+from .files.text import MAX_NAME_LENGTH, check_document, check_text, format_toml_string
 from .joints import KINDS
-from .quantity import build, changed, flat_fields, flatten, problem, problems, quantity
+from .quantity import (
+    build_parameter_set,
+    find_problem,
+    find_problems,
+    flat_fields,
+    flatten_parameters,
+    quantity_field,
+    replace_values,
+)
 
 T = TypeVar("T")
 
-SCHEMA = 1
+SCHEMA_VERSION = 1
 ORIGINS = ("published", "derived", "catalogue", "estimate", "calibration", "user")
 """Origin of a value (`kind`): printed in the paper, computed from printed values, a catalogue,
 an engineering estimate, fitted to calibration points, or set by the user."""
-_PER_LINE = 5
+_NUMBERS_PER_LINE = 5
 """Numbers of a list per line of the file [1]."""
-_INPUTS = "inputs."
+_INPUTS_PREFIX = "inputs."
 """Prefix of the names of start values."""
-SAME_HEIGHT = 0.01
+HEIGHT_TOLERANCE = 0.01
 """Largest relative difference [1] between h of a law and the h computed from the section [roughness]: such
 heights are printed with two digits."""
-_ACTS, _JUDGES = "roughness.", "comparison."
+_ACTIVE, _COMPARISON = "roughness.", "comparison."
 """Sections of the surface heights, as prefixes: of a law with the parameter h, and of a law without it."""
 
 
@@ -68,25 +76,25 @@ class ParameterFile:
     inputs: Mapping[str, float] = field(default_factory=dict)
     roughness: Mapping[str, float] = field(default_factory=dict)
     ranges: Mapping[str, tuple[float, float]] = field(default_factory=dict)
-    flat: Mapping[str, Any] = field(init=False, repr=False, compare=False)
+    values_by_name: Mapping[str, Any] = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         check_text("name", self.name, MAX_NAME_LENGTH)
         for name, text in self.sources.items():
             check_text(f"{name}: source", text)
-        object.__setattr__(self, "flat", flatten(self.values))
+        object.__setattr__(self, "flat", flatten_parameters(self.values))
 
     @property
     def law(self) -> str:
         """Name of the interface law."""
-        return KINDS[self.joint].law(self.values)
+        return KINDS[self.joint].law_name(self.values)
 
     @property
-    def surfaces(self) -> str:
+    def heights_prefix(self) -> str:
         """Prefix of the names of the surface heights: `roughness.` or `comparison.`."""
-        return _prefix(type(self.values))
+        return _heights_prefix(type(self.values))
 
-    def start(self, name: str) -> float:
+    def start_value(self, name: str) -> float:
         """Start value of an input in its SI unit: that of the file, else the default of the joint."""
         variable = KINDS[self.joint].variables.get(name) if self.joint in KINDS else None
         return self.inputs.get(name, variable.start if variable else 0.0)
@@ -97,41 +105,44 @@ class ParameterFile:
         A new height h of the law removes the heights of the surfaces from which h was computed.
         """
         removed = {*self.roughness} if any(map(is_height, changes)) else set[str]()
-        removed_names = {self.surfaces + name for name in removed}
+        removed_names = {self.heights_prefix + name for name in removed}
         return replace(
             self,
-            values=changed(self.values, changes),
-            origins=_without(removed_names, self.origins) | dict.fromkeys(changes, origin),
-            sources=_without(removed_names, self.sources) | dict.fromkeys(changes, source),
-            roughness=_without(removed, self.roughness),
-            ranges=_without(changes, self.ranges),
+            values=replace_values(self.values, changes),
+            origins=_drop_names(removed_names, self.origins) | dict.fromkeys(changes, origin),
+            sources=_drop_names(removed_names, self.sources) | dict.fromkeys(changes, source),
+            roughness=_drop_names(removed, self.roughness),
+            ranges=_drop_names(changes, self.ranges),
         )
 
-    def with_roughness(self, stated: Mapping[str, float], origin: str, source: str) -> "ParameterFile":
+    def with_roughness(self, heights: Mapping[str, float], origin: str, source: str) -> "ParameterFile":
         """Copy with new heights [m] of the surfaces, {name: height}.
 
         Earlier heights of the same side are removed. A law with the parameter h gets h computed from all
         heights. Raises ValueError as `roughness.check_heights` does.
         """
-        new_heights = roughness.check(stated, self.surfaces)
-        replaced = {other for name in new_heights for other in roughness.excluded(name)}
-        replaced_names = {self.surfaces + name for name in replaced}
-        new_names = [self.surfaces + name for name in new_heights]
-        all_heights = _without(replaced, self.roughness) | new_heights
-        origins = _without(replaced_names, self.origins) | dict.fromkeys(new_names, origin)
-        sources = _without(replaced_names, self.sources) | dict.fromkeys(new_names, source)
-        law_height = {name: roughness.height(all_heights) for name in self.flat if is_height(name)}
+        new_heights = roughness.check_heights(heights, self.heights_prefix)
+        replaced = {other for name in new_heights for other in roughness.conflicting_heights(name)}
+        replaced_names = {self.heights_prefix + name for name in replaced}
+        new_names = [self.heights_prefix + name for name in new_heights]
+        all_heights = _drop_names(replaced, self.roughness) | new_heights
+        origins = _drop_names(replaced_names, self.origins) | dict.fromkeys(new_names, origin)
+        sources = _drop_names(replaced_names, self.sources) | dict.fromkeys(new_names, source)
+        law_height = {
+            name: roughness.combined_height(all_heights) for name in self.values_by_name if is_height(name)
+        }
         return replace(
             self,
-            values=changed(self.values, law_height),
+            values=replace_values(self.values, law_height),
             roughness=all_heights,
             origins=origins | dict.fromkeys(law_height, "derived"),
-            sources=sources | dict.fromkeys(law_height, _made_of(self.surfaces, all_heights, sources)),
-            ranges=_without(law_height, self.ranges),
+            sources=sources
+            | dict.fromkeys(law_height, _height_source(self.heights_prefix, all_heights, sources)),
+            ranges=_drop_names(law_height, self.ranges),
         )
 
 
-def load(path: str | Path, joint: str | None = None) -> ParameterFile:
+def load_parameter_file(path: str | Path, joint: str | None = None) -> ParameterFile:
     """Read and check a parameter file.
 
     joint : kind of joint that the file must have; None: any
@@ -153,48 +164,51 @@ def load(path: str | Path, joint: str | None = None) -> ParameterFile:
         raise ValueError(f"{path}: law = {law!r}, allowed are {', '.join(laws)}")
     body = {k: v for k, v in document.items() if k not in ("schema", "joint", "law", "name")}
     cls = laws[law]
-    prefix = _prefix(cls)
-    if prefix == _JUDGES and _ACTS[:-1] in body:
+    prefix = _heights_prefix(cls)
+    if prefix == _COMPARISON and _ACTIVE[:-1] in body:
         raise ValueError(
             f"{path}: [roughness] does not act on law = {law!r}; allowed are [roughness] beside a law with a "
             "height, and [comparison] for what the level is judged by"
         )
     declared = declared_entries(stated, cls)
     keys = ("value", "unit", "kind", "source", "range")
-    values, origins, sources = entries(path, declared, body, keys)
-    input_values, surface_heights = _section(values, _INPUTS), _section(values, prefix)
+    values, origins, sources = read_entries(path, declared, body, keys)
+    input_values, surface_heights = _pop_section(values, _INPUTS_PREFIX), _pop_section(values, prefix)
     try:
-        inputs, heights = _start_values(stated, input_values), roughness.check(surface_heights, prefix)
-        of_law = _height_of_law(declared, values, heights)
-        parameters = build(cls, values | of_law)
+        inputs, heights = (
+            _check_start_values(stated, input_values),
+            roughness.check_heights(surface_heights, prefix),
+        )
+        of_law = _law_height(declared, values, heights)
+        parameters = build_parameter_set(cls, values | of_law)
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from None
-    for text in KINDS[stated].contradictions(parameters):
+    for text in KINDS[stated].find_contradictions(parameters):
         raise ValueError(f"{path}: {text}")
     name = str(document.get("name", path.stem))
     origins |= dict.fromkeys(of_law, "derived")
-    sources |= dict.fromkeys(of_law, _made_of(prefix, heights, sources))
+    sources |= dict.fromkeys(of_law, _height_source(prefix, heights, sources))
     return ParameterFile(
-        stated, name, parameters, origins, sources, inputs, heights, _ranges(path, declared, body)
+        stated, name, parameters, origins, sources, inputs, heights, _read_ranges(path, declared, body)
     )
 
 
 def declared_entries(joint: str, cls: type) -> dict[str, Field[Any]]:
     """{structured name: field} of all entries that a parameter file with the parameter set `cls` may have."""
-    return dict(flat_fields(cls)) | _input_fields(joint) | _roughness_fields(_prefix(cls))
+    return dict(flat_fields(cls)) | _input_fields(joint) | _roughness_fields(_heights_prefix(cls))
 
 
-def _without(gone: Collection[str], named: Mapping[str, T]) -> dict[str, T]:
-    return {name: value for name, value in named.items() if name not in gone}
+def _drop_names(removed_names: Collection[str], values_by_name: Mapping[str, T]) -> dict[str, T]:
+    return {name: value for name, value in values_by_name.items() if name not in removed_names}
 
 
-def _made_of(prefix: str, heights: Iterable[str], sources: Mapping[str, str]) -> str:
+def _height_source(prefix: str, heights: Iterable[str], sources: Mapping[str, str]) -> str:
     """Source text of a height h that was computed from the heights of the surfaces."""
     names = [prefix + height for height in heights]
     return f"from {', '.join(names)}: {'; '.join(dict.fromkeys(sources[name] for name in names))}"
 
 
-def _height_of_law(
+def _law_height(
     declared: Mapping[str, object], values: Mapping[str, Any], heights: Mapping[str, float]
 ) -> dict[str, float]:
     """{name: h [m]} of the law, computed from the heights of the surfaces; empty if the file states h itself.
@@ -202,17 +216,17 @@ def _height_of_law(
     Empty also for a law without the parameter h. Raises ValueError if the file states both and they differ
     by more than HEIGHT_TOLERANCE.
     """
-    stated = roughness.height(heights)
+    stated = roughness.combined_height(heights)
     name = next((name for name in declared if is_height(name)), None)
     if stated is None or name is None:
         return {}
     if name not in values:
         return {name: stated}
-    if not abs(values[name] / stated - 1.0) <= SAME_HEIGHT:
-        makers = ", ".join(_ACTS + height for height in heights)
+    if not abs(values[name] / stated - 1.0) <= HEIGHT_TOLERANCE:
+        makers = ", ".join(_ACTIVE + height for height in heights)
         raise ValueError(
             f"{name} = {values[name]:g} m beside {makers}, which make {stated:.4g} m: expected one of them, "
-            f"or both within {SAME_HEIGHT:.1%}"
+            f"or both within {HEIGHT_TOLERANCE:.1%}"
         )
     return {}
 
@@ -233,15 +247,15 @@ def read_document(path: Path, expected: str) -> dict[str, Any]:
         check_document(document)
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from None
-    if type(document.get("schema")) is not int or document["schema"] != SCHEMA:
-        raise ValueError(f"{path}: schema = {document.get('schema')!r}, allowed is {SCHEMA}")
+    if type(document.get("schema")) is not int or document["schema"] != SCHEMA_VERSION:
+        raise ValueError(f"{path}: schema = {document.get('schema')!r}, allowed is {SCHEMA_VERSION}")
     return document
 
 
-def entries(
+def read_entries(
     path: Path,
     declared: Mapping[str, Field[Any]],
-    body: Mapping[str, object],
+    sections: Mapping[str, object],
     keys: tuple[str, ...] = ("value", "unit", "kind", "source"),
 ) -> tuple[dict[str, Any], dict[str, str], dict[str, str]]:
     """Values, origins and sources of the entries, each by structured name.
@@ -256,7 +270,7 @@ def entries(
     values: dict[str, Any] = {}
     origins: dict[str, str] = {}
     sources: dict[str, str] = {}
-    for name, entry in leaves(body):
+    for name, entry in list_entries(sections):
         if not isinstance(entry, Mapping):
             raise ValueError(f"{path}: {name} = {entry!r}, expected a table {{ value, unit, kind, source }}")
         if unknown := set(entry) - set(keys):
@@ -278,29 +292,29 @@ def entries(
     return values, origins, sources
 
 
-def _ranges(
-    path: Path, declared: Mapping[str, Field[Any]], body: Mapping[str, Any]
+def _read_ranges(
+    path: Path, declared: Mapping[str, Field[Any]], sections: Mapping[str, Any]
 ) -> dict[str, tuple[float, float]]:
     """{structured name: (smallest, largest value)} of the entries that state a range.
 
     Raises ValueError, one line, if the range does not contain the value or is outside the field's interval.
     """
     ranges: dict[str, tuple[float, float]] = {}
-    for name, entry in leaves(body):
+    for name, entry in list_entries(sections):
         if "range" not in entry:
             continue
         ends, value = entry["range"], entry.get("value")
         numbers = isinstance(ends, list) and len(ends) == 2 and all(type(x) in (int, float) for x in ends)
         if not numbers or type(value) not in (int, float) or not ends[0] <= value <= ends[1] > ends[0]:
             raise ValueError(f"{path}: {name}: range = {ends!r}, expected [LOW, HIGH] around {value!r}")
-        for text in (problem(name, float(end), declared[name]) for end in ends):
+        for text in (find_problem(name, float(end), declared[name]) for end in ends):
             if text:
                 raise ValueError(f"{path}: range of {text}")
         ranges[name] = (float(ends[0]), float(ends[1]))
     return ranges
 
 
-def leaves(table: Mapping[str, object], prefix: str = "") -> list[tuple[str, Any]]:
+def list_entries(table: Mapping[str, object], prefix: str = "") -> list[tuple[str, Any]]:
     """(structured name, entry) for each innermost item of a nested table.
 
     Innermost items are tables with a key `value`, empty tables and all items that are no table.
@@ -308,7 +322,7 @@ def leaves(table: Mapping[str, object], prefix: str = "") -> list[tuple[str, Any
     items: list[tuple[str, Any]] = []
     for key, value in table.items():
         if isinstance(value, Mapping) and value and "value" not in value:
-            items += leaves(value, f"{prefix}{key}.")
+            items += list_entries(value, f"{prefix}{key}.")
         else:
             items.append((prefix + key, value))
     return items
@@ -317,52 +331,52 @@ def leaves(table: Mapping[str, object], prefix: str = "") -> list[tuple[str, Any
 def _input_fields(joint: str) -> dict[str, Field[Any]]:
     """{`inputs.NAME`: field} of the inputs of all models of a joint."""
     inputs = (v for model in KINDS[joint].models for v in model.inputs)
-    return {_INPUTS + v.name: quantity(v.unit, v.doc, ge=v.low) for v in inputs}
+    return {_INPUTS_PREFIX + v.name: quantity_field(v.unit, v.doc, ge=v.minimum) for v in inputs}
 
 
-def _prefix(cls: type) -> str:
+def _heights_prefix(cls: type) -> str:
     """Prefix of the names of the surface heights for a parameter set class, see `_ACTIVE`."""
-    return _ACTS if any(is_height(name) for name, _ in flat_fields(cls)) else _JUDGES
+    return _ACTIVE if any(is_height(name) for name, _ in flat_fields(cls)) else _COMPARISON
 
 
 def is_height(name: str) -> bool:
     """Whether a parameter of a law is the combined rms height h of both surfaces."""
-    return name.split(".")[-1] == "h" and not name.startswith((_ACTS, _JUDGES))
+    return name.split(".")[-1] == "h" and not name.startswith((_ACTIVE, _COMPARISON))
 
 
 def _roughness_fields(prefix: str) -> dict[str, Field[Any]]:
     """{prefix + name: field} of the heights of the surfaces."""
-    return {prefix + name: item for name, item in roughness.DECLARED.items()}
+    return {prefix + name: item for name, item in roughness.HEIGHT_FIELDS.items()}
 
 
-def _section(values: dict[str, Any], prefix: str) -> dict[str, Any]:
+def _pop_section(values: dict[str, Any], prefix: str) -> dict[str, Any]:
     """Remove a section from {structured name: value}; return {name in the section: value}."""
     return {n.removeprefix(prefix): values.pop(n) for n in list(values) if n.startswith(prefix)}
 
 
-def _start_values(joint: str, given: Mapping[str, Any]) -> dict[str, float]:
+def _check_start_values(joint: str, start_values: Mapping[str, Any]) -> dict[str, float]:
     """Check start values, {input: value}; return them as floats.
 
     Raises ValueError, one line, naming every unknown name and every value outside its interval.
     """
-    named = {_INPUTS + name: value for name, value in given.items()}
-    if texts := problems(named, _input_fields(joint)):
+    named = {_INPUTS_PREFIX + name: value for name, value in start_values.items()}
+    if texts := find_problems(named, _input_fields(joint)):
         raise ValueError("; ".join(texts))
-    return {name: float(value) for name, value in given.items()}
+    return {name: float(value) for name, value in start_values.items()}
 
 
-def dump(parameters: ParameterFile) -> str:
+def format_parameter_file(parameters: ParameterFile) -> str:
     """Text of a parameter file (TOML), with the heights of the surfaces and the start values of inputs."""
-    declared = dict(flat_fields(type(parameters.values))) | _roughness_fields(parameters.surfaces)
-    values = sorted(parameters.flat.items(), key=lambda item: "." in item[0])
-    values += [(parameters.surfaces + name, value) for name, value in parameters.roughness.items()]
+    declared = dict(flat_fields(type(parameters.values))) | _roughness_fields(parameters.heights_prefix)
+    values = sorted(parameters.values_by_name.items(), key=lambda item: "." in item[0])
+    values += [(parameters.heights_prefix + name, value) for name, value in parameters.roughness.items()]
     if parameters.inputs:
         declared |= _input_fields(parameters.joint)
-        values += [(_INPUTS + name, value) for name, value in parameters.inputs.items()]
-    lines = [f"schema = {SCHEMA}", f'joint = "{parameters.joint}"']
+        values += [(_INPUTS_PREFIX + name, value) for name, value in parameters.inputs.items()]
+    lines = [f"schema = {SCHEMA_VERSION}", f'joint = "{parameters.joint}"']
     if parameters.joint in KINDS:  # else a partner of a joint
         lines.append(f'law = "{parameters.law}"')
-    lines.append(f"name = {toml_string(parameters.name)}")
+    lines.append(f"name = {format_toml_string(parameters.name)}")
     section = ""
     for name, value in values:
         if value == ():  # not stated
@@ -372,24 +386,27 @@ def dump(parameters: ParameterFile) -> str:
             lines += ["", f"[{head}]"]
             section = head
         unit = declared[name].metadata.get("unit")
-        fields = [f"value = {_toml(value)}", *([f'unit = "{unit}"'] if unit else [])]
+        fields = [f"value = {_format_toml(value)}", *([f'unit = "{unit}"'] if unit else [])]
         if name in parameters.ranges:
             fields += [f"range = [{', '.join(map(repr, parameters.ranges[name]))}]"]
         fields += [f'kind = "{parameters.origins.get(name, "user")}"']
-        fields += [f"source = {toml_string(parameters.sources.get(name, 'default choice'))}"]
+        fields += [f"source = {format_toml_string(parameters.sources.get(name, 'default choice'))}"]
         lines.append(f"{leaf} = {{ {', '.join(fields)} }}")
     return "\n".join(lines) + "\n"
 
 
-def _toml(value: Any) -> str:
+def _format_toml(value: Any) -> str:
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, tuple):
-        rows = [", ".join(map(repr, value[i : i + _PER_LINE])) for i in range(0, len(value), _PER_LINE)]
+        rows = [
+            ", ".join(map(repr, value[i : i + _NUMBERS_PER_LINE]))
+            for i in range(0, len(value), _NUMBERS_PER_LINE)
+        ]
         return "[\n  " + ",\n  ".join(rows) + ",\n]"
-    return toml_string(value) if isinstance(value, str) else repr(float(value))
+    return format_toml_string(value) if isinstance(value, str) else repr(float(value))
 
 
-def default(joint: str, law: str | None = None) -> ParameterFile:
+def load_default(joint: str, law: str | None = None) -> ParameterFile:
     """Read the default parameter file of a joint; `law` None: with the joint's first law."""
-    return load(KINDS[joint].default_file(law), joint)
+    return load_parameter_file(KINDS[joint].default_file(law), joint)

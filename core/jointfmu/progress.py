@@ -17,15 +17,15 @@ J = TypeVar("J")
 T = TypeVar("T")
 MAX_ATTEMPTS = 4
 """Attempts for a job [1] whose process dies."""
-PATIENCE = 2.0
+STATUS_DELAY = 2.0
 """Time [s] after which a command prints a status line."""
-_now: dict[str, Any] = {"step": "", "bars": 0}
+_status: dict[str, Any] = {"step": "", "bars": 0}
 """Text of the current step of the work, and number of progress bars on the screen."""
-_STARTS = Lock()
+_START_LOCK = Lock()
 """Lock held while a process starts: its start redirects standard error, which all threads share."""
 
 
-def track(items: Iterable[T], text: str, total: int | None = None) -> Iterator[T]:
+def track_progress(items: Iterable[T], text: str, total: int | None = None) -> Iterator[T]:
     """Yield the items; show a progress bar if tqdm (extra `build`) is installed and stderr is a terminal."""
     try:
         from tqdm import tqdm
@@ -33,51 +33,51 @@ def track(items: Iterable[T], text: str, total: int | None = None) -> Iterator[T
         yield from items
         return
     tqdm.set_lock(RLock())  # tqdm's default lock is shared by processes, and left behind by killed ones
-    _now["bars"] += 1
+    _status["bars"] += 1
     try:
         yield from tqdm(items, desc=text, total=total, file=sys.stderr, disable=None, leave=False)
     finally:
-        _now["bars"] -= 1
+        _status["bars"] -= 1
 
 
-def step(text: str) -> None:
+def set_step(text: str) -> None:
     """Set the text of the current step, which `show_status` prints."""
-    _now["step"] = text
+    _status["step"] = text
 
 
 @contextmanager
-def told(name: str) -> Iterator[None]:
+def show_status(name: str) -> Iterator[None]:
     """Context that shows a status line with name, step and seconds, on a terminal without a progress bar."""
     if not sys.stderr.isatty():
         yield
         return
     out, finished, began = sys.stdout, Event(), time.monotonic()
-    step("")
+    set_step("")
 
-    def clear() -> None:
+    def clear_status() -> None:
         print("\r\x1b[K", end="", file=sys.stderr, flush=True)
 
-    def show() -> None:
+    def print_status() -> None:
         while not finished.wait(0.5):
             elapsed = time.monotonic() - began
-            if elapsed > PATIENCE and not _now["bars"]:
-                status = ", ".join(filter(None, (_now["step"], f"{elapsed:.0f} s")))
+            if elapsed > STATUS_DELAY and not _status["bars"]:
+                status = ", ".join(filter(None, (_status["step"], f"{elapsed:.0f} s")))
                 print(f"\r{name}: {status}\x1b[K", end="", file=sys.stderr, flush=True)
 
-    shower = Thread(target=show, daemon=True)
+    shower = Thread(target=print_status, daemon=True)
     shower.start()
-    sys.stdout = _Clearing(out, clear)
+    sys.stdout = _StatusClearingStream(out, clear_status)
     try:
         yield
     finally:
         sys.stdout = out
         finished.set()
         shower.join()
-        if time.monotonic() - began > PATIENCE:
-            clear()
+        if time.monotonic() - began > STATUS_DELAY:
+            clear_status()
 
 
-class _Clearing:
+class _StatusClearingStream:
     """Output stream that clears the status line before it writes."""
 
     def __init__(self, stream: Any, clear: Callable[[], None]) -> None:
@@ -92,7 +92,9 @@ class _Clearing:
         return getattr(self._stream, name)
 
 
-def each(pool: Executor | None, work: Callable[..., T], text: str, *jobs: Sequence[object]) -> list[T]:
+def map_jobs(
+    pool: Executor | None, function: Callable[..., T], text: str, *jobs: Sequence[object]
+) -> list[T]:
     """Apply a function to all jobs; return the results in the order of the jobs. Shows a progress bar.
 
     pool : processes that share the jobs; None: this process does them
@@ -100,23 +102,23 @@ def each(pool: Executor | None, work: Callable[..., T], text: str, *jobs: Sequen
     """
     count = len(jobs[0])
     run = pool.map if pool and count > 1 else map
-    return list(track(run(work, *jobs), text, count))
+    return list(track_progress(run(function, *jobs), text, count))
 
 
 class _Pool(ProcessPoolExecutor):
     """Process pool with the start method spawn; it communicates by pipes, without network ports."""
 
     def __init__(self, count: int) -> None:
-        with _quiet_start():
-            super().__init__(count, multiprocessing.get_context("spawn"), _follow_parent)
+        with _quiet_start_context():
+            super().__init__(count, multiprocessing.get_context("spawn"), _set_up_worker)
 
     def submit(self, /, *args: Any, **arguments: Any) -> Future[Any]:
-        with _quiet_start():
+        with _quiet_start_context():
             return super().submit(*args, **arguments)
 
 
 @contextmanager
-def processes(count: int | None = None) -> Iterator[Executor]:
+def worker_processes(count: int | None = None) -> Iterator[Executor]:
     """Context with a pool of worker processes; `count` None: one per core.
 
     Functions and arguments must be picklable. The workers print no errors and ignore Ctrl-C; this process
@@ -136,7 +138,7 @@ def processes(count: int | None = None) -> Iterator[Executor]:
 
 
 def run_jobs(
-    work: Callable[[J], T], jobs: Iterable[J], count: int | None = None
+    function: Callable[[J], T], jobs: Iterable[J], count: int | None = None
 ) -> Generator[tuple[J, T | None]]:
     """Run a function for all jobs in `count` processes; yield (job, result) in the order of completion.
 
@@ -148,34 +150,34 @@ def run_jobs(
     with ExitStack() as entered:
         running: dict[Future[T], tuple[J, int, Executor]] = {}
 
-        def begin(job: J, attempt: int, pool: Executor | None) -> None:
+        def submit_job(job: J, attempt: int, pool: Executor | None) -> None:
             try:
-                pool = pool or entered.enter_context(processes(1))
-                running[pool.submit(work, job)] = job, attempt, pool
+                pool = pool or entered.enter_context(worker_processes(1))
+                running[pool.submit(function, job)] = job, attempt, pool
             except BrokenProcessPool:  # its process died after its last job
-                begin(job, attempt, None)
+                submit_job(job, attempt, None)
 
         for job in islice(waiting, count or os.cpu_count() or 1):
-            begin(job, 1, None)
+            submit_job(job, 1, None)
         while running:
             for future in wait(running, return_when=FIRST_COMPLETED).done:
                 job, attempt, pool = running.pop(future)
                 died = isinstance(future.exception(), BrokenProcessPool)
                 if died and attempt < MAX_ATTEMPTS:
-                    begin(job, attempt + 1, None)
+                    submit_job(job, attempt + 1, None)
                     continue
                 for next_job in islice(waiting, 1):
-                    begin(next_job, 1, None if died else pool)
+                    submit_job(next_job, 1, None if died else pool)
                 yield job, None if died else future.result()
 
 
 @contextmanager
-def _quiet_start() -> Iterator[None]:
+def _quiet_start_context() -> Iterator[None]:
     """Context in which new processes start with Ctrl-C blocked and without standard error.
 
     A terminal sends Ctrl-C to all processes of a program, also to those that have just started.
     """
-    with _STARTS, ExitStack() as cleanup:
+    with _START_LOCK, ExitStack() as cleanup:
         if sys.platform != "win32":  # on Windows Ctrl-C acts until `_set_up_worker` ignores it
             old_mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
             cleanup.callback(signal.pthread_sigmask, signal.SIG_SETMASK, old_mask)
@@ -188,7 +190,7 @@ def _quiet_start() -> Iterator[None]:
         yield
 
 
-def _follow_parent() -> None:
+def _set_up_worker() -> None:
     """Set up a worker process: no standard error, ignore Ctrl-C, end when the parent process ends."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     sys.stderr = open(os.devnull, "w")  # noqa: SIM115

@@ -19,7 +19,7 @@ def number(value: float) -> str:
 
 def string(text: str) -> str:
     """C string literal in ASCII without trigraphs; other characters as octal escapes of UTF-8 bytes."""
-    return '"' + re.sub(rb'[^ -~]|["\\]|(?<=\?)\?', _escaped, text.encode()).decode("ascii") + '"'
+    return '"' + re.sub(rb'[^ -~]|["\\]|(?<=\?)\?', _escape, text.encode()).decode("ascii") + '"'
 
 
 def comment(text: str) -> str:
@@ -28,6 +28,6 @@ def comment(text: str) -> str:
     return re.sub(r"\*(?=/)|/(?=\*)|\?(?=\?)", r"\g<0> ", plain)
 
 
-def _escaped(found: re.Match[bytes]) -> bytes:
-    character = found[0]
+def _escape(match: re.Match[bytes]) -> bytes:
+    character = match[0]
     return b"\\" + character if character in b'"\\?' else b"\\%03o" % ord(character)

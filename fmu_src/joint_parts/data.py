@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from jointfmu.quantity import Array, flatten
+from jointfmu.quantity import Array, flatten_parameters
 
 
 class DataTable(NamedTuple):
@@ -34,7 +34,7 @@ class DataPart:
     tables : (parameter set) -> {name: table} that the C code reads as `data.NAME` with `data.n_NAME` rows
     """
 
-    stands: Callable[..., Mapping[str, Any]] = flatten
+    stands: Callable[..., Mapping[str, Any]] = flatten_parameters
     of: Callable[..., type[object]] = type
     tables: Callable[..., Tables] = lambda values: NO_TABLES
 

@@ -10,10 +10,10 @@ from typing import Any
 
 import casadi as ca
 
-from jointfmu.contact.powerlaw import Power, Smooth, Spots, Term
+from jointfmu.contact.powerlaw import PowerTerm, RegimeTerm, SmoothTerm, SpotDistribution
 from jointfmu.joints.model import Model
-from jointfmu.mechanics.curve import closing
-from jointfmu.quantity import Limit, Number, build
+from jointfmu.mechanics.curve import closing_pressure
+from jointfmu.quantity import Number, ParameterLimit, build_parameter_set
 
 from .data import Split
 
@@ -47,7 +47,7 @@ class Graph:
 
     theta: dict[str, ca.SX]
     joint: Any
-    limits: list[Limit]
+    limits: list[ParameterLimit]
     functions: list[Function] = field(default_factory=list)
     constants: list[ca.SX] = field(default_factory=list)
     symbols: list[ca.SX] = field(default_factory=list)
@@ -56,15 +56,17 @@ class Graph:
         """Add a function."""
         self.functions.append(Function(name, doc, x, [ca.SX(value) for value in y], looped))
 
-    def add_with_seed(self, name: str, doc: str, x: Sequence[ca.SX], y: Symbols, fixed: int = 0) -> None:
+    def add_with_seed(
+        self, name: str, doc: str, x: Sequence[ca.SX], y: Symbols, constant_count: int = 0
+    ) -> None:
         """Add a function, and its directional derivative `name_seed` in all x but the first `fixed`."""
         self.add(name, doc, x, y)
-        self.add_seed(name, "x", x, y, fixed)
+        self.add_seed(name, "x", x, y, constant_count)
 
-    def add_seed(self, name: str, doc: str, x: Sequence[ca.SX], y: Symbols, fixed: int) -> None:
+    def add_seed(self, name: str, doc: str, x: Sequence[ca.SX], y: Symbols, constant_count: int) -> None:
         """Add the directional derivative `name_seed` of y in all x but the first `fixed`."""
-        variables = ca.vertcat(*x[fixed:])
-        seed = symbols("seed", len(x) - fixed)
+        variables = ca.vertcat(*x[constant_count:])
+        seed = symbols("seed", len(x) - constant_count)
         slope = ca.densify(ca.jtimes(ca.vertcat(*map(ca.SX, y)), variables, ca.vertcat(*seed)))
         self.add(
             f"{name}_seed",
@@ -89,7 +91,7 @@ class Graph:
         return ca.vertcat(*self.theta.values(), *self.symbols)
 
 
-def graph(model: Model, given: Split, functions: Callable[["Graph", Model], None], tabulated: bool) -> Graph:
+def graph(model: Model, split: Split, functions: Callable[["Graph", Model], None], tabulated: bool) -> Graph:
     """Build the C functions of an FMU. FMU variables and data are symbols; other parameters are numbers.
 
     functions : adds the functions of the joint
@@ -98,8 +100,8 @@ def graph(model: Model, given: Split, functions: Callable[["Graph", Model], None
     previous_mode = ca.GlobalOptions.getNumpyMode()
     ca.GlobalOptions.setNumpyMode(1)
     try:
-        theta = {name: ca.SX.sym(name) for name in (*given.exposed, *given.fixed)}
-        joint = build(given.of, {**given.code, **theta})
+        theta = {name: ca.SX.sym(name) for name in (*split.exposed, *split.fixed)}
+        joint = build_parameter_set(split.of, {**split.code, **theta})
         g = Graph(theta, joint, limits(joint))
         functions(g, model)
         if tabulated:
@@ -115,7 +117,7 @@ def symbols(name: str, count: int) -> list[ca.SX]:
     return [ca.SX.sym(f"{name}{i}") for i in range(count)]
 
 
-def limits(joint: object) -> list[Limit]:
+def limits(joint: object) -> list[ParameterLimit]:
     """Intervals of parameters that depend on other parameters."""
     own = joint.limits() if hasattr(joint, "limits") else []
     return [*own, *(joint.table_limits() if hasattr(joint, "table_limits") else [])]
@@ -127,7 +129,7 @@ def _bounds(g: Graph, model: Model) -> None:
     g.add("parameter_limits", "-> low, high of every limit that parameters set each other", [], ends)
     v = {i.name: ca.SX.sym(i.name) for i in model.inputs}
     end = symbols("end", 2)
-    rows = [e for o in model.outside for e in o.interval(g.joint, (end[0], end[1]), v)]
+    rows = [e for o in model.validity_limits for e in o.interval(g.joint, (end[0], end[1]), v)]
     doc = "inputs, x and y at the end of the curve -> low, high of every warning"
     g.add("outside_limits", doc, [*v.values(), *end], rows)
 
@@ -136,7 +138,7 @@ def _bounds(g: Graph, model: Model) -> None:
 class _Settled:
     """Term of the contact law whose range ends below log-area u: its integral is a constant."""
 
-    term: Smooth
+    term: SmoothTerm
 
     @property
     def lower(self) -> Number:
@@ -146,19 +148,19 @@ class _Settled:
     def upper(self) -> Number:
         return self.term.upper
 
-    def spot(self, t: Number) -> float:
+    def spot_value(self, t: Number) -> float:
         return 0.0
 
     def integral(self, m: Number, u: Number) -> Number:
         return self.term.integral(m, self.term.upper)
 
 
-def _regimes(spots: Spots) -> tuple[list[Number], list[Spots]]:
+def _regimes(spots: SpotDistribution) -> tuple[list[Number], list[SpotDistribution]]:
     """Log-areas at which a term with Gauss-Legendre quadrature begins or ends, and the law between them.
 
     Between two of these log-areas only the active terms need their quadrature.
     """
-    terms = [t for row in spots.terms.values() for t in row if isinstance(t, Smooth)]
+    terms = [t for row in spots.terms.values() for t in row if isinstance(t, SmoothTerm)]
     ends: list[Number] = []
     for t in terms:
         for end in (t.lower, t.upper):
@@ -168,14 +170,14 @@ def _regimes(spots: Spots) -> tuple[list[Number], list[Spots]]:
     def index(end: Number) -> int:
         return next(i for i, known in enumerate(ends) if known is end)
 
-    def active_terms(term: Term, k: int) -> list[Term]:
-        if not isinstance(term, Smooth):
+    def active_terms(term: RegimeTerm, k: int) -> list[RegimeTerm]:
+        if not isinstance(term, SmoothTerm):
             return [term]
         if index(term.upper) < k:
             return [_Settled(term)]
         return [term] if index(term.lower) < k else []
 
-    zero = Power(0.0, 1.0)
+    zero = PowerTerm(0.0, 1.0)
     return ends, [
         replace(
             spots,
@@ -207,7 +209,7 @@ def law_functions(g: Graph, law: Any, table: Sequence[str], state: Any) -> None:
     )
     for k, regime in enumerate(regimes):
         g.add(f"law_load_{k}", "log-area -> log of load, its slope", [u], regime.log_total("load", u))
-        rows = [f(name, u) for name in ("load", *table) for f in (regime.total, regime.slope)]
+        rows = [f(name, u) for name in ("load", *table) for f in (regime.total, regime.total_derivative)]
         doc = f"log-area -> total and slope of load, {', '.join(table)}"
         g.add(f"law_table_{k}", doc, [u], rows)
         y = ca.vertcat(*map(ca.SX, state(regime, u)))
@@ -217,9 +219,9 @@ def law_functions(g: Graph, law: Any, table: Sequence[str], state: Any) -> None:
         g.add(f"law_state_{k}", doc, [u], ca.densify(ca.vertcat(*rows)).nz)
 
 
-def _bend_of_load(spots: Spots, u: Number) -> Number:
+def _bend_of_load(spots: SpotDistribution, u: Number) -> Number:
     """F'' - m F' of the load F(u), u log-area: follows from the largest spot, without a sum over spots."""
-    largest = sum(term.spot(u) for term in spots.terms["load"])
+    largest = sum(term.spot_value(u) for term in spots.terms["load"])
     return spots.m * spots.weight * ca.jacobian(largest, u)
 
 
@@ -227,4 +229,4 @@ def add_closing(g: Graph) -> None:
     """Add the function of contact closing, for joints with a curve of pressure against approach."""
     p, k, bend, z = symbols("x", 4)
     doc = "p, k, dk/dx at the end of the closing, z -> displacement from there, load, stiffness, its slope"
-    g.add("closing", doc, [p, k, bend, z], closing(p, k, bend, z))
+    g.add("closing", doc, [p, k, bend, z], closing_pressure(p, k, bend, z))

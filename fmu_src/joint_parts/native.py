@@ -10,7 +10,7 @@ import casadi as ca
 from jointfmu.contact import interface
 from jointfmu.joints.model import Model
 from jointfmu.mechanics import curve
-from jointfmu.mechanics.memory import Layout
+from jointfmu.mechanics.memory import HistoryLayout
 
 from .c_text import number
 from .graph import Graph
@@ -58,9 +58,17 @@ Named = Mapping[ModuleType, Sequence[str]]
 """{module: names of its constants}, which have the same names in C."""
 NUMBERS: Named = {
     curve: ("MAX_ERROR",),
-    interface: ("LEAST", "MOST", "FLATTEST", "STEEPEST", "CLOSE", "NOTHING", "SIDE"),
+    interface: (
+        "MIN_LOG_AREA",
+        "MAX_LOG_AREA",
+        "MIN_LOAD_SLOPE",
+        "MAX_LOAD_SLOPE",
+        "NEWTON_TOLERANCE",
+        "MIN_PRESSURE",
+        "ONE_SIDED_OFFSET",
+    ),
 }
-COUNTS: Named = {curve: ("FINEST",), interface: ("MOST_STEPS",)}
+COUNTS: Named = {curve: ("MAX_REFINEMENT",), interface: ("MAX_ITERATIONS",)}
 """Python constants that the C of every joint with tables needs: integers (NUMBERS: real numbers)."""
 
 
@@ -86,7 +94,7 @@ class NativePart:
     functions: Callable[[Graph, Model], None]
     shared: Sequence[str]
     definitions: Callable[[Graph, Model], Definitions] = lambda graph, model: Definitions()
-    memory: Layout = Layout({})
+    memory: HistoryLayout = HistoryLayout({})
 
     @property
     def tabulated(self) -> bool:
@@ -96,12 +104,17 @@ class NativePart:
 
 def _equations(g: Graph, model: Model) -> None:
     """Add the outputs, and the event times if any, of a model with explicit equations."""
-    names = ("time", *(v.name for v in model.inputs), *(v.name for v in model.outputs[: model.states]))
+    names = ("time", *(v.name for v in model.inputs), *(v.name for v in model.outputs[: model.state_count]))
     v: dict[str, Any] = {name: ca.SX.sym(name) for name in names}
     outputs = model.evaluate(g.joint, v)
     doc = "time, inputs, states -> outputs"
-    if model.events:
-        g.add("events", "-> times at which the course of the outputs has a corner", [], model.events(g.joint))
+    if model.find_event_times:
+        g.add(
+            "events",
+            "-> times at which the course of the outputs has a corner",
+            [],
+            model.find_event_times(g.joint),
+        )
     g.add_with_seed("outputs", doc, list(v.values()), [outputs[o.name] for o in model.outputs])
 
 
@@ -113,9 +126,9 @@ def shared_definitions(shared: Sequence[str]) -> Definitions:
     """Constants that the shared C files need."""
     if "tabulated" not in shared:
         return Definitions()
-    tables = named(NUMBERS, COUNTS) | Definitions({"CURVE_NODES": curve.MOST_NODES})
+    tables = named(NUMBERS, COUNTS) | Definitions({"CURVE_NODES": curve.MAX_NODES})
     if "approach" not in shared:
         return tables
-    steps = {"APPROACH_STEPS": curve.STEPS, "CLOSING_STEPS": curve.CLOSING_STEPS}
+    steps = {"APPROACH_STEPS": curve.MIN_STEPS_PER_LOG_AREA, "CLOSING_STEPS": curve.CLOSING_STEPS}
     ratio = {"CLOSING_RATIO": curve.CLOSING_RATIO}
-    return tables | Definitions(steps, ratio) | quadrature("APPROACH_GAUSS", curve.GAUSS)
+    return tables | Definitions(steps, ratio) | quadrature("APPROACH_GAUSS", curve.GAUSS_RULE)

@@ -2,8 +2,8 @@
 
 import casadi as ca
 
-from jointfmu.mechanics.jenkins import Slid, reaches, slide, trial
-from jointfmu.quantity import where
+from jointfmu.mechanics.jenkins import ReturnMapping, elastic_predictor, limit_function, return_map
+from jointfmu.quantity import select
 
 from .graph import Graph, symbols
 
@@ -14,30 +14,30 @@ SLIDERS = ("sliders", "vectors")
 def add_sliders(g: Graph) -> None:
     """Add the slider functions: in one direction with a constant or a changing limit, and in a plane."""
     force, shift, before, after, stiffness, compliance = symbols("x", 6)
-    tried = trial([force], 1.0, stiffness, [shift])
+    tried = elastic_predictor([force], 1.0, stiffness, [shift])
     doc = "force, shift, limit, stiffness -> force if it sticks, whether that is at the limit or beyond"
-    g.add("stick_line", doc, [force, shift, after, stiffness], [*tried, reaches(tried, after)])
-    slid = slide([force], 1.0, stiffness, [shift], after, after, stiffness, compliance)
+    g.add("stick_line", doc, [force, shift, after, stiffness], [*tried, limit_function(tried, after)])
+    slid = return_map([force], 1.0, stiffness, [shift], after, after, stiffness, compliance)
     results = "force, tangent along and across, loss"
     doc = (
         f"force, limit, stiffness, compliance, shift -> {results}, its derivative in the shift: the friction"
     )
-    heat = where(slid.slip > 0.0, slid.force[0], 0.0)
+    heat = select(slid.slip > 0.0, slid.force[0], 0.0)
     y = [*slid.force, *slid.tangent, slid.loss, heat]
     g.add("slide_steady", doc, [force, after, stiffness, compliance, shift], y)
-    slid = slide([force], 1.0, stiffness, [shift], before, after, stiffness, compliance)
+    slid = return_map([force], 1.0, stiffness, [shift], before, after, stiffness, compliance)
     doc = f"force, limit before, stiffness, compliance, shift, limit after -> {results}"
     x, y = [force, before, stiffness, compliance, shift, after], [*slid.force, *slid.tangent, slid.loss]
-    g.add_with_seed("slide_line", doc, x, y, fixed=4)
+    g.add_with_seed("slide_line", doc, x, y, constant_count=4)
     _plane(g)
 
 
 def _plane(g: Graph) -> None:
     """Add the functions of a slider with two tangential directions."""
-    x, (force, after, shift), slid = _slid()
-    tried = trial(force, x[2], x[3], shift)
+    x, (force, after, shift), slid = _slider_update()
+    tried = elastic_predictor(force, x[2], x[3], shift)
     doc = "force, part kept, gain, shift"
-    y = [*tried, reaches(tried, after)]
+    y = [*tried, limit_function(tried, after)]
     g.add(
         "stick_plane",
         f"{doc}, limit -> force if it sticks, whether at the limit or beyond",
@@ -48,13 +48,13 @@ def _plane(g: Graph) -> None:
     y = [*slid.force, *slid.tangent, slid.loss, slid.slip]
     g.add("slide_plane", f"{doc} -> force, tangent xx, xy, yy, loss, slip", x, y)
     g.add("return_plane", f"{doc} -> force", x, slid.force)
-    g.add_seed("slide_plane", doc, x, y, fixed=2)
-    x, (_, after, shift), slid = _slid()  # new symbols: a separate function
+    g.add_seed("slide_plane", doc, x, y, constant_count=2)
+    x, (_, after, shift), slid = _slider_update()  # new symbols: a separate function
     y = list(ca.densify(ca.jacobian(ca.vertcat(*slid.force), ca.vertcat(*shift, after))).T.nz)
     g.add("return_slopes", f"{doc} -> derivatives of the force by shift and limit after", x, y, looped=True)
 
 
-def _slid() -> tuple[list[ca.SX], tuple[list[ca.SX], ca.SX, list[ca.SX]], Slid]:
+def _slider_update() -> tuple[list[ca.SX], tuple[list[ca.SX], ca.SX, list[ca.SX]], ReturnMapping]:
     """Return mapping of a slider with two tangential directions, for symbolic arguments.
 
     Returns all arguments (force, fraction of the force retained, stiffness of the increment, displacement
@@ -63,5 +63,5 @@ def _slid() -> tuple[list[ca.SX], tuple[list[ca.SX], ca.SX, list[ca.SX]], Slid]:
     """
     force, shift, (keeps, carries) = symbols("q", 2), symbols("u", 2), symbols("k", 2)
     before, after, stiffness, compliance = ends = symbols("x", 4)
-    slid = slide(force, keeps, carries, shift, before, after, stiffness, compliance)
+    slid = return_map(force, keeps, carries, shift, before, after, stiffness, compliance)
     return [*force, keeps, carries, *shift, *ends], (force, after, shift), slid

@@ -12,9 +12,9 @@ from ..archive import pack, workshop
 from ..partners import PARTNERS
 from ..proof.members import proof
 from ..xml_parts import VARIABILITIES
-from .compiled.binary import finished
+from .compiled.binary import fill_library
 from .compiled.compiler import exported, file_name, universal
-from .compiled.kept import part_of
+from .compiled.kept import compiled_model
 from .data import data_of, placeholder, split
 from .description import build_description, fmi2_xml, fmi3_xml
 from .page import documentation
@@ -40,7 +40,9 @@ def build(
     Raises ValueError if the parameters are of another joint or a folder cannot be written, ImportError
     if a package is missing, RuntimeError if the compiler fails.
     """
-    model = replace((MODELS | PARTNERS)[name].of(parameters.joint, parameters.values), alias=alias)
+    model = replace(
+        (MODELS | PARTNERS)[name].with_parameters(parameters.joint, parameters.values), alias=alias
+    )
     target = out / f"{model.title}.fmu"
     with workshop(target) as work:
         pack(_members(model, parameters, version, variability), work / target.name)
@@ -50,31 +52,31 @@ def build(
 def _members(model: Model, parameters: ParameterFile, version: str, variability: str) -> dict[str, bytes]:
     """{path: content} of all files of a native FMU."""
     parameter_split = split(model, parameters)
-    compiled_model = part_of(model, parameters, parameter_split)
+    compiled_model = compiled_model(model, parameters, parameter_split)
     data = data_of(model, parameters, parameter_split, compiled_model.sources)
     placeholder_data = placeholder(model, parameter_split)
     files = compiled_model.sources | {"data.c": data.source(f" from the parameters {parameters.name!r}")}
     filled_libraries = {
-        platform: finished(library, placeholder_data, data, model.title)
+        platform: fill_library(library, placeholder_data, data, model.title)
         for platform, library in compiled_model.libraries[version].items()
     }
     icons = terminals_and_icons(model)
     return (
-        core(model, parameters, version, files, data.token, filled_libraries, variability)
+        fmu_members(model, parameters, version, files, data.token, filled_libraries, variability)
         | ({"model.png": icons["icon.png"]} if version == "2" else {})
-        | _below("documentation", documentation(model, parameters))
-        | _below("terminalsAndIcons", icons)
+        | _in_folder("documentation", documentation(model, parameters))
+        | _in_folder("terminalsAndIcons", icons)
         | proof(model, parameters)
     )
 
 
-def core(
+def fmu_members(
     model: Model,
     parameters: ParameterFile,
     version: str,
     files: Mapping[str, str],
     token: str,
-    built: Mapping[str, bytes],
+    libraries: Mapping[str, bytes],
     variability: str = VARIABILITIES[0],
 ) -> dict[str, bytes]:
     """{path: content} of the files that every native FMU has: description, sources, binaries.
@@ -85,7 +87,7 @@ def core(
     """
     units = exported(sorted(files), version)
     sources = {path: text.encode() for path, text in files.items() if path in units or path.endswith(".h")}
-    members = binaries(model.title, built, version) | _below("sources", sources)
+    members = binaries(model.title, libraries, version) | _in_folder("sources", sources)
     if version == "2":
         return members | {"modelDescription.xml": fmi2_xml(model, parameters, token, units, variability)}
     return members | {
@@ -99,20 +101,20 @@ _FMI2 = {"x86_64-windows": "win64", "x86_64-linux": "linux64", "aarch64-linux": 
 _MACS = ("x86_64-darwin", "aarch64-darwin")
 
 
-def binaries(name: str, built: Mapping[str, bytes], version: str) -> dict[str, bytes]:
+def binaries(name: str, libraries: Mapping[str, bytes], version: str) -> dict[str, bytes]:
     """{path in an FMU: content} of its libraries; in FMI 2.0 one universal file serves both macOS platforms.
 
     libraries : {platform of FMI 3.0: content}
     """
     if version == "3":
-        return {f"binaries/{p}/{file_name(name, p)}": content for p, content in built.items()}
+        return {f"binaries/{p}/{file_name(name, p)}": content for p, content in libraries.items()}
     members = {
-        f"binaries/{_FMI2[p]}/{file_name(name, p)}": content for p, content in built.items() if p in _FMI2
+        f"binaries/{_FMI2[p]}/{file_name(name, p)}": content for p, content in libraries.items() if p in _FMI2
     }
-    if macs := [built[p] for p in _MACS if p in built]:
+    if macs := [libraries[p] for p in _MACS if p in libraries]:
         members[f"binaries/darwin64/{name}.dylib"] = universal(macs)
     return members
 
 
-def _below(folder: str, files: Mapping[str, bytes]) -> dict[str, bytes]:
+def _in_folder(folder: str, files: Mapping[str, bytes]) -> dict[str, bytes]:
     return {f"{folder}/{path}": content for path, content in files.items()}

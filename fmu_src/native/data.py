@@ -15,7 +15,7 @@ import numpy as np
 
 from jointfmu import __version__
 from jointfmu.joints.model import Model
-from jointfmu.parameters import ParameterFile, dump
+from jointfmu.parameters import ParameterFile, format_parameter_file
 from jointfmu.quantity import Array, flat_fields
 
 from ..folders import parts_of
@@ -92,20 +92,24 @@ class Data(NamedTuple):
 
 
 def block(
-    name: str, token: str, start: Sequence[float], fixed: Sequence[float] = (), tables: Tables = NO_TABLES
+    name: str,
+    token: str,
+    start: Sequence[float],
+    fixed_values: Sequence[float] = (),
+    tables: Tables = NO_TABLES,
 ) -> Data:
     """Make the data block of an FMU.
 
     start        : start values of all variables, by value reference
     fixed_values : real numbers that are not FMU variables
     """
-    counts = {"N_FIXED": len(fixed)}
+    counts = {"N_FIXED": len(fixed_values)}
     members = [
         _letters("magic", MAGIC, len(MAGIC) + 1),
         _letters("name", name, LONGEST + 1),
         _letters("token", token, TOKEN_ROOM),
         _numbers("start", np.array(start, "<f8")),
-        _numbers("fixed", np.array([*fixed, 0.0], "<f8")),  # C has no empty arrays
+        _numbers("fixed", np.array([*fixed_values, 0.0], "<f8")),  # C has no empty arrays
     ]
     for table, (rows, most, digits) in tables.items():
         padded_rows = np.zeros((most, rows.shape[1]), "<i2" if digits else "<f8")
@@ -120,32 +124,32 @@ def block(
 
 
 def data_of(
-    model: Model, parameters: ParameterFile, given: Split, sources: Mapping[str, str], of_file: bool = True
+    model: Model, parameters: ParameterFile, split: Split, sources: Mapping[str, str], of_file: bool = True
 ) -> Data:
     """Make the data block of an FMU; its token is a digest of sources, start values, name, parameter file.
 
     has_file : whether the parameter file enters the digest; a system has no parameter file of its own
     """
     start = _start(model, parameters)
-    fixed = list(given.fixed.values())
+    fixed = list(split.fixed.values())
     content = sha256("\0".join(f"{k}\0{v}" for k, v in sorted(sources.items())).encode())
-    content.update(dump(parameters).encode() if of_file else b"")
-    content.update(block(model.title, "", start, fixed, given.tables).content)
+    content.update(format_parameter_file(parameters).encode() if of_file else b"")
+    content.update(block(model.title, "", start, fixed, split.tables).content)
     uuid = uuid5(NAMESPACE_URL, f"jointfmu/{model.title}/{content.hexdigest()}")
-    return block(model.title, f"{{{uuid}}}", start, fixed, given.tables)
+    return block(model.title, f"{{{uuid}}}", start, fixed, split.tables)
 
 
-def placeholder(model: Model, given: Split) -> Data:
+def placeholder(model: Model, split: Split) -> Data:
     """Make the placeholder block with which the libraries are compiled."""
-    count = 1 + len(model.inputs) + len(model.outputs) + len(given.exposed)
-    tables = {name: table._replace(rows=table.rows[:0]) for name, table in given.tables.items()}
-    return block(PLACEHOLDER, "", [0.0] * count, [0.0] * len(given.fixed), tables)
+    count = 1 + len(model.inputs) + len(model.outputs) + len(split.exposed)
+    tables = {name: table._replace(rows=table.rows[:0]) for name, table in split.tables.items()}
+    return block(PLACEHOLDER, "", [0.0] * count, [0.0] * len(split.fixed), tables)
 
 
 def _start(model: Model, parameters: ParameterFile) -> list[float]:
     """Start values of all variables by value reference: time, inputs, outputs, parameters."""
-    inputs = [parameters.start(v.name) for v in model.inputs]
-    values = [float(parameters.flat[name]) for name in model.parameter_fields()]
+    inputs = [parameters.start_value(v.name) for v in model.inputs]
+    values = [float(parameters.values_by_name[name]) for name in model.parameter_fields()]
     return [0.0, *inputs, *(0.0 for _ in model.outputs), *values]
 
 

@@ -13,14 +13,23 @@ from jointfmu.parameters import ParameterFile
 from jointfmu.quantity.units import CELSIUS, UNITS
 
 from ..licence import copyright_line
-from ..xml_parts import Listed, listed, model_structure, serialized, stop_time, text, unit_definitions, units
+from ..xml_parts import (
+    ListedVariable,
+    list_variables,
+    model_structure,
+    serialized,
+    stop_time,
+    text,
+    unit_definitions,
+    units,
+)
 
 LOG_CATEGORIES = {
     "logEvents": "changes of mode and new tables, if logging is on",
     "logStatusWarning": "the state has left the range of the law; once for each way of leaving it",
     "logStatusError": "why a call was refused: what was found and what was expected",
 }
-_TIME = Listed("time", "independent", "simulation time", None, {"unit": "s", "displayUnit": "s"})
+_TIME = ListedVariable("time", "independent", "simulation time", None, {"unit": "s", "displayUnit": "s"})
 _COMMON = {"needsExecutionTool": "false", "canBeInstantiatedOnlyOncePerProcess": "false"}
 _FMI2 = _COMMON | {
     "canNotUseMemoryManagementFunctions": "true",
@@ -71,12 +80,12 @@ def fmi2_xml(
     sources     : names of the C files to compile, in `sources/`
     variability : of all parameters, one of VARIABILITIES
     """
-    variables = listed(model, parameters)
+    variables = list_variables(model, parameters)
     root = _root(model, "2.0", "guid", token)
     root.set("numberOfEventIndicators", "0")
     for kind, flags in _FMI2_INTERFACES.items():
         interface = SubElement(root, kind, {"modelIdentifier": model.title} | flags)
-        if model.rest and kind == "ModelExchange":
+        if model.initial_history and kind == "ModelExchange":
             interface.set("completedIntegratorStepNotNeeded", "false")
         files = SubElement(interface, "SourceFiles")
         for name in sources:
@@ -96,11 +105,11 @@ def fmi2_xml(
 
 def fmi3_xml(model: Model, parameters: ParameterFile, token: str, variability: str = "tunable") -> bytes:
     """Content of modelDescription.xml of FMI 3.0; parameters as in `format_fmi2_description`."""
-    variables = [_TIME, *listed(model, parameters)]
+    variables = [_TIME, *list_variables(model, parameters)]
     root = _root(model, "3.0", "instantiationToken", token)
     for kind, flags in _FMI3_INTERFACES.items():
         interface = SubElement(root, kind, {"modelIdentifier": model.title} | flags)
-        if model.rest and kind == "ModelExchange":
+        if model.initial_history and kind == "ModelExchange":
             interface.set("needsCompletedIntegratorStep", "true")
     root.append(unit_definitions(variables))
     types = SubElement(root, "TypeDefinitions")
@@ -153,7 +162,7 @@ def _root(model: Model, version: str, token_name: str, token: str) -> Element:
     return root
 
 
-def _types(variables: Sequence[Listed]) -> dict[str, dict[str, str]]:
+def _types(variables: Sequence[ListedVariable]) -> dict[str, dict[str, str]]:
     """{quantity: attributes of its type definition}; its display unit is the first one of the unit."""
     return {
         UNITS[name].quantity: {
@@ -173,7 +182,7 @@ def _log_categories_and_experiment(root: Element, model: Model) -> None:
     SubElement(root, "DefaultExperiment", startTime="0", stopTime=stop, stepSize=step)
 
 
-def _heading(v: Listed, reference: int, parameters: str) -> dict[str, str]:
+def _heading(v: ListedVariable, reference: int, parameters: str) -> dict[str, str]:
     """XML attributes of a variable of any type; `parameter_variability` applies to parameters."""
     variability = parameters if v.causality == "parameter" else "continuous"
     heading = {"name": v.name, "valueReference": str(reference), "description": v.doc}
@@ -183,7 +192,7 @@ def _heading(v: Listed, reference: int, parameters: str) -> dict[str, str]:
     return heading
 
 
-def _value(v: Listed) -> dict[str, str]:
+def _value(v: ListedVariable) -> dict[str, str]:
     """XML attributes of the value of a variable; the unit is repeated for importers that ignore types."""
     value = {"declaredType": UNITS[v.attributes["unit"]].quantity} if v.attributes else {}
     if v.rate_of:

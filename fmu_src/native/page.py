@@ -8,10 +8,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from jointfmu import __version__
-from jointfmu.joints.model import Model, Spring
-from jointfmu.mechanics.steps import stable_steps
+from jointfmu.joints.model import Model, TabulatedJoint
+from jointfmu.mechanics.steps import largest_stable_steps
 from jointfmu.parameters import ParameterFile
-from jointfmu.quantity import flat_fields, problem, span
+from jointfmu.quantity import describe_range, find_problem, flat_fields
 from jointfmu.quantity.units import UNITS, display_unit
 
 from ..folders import asset, parts_of
@@ -19,7 +19,7 @@ from ..joint_parts import RampPanel, chart
 from ..joint_parts.terminals import Terminal
 from ..licence import licences
 from ..templates import law_terms, template
-from ..xml_parts import listed
+from ..xml_parts import list_variables
 from .terminals import terminals
 
 _POINTS = 41
@@ -59,7 +59,7 @@ class _StableSteps(NamedTuple):
 def documentation(model: Model, parameters: ParameterFile) -> dict[str, bytes]:
     """{path: content} of the folder documentation, the same for FMI 2.0 and 3.0."""
     source = model, parameters, asset(model, "page.html")
-    page = plain_page(*source, terminals(model)) if model.moves else _page(*source)
+    page = plain_page(*source, terminals(model)) if model.is_time_dependent else _page(*source)
     return {"index.html": page.encode(), **licences()}
 
 
@@ -68,17 +68,17 @@ def plain_page(model: Model, parameters: ParameterFile, page: Path, flanges: Seq
     return template(page, Path(__file__).parent).render(
         model=model,
         version=__version__,
-        variables=listed(model, parameters),
+        variables=list_variables(model, parameters),
         terminals=flanges,
     )
 
 
 def _page(model: Model, parameters: ParameterFile, page: Path) -> str:
     """Render the page of a joint from the template `page`, which may extend templates of this folder."""
-    spring = model.spring(parameters.values)
-    rest = {v.name: parameters.start(v.name) for v in model.inputs}
-    model = model.loaded(spring, rest)
-    variables = listed(model, parameters)
+    spring = model.tabulate(parameters.values)
+    rest = {v.name: parameters.start_value(v.name) for v in model.inputs}
+    model = model.with_load_range(spring, rest)
+    variables = list_variables(model, parameters)
     exposed = model.parameter_fields()
     rows = _rows(parameters)
     return template(page, Path(__file__).parent).render(
@@ -106,21 +106,21 @@ def _page(model: Model, parameters: ParameterFile, page: Path) -> str:
 def _rows(parameters: ParameterFile) -> list[_ParameterRow]:
     """Rows of the table of all parameters."""
     fields, rows = dict(flat_fields(type(parameters.values))), []
-    for name, value in parameters.flat.items():
+    for name, value in parameters.values_by_name.items():
         meta = fields[name].metadata
         if "allowed" in meta:
             allowed = ", ".join(str(a).lower() for a in meta["allowed"])
         else:
             allowed = "1, 2, 3, ..." if meta.get("whole") else str(meta["interval"])
         if isinstance(value, tuple):
-            value = span(value)
+            value = describe_range(value)
         kind, source = parameters.origins.get(name, "user"), parameters.sources.get(name, "default choice")
         rows.append(_ParameterRow(name, value, meta.get("unit", ""), allowed, meta["doc"], kind, source))
     return rows
 
 
 def _steps(
-    model: Model, spring: Spring, rest: Mapping[str, float], parameters: ParameterFile
+    model: Model, spring: TabulatedJoint, rest: Mapping[str, float], parameters: ParameterFile
 ) -> _StableSteps | None:
     """Largest stable steps with a body on the joint, at the end of the ramp; None if no input is a speed.
 
@@ -137,11 +137,15 @@ def _steps(
     K, name = max((outputs[name], name) for name in (first, *axes))
     if not K > 0.0:
         return None
-    is_damped = parameters.flat.get("damping", True)
-    d = float(parameters.flat.get("d", outputs.get(name.replace("K", "C", 1), 0.0))) if is_damped else 0.0
+    is_damped = parameters.values_by_name.get("damping", True)
+    d = (
+        float(parameters.values_by_name.get("d", outputs.get(name.replace("K", "C", 1), 0.0)))
+        if is_damped
+        else 0.0
+    )
     rows = []
     for J in _BODIES[_STIFFNESS[unit]]:
-        at_once, side_by_side = stable_steps(K, d, 1.0 / J)
+        at_once, side_by_side = largest_stable_steps(K, d, 1.0 / J)
         rows.append((J, _short(float(at_once)), _short(float(side_by_side))))
     return _StableSteps(name, _short(K), unit, _STIFFNESS[unit], rows)
 
@@ -151,11 +155,11 @@ def _short(number: float) -> float:
     return float(f"{number:.3g}")
 
 
-def _messages(model: Model, spring: Spring, rest: Mapping[str, float]) -> list[tuple[str, str, str]]:
+def _messages(model: Model, spring: TabulatedJoint, rest: Mapping[str, float]) -> list[tuple[str, str, str]]:
     """(level, example, meaning) of the messages that an instance may log."""
     name, item = next(iter(model.parameter_fields().items()))
     v = model.inputs[0]
-    parameter_error = problem(name, np.nan, item) or ""
+    parameter_error = find_problem(name, np.nan, item) or ""
     messages = [
         ("error", parameter_error, "A parameter is outside its interval, not a number or infinite."),
         (
@@ -180,19 +184,19 @@ def _messages(model: Model, spring: Spring, rest: Mapping[str, float]) -> list[t
     ]
 
 
-def _warnings(model: Model, spring: Spring, rest: Mapping[str, float]) -> list[str]:
+def _warnings(model: Model, spring: TabulatedJoint, rest: Mapping[str, float]) -> list[str]:
     """Example of each warning: end of the load ramp, one variable 10 % beyond its validity limit."""
     inputs = {**rest, model.ramp.input: model.ramp.end}
     values = inputs | evaluated(model, spring, inputs)
     warnings = []
-    for i, outside in enumerate(model.outside):
+    for i, outside in enumerate(model.validity_limits):
         low, high = outside.interval(spring.joint, spring.curve.end, values)
         value = 1.1 * high if np.isfinite(high) else low - 0.1 * model.ramp.end
-        warnings.append(model.warnings(spring, values | {outside.variable: float(value)})[i])
+        warnings.append(model.find_warnings(spring, values | {outside.variable: float(value)})[i])
     return warnings
 
 
-def evaluated(model: Model, spring: Spring, inputs: Mapping[str, float]) -> dict[str, float]:
+def evaluated(model: Model, spring: TabulatedJoint, inputs: Mapping[str, float]) -> dict[str, float]:
     """{output: value} of a tabulated joint at given inputs."""
     return {name: float(value) for name, value in model.evaluate(spring, inputs).items()}
 
@@ -203,9 +207,9 @@ def panels(model: Model) -> tuple[RampPanel, ...]:
     return charts or (RampPanel(model.ramp.input, (model.outputs[0].name,)),)
 
 
-def _figure(model: Model, spring: Spring, rest: Mapping[str, float]) -> str:
+def _figure(model: Model, spring: TabulatedJoint, rest: Mapping[str, float]) -> str:
     """HTML element with the charts of the load ramp; the other inputs keep their start values."""
-    points = [{**rest, model.ramp.input: float(x)} for x in model.ramp.points(_POINTS)]
+    points = [{**rest, model.ramp.input: float(x)} for x in model.ramp.sample_inputs(_POINTS)]
     rows = [point | evaluated(model, spring, point) for point in points]
     variables = {v.name: v for v in (*model.inputs, *model.outputs)}
 
@@ -222,7 +226,7 @@ def _figure(model: Model, spring: Spring, rest: Mapping[str, float]) -> str:
     return chart.element(charts)
 
 
-def drawings(model: Model, spring: Spring) -> dict[str, str]:
+def drawings(model: Model, spring: TabulatedJoint) -> dict[str, str]:
     """{name: HTML element} of the further charts of a page."""
     drawings = parts_of(model).drawings.get(model.name, {})
     return {name: chart.element(panels(spring, model.ramp.end)) for name, panels in drawings.items()}

@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from jointfmu.quantity import Checked, Number, quantity, smooth_step, smooth_step_slopes
+from jointfmu.quantity import CheckedParameters, Number, quantity_field, smooth_step, smooth_step_slopes
 
 GRAVITY = 9.80665
 """Standard acceleration of free fall [m/s2]."""
@@ -17,17 +17,17 @@ GRAVITY = 9.80665
 def _lag(flange: str) -> Any:
     """Parameter `lag_...` of a body: delay of the load on a flange in communication steps [1]."""
     doc = f"communication steps by which the load on {flange} comes late: 1 from a joint in a parallel master"
-    return quantity("1", doc, ge=0.0, le=1.0)
+    return quantity_field("1", doc, ge=0.0, le=1.0)
 
 
 @dataclass(frozen=True, kw_only=True)
-class RotationalInertia(Checked):
+class RotationalInertia(CheckedParameters):
     """Rotational inertia loaded by two torques and its weight."""
 
     inertia: ClassVar[str] = "J"
-    J: float = quantity("kg.m2", "moment of inertia about the axis", gt=0.0)
-    m: float = quantity("kg", "mass on which the weight acts", ge=0.0)
-    l: float = quantity("m", "from the axis to the centre of mass", ge=0.0)  # noqa: E741
+    J: float = quantity_field("kg.m2", "moment of inertia about the axis", gt=0.0)
+    m: float = quantity_field("kg", "mass on which the weight acts", ge=0.0)
+    l: float = quantity_field("m", "from the axis to the centre of mass", ge=0.0)  # noqa: E741
     lag_a: float = _lag("a")
     lag_b: float = _lag("b")
 
@@ -38,11 +38,11 @@ class RotationalInertia(Checked):
 
 
 @dataclass(frozen=True, kw_only=True)
-class TranslationalMass(Checked):
+class TranslationalMass(CheckedParameters):
     """Mass loaded by two forces."""
 
     inertia: ClassVar[str] = "m"
-    m: float = quantity("kg", "mass", gt=0.0)
+    m: float = quantity_field("kg", "mass", gt=0.0)
     lag_a: float = _lag("a")
     lag_b: float = _lag("b")
 
@@ -52,14 +52,14 @@ class TranslationalMass(Checked):
 
 
 @dataclass(frozen=True, kw_only=True)
-class _Load(Checked):
+class _Load(CheckedParameters):
     """Load over time: a ramp that stays at its end value, and a pulse; subclasses define the heights."""
 
-    ramp_start: float = quantity("s", "begin of the ramp")
-    ramp_duration: float = quantity("s", "from the ramp's begin to its end", gt=0.0)
-    pulse_start: float = quantity("s", "begin of the pulse")
-    pulse_rise: float = quantity("s", "rise time of the pulse, and of its fall", gt=0.0)
-    pulse_hold: float = quantity("s", "time at the pulse's height", ge=0.0)
+    ramp_start: float = quantity_field("s", "begin of the ramp")
+    ramp_duration: float = quantity_field("s", "from the ramp's begin to its end", gt=0.0)
+    pulse_start: float = quantity_field("s", "begin of the pulse")
+    pulse_rise: float = quantity_field("s", "rise time of the pulse, and of its fall", gt=0.0)
+    pulse_hold: float = quantity_field("s", "time at the pulse's height", ge=0.0)
 
     def corners(self) -> tuple[Number, ...]:
         """Times [s] at which a ramp or an edge of the pulse begins or ends."""
@@ -78,8 +78,8 @@ class _Load(Checked):
 class TorqueProfile(_Load):
     """Torque over time: ramp and pulse."""
 
-    ramp_height: float = quantity("N.m", "torque of the ramp")
-    pulse_height: float = quantity("N.m", "torque of the pulse")
+    ramp_height: float = quantity_field("N.m", "torque of the ramp")
+    pulse_height: float = quantity_field("N.m", "torque of the pulse")
 
     def outputs(self, v: Mapping[str, Number]) -> dict[str, Number]:
         """Torque [N.m], including the input torque."""
@@ -90,8 +90,8 @@ class TorqueProfile(_Load):
 class ForceProfile(_Load):
     """Force over time: ramp and pulse."""
 
-    ramp_height: float = quantity("N", "force of the ramp")
-    pulse_height: float = quantity("N", "force of the pulse")
+    ramp_height: float = quantity_field("N", "force of the ramp")
+    pulse_height: float = quantity_field("N", "force of the pulse")
 
     def outputs(self, v: Mapping[str, Number]) -> dict[str, Number]:
         """Force [N], including the input force."""
@@ -99,12 +99,12 @@ class ForceProfile(_Load):
 
 
 @dataclass(frozen=True, kw_only=True)
-class AngleProfile(Checked):
+class AngleProfile(CheckedParameters):
     """Prescribed rotation from rest to rest, as of a motor that follows its command exactly."""
 
-    start: float = quantity("s", "begin of the turn")
-    duration: float = quantity("s", "from its begin to its end", gt=0.0)
-    height: float = quantity("rad", "angle of the turn")
+    start: float = quantity_field("s", "begin of the turn")
+    duration: float = quantity_field("s", "from its begin to its end", gt=0.0)
+    height: float = quantity_field("rad", "angle of the turn")
 
     def corners(self) -> tuple[Number, ...]:
         """Times [s] at which the rotation begins and ends."""
@@ -128,11 +128,11 @@ _NAMES = [f"p{k + 1}" for k in range(POINTS)]
 
 
 @dataclass(frozen=True, kw_only=True)
-class _Bernstein(Checked):
+class _Bernstein(CheckedParameters):
     """Torque over time as a Bernstein polynomial; constant before its start and after its end."""
 
-    start: float = quantity("s", "begin of the curve")
-    duration: float = quantity("s", "from its begin to its end", gt=0.0)
+    start: float = quantity_field("s", "begin of the curve")
+    duration: float = quantity_field("s", "from its begin to its end", gt=0.0)
 
     @staticmethod
     def shares(x: Number) -> list[Number]:
@@ -168,7 +168,7 @@ class _Bernstein(Checked):
 def _point(name: str) -> tuple[str, type, Any]:
     """Dataclass field of one control point."""
     doc = f"torque at point {name[1:]} of {POINTS} of the Bernstein polynomial"
-    return name, float, quantity("N.m", doc)
+    return name, float, quantity_field("N.m", doc)
 
 
 TorqueCurve: type[_Bernstein] = make_dataclass(

@@ -5,9 +5,9 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from jointfmu.joints.model import Model, Ramp, Variable
-from jointfmu.parameters import ParameterFile, entries, read_document
-from jointfmu.quantity import build, flat_fields
+from jointfmu.joints.model import LoadRamp, Model, Variable
+from jointfmu.parameters import ParameterFile, read_document, read_entries
+from jointfmu.quantity import build_parameter_set, flat_fields
 
 from .laws import AngleProfile, ForceProfile, RotationalInertia, TorqueCurve, TorqueProfile, TranslationalMass
 
@@ -17,7 +17,7 @@ def _model(
     doc: str,
     inputs: Sequence[Variable],
     outputs: Sequence[Variable],
-    ramp: Ramp,
+    ramp: LoadRamp,
     states: int = 0,
 ) -> Model:
     """Model of a partner, from its parameter class and variables."""
@@ -26,18 +26,18 @@ def _model(
         joint="partner",
         doc=doc,
         parameters=parameters,
-        spring=lambda partner: partner,
+        tabulate=lambda partner: partner,
         inputs=inputs,
         outputs=outputs,
         evaluate=lambda partner, values: partner.outputs(values),
-        outside=(),
+        validity_limits=(),
         ramp=ramp,
         # states depend on no input; the acceleration depends on the inputs and the position
         dependencies={v.name: (v.name,) for v in outputs[:states]}
         | {v.name: (*(i.name for i in inputs), outputs[0].name) for v in outputs[states:] if states},
-        states=states,
-        moves=True,
-        events=getattr(parameters, "corners", None),
+        state_count=states,
+        is_time_dependent=True,
+        find_event_times=getattr(parameters, "corners", None),
     )
 
 
@@ -58,7 +58,7 @@ PARTNERS: dict[str, Model] = {
                 Variable("w", "rad/s", "speed", 1e-1),
                 Variable("a", "rad/s2", "acceleration", 1e2),
             ),
-            Ramp("tau_a", 1.0, 1e-3, 1e-3),
+            LoadRamp("tau_a", 1.0, 1e-3, 1e-3),
             states=2,
         ),
         _model(
@@ -73,21 +73,21 @@ PARTNERS: dict[str, Model] = {
                 Variable("v", "m/s", "speed", 1e-3),
                 Variable("a", "m/s2", "acceleration", 1e2),
             ),
-            Ramp("f_a", 1e3, 1.0, 1e-5),
+            LoadRamp("f_a", 1e3, 1.0, 1e-5),
             states=2,
         ),
         _model(
             TorqueProfile,
             "Torque over time: a ramp that stays and a pulse, without corners",
             *_TORQUE,
-            Ramp("tau_in", 1.0, 1e-3, 1e-3, {"pulse_height": 1.0}),
+            LoadRamp("tau_in", 1.0, 1e-3, 1e-3, {"pulse_height": 1.0}),
         ),
         _model(
             ForceProfile,
             "Force over time: a ramp that stays and a pulse, without corners",
             (Variable("f_in", "N", "force that is added", 1e3),),
             (Variable("f", "N", "force", 1e3),),
-            Ramp("f_in", 1e3, 1.0, 1e-3, {"pulse_height": 1e3}),
+            LoadRamp("f_in", 1e3, 1.0, 1e-3, {"pulse_height": 1e3}),
         ),
         _model(
             AngleProfile,
@@ -97,13 +97,13 @@ PARTNERS: dict[str, Model] = {
                 Variable("w_in", "rad/s", "speed that is added"),
             ),
             (Variable("phi", "rad", "angle"), Variable("w", "rad/s", "speed")),
-            Ramp("phi_in", 1.0, 1e-3, 1e-3, {"height": 1.0}),
+            LoadRamp("phi_in", 1.0, 1e-3, 1e-3, {"height": 1.0}),
         ),
         _model(
             TorqueCurve,
             "Torque over time: a Bernstein polynomial, held before and after it",
             *_TORQUE,
-            Ramp("tau_in", 1.0, 1e-3, 1e-3),
+            LoadRamp("tau_in", 1.0, 1e-3, 1e-3),
         ),
     )
 }
@@ -120,8 +120,8 @@ def parameters(name: str) -> ParameterFile:
         raise ValueError(f"{path}: partner = {document.get('partner')!r}, expected {name!r}")
     cls = PARTNERS[name].parameters
     body = {key: entry for key, entry in document.items() if key not in ("schema", "partner")}
-    values, origins, sources = entries(path, dict(flat_fields(cls)), body)
+    values, origins, sources = read_entries(path, dict(flat_fields(cls)), body)
     try:
-        return ParameterFile("partner", name, build(cls, values), origins, sources)
+        return ParameterFile("partner", name, build_parameter_set(cls, values), origins, sources)
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from None

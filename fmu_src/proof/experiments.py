@@ -13,14 +13,14 @@ import numpy as np
 
 from jointfmu.joints import KINDS
 from jointfmu.joints.model import Model
-from jointfmu.parameters import ParameterFile, load, read_document
-from jointfmu.quantity import changed
+from jointfmu.parameters import ParameterFile, load_parameter_file, read_document
+from jointfmu.quantity import replace_values
 
 from .neighbours import neighbours
 from .reference import Stimulus, results, rounded, start_of
 from .series import TimeSeries
 
-RAMP, FEW, LEAST = 20, 4, 2
+RAMP, SMOKE_LEVELS, MIN_LEVELS = 20, 4, 2
 """Number of levels [1] of: load ramp; smoke test and shipped models; boundary values and samples."""
 QUARTER, CYCLES = 6, 1
 """Number of levels of a quarter cycle of the loop [1], and of cycles after first loading [1]."""
@@ -29,7 +29,7 @@ FRACTION = 0.25
 SAMPLES = 6
 """Number of experiments with varied parameters [1]."""
 _REFUSALS = (ValueError, RuntimeError, ArithmeticError)
-SPREAD = 0.01
+UNCERTAINTY_HALF_WIDTH = 0.01
 """Half width of the parameter variation [1]: a test plan, no statement on the uncertainty of parameters."""
 
 
@@ -55,14 +55,20 @@ def experiments(model: Model, parameters: ParameterFile) -> list[ReferenceExperi
 
     Raises ValueError or RuntimeError if the joint refuses its own parameter file.
     """
-    model = model.loaded(model.spring(parameters.values), start_of(model, parameters))
+    model = model.with_load_range(model.tabulate(parameters.values), start_of(model, parameters))
     return [
-        _experiment(model, parameters, "smoke-test", "smoke test", "a few loads", {}, FEW),
+        _experiment(model, parameters, "smoke-test", "smoke test", "a few loads", {}, SMOKE_LEVELS),
         _experiment(model, parameters, "validation", "load ramp", "the default experiment", {}, RAMP),
         *_loop(model, parameters),
         *(
             _experiment(
-                model, parameters, "validation", f"model {file.name}", "a shipped model", settings, FEW
+                model,
+                parameters,
+                "validation",
+                f"model {file.name}",
+                "a shipped model",
+                settings,
+                SMOKE_LEVELS,
             )
             for file, settings in models(model, parameters)[1:]
         ),
@@ -81,11 +87,16 @@ def models(model: Model, parameters: ParameterFile) -> list[tuple[ParameterFile,
         return files_and_settings
     fields = model.parameter_fields()
     for file in _shipped(model.joint, KINDS[model.joint].default_file().parent):
-        if type(file.values) is not type(parameters.values) or file.flat.keys() != parameters.flat.keys():
+        if (
+            type(file.values) is not type(parameters.values)
+            or file.values_by_name.keys() != parameters.values_by_name.keys()
+        ):
             continue
-        differing = {name for name, value in file.flat.items() if value != parameters.flat[name]}
-        settings = {name: file.flat[name] for name in fields if name in differing}
-        if settings and differing <= fields.keys() | set(model.hidden):
+        differing = {
+            name for name, value in file.values_by_name.items() if value != parameters.values_by_name[name]
+        }
+        settings = {name: file.values_by_name[name] for name in fields if name in differing}
+        if settings and differing <= fields.keys() | set(model.fixed_parameters):
             files_and_settings.append((file, settings))
     return files_and_settings
 
@@ -96,12 +107,12 @@ def _shipped(joint: str, folder: Path) -> tuple[ParameterFile, ...]:
     folders = [folder, Path(str(files("jointfmu_models") / "catalogue"))]
     paths = sorted(path for source in folders if source.is_dir() for path in source.glob("*.toml"))
     joint_paths = [path for path in paths if read_document(path, "a parameter file").get("joint") == joint]
-    return tuple(load(path, joint) for path in joint_paths)
+    return tuple(load_parameter_file(path, joint) for path in joint_paths)
 
 
 def study(model: Model, parameters: ParameterFile) -> dict[str, str]:
     """{parameter: distribution} of the uncertainty experiments, in the notation of study files."""
-    return dict.fromkeys(_uncertain(model, parameters), f"+-{SPREAD:.0%}")
+    return dict.fromkeys(_uncertain(model, parameters), f"+-{UNCERTAINTY_HALF_WIDTH:.0%}")
 
 
 def _uncertain(model: Model, parameters: ParameterFile) -> list[str]:
@@ -109,7 +120,9 @@ def _uncertain(model: Model, parameters: ParameterFile) -> list[str]:
     return [
         name
         for name, item in model.parameter_fields().items()
-        if isinstance(value := parameters.flat[name], float) and value and not item.metadata["whole"]
+        if isinstance(value := parameters.values_by_name[name], float)
+        and value
+        and not item.metadata["whole"]
     ]
 
 
@@ -125,13 +138,13 @@ def _experiment(
     """Compute a load ramp with a number of levels; a model with states gets the end load throughout."""
     settings = {**model.ramp.settings, **settings}
     start, end = start_of(model, parameters)[model.ramp.input], model.ramp.end
-    if model.states:
+    if model.state_count:
         ramp_levels = np.full(levels + 1, end)
         settings = {**settings, model.ramp.input: end}
     else:
-        loading = np.linspace(max(start, model.ramp.begin), end, levels + 1)[1:]
+        loading = np.linspace(max(start, model.ramp.onset), end, levels + 1)[1:]
         ramp_levels = np.array([rounded(x) for x in (start, *loading)])
-    interval = model.ramp.interval * (FRACTION if model.moves else 1.0)
+    interval = model.ramp.interval * (FRACTION if model.is_time_dependent else 1.0)
     drive = Stimulus(model.ramp.input, ramp_levels, interval)
     return ReferenceExperiment(
         purpose, name, doc, settings, drive, _results(model, parameters, settings, drive)
@@ -144,7 +157,7 @@ def _results(
     """Outputs of the package for an experiment with given parameters and start values."""
     start = start_of(model, parameters)
     changes = {name: value for name, value in settings.items() if name not in start}
-    values = changed(parameters.values, changes) if changes else parameters.values
+    values = replace_values(parameters.values, changes) if changes else parameters.values
     return results(model, values, start | {n: v for n, v in settings.items() if n in start}, drive)
 
 
@@ -171,7 +184,7 @@ def _neighbours(model: Model, parameters: ParameterFile) -> Iterator[ReferenceEx
         value_text = str(value).lower() if isinstance(value, bool) else f"{value:.9g}"
         with suppress(*_REFUSALS):
             computed[name, value] = _experiment(
-                model, parameters, "validation", f"{name} = {value_text}", "", {name: value}, LEAST
+                model, parameters, "validation", f"{name} = {value_text}", "", {name: value}, MIN_LEVELS
             )
         return (name, value) in computed
 
@@ -186,16 +199,16 @@ def _samples(model: Model, parameters: ParameterFile) -> Iterator[ReferenceExper
     """
     names = _uncertain(model, parameters)
     steps = np.sqrt(list(islice(_primes(), len(names))))
-    doc = f"all real parameters within {SPREAD:.0%}"
+    doc = f"all real parameters within {UNCERTAINTY_HALF_WIDTH:.0%}"
     for number in range(1, SAMPLES + 1 if names else 1):
         point = 2.0 * ((number * steps) % 1.0) - 1.0
         settings = {
-            name: rounded(parameters.flat[name] * (1.0 + SPREAD * x))
+            name: rounded(parameters.values_by_name[name] * (1.0 + UNCERTAINTY_HALF_WIDTH * x))
             for name, x in zip(names, point, strict=True)
         }
         with suppress(*_REFUSALS):
             yield _experiment(
-                model, parameters, "uncertainty-analysis", f"sample {number}", doc, settings, LEAST
+                model, parameters, "uncertainty-analysis", f"sample {number}", doc, settings, MIN_LEVELS
             )
 
 

@@ -9,8 +9,8 @@ from xml.etree.ElementTree import Element, SubElement
 
 from jointfmu import __version__
 from jointfmu.joints.model import Model
-from jointfmu.parameters import ParameterFile, dump
-from jointfmu.quantity import flatten
+from jointfmu.parameters import ParameterFile, format_parameter_file
+from jointfmu.quantity import flatten_parameters
 
 from ..ssv import Value, parameter_set
 from ..xml_parts import serialized
@@ -86,12 +86,12 @@ def archive(
         "application/toml",
         "requirement",
         "each parameter with its source",
-        dump(parameters).encode(),
+        format_parameter_file(parameters).encode(),
     )
     doc = "what the experiments are, and their tolerance"
     related.append(RelatedFile(f"../../{TEXT}", "text/plain", "document", doc))
     for file, _ in models:
-        values = {name: value for name, value in flatten(file.values).items() if name in exposed}
+        values = {name: value for name, value in flatten_parameters(file.values).items() if name in exposed}
         content = _parameter_set(model, file.name, values)
         add(f"parameters/{slug(file.name)}.ssv", standard.SSV, "parameter", file.name, content)
     if study:
@@ -113,10 +113,12 @@ def archive(
         for path in series:
             if path.endswith("_ref.csv"):
                 related.append(RelatedFile(path, standard.CSV, "result", "reference result of the package"))
-    return placed(members, related, _text(file_stem, experiments, native))
+    return proof_members(members, related, _text(file_stem, experiments, native))
 
 
-def placed(members: Mapping[str, bytes], related: Sequence[RelatedFile], page: str) -> dict[str, bytes]:
+def proof_members(
+    members: Mapping[str, bytes], related: Sequence[RelatedFile], page: str
+) -> dict[str, bytes]:
     """Place reference files, their manifest and the explaining page: {path in the FMU: content}."""
     files = {**members, "fmi-ls-manifest.xml": _manifest(related)}
     return {f"{standard.FOLDER}/{path}": content for path, content in files.items()} | {TEXT: page.encode()}
@@ -128,32 +130,34 @@ def slug(name: str) -> str:
 
 
 def _experiment(
-    model: Model, root: Element, number: str, one: ReferenceExperiment, there: Mapping[str, bytes]
+    model: Model, root: Element, number: str, experiment: ReferenceExperiment, members: Mapping[str, bytes]
 ) -> dict[str, bytes]:
     """Declare an experiment below `root`, and return its new files {path: content}.
 
     members : files of other experiments; equal inputs are not stored twice
     """
-    stem = f"experiments/{number}_{slug(one.name)}"
-    stimuli = text(one.drive.stimuli).encode()
+    stem = f"experiments/{number}_{slug(experiment.name)}"
+    stimuli = text(experiment.drive.stimuli).encode()
     equal_inputs = (
-        path for path, content in there.items() if path.endswith("_in.csv") and content == stimuli
+        path for path, content in members.items() if path.endswith("_in.csv") and content == stimuli
     )
     files = {"Stimuli": next(equal_inputs, f"{stem}_in.csv"), "References": f"{stem}_ref.csv"}
-    contents = {files["Stimuli"]: stimuli, files["References"]: text(one.results, DIGITS).encode()}
-    if one.settings:
+    contents = {files["Stimuli"]: stimuli, files["References"]: text(experiment.results, DIGITS).encode()}
+    if experiment.settings:
         files = {"Parameters": f"{stem}.ssv", **files}
-        contents[files["Parameters"]] = _parameter_set(model, one.name, one.settings)
-    node = SubElement(root, "Experiment", name=one.name, description=one.doc, tolerance=repr(TOLERANCE))
+        contents[files["Parameters"]] = _parameter_set(model, experiment.name, experiment.settings)
+    node = SubElement(
+        root, "Experiment", name=experiment.name, description=experiment.doc, tolerance=repr(TOLERANCE)
+    )
     times = {
         "startTime": 0.0,
-        "stopTime": float(one.drive.instants[-1]),
-        "stepSize": 0.5 * one.drive.interval,
+        "stopTime": float(experiment.drive.instants[-1]),
+        "stepSize": 0.5 * experiment.drive.interval,
     }
     SubElement(node, standard.TRANSIENT, {name: repr(time) for name, time in times.items()})
     for tag, path in files.items():
         SubElement(node, tag, source=path)
-    return {path: content for path, content in contents.items() if path not in there}
+    return {path: content for path, content in contents.items() if path not in members}
 
 
 def _parameter_set(model: Model, name: str, values: Mapping[str, object]) -> bytes:
@@ -176,7 +180,7 @@ def _manifest(related: Sequence[RelatedFile]) -> bytes:
     return serialized(root)
 
 
-def _text(own: str, experiments: Sequence[ReferenceExperiment], native: bool) -> str:
+def _text(name: str, experiments: Sequence[ReferenceExperiment], native: bool) -> str:
     """Text that explains the experiments of an FMU."""
     counts = {p: sum(experiment.purpose == p for experiment in experiments) for p in standard.PURPOSES}
     page = Path(__file__).with_name("page.txt").read_text(encoding="utf-8")
@@ -189,5 +193,5 @@ def _text(own: str, experiments: Sequence[ReferenceExperiment], native: bool) ->
         solver=SOLVER * TOLERANCE,
         floor=FLOOR,
         page="documentation/index.html" if native else "modelDescription.xml",
-        file=own,
+        file=name,
     )

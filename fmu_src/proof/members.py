@@ -1,7 +1,7 @@
 """Verification files inside an FMU, with cached reference results."""
 
 from jointfmu.joints.model import Model
-from jointfmu.parameters import ParameterFile, dump
+from jointfmu.parameters import ParameterFile, format_parameter_file
 
 from .experiments import ReferenceExperiment, experiments, models, study
 from .files import archive
@@ -22,7 +22,7 @@ def proof(model: Model, parameters: ParameterFile, native: bool = True) -> dict[
 
 def computed(model: Model, parameters: ParameterFile) -> tuple[ReferenceExperiment, ...]:
     """Experiments of an FMU, computed once for all flavours."""
-    key = model.name, dump(parameters)
+    key = model.name, format_parameter_file(parameters)
     if key not in _kept:
         _kept[key] = tuple(experiments(model, parameters))
         for old_key in [*_kept][:-_MOST_KEPT]:

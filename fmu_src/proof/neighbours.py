@@ -15,7 +15,7 @@ from jointfmu.quantity import Interval
 
 from .reference import rounded
 
-NEAR = 1e-6
+OPEN_END_DISTANCE = 1e-6
 """Distance of a boundary value from an open end over the width of the interval [1]."""
 HALVINGS = 5
 """Bisection steps [1]."""
@@ -24,7 +24,7 @@ INWARD = 0.02
 
 
 def neighbours(
-    model: Model, parameters: ParameterFile, taken: Callable[[str, object], bool]
+    model: Model, parameters: ParameterFile, is_accepted: Callable[[str, object], bool]
 ) -> Iterator[tuple[str, Any, str]]:
     """Yield (parameter, boundary value, description), for one parameter at a time.
 
@@ -33,9 +33,9 @@ def neighbours(
     An open end at zero of an interval with an infinite other end is skipped: the interval has no scale.
     """
     for name, item in model.parameter_fields().items():
-        value, meta = parameters.flat[name], item.metadata
+        value, meta = parameters.values_by_name[name], item.metadata
         if isinstance(value, bool):
-            if taken(name, not value):
+            if is_accepted(name, not value):
                 yield name, not value, "the other choice"
             continue
         if "interval" not in meta or isinstance(value, str | tuple):
@@ -48,20 +48,24 @@ def neighbours(
             if not math.isfinite(end) or (end == 0.0 and is_open and not math.isfinite(other)):
                 continue
             width = abs(other - end) if math.isfinite(other) else max(abs(value - end), 1.0)
-            first = end + math.copysign(NEAR * width, value - end) if is_open else end
-            boundary_value = _inside(float(first), float(value), bool(meta["whole"]), partial(taken, name))
+            first = end + math.copysign(OPEN_END_DISTANCE * width, value - end) if is_open else end
+            boundary_value = _nearest_accepted(
+                float(first), float(value), bool(meta["whole"]), partial(is_accepted, name)
+            )
             if boundary_value is not None and boundary_value != value:
                 yield name, boundary_value, f"inside {interval}"
 
 
-def _inside(first: float, value: float, whole: bool, taken: Callable[[float], bool]) -> float | None:
+def _nearest_accepted(
+    first: float, value: float, is_integer: bool, is_accepted: Callable[[float], bool]
+) -> float | None:
     """Accepted value nearest to `first`, by bisection; None if only the value of the file is accepted."""
-    round_value: Callable[[float], float] = round if whole else rounded
-    if taken(round_value(first)):
+    round_value: Callable[[float], float] = round if is_integer else rounded
+    if is_accepted(round_value(first)):
         return float(round_value(first))
     refused, accepted = first, value
     for _ in range(HALVINGS):
         middle = 0.5 * (refused + accepted)
-        refused, accepted = (refused, middle) if taken(round_value(middle)) else (middle, accepted)
+        refused, accepted = (refused, middle) if is_accepted(round_value(middle)) else (middle, accepted)
     inward = float(round_value(accepted + INWARD * (value - accepted)))
-    return inward if taken(inward) else None
+    return inward if is_accepted(inward) else None

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from jointfmu.joints.model import Model, Outputs, Spring
+from jointfmu.joints.model import Model, Outputs, TabulatedJoint
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
 
@@ -55,7 +55,7 @@ def results(model: Model, values: object, start: Mapping[str, float], drive: Sti
     Raises ValueError or RuntimeError as the joint does, and RuntimeError for an output that is not finite.
     """
     with np.errstate(all="ignore"):
-        rows = _rows(model, model.spring(values), dict(start), drive)
+        rows = _rows(model, model.tabulate(values), dict(start), drive)
     outputs = {v.name: np.array([float(row[v.name]) for row in rows]) for v in model.outputs}
     for name, column in outputs.items():
         if not np.all(np.isfinite(column)):
@@ -63,23 +63,25 @@ def results(model: Model, values: object, start: Mapping[str, float], drive: Sti
     return TimeSeries(drive.instants, outputs)
 
 
-def _rows(model: Model, spring: Spring, inputs: dict[str, float], drive: Stimulus) -> list[Outputs]:
+def _rows(model: Model, spring: TabulatedJoint, inputs: dict[str, float], drive: Stimulus) -> list[Outputs]:
     """Outputs of a model at the sampling instants, one dictionary each."""
-    if model.states:
+    if model.state_count:
         return _moving(model, spring, inputs, drive)
-    history = None if model.rest is None else model.rest(spring)
+    history = None if model.initial_history is None else model.initial_history(spring)
     rows = []
     for time, level in zip(drive.instants, drive.levels, strict=True):
         inputs[drive.input] = float(level)
-        if model.evolve is None or history is None:
-            rows.append(model.evaluate(spring, {**inputs, "time": float(time)} if model.moves else inputs))
+        if model.advance is None or history is None:
+            rows.append(
+                model.evaluate(spring, {**inputs, "time": float(time)} if model.is_time_dependent else inputs)
+            )
         else:
-            row, history = model.evolve(spring, inputs, history)
+            row, history = model.advance(spring, inputs, history)
             rows.append(row)
     return rows
 
 
-def _moving(model: Model, spring: Spring, inputs: dict[str, float], drive: Stimulus) -> list[Outputs]:
+def _moving(model: Model, spring: TabulatedJoint, inputs: dict[str, float], drive: Stimulus) -> list[Outputs]:
     """Outputs of a model with states under constant inputs, integrated with a relative tolerance of 1e-12."""
     from scipy.integrate import solve_ivp
 
@@ -87,14 +89,14 @@ def _moving(model: Model, spring: Spring, inputs: dict[str, float], drive: Stimu
     inputs = {**inputs, drive.input: float(drive.levels[0])}
 
     def outputs(time: float, x: Array) -> Outputs:
-        states = dict(zip(names[: model.states], map(float, x), strict=True))
+        states = dict(zip(names[: model.state_count], map(float, x), strict=True))
         return model.evaluate(spring, {**inputs, **states, "time": time})
 
     def rates(time: float, x: Array) -> list[float]:
         values = outputs(time, x)
-        return [values[name] for name in names[1 : model.states + 1]]
+        return [values[name] for name in names[1 : model.state_count + 1]]
 
-    times, initial = drive.instants, np.zeros(model.states)
+    times, initial = drive.instants, np.zeros(model.state_count)
     if times.size == 1:
         return [outputs(0.0, initial)]
     solution = solve_ivp(rates, (0.0, times[-1]), initial, "DOP853", times, rtol=1e-12, atol=1e-30)
@@ -110,4 +112,4 @@ def rounded(value: float, digits: int = 9) -> float:
 
 def start_of(model: Model, parameters: ParameterFile) -> dict[str, float]:
     """{input: start value} of a model."""
-    return {v.name: parameters.start(v.name) for v in model.inputs}
+    return {v.name: parameters.start_value(v.name) for v in model.inputs}

@@ -20,18 +20,18 @@ class TimeSeries:
     time: Array
     columns: Mapping[str, Array]
 
-    def at(self, name: str, times: Array) -> Array:
+    def interpolate(self, name: str, times: Array) -> Array:
         """Interpolate a column linearly at times (m) [s]; constant beyond the ends.
 
         A repeated time is a jump: there the result is the value after the jump.
         """
         return np.asarray(np.interp(times, self.time, self.columns[name]))
 
-    def before(self, name: str, times: Array) -> Array:
+    def interpolate_left(self, name: str, times: Array) -> Array:
         """Interpolate a column as `interpolate`, but take the value before a jump."""
         return np.asarray(np.interp(-times, -self.time[::-1], self.columns[name][::-1]))
 
-    def held(self, name: str, times: Array) -> Array:
+    def hold(self, name: str, times: Array) -> Array:
         """Values of a column at times (m) [s], constant from each row to the next."""
         rows = np.searchsorted(self.time, times, side="right") - 1
         return self.columns[name][np.maximum(rows, 0)]
@@ -46,7 +46,7 @@ def text(series: TimeSeries, digits: int | None = None) -> str:
     return "\n".join([head, *lines, ""])
 
 
-def parse(content: str, where: str) -> TimeSeries:
+def parse(content: str, location: str) -> TimeSeries:
     """Read a time series from CSV text.
 
     location : name of the file for errors
@@ -56,17 +56,19 @@ def parse(content: str, where: str) -> TimeSeries:
     rows = [row for row in csv.reader(io.StringIO(content)) if row]
     head = [name.strip() for name in rows[0]] if rows else []
     if not head or head[0].lower() != TIME or len(rows) < 2:
-        raise ValueError(f"{where}: begins with {','.join(head)[:60]!r}; expected {TIME!r} first, and rows")
+        raise ValueError(
+            f"{location}: begins with {','.join(head)[:60]!r}; expected {TIME!r} first, and rows"
+        )
     if len(set(head)) < len(head):
-        raise ValueError(f"{where}: a column is given twice, allowed is once")
+        raise ValueError(f"{location}: a column is given twice, allowed is once")
     for row in rows[1:]:
         if len(row) != len(head):
-            raise ValueError(f"{where}: {','.join(row)[:60]!r}: expected rows of {len(head)} numbers")
+            raise ValueError(f"{location}: {','.join(row)[:60]!r}: expected rows of {len(head)} numbers")
     try:
         table = np.array([[float(cell) for cell in row] for row in rows[1:]])
     except ValueError as error:
-        raise ValueError(f"{where}: {error}; expected rows of {len(head)} numbers") from None
+        raise ValueError(f"{location}: {error}; expected rows of {len(head)} numbers") from None
     times, columns = table[:, 0], dict(zip(head[1:], table[:, 1:].T, strict=True))
     if np.any(np.diff(times) < 0.0) or not np.all(np.isfinite(times)):
-        raise ValueError(f"{where}: the time falls or is not finite; expected rising times")
+        raise ValueError(f"{location}: the time falls or is not finite; expected rising times")
     return TimeSeries(times, columns)

@@ -17,8 +17,8 @@ from jointfmu_fmu_src.python.imports import imported
 from jointfmu_fmu_src.xml_parts import VARIABILITIES
 
 from jointfmu.joints import KINDS, MODELS
-from jointfmu.joints.kind import Kind
-from jointfmu.parameters import ParameterFile, dump
+from jointfmu.joints.kind import JointKind
+from jointfmu.parameters import ParameterFile, format_parameter_file
 
 _PRIVATE = "PRIVATE_PACKAGE"
 """Placeholder for the name of the private package, which contains a digest of all sources."""
@@ -26,13 +26,13 @@ _ENTRY = Path(__file__).with_name("entry.txt")
 """Template of the Python module that pythonfmu loads."""
 
 
-def runtime_sources(kind: Kind) -> dict[str, str]:
+def runtime_sources(kind: JointKind) -> dict[str, str]:
     """{path inside the private package: text} of the Python code inside an FMU; it requires only numpy.
 
     The code is the slave, the joints and all modules that they import. Imports of the public packages are
     rewritten to the private package, so FMUs of different builds can run in one process.
     """
-    builtin_packages = [joint.package for joint in KINDS.values() if joint.own]
+    builtin_packages = [joint.package for joint in KINDS.values() if joint.is_builtin]
     roots = {"jointfmu", "jointfmu_fmu_src", kind.package.partition(".")[0]}
     files = imported(["jointfmu_fmu_src.python.slave", *builtin_packages, kind.package], roots)
     sources = {}
@@ -73,9 +73,9 @@ def build(
     import pythonfmu  # noqa: F401  (fails before anything is written)
 
     kind = KINDS[MODELS[name].joint]
-    model = MODELS[name].of(parameters.joint, parameters.values)
+    model = MODELS[name].with_parameters(parameters.joint, parameters.values)
     title = replace(model, alias=alias).title
-    sources = runtime_sources(kind) | {"parameters.toml": dump(parameters)}
+    sources = runtime_sources(kind) | {"parameters.toml": format_parameter_file(parameters)}
     content = [f"{k}\0{v}" for k, v in sources.items()] + [variability]
     digest = sha256("\0".join(content).encode()).hexdigest()[:16]
     package = f"jointfmu_{digest}"

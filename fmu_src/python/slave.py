@@ -11,17 +11,24 @@ from uuid import NAMESPACE_URL, uuid5
 from xml.etree.ElementTree import Element
 
 import numpy as np
-from jointfmu_fmu_src.xml_parts import Listed, listed, model_structure, stop_time, text, unit_definitions
+from jointfmu_fmu_src.xml_parts import (
+    ListedVariable,
+    list_variables,
+    model_structure,
+    stop_time,
+    text,
+    unit_definitions,
+)
 from pythonfmu import Boolean, DefaultExperiment, Fmi2Causality, Fmi2Slave, Fmi2Variability, Real
 from pythonfmu.enums import Fmi2Initial, Fmi2Status
 
 from jointfmu import __version__
 from jointfmu.files.timestamp import build_time
-from jointfmu.joints import KINDS, MODELS, register
-from jointfmu.joints.kind import Kind
-from jointfmu.joints.model import Memory, Model, Spring
-from jointfmu.parameters import load
-from jointfmu.quantity import build
+from jointfmu.joints import KINDS, MODELS, register_joint
+from jointfmu.joints.kind import JointKind
+from jointfmu.joints.model import History, Model, TabulatedJoint
+from jointfmu.parameters import load_parameter_file
+from jointfmu.quantity import build_parameter_set
 
 T = TypeVar("T")
 
@@ -60,7 +67,7 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
     Everything else is computed from it on demand.
     """
 
-    kind: ClassVar[Kind]
+    kind: ClassVar[JointKind]
     fmu: ClassVar[str]
     content: ClassVar[str]
     """Digest of all code and parameters inside the FMU; the GUID follows from it."""
@@ -70,9 +77,9 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
     def __init__(self, **kwargs: object) -> None:
         super().__init__(**kwargs)
         if self.kind.name not in KINDS:  # a joint of another package
-            register(self.kind)
-        file = load(Path(self.resources) / "parameters.toml", self.kind.name)
-        self.model: Model = MODELS[self.fmu].of(file.joint, file.values)
+            register_joint(self.kind)
+        file = load_parameter_file(Path(self.resources) / "parameters.toml", self.kind.name)
+        self.model: Model = MODELS[self.fmu].with_parameters(file.joint, file.values)
         self.modelName = type(self).__name__
         self.description = self.model.doc
         self.version, self.license, self.author = __version__, "MIT", "jointfmu"
@@ -80,23 +87,23 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
         self.default_experiment = DefaultExperiment(
             start_time=0.0, stop_time=stop_time(self.model), step_size=1.0
         )
-        self.start = dict(file.flat)
-        self.listed = listed(self.model, file)
+        self.start = dict(file.values_by_name)
+        self.listed = list_variables(self.model, file)
         self.fields = self.model.parameter_fields()
         self.values: dict[str, Any] = {
             **self.start,
-            **{v.name: file.start(v.name) for v in self.model.inputs},
+            **{v.name: file.start_value(v.name) for v in self.model.inputs},
         }
         self.initialized = False
         self.warned: set[int] = set()
         self.way: AcceptedPath | None = None
-        self._spring: Spring | None = None
+        self._spring: TabulatedJoint | None = None
         self._outputs: dict[str, float] | None = None
-        self._memory: Memory | None = None
+        self._memory: History | None = None
         for item in self.listed:
             self.register_variable(self._variable(item), nested=False)
 
-    def _variable(self, item: Listed) -> object:
+    def _variable(self, item: ListedVariable) -> object:
         """pythonfmu variable of a listed variable."""
         name, output, parameter = item.name, item.causality == "output", item.causality == "parameter"
         initial = Fmi2Initial.calculated if output else Fmi2Initial.exact
@@ -143,7 +150,7 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
         if not_finite := [name for name, value in outputs.items() if not math.isfinite(value)]:
             inputs_text = ", ".join(f"{name} = {value:g}" for name, value in inputs.items() if value)
             self.refuse(f"{inputs_text}: too large, {not_finite[0]} is not finite")
-        for key, message in self.model.warnings(self.spring(), {**inputs, **outputs}).items():
+        for key, message in self.model.find_warnings(self.spring(), {**inputs, **outputs}).items():
             if key not in self.warned:
                 self.warned.add(key)
                 self.log(message, Fmi2Status.warning, "logStatusWarning")
@@ -153,21 +160,21 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
         """{input: current value}."""
         return {v.name: self.values[v.name] for v in self.model.inputs}
 
-    def memory(self, inputs: dict[str, float]) -> Memory:
+    def memory(self, inputs: dict[str, float]) -> History:
         """History variables at the start of the load step to given inputs.
 
         If these are the accepted inputs, the accepted load step is repeated from its start.
         """
         if self.way is None:
-            assert self.model.rest is not None
-            return self.model.rest(self.spring())
+            assert self.model.initial_history is not None
+            return self.model.initial_history(self.spring())
         return np.array(self.way.before if inputs == self.way.inputs else self.way.after)
 
-    def at(self, inputs: dict[str, float]) -> tuple[Mapping[str, Any], Memory | None]:
+    def at(self, inputs: dict[str, float]) -> tuple[Mapping[str, Any], History | None]:
         """Outputs at given inputs, and the history variables there (None: the joint has none)."""
-        if self.model.evolve is None:
+        if self.model.advance is None:
             return self.model.evaluate(self.spring(), inputs), None
-        return self.model.evolve(self.spring(), inputs, self.memory(inputs))
+        return self.model.advance(self.spring(), inputs, self.memory(inputs))
 
     def accept(self) -> None:
         """Evaluate the outputs, and accept the load step to the current inputs."""
@@ -176,11 +183,11 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
         if self._memory is not None and (self.way is None or inputs != self.way.inputs):
             self.way = AcceptedPath(self.memory(inputs).tolist(), self._memory.tolist(), inputs)
 
-    def spring(self) -> Spring:
+    def spring(self) -> TabulatedJoint:
         """Tabulated joint for the current parameters."""
         if self._spring is None:
             parameters = {name: self.values[name] for name in self.start}
-            self._spring = self.model.spring(build(self.model.parameters, parameters))
+            self._spring = self.model.tabulate(build_parameter_set(self.model.parameters, parameters))
         return self._spring
 
     def refuse(self, message: str) -> NoReturn:
@@ -207,7 +214,7 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
 
     def _get_fmu_state(self) -> dict[str, object]:
         state = {"values": dict(self.values), "initialized": self.initialized, "warned": sorted(self.warned)}
-        return state | ({"way": self.way} if self.model.rest else {})
+        return state | ({"way": self.way} if self.model.initial_history else {})
 
     @keep_references
     def _set_fmu_state(self, state: dict[str, Any]) -> None:

@@ -42,7 +42,7 @@ from proofs import copy as changed_copy
 from pythonfmu import FmuBuilder
 
 from jointfmu.joints import KINDS, MODELS
-from jointfmu.parameters import default, dump
+from jointfmu.parameters import format_parameter_file, load_default
 
 pytestmark = pytest.mark.slow
 
@@ -57,7 +57,9 @@ def everything(folder: Path) -> list[Path]:
 @pytest.fixture
 def gear_file(tmp_path: Path) -> Path:
     path = tmp_path / "my gear.toml"
-    path.write_text(dump(default("gear_contact").with_values({"e": 0.3}, "user", "test")))
+    path.write_text(
+        format_parameter_file(load_default("gear_contact").with_values({"e": 0.3}, "user", "test"))
+    )
     return path
 
 
@@ -75,7 +77,7 @@ def test_fixed_parameters_run_as_tunable_ones(tmp_path: Path, capsys: Capture) -
             assert validate_fmu(str(path)) == []
             variables = read_model_description(str(path)).modelVariables
             assert {v.variability for v in variables if v.causality == "parameter"} == {said}
-            found[said, version] = ramp.run(path, "f", 1e3, 250.0, {"e": 0.3}).csv()
+            found[said, version] = ramp.run_ramp(path, "f", 1e3, 250.0, {"e": 0.3}).csv()
     assert len({found[said, "fmi2"] for said in ("fixed", "tunable")}) == 1
     for version in FLAVOURS:
         assert found["fixed", version] == found["tunable", version]
@@ -90,12 +92,14 @@ def test_the_command_builds_what_it_is_asked_for(tmp_path: Path, gear_file: Path
     assert [p for p in everything(out) if p.is_file()] == [built]
     start = {v.name: v.start for v in read_model_description(str(built)).modelVariables}
     assert float(start["e"]) == 0.3
-    assert ramp.run(built, "f", 100.0, 100.0).columns["K_N"][-1] > 0.0
+    assert ramp.run_ramp(built, "f", 100.0, 100.0).columns["K_N"][-1] > 0.0
 
 
 def test_a_second_build_says_what_it_replaces(tmp_path: Path, capsys: Capture) -> None:
     other = tmp_path / "other.toml"
-    other.write_text(dump(default("gear_contact").with_values({"e": 0.3}, "user", "test")))
+    other.write_text(
+        format_parameter_file(load_default("gear_contact").with_values({"e": 0.3}, "user", "test"))
+    )
     build = ["build", "GearContact", "--flavour", "python", "--out", str(tmp_path)]
     fmu = tmp_path / "python" / "GearContact.fmu"
     (tmp_path / "python").mkdir()
@@ -103,7 +107,7 @@ def test_a_second_build_says_what_it_replaces(tmp_path: Path, capsys: Capture) -
     assert cli.main(build) == 0
     assert "replaced" not in capsys.readouterr().err
     assert cli.main([*build, "--params", str(other)]) == 0
-    was = default("gear_contact").flat["e"]
+    was = load_default("gear_contact").values_by_name["e"]
     assert f"replaced {fmu}: e was {was}, is 0.3\n" in capsys.readouterr().err
     assert cli.main([*build, "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["replaced"] == {str(fmu): {"e": ["0.3", str(was)]}}
@@ -119,14 +123,14 @@ def test_json_lists_what_was_built(tmp_path: Path, capsys: Capture) -> None:
 
 
 def test_a_parameter_file_without_names_builds_the_fmus_of_its_joint(tmp_path: Path) -> None:
-    built = build([], ["python"], default("harmonic_drive"), tmp_path)
+    built = build([], ["python"], load_default("harmonic_drive"), tmp_path)
     assert {p.stem for p in built} == {"HarmonicDriveSpring", "HarmonicDriveCompliance"}
 
 
 def test_a_second_build_replaces_the_first(tmp_path: Path) -> None:
     (first,) = build(["GearContact"], ["python"], None, tmp_path)
     before = read_model_description(str(first)).guid
-    changed = default("gear_contact").with_values({"e": 0.25}, "user", "test")
+    changed = load_default("gear_contact").with_values({"e": 0.25}, "user", "test")
     (second,) = build(["GearContact"], ["python"], changed, tmp_path)
     assert second == first
     assert read_model_description(str(second)).guid != before
@@ -135,16 +139,18 @@ def test_a_second_build_replaces_the_first(tmp_path: Path) -> None:
 
 def test_an_fmu_starts_with_the_inputs_of_its_parameter_file(tmp_path: Path) -> None:
     """All flavours list them, use them without being told, and the page says so."""
-    file = replace(default("bolted_joint"), inputs={"preload": 9e3})
+    file = replace(load_default("bolted_joint"), inputs={"preload": 9e3})
     model = MODELS["BoltedJoint"]
-    loaded = model.evaluate(model.spring(file.values), {v.name: file.start(v.name) for v in model.inputs})
+    loaded = model.evaluate(
+        model.tabulate(file.values), {v.name: file.start_value(v.name) for v in model.inputs}
+    )
     for path in build([model.name], ["fmi3", "python"], file, tmp_path):
         variables = read_model_description(str(path)).modelVariables
         start = {v.name: float(v.start) for v in variables if v.causality == "input"}
-        assert start == {v.name: file.start(v.name) for v in model.inputs}
+        assert start == {v.name: file.start_value(v.name) for v in model.inputs}
         assert start["preload"] == 9e3
         for settings, expected in (({}, float(loaded["K_zz"])), ({"preload": 0.0}, 0.0)):
-            found = ramp.run(path, "s_rel_z", 1e-9, 1e-9, settings).columns["K_zz"][0]
+            found = ramp.run_ramp(path, "s_rel_z", 1e-9, 1e-9, settings).columns["K_zz"][0]
             assert found == pytest.approx(expected, rel=1e-10)  # as C and Python agree elsewhere
     with zipfile.ZipFile(tmp_path / "python" / f"{model.name}.fmu") as archive:
         for owner, file in (("jointfmu", "license"), ("NTNU", "pythonfmu")):
@@ -163,7 +169,7 @@ def test_a_build_leaves_the_process_as_it_was(tmp_path: Path) -> None:
         dict(os.environ),
         Path.cwd(),
     )
-    changed = default("gear_contact").with_values({"e": 0.25}, "user", "test")
+    changed = load_default("gear_contact").with_values({"e": 0.25}, "user", "test")
     build(["GearContact"], ["python"], changed, tmp_path)
     after = (
         list(sys.path),
@@ -227,12 +233,12 @@ def test_bad_choices_are_refused_before_anything_is_built(
     joint: str | None,
     parts: list[str],
 ) -> None:
-    parameters = default(joint) if joint else None
+    parameters = load_default(joint) if joint else None
     with pytest.raises(ValueError, match=re.escape(parts[0])):
         build(names, flavours, parameters, tmp_path / "out")
     arguments = ["build", *names, "--flavour", *flavours, "--out", tmp_path / "out"]
     if parameters:
-        (tmp_path / "file.toml").write_text(dump(parameters))
+        (tmp_path / "file.toml").write_text(format_parameter_file(parameters))
         arguments += ["--params", tmp_path / "file.toml"]
     line = refused_line(capsys, *arguments)
     assert [p for p in parts if p not in line] == []
@@ -338,7 +344,7 @@ def test_an_existing_fmu_survives_a_failed_build(
 
     monkeypatch.setattr(FmuBuilder, "build_FMU", fail_at_the_end)
     expected = ValueError if isinstance(failure, OSError) else type(failure)
-    changed = default("gear_contact").with_values({"e": 0.25}, "user", "test")
+    changed = load_default("gear_contact").with_values({"e": 0.25}, "user", "test")
     with pytest.raises(expected) as raised:
         build(["GearContact"], ["python"], changed, tmp_path)
     if isinstance(failure, OSError):
@@ -388,14 +394,14 @@ class Job(NamedTuple):
 @pytest.fixture(scope="module")
 def job(tmp_path_factory: pytest.TempPathFactory) -> Job:
     """The one main job of these tests."""
-    folder, found, run = tmp_path_factory.mktemp("job"), [], pipeline.run
+    folder, found, run = tmp_path_factory.mktemp("job"), [], pipeline.run_job
 
     def watched(out: Path) -> pipeline.JobResult:
         found.append(run(out))
         return found[0]
 
     with pytest.MonkeyPatch.context() as patch, redirect_stdout(io.StringIO()) as out:
-        patch.setattr(pipeline, "run", watched)
+        patch.setattr(pipeline, "run_job", watched)
         assert pipeline.main(folder) == 0, out.getvalue()
     return Job(folder, out.getvalue(), found[0])
 
@@ -470,18 +476,18 @@ def test_the_report_can_be_read_on_a_phone(job: Job) -> None:
 
 def test_the_main_job_proves_every_fmu(job: Job) -> None:
     """All flavours, partners and drives of systems, with all their experiments, in all interfaces."""
-    proofs = {pipeline.shown(proof.fmu): proof for proof in job.outcome.proofs}
+    proofs = {pipeline.report_name(proof.fmu): proof for proof in job.outcome.proofs}
     flavours = {f"{flavour}/{name}" for flavour in FLAVOURS for name in NAMES}
     partners = {f"{version}/{name}" for version in VERSIONS for name in PARTNERS}
     assert flavours | partners < proofs.keys()
     for name, proof in proofs.items():
-        assert (proof.importer, proof.misses, proof.starts > 0) == ("fmpy", [], True), name
+        assert (proof.importer, proof.failures, proof.compared_starts > 0) == ("fmpy", [], True), name
         assert [*proof.interfaces] == (BOTH[:1] if name.startswith("python/") else BOTH), name
         runs = [(one.experiment.name, one.interface) for one in proof.outcomes if one.interface]
         names = dict.fromkeys(one for one, _ in runs)
         assert runs == [(one, interface) for one in names for interface in proof.interfaces], name
         assert proof.worst is not None
-        assert proof.worst.share <= MEASURED, name
+        assert proof.worst.error_ratio <= MEASURED, name
         if name in flavours:
             purposes = {one.experiment.purpose for one in proof.outcomes}
             assert purposes == {"smoke-test", "validation", "uncertainty-analysis"}, name
@@ -516,11 +522,13 @@ def test_the_main_job_fails_when_a_check_or_a_proof_misses(
         return re.sub(rb"(?m)^1\.0,[^,]+", b"1.0,1e99", data) if is_meant else data
 
     changed_copy(job.folder / "fmi2" / f"{name}.fmu", path, change)
-    problems, proof = pipeline._examined(path)
+    problems, proof = pipeline._examine(path)
     monkeypatch.setattr(checks, "INTEGRATION_TOLERANCE", -1.0)
-    found = [c for n, r in job.outcome.ramps.items() for c in checks.check(n, job.outcome.fmus, r)]
+    found = [
+        c for n, r in job.outcome.ramps.items() for c in checks.check_ramp(n, job.outcome.fmi2_folder, r)
+    ]
     outcome = replace(job.outcome, problems=problems, proofs=[proof], checks=found)
-    monkeypatch.setattr(pipeline, "run", lambda _: outcome)
+    monkeypatch.setattr(pipeline, "run_job", lambda _: outcome)
     assert pipeline.main(tmp_path) == 1
     # both interfaces of the FMU, and an integral of each ramp
     missed = capsys.readouterr().out.partition(f"missed: {2 + len(NAMES)}\n")[2].splitlines()

@@ -18,8 +18,8 @@ from lxml import etree
 from scipy.constants import zero_Celsius
 
 from jointfmu.joints import MODELS
-from jointfmu.parameters import default
-from jointfmu.quantity import flatten
+from jointfmu.parameters import load_default
+from jointfmu.quantity import flatten_parameters
 
 DEGREE = math.pi / 180.0
 SHOWN = {
@@ -194,7 +194,7 @@ def test_bounds_are_numbers_that_every_reader_takes(root: Any) -> None:
 
 
 def test_start_values_are_the_default_parameters(root: Any, name: str) -> None:
-    values = flatten(default(MODELS[name].joint).values)
+    values = flatten_parameters(load_default(MODELS[name].joint).values)
     for variable, node in variables(root, "parameter").items():
         start = (node.find("Real") if node.find("Real") is not None else node.find("Boolean")).get("start")
         expected = values[variable]
@@ -252,7 +252,7 @@ def test_equal_content_gives_an_equal_guid_and_file(
 
 
 def test_every_fmu_and_every_parameter_set_has_its_own_guid(fmus: Path, tmp_path: Path) -> None:
-    file = default("gear_contact").with_values({"e": 0.25}, "user", "test")
+    file = load_default("gear_contact").with_values({"e": 0.25}, "user", "test")
     (other,) = build(["GearContact"], ["python"], file, tmp_path)
     paths = [*fmus.glob("*.fmu"), other]
     assert len({fmpy.read_model_description(str(path)).guid for path in paths}) == len(PUBLIC) + 1

@@ -19,7 +19,7 @@ from jointfmu_tools.ramps import ramp
 
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.joints.gear_contact.spring import GearContactSpring
-from jointfmu.parameters import default
+from jointfmu.parameters import load_default
 
 Host = Callable[..., Fmu]
 NAMES = list(MODELS)
@@ -46,8 +46,8 @@ def test_two_instances_do_not_see_each_other(fmu: Host, name: str) -> None:
     b.start({"surface.gamma": 1.6})
     driven, end = MODELS[name].ramp.input, MODELS[name].ramp.end
     for i, value in enumerate(np.linspace(0.1, 1.0, 10) * end):
-        a.set({driven: float(value)})
-        b.set({driven: float(value)})
+        a.set_values({driven: float(value)})
+        b.set_values({driven: float(value)})
         b.step()
         assert a.get() == alone[1.4][i]
         assert b.get() == alone[1.6][i]
@@ -73,9 +73,9 @@ def test_instances_come_and_go(fmus: Path, name: str) -> None:
     for _ in range(30):
         instance = Fmu(fmus / f"{name}.fmu").start()
         assert trace(instance, name, 2) == expected
-        instance.free()
+        instance.free_instance()
     assert trace(bystander, name, 2) == expected
-    bystander.free()
+    bystander.free_instance()
 
 
 def test_many_instances_at_once(fmu: Host) -> None:
@@ -85,9 +85,9 @@ def test_many_instances_at_once(fmu: Host) -> None:
         instance.start({"surface.gamma": float(gamma), "f": 900.0})
     stiffness = [instance.get("K_N")["K_N"] for instance in instances]
     alone = [
-        GearContactSpring.of(
-            default("gear_contact").with_values({"surface.gamma": float(g)}, "user", "test").values
-        ).approach(900.0)["K_N"]
+        GearContactSpring.tabulate(
+            load_default("gear_contact").with_values({"surface.gamma": float(g)}, "user", "test").values
+        ).evaluate(900.0)["K_N"]
         for g in gammas
     ]
     assert stiffness == pytest.approx([float(k) for k in alone], rel=1e-12)  # the same calls
@@ -108,7 +108,7 @@ def test_threads_with_their_own_instances_give_the_numbers_of_a_serial_run(fmus:
         instance.reset()
         assert trace(instance.start({"surface.gamma": gamma}), name, 30) == found
         assert instance.messages == []
-        instance.free()
+        instance.free_instance()
         return found
 
     path, here = list(sys.path), Path.cwd()
@@ -136,7 +136,7 @@ def test_an_instance_may_move_between_threads(fmu: Host) -> None:
 def other_parameters(tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("other_parameters")
     for joint in KINDS:
-        build([], ["python"], default(joint).with_values({"surface.gamma": 1.6}, "user", "test"), out)
+        build([], ["python"], load_default(joint).with_values({"surface.gamma": 1.6}, "user", "test"), out)
     return out / "python"
 
 
@@ -165,8 +165,8 @@ def test_fmus_of_different_builds_live_in_one_process(
     instances: dict[int, Fmu] = {i: fmu("GearContact", folders[i]).start({"f": 900.0}) for i in order}
     K, other, doubled = (instances[i].get("K_N")["K_N"] for i in range(3))
     assert doubled == 2.0 * K
-    changed = default("gear_contact").with_values({"surface.gamma": 1.6}, "user", "test").values
-    expected = float(GearContactSpring.of(changed).approach(900.0)["K_N"])
+    changed = load_default("gear_contact").with_values({"surface.gamma": 1.6}, "user", "test").values
+    expected = float(GearContactSpring.tabulate(changed).evaluate(900.0)["K_N"])
     assert other == pytest.approx(expected, rel=1e-12)  # the same call
     assert abs(other / K - 1.0) > 0.01
     for i in order:  # still so after a reset, which makes a new slave
@@ -178,7 +178,7 @@ def test_one_after_another_in_one_process_too(
     fmus: Path, other_parameters: Path, doubled_sources: Path
 ) -> None:
     def stiffness(folder: Path) -> float:
-        return float(ramp.run(folder / "GearContact.fmu", "f", 900.0, 900.0).columns["K_N"][-1])
+        return float(ramp.run_ramp(folder / "GearContact.fmu", "f", 900.0, 900.0).columns["K_N"][-1])
 
     first = [stiffness(folder) for folder in (fmus, other_parameters, doubled_sources)]
     assert first[2] == 2.0 * first[0]
@@ -195,9 +195,9 @@ def test_other_defaults_are_those_of_their_file(fmu: Host, other_parameters: Pat
 
 def test_ramps_leave_the_import_path_as_it_was(fmus: Path) -> None:
     before = list(sys.path)
-    ramp.run(fmus / "GearContact.fmu", "f", 10.0, 10.0)
+    ramp.run_ramp(fmus / "GearContact.fmu", "f", 10.0, 10.0)
     with pytest.raises(ValueError, match="e = 2 is outside"):
-        ramp.run(fmus / "GearContact.fmu", "f", 10.0, 10.0, {"e": 2.0})
+        ramp.run_ramp(fmus / "GearContact.fmu", "f", 10.0, 10.0, {"e": 2.0})
     assert sys.path == before
 
 

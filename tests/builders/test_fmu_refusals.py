@@ -29,7 +29,7 @@ def test_a_bad_parameter_is_named_with_value_unit_and_range(fmu: Host, name: str
     instance = fmu(name)
     instance.fmu.setupExperiment(startTime=0.0)
     instance.fmu.enterInitializationMode()
-    instance.set({refused.parameter: refused.value})
+    instance.set_values({refused.parameter: refused.value})
     message = instance.refused(instance.fmu.exitInitializationMode)
     assert message.startswith(f"{refused.parameter} = {refused.shown} is outside {refused.allowed}: ")
 
@@ -114,9 +114,9 @@ def test_a_refused_parameter_is_refused_wherever_an_output_is_asked_for(fmu: Hos
     instance = fmu("GearContact")
     instance.fmu.setupExperiment(startTime=0.0)
     instance.fmu.enterInitializationMode()
-    instance.set({"e": 2.0})
+    instance.set_values({"e": 2.0})
     assert "e = 2 is outside [0, 1)" in instance.refused(instance.get)
-    instance.set({"e": 0.2})  # still in initialization: a new value may come
+    instance.set_values({"e": 0.2})  # still in initialization: a new value may come
     instance.fmu.exitInitializationMode()
     assert instance.at(GOOD["GearContact"]) == fmu("GearContact").start(GOOD["GearContact"]).get()
 
@@ -126,7 +126,7 @@ def test_a_fixed_parameter_cannot_be_set_after_initialization(fixed: Host) -> No
         instance = fixed("GearContact").start(GOOD["GearContact"])
         before = instance.get()
         (name,) = values
-        assert instance.refused(instance.set, values).startswith(f"{name} is a fixed parameter")
+        assert instance.refused(instance.set_values, values).startswith(f"{name} is a fixed parameter")
         assert instance.get() == before
         instance.step()
         assert instance.get() == before
@@ -136,9 +136,9 @@ def test_a_fixed_parameter_cannot_be_set_after_initialization(fixed: Host) -> No
 def test_a_wrong_value_during_a_run_is_refused_and_the_run_goes_on(fmu: Host) -> None:
     instance = fmu("GearContact").start(GOOD["GearContact"])
     before = instance.get()
-    instance.set({"surface1.G": math.nan})
+    instance.set_values({"surface1.G": math.nan})
     assert "surface1.G = nan m is outside (0, inf)" in instance.refused(instance.step)
-    instance.set({"surface1.G": fmu("GearContact").start().get("surface1.G")["surface1.G"]})
+    instance.set_values({"surface1.G": fmu("GearContact").start().get("surface1.G")["surface1.G"]})
     instance.step()
     assert instance.get() == before
 
@@ -149,7 +149,7 @@ def test_an_output_cannot_be_set(fmu: Host) -> None:
     instance = fmu("GearContact").start(GOOD["GearContact"])
     before = instance.get()
     with pytest.raises(FMICallException):
-        instance.set({"K_N": 1.0})
+        instance.set_values({"K_N": 1.0})
     assert instance.get() == before
 
 
@@ -163,7 +163,7 @@ def test_an_input_that_is_no_number_is_refused_at_the_step(fmu: Host, name: str,
     before = bystander.get()
     for variable in MODELS[name].inputs:
         instance = fmu(name).start(GOOD[name])
-        instance.set({variable.name: value})
+        instance.set_values({variable.name: value})
         for call in (instance.step, instance.get):
             message = instance.refused(call)
             assert message.startswith(f"{variable.name} = {value:g} {variable.unit} is outside ")
@@ -183,7 +183,7 @@ def test_a_bad_input_is_refused_at_the_end_of_initialization_too(fmu: Host) -> N
 def test_a_negative_preload_is_refused(fmu: Host) -> None:
     instance = fmu("BoltedJoint").start({"preload": 9e3})
     before = instance.get()
-    instance.set({"preload": -1.0})
+    instance.set_values({"preload": -1.0})
     assert instance.refused(instance.step).startswith("preload = -1 N is outside [0, inf)")
     instance.reset()
     assert instance.start({"preload": 9e3}).get() == before

@@ -14,8 +14,8 @@ from jointfmu_fmu_src.building import build
 from jointfmu_tools.ramps import ramp
 
 from jointfmu.joints import MODELS
-from jointfmu.parameters import default
-from jointfmu.quantity import flatten
+from jointfmu.parameters import load_default
+from jointfmu.quantity import flatten_parameters
 
 Host = Callable[..., Fmu]
 
@@ -36,7 +36,7 @@ def test_outputs_are_those_of_the_package(fmu: Host, name: str) -> None:
 
 
 def test_random_parameters_reach_the_law(fmu: Host, name: str) -> None:
-    rng, start = np.random.default_rng(2), flatten(default(MODELS[name].joint).values)
+    rng, start = np.random.default_rng(2), flatten_parameters(load_default(MODELS[name].joint).values)
     instance = fmu(name)
     for inputs in random_inputs(name, 5, seed=3):
         scaled = {k: start[k] * float(rng.uniform(0.95, 1.05)) for k in MODELS[name].parameter_fields()}
@@ -48,7 +48,7 @@ def test_random_parameters_reach_the_law(fmu: Host, name: str) -> None:
 
 
 def test_each_parameter_changes_the_outputs_that_it_should(fmu: Host, name: str) -> None:
-    start, case = flatten(default(MODELS[name].joint).values), CASES[name]
+    start, case = flatten_parameters(load_default(MODELS[name].joint).values), CASES[name]
     base = dict(case.tuning.base)
     instance, without = fmu(name).start(base | STATE[name]), set()
     before = instance.get()
@@ -108,7 +108,7 @@ def test_outputs_do_not_depend_on_the_way_there(fmu: Host, name: str) -> None:
 
 def test_ten_times_larger_steps_meet_the_same_points(fmus: Path, name: str) -> None:
     path, r = fmus / f"{name}.fmu", MODELS[name].ramp
-    fine, coarse = (ramp.run(path, r.input, r.end, r.step * factor) for factor in (1.0, 10.0))
+    fine, coarse = (ramp.run_ramp(path, r.input, r.end, r.step * factor) for factor in (1.0, 10.0))
     assert not fine.messages
     for column, values in coarse.columns.items():
         # nothing depends on the way there; only the points differ by round-off
@@ -117,25 +117,25 @@ def test_ten_times_larger_steps_meet_the_same_points(fmus: Path, name: str) -> N
 
 def test_a_partial_last_step_ends_exactly_where_asked(fmus: Path) -> None:
     path = fmus / "HarmonicDriveCompliance.fmu"
-    found = ramp.run(path, "tau", -1.0, -0.3)
+    found = ramp.run_ramp(path, "tau", -1.0, -0.3)
     assert found.columns["tau"] == pytest.approx([0.0, -0.3, -0.6, -0.9, -1.0], rel=SAME)
-    whole = ramp.run(path, "tau", -1.0, -1.0)
+    whole = ramp.run_ramp(path, "tau", -1.0, -1.0)
     assert found.columns["phi_rel"][-1] == whole.columns["phi_rel"][-1]
 
 
 def test_a_ramp_takes_settings_of_parameters_and_inputs(fmus: Path) -> None:
     settings = {"surface.D": 1.45, "moment": 300.0}
-    c = ramp.run(fmus / "BoltedJoint.fmu", "preload", 9e3, 9e3, settings).columns
+    c = ramp.run_ramp(fmus / "BoltedJoint.fmu", "preload", 9e3, 9e3, settings).columns
     inputs = dict.fromkeys(RANGES["BoltedJoint"], 0.0) | {"preload": 9e3, "moment": 300.0}
     expected = law("BoltedJoint", parameters("BoltedJoint", {"surface.D": 1.45}))(inputs)
     assert {k: v[-1] for k, v in c.items() if k != "preload"} == pytest.approx(expected, rel=SAME)
-    gear = ramp.run(fmus / "GearContact.fmu", "f", 1e3, 1e3, {"rigid_flat": False}).columns
+    gear = ramp.run_ramp(fmus / "GearContact.fmu", "f", 1e3, 1e3, {"rigid_flat": False}).columns
     softer = law("GearContact", parameters("GearContact", {"rigid_flat": False}))({"f": 1e3})
     assert gear["K_N"][-1] == pytest.approx(softer["K_N"], rel=SAME)
 
 
 def test_csv_holds_every_output_with_its_unit_to_the_last_bit(fmus: Path) -> None:
-    result = ramp.run(fmus / "GearContact.fmu", "f", 100.0, 30.0)
+    result = ramp.run_ramp(fmus / "GearContact.fmu", "f", 100.0, 30.0)
     header, *rows = csv.reader(io.StringIO(result.csv()))
     assert header == ["f [N]", "s_rel [m]", "K_N [N/m]", "A_r [m2]", "elastic_fraction [1]"]
     assert len(rows) == 5
@@ -150,7 +150,7 @@ def test_fmpy_simulates_the_load_ramp(fmus: Path, name: str) -> None:
     signal = np.array([(0.0, 0.0), (stop, r.end)], dtype=[("time", float), (r.input, float)])
     found = simulate_fmu(str(fmus / f"{name}.fmu"), input=signal, stop_time=stop, output_interval=stop / 10)
     assert len(found) == 11
-    at_end = ramp.run(fmus / f"{name}.fmu", r.input, r.end * 0.9, r.end * 0.9).columns
+    at_end = ramp.run_ramp(fmus / f"{name}.fmu", r.input, r.end * 0.9, r.end * 0.9).columns
     for output in (v.name for v in MODELS[name].outputs):
         # fmpy holds an input during a step: what it reports at the end was set one step before
         assert found[output][-1] == pytest.approx(at_end[output][-1], rel=1e-9)
@@ -200,7 +200,7 @@ def test_a_restored_instance_is_past_initialization(fixed: Host) -> None:
     sender, receiver = fixed("GearContact").start({"f": 500.0}), fixed("GearContact").start()
     data = sender.fmu.serializeFMUState(sender.fmu.getFMUstate())
     receiver.fmu.setFMUstate(receiver.fmu.deSerializeFMUstate(data))
-    assert "fixed parameter" in receiver.refused(receiver.set, {"e": 0.3})
+    assert "fixed parameter" in receiver.refused(receiver.set_values, {"e": 0.3})
     assert receiver.get() == sender.get()
 
 
@@ -222,9 +222,9 @@ def test_parameters_are_tuned_during_a_run_as_in_the_native_flavour(
         rows = []
         for i, value in enumerate(moves[1]):
             if i == 2:
-                instance.set(tuned)
+                instance.set_values(tuned)
                 rows.append(instance.get(*instance.outputs))
-            instance.set({moves[0]: value})
+            instance.set_values({moves[0]: value})
             instance.step()
             rows.append(instance.get(*instance.outputs))
         found.append(rows)
@@ -249,7 +249,7 @@ def test_reset_restores_the_defaults(fmu: Host, name: str) -> None:
 
 
 def test_defaults_of_a_parameter_file_are_the_start_values(fmu: Host, tmp_path: Path) -> None:
-    file = default("gear_contact").with_values({"e": 0.3, "rigid_flat": False}, "user", "test")
+    file = load_default("gear_contact").with_values({"e": 0.3, "rigid_flat": False}, "user", "test")
     build([], ["python"], file, tmp_path)
     assert [p.name for p in (tmp_path / "python").iterdir()] == ["GearContact.fmu"]
     other = fmu("GearContact", tmp_path / "python").start({"f": 2e4})
@@ -267,4 +267,4 @@ def test_an_output_changes_with_the_inputs_it_is_said_to_depend_on_and_with_no_o
         state = {**STATE[name], variable.name: 1.01 * STATE[name][variable.name]}
         both = list(zip([found(state) for found in laws], still, strict=True))
         changed = {o.name for o in model.outputs if any(m[o.name] != s[o.name] for m, s in both)}
-        assert changed == {o.name for o in model.outputs if variable.name in model.depends(o.name)}
+        assert changed == {o.name for o in model.outputs if variable.name in model.list_dependencies(o.name)}

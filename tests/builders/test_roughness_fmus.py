@@ -12,9 +12,9 @@ from jointfmu_fmu_src.building import build
 from natives import Host, close
 
 from jointfmu.joints import KINDS, MODELS
-from jointfmu.parameters import ParameterFile, default
-from jointfmu.quantity import build as make
-from jointfmu.quantity import flatten
+from jointfmu.parameters import ParameterFile, load_default
+from jointfmu.quantity import build_parameter_set as make
+from jointfmu.quantity import flatten_parameters
 
 NAMES = [name for name, model in MODELS.items() if "roughness" in KINDS[model.joint].laws]
 SLOPE = 1e-5
@@ -23,8 +23,8 @@ SLOPE = 1e-5
 
 def file_of(name: str) -> ParameterFile:
     """A surface so flat that part of the real area is elastic; as loaded as the ordinary one."""
-    file = default(MODELS[name].joint, "roughness")
-    return file.with_values({"slope": 0.4 * file.flat["H"] / 2e11}, "user", "test")
+    file = load_default(MODELS[name].joint, "roughness")
+    return file.with_values({"slope": 0.4 * file.values_by_name["H"] / 2e11}, "user", "test")
 
 
 @pytest.fixture(scope="module")
@@ -41,7 +41,7 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_native_code_gives_the_numbers_of_the_package(host: Host, built: Path, name: str) -> None:
-    values = flatten(file_of(name).values)
+    values = flatten_parameters(file_of(name).values)
     rng, instance = np.random.default_rng(5), host(name, "fmi3", built)
     numbers = [n for n, item in instance.variables.items() if item.causality == "parameter"]
     real = [n for n in numbers if isinstance(values[n], float) and not values[n].is_integer()]
@@ -95,12 +95,16 @@ def test_a_roughness_out_of_range_is_refused(host: Host, built: Path, name: str)
 
 
 def test_an_unknown_law_is_refused(tmp_path: Path) -> None:
-    from jointfmu.parameters import dump, load
+    from jointfmu.parameters import format_parameter_file, load_parameter_file
 
     path = tmp_path / "joint.toml"
-    path.write_text(dump(default("bolted_joint")).replace('law = "zhao2018"', 'law = "hertz"'))
+    path.write_text(
+        format_parameter_file(load_default("bolted_joint")).replace('law = "zhao2018"', 'law = "hertz"')
+    )
     with pytest.raises(ValueError, match="law = 'hertz', allowed are zhao2018, roughness"):
-        load(path)
-    path.write_text(dump(default("bolted_joint")).replace('law = "zhao2018"', 'law = "roughness"'))
+        load_parameter_file(path)
+    path.write_text(
+        format_parameter_file(load_default("bolted_joint")).replace('law = "zhao2018"', 'law = "roughness"')
+    )
     with pytest.raises(ValueError, match=r"unknown name 'surface\.D'"):
-        load(path)
+        load_parameter_file(path)

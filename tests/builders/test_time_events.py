@@ -16,7 +16,7 @@ from jointfmu_fmu_src.partners.laws import ForceProfile
 from numpy.typing import NDArray
 from scipy.integrate import BDF
 
-from jointfmu.quantity import flatten
+from jointfmu.quantity import flatten_parameters
 
 pytestmark = pytest.mark.slow
 
@@ -48,7 +48,7 @@ def exchange(folder: Path, version: str) -> Iterator[Make]:
 
     yield instance
     for one in made:
-        one.free()
+        one.free_instance()
 
 
 def next_event(fmu: Fmu) -> float:
@@ -63,7 +63,7 @@ def next_event(fmu: Fmu) -> float:
 
 def corners(name: str, changes: dict[str, float]) -> list[float]:
     """Ends of the pieces over which a load is one polynomial each, found in its course."""
-    given = flatten(parameters(name).values) | changes
+    given = flatten_parameters(parameters(name).values) | changes
     times = {given["ramp_start"], given["ramp_start"] + given["ramp_duration"]}
     edge = given["pulse_start"]
     for way in (0.0, given["pulse_rise"], given["pulse_hold"], given["pulse_rise"]):
@@ -89,7 +89,7 @@ def test_every_corner_is_announced_in_its_order(exchange: Make, name: str) -> No
 def test_an_event_takes_the_parameters_that_were_changed_in_it(exchange: Make) -> None:
     fmu = exchange("ForceProfile").start(PULSE | {"ramp_start": 5.0})
     assert next_event(fmu) == 1.0
-    fmu.set({"pulse_start": 0.125})
+    fmu.set_values({"pulse_start": 0.125})
     assert next_event(fmu) == 0.125
 
 
@@ -105,7 +105,7 @@ def driven(load: Fmu, mass: Fmu, stop: float, with_events: bool) -> NDArray[np.f
     def derivative(time: float, x: NDArray[np.float64]) -> NDArray[np.float64]:
         for fmu in (load, mass):
             fmu.fmu.setTime(time)
-        mass.set({"f_a": load.get("f")["f"]})
+        mass.set_values({"f_a": load.get("f")["f"]})
         pair[:] = x
         mass.fmu.setContinuousStates(pair, 2)
         rates(pair, 2)
@@ -144,7 +144,7 @@ def test_a_solver_at_rest_meets_the_pulse(exchange: Make) -> None:
 
 def test_corners_are_where_a_course_changes_its_polynomial() -> None:
     """The third derivative of a quintic edge jumps at its ends and nowhere else."""
-    given = flatten(parameters("ForceProfile").values) | PULSE | {"ramp_height": 1.0, "ramp_start": 0.25,
+    given = flatten_parameters(parameters("ForceProfile").values) | PULSE | {"ramp_height": 1.0, "ramp_start": 0.25,
         "ramp_duration": 0.5, "pulse_rise": 0.25, "pulse_hold": 0.25}  # fmt: skip
     load = ForceProfile(**given)
     ends = sorted(float(t) for t in load.corners())

@@ -15,7 +15,7 @@ from jointfmu_fmu_src.native.data import split
 from jointfmu_tools.cli import main
 
 from jointfmu.joints import MODELS
-from jointfmu.parameters import default
+from jointfmu.parameters import load_default
 
 
 def test_only_what_is_kept_is_removed(
@@ -37,8 +37,8 @@ MODEL = MODELS["GearContact"]
 POSIX = needs("Linux or macOS")
 
 
-def part() -> kept.Part:
-    return kept.Part(
+def part() -> kept.CompiledModel:
+    return kept.CompiledModel(
         {"law.c": "int x;\n"}, {v: dict.fromkeys(compiler.TARGETS, b"library") for v in kept.VERSIONS}
     )
 
@@ -46,20 +46,20 @@ def part() -> kept.Part:
 @pytest.fixture
 def cached(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """The part of a joint in a cache; to compile it anew fails the test."""
-    file = default(MODEL.joint)
-    model = MODEL.of(file.joint, file.values)
+    file = load_default(MODEL.joint)
+    model = MODEL.with_parameters(file.joint, file.values)
     monkeypatch.setenv(cache.CACHE, str(tmp_path / "cache"))
     monkeypatch.setattr(kept, "SHIPPED", tmp_path / "none")
     place = kept._places(kept.shipped_name(model, split(model, file)))[-1]
-    kept._keep(place, kept.written(part()))
-    monkeypatch.setattr(kept, "compiled", lambda *_: pytest.fail("is compiled"))
+    kept._keep(place, kept.pack_model(part()))
+    monkeypatch.setattr(kept, "compile_model", lambda *_: pytest.fail("is compiled"))
     return place
 
 
-def found() -> kept.Part:
-    file = default(MODEL.joint)
-    model = MODEL.of(file.joint, file.values)
-    return kept.part_of(model, file, split(model, file))
+def found() -> kept.CompiledModel:
+    file = load_default(MODEL.joint)
+    model = MODEL.with_parameters(file.joint, file.values)
+    return kept.compiled_model(model, file, split(model, file))
 
 
 def levels(cached: Path) -> list[Path]:
@@ -118,8 +118,8 @@ def test_what_the_compiler_keeps_is_checked_too(
 def test_a_missing_cache_is_empty(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(cache.CACHE, str(tmp_path / "none"))
     monkeypatch.setattr(kept, "SHIPPED", tmp_path / "none")
-    monkeypatch.setattr(kept, "compiled", lambda *_: part())
-    assert cache.content() == (0, 0)
+    monkeypatch.setattr(kept, "compile_model", lambda *_: part())
+    assert cache.count_files() == (0, 0)
     assert found() == part()
 
 
@@ -127,8 +127,8 @@ def test_a_missing_cache_is_empty(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     "name", ["sources/../../x.c", "sources/a/b.c", "sources//x", "2/../../x", "/x", "other/x"]
 )
 def test_a_member_that_leaves_the_fmu_is_refused(name: str) -> None:
-    buffer = io.BytesIO(lzma.decompress(kept.written(part())))
+    buffer = io.BytesIO(lzma.decompress(kept.pack_model(part())))
     with tarfile.open(fileobj=buffer, mode="a") as archive:
         archive.addfile(tarfile.TarInfo(name))
     with pytest.raises(ValueError, match="no part"):
-        kept.read(lzma.compress(buffer.getvalue()))
+        kept.unpack_model(lzma.compress(buffer.getvalue()))

@@ -11,15 +11,15 @@ import numpy as np
 import pytest
 from jointfmu_tools.cli import main
 from jointfmu_tools.joints.bolted_joint.published import PUBLISHED
-from jointfmu_tools.laws import LAWS, ROW, law_parameters
-from jointfmu_tools.laws import first_joint as _first
+from jointfmu_tools.laws import LAW_COLUMNS, LAWS, build_law_parameters
+from jointfmu_tools.laws import default_joint as _first
 from jointfmu_tools.published import computed, reference, validation
 
 from jointfmu import __version__
 from jointfmu.contact.interface import at_largest_spot, at_pressure
 from jointfmu.joints import KINDS
-from jointfmu.parameters import default, dump
-from jointfmu.quantity import flatten
+from jointfmu.parameters import format_parameter_file, load_default
+from jointfmu.quantity import flatten_parameters
 
 COMMON = {
     "side1.E": 1.9e11,
@@ -97,16 +97,18 @@ def test_law_by_pressure(law_json, law):
     found = law_json(law, "--pressure", *pressures)
     assert set(found) == {"law", "parameters", "rows", "level", "warnings"}
     assert found["law"] == law
-    parameters = law_parameters(law, None, {})
-    assert found["parameters"] == flatten(parameters)
+    parameters = build_law_parameters(law, None, {})
+    assert found["parameters"] == flatten_parameters(parameters)
     assert set(SETTABLE[law]) <= set(found["parameters"])
     expected = at_pressure(parameters, np.array(pressures))
     assert len(found["rows"]) == 3
     for i, row in enumerate(found["rows"]):
         assert (
-            set(ROW) == {"largest_spot", "pressure", "F", "K_N", "K_T", "A_r", "eta_n", "eta_t"} <= set(row)
+            set(LAW_COLUMNS)
+            == {"largest_spot", "pressure", "F", "K_N", "K_T", "A_r", "eta_n", "eta_t"}
+            <= set(row)
         )
-        assert {name for name in ROW if row[name] is None} == UNDEFINED[law]
+        assert {name for name in LAW_COLUMNS if row[name] is None} == UNDEFINED[law]
         for name, value in row.items():
             if name in expected and value is not None:
                 assert value == float(np.broadcast_to(expected[name], 3)[i])
@@ -120,7 +122,7 @@ def test_law_by_largest_spot(law_json, law):
     """And back: the pressure that it gives finds the same spot."""
     areas = [1e-7, 1e-9]
     found = law_json(law, "--largest-spot", *areas)["rows"]
-    parameters = law_parameters(law, None, {})
+    parameters = build_law_parameters(law, None, {})
     for row, area in zip(found, areas, strict=True):
         assert row["largest_spot"] == pytest.approx(area, rel=1e-13)  # exp of log
         alone = float(at_largest_spot(parameters, area)["K_N"])
@@ -153,18 +155,20 @@ def test_a_roughness_is_stated_in_the_terms_that_people_have(law_json, case):
     settings, h, hurst = HEIGHTS[case]
     found = law_json("roughness", "--pressure", 1e6, "--set", *settings)["parameters"]
     assert found["h"] == pytest.approx(h, rel=0.01 if hurst else 1e-12)
-    assert found["hurst"] == pytest.approx(hurst or law_parameters("roughness", None, {}).hurst, rel=1e-12)
+    assert found["hurst"] == pytest.approx(
+        hurst or build_law_parameters("roughness", None, {}).hurst, rel=1e-12
+    )
 
 
 def test_a_roughness_out_of_the_file_of_another_law(law_json, tmp_path, run):
     """R_a of the specimen goes before its D and G; material, area and friction are the file's."""
     path = tmp_path / "mine.toml"
-    specimen = default("bolted_joint").with_values({"mu": 0.2, "side1.E": 2e11}, "user", "test")
-    path.write_text(dump(specimen))
+    specimen = load_default("bolted_joint").with_values({"mu": 0.2, "side1.E": 2e11}, "user", "test")
+    path.write_text(format_parameter_file(specimen))
     found = law_json("roughness", "--pressure", 1e6, "--params", path)["parameters"]
     assert found["h"] == pytest.approx(1.6e-6 * np.sqrt(np.pi), rel=1e-12)
     assert (found["mu"], found["side1.E"], found["H"]) == (0.2, 2e11, 1.96e9)
-    path.write_text(dump(default("gear_contact")))
+    path.write_text(format_parameter_file(load_default("gear_contact")))
     found = law_json("roughness", "--pressure", 1e6, "--params", path)["parameters"]
     assert found["h"] == pytest.approx(5.2e-7, rel=0.01)  # of D and G, waves up to 1 mm
     assert found["H"] == pytest.approx(2.8 * 235e6, rel=1e-12)
@@ -236,14 +240,16 @@ def test_parameter_file(law_json, tmp_path, law):
     name = "traction_ratio" if law in ("zhao2018", "roughness") else "A_0"
     value = 0.002 if law == "hu2023" else 0.25
     path = tmp_path / "mine.toml"
-    path.write_text(dump(default(joint, law).with_values({name: value}, "user", "test")))
+    path.write_text(
+        format_parameter_file(load_default(joint, law).with_values({name: value}, "user", "test"))
+    )
     plain = law_json(law, "--pressure", 1e6)
     found = law_json(law, "--pressure", 1e6, "--params", path)
     assert found["parameters"] == plain["parameters"] | {name: value}
     over = law_json(law, "--pressure", 1e6, "--params", path, "--set", f"{name}=0.5")
     assert over["parameters"][name] == 0.5
     written = tmp_path / "default.toml"
-    written.write_text(dump(default(joint, law)))
+    written.write_text(format_parameter_file(load_default(joint, law)))
     assert law_json(law, "--pressure", 1e6, "--params", written) == plain
 
 
@@ -254,19 +260,19 @@ def test_law_as_text(run, law):
     assert (status, err) == (0, "")
     heads, *lines = (re.split(r"\s\s+", line.strip()) for line in out.splitlines())
     head, units = zip(*(cell.removesuffix("]").split(" [") for cell in heads), strict=True)
-    assert head[: len(ROW)] == ROW
-    assert units[: len(ROW)] == ("m2", "Pa", "N", "N/m", "N/m", "m2", "1", "1")
+    assert head[: len(LAW_COLUMNS)] == LAW_COLUMNS
+    assert units[: len(LAW_COLUMNS)] == ("m2", "Pa", "N", "N/m", "N/m", "m2", "1", "1")
     # the last is the level beside the roughness, where that is known
     assert len(lines) == 2 + (law in ("zhao2018", "roughness"))
     values = dict(zip(head, lines[1], strict=True))
-    assert {name for name in ROW if values[name] == "-"} == UNDEFINED[law]
-    expected = at_pressure(law_parameters(law, None, {}), 2e6)
+    assert {name for name in LAW_COLUMNS if values[name] == "-"} == UNDEFINED[law]
+    expected = at_pressure(build_law_parameters(law, None, {}), 2e6)
     assert float(values["K_N"]) == pytest.approx(float(expected["K_N"]), rel=5e-6)  # six digits are printed
     assert float(values["pressure"]) == 2e6
 
 
 def test_the_harmonic_drive_gives_the_softer_body_as_side1(law_json):
-    drive = default("harmonic_drive").values
+    drive = load_default("harmonic_drive").values
     found = law_json("hu2023", "--pressure", 1e6)["parameters"]
     assert (found["side1.E"], found["sigma_y"]) == (drive.flexspline.E, drive.flexspline.sigma_y)
 
@@ -278,8 +284,8 @@ def test_validate_as_text(run):
     status, out, err = run("validate")
     assert (status, err) == (0, "")
     *lines, last = out.splitlines()
-    papers = [paper for kind in KINDS.values() for paper in computed.published(kind).papers]
-    points = [p for paper in papers for p in reference.points(paper)]
+    papers = [paper for kind in KINDS.values() for paper in computed.published_numbers(kind).papers]
+    points = [p for paper in papers for p in reference.read_points(paper)]
     assert len(lines) == len(points) + 1
     for word in (
         "published",
@@ -310,7 +316,7 @@ def test_validate_as_json(run):
         assert {"paper", "id", "unit", "value", "computed", "error", "tolerance", "role"} <= set(row)
         assert row["role"] in reference.ROLES
         assert isinstance(row["printed"], bool)
-        assert (row["guess"] is None) == (row["nearer"] is None) == (row["role"] not in reference.GUESSED)
+        assert (row["guess"] is None) == (row["nearer"] is None) == (row["role"] not in reference.GUESS_ROLES)
         if not isinstance(row["value"], bool):
             error = row["computed"] - row["value"]
             error = error if row["absolute"] else error / abs(row["value"])
@@ -380,8 +386,8 @@ def places(tmp_path, fmus):
     (tmp_path / "text.fmu").write_text("plain text")
     (tmp_path / "folder").mkdir()
     (tmp_path / "binary.toml").write_bytes(bytes(range(256)))
-    (tmp_path / "gear.toml").write_text(dump(default("gear_contact")))
-    (tmp_path / "bolts.toml").write_text(dump(default("bolted_joint")))
+    (tmp_path / "gear.toml").write_text(format_parameter_file(load_default("gear_contact")))
+    (tmp_path / "bolts.toml").write_text(format_parameter_file(load_default("bolted_joint")))
     return {"tmp": tmp_path, "fmus": fmus}
 
 
@@ -507,7 +513,7 @@ def test_strange_files_are_refused_in_one_line(run, tmp_path, text):
 
 def test_a_parameter_beyond_what_is_possible_is_refused_in_one_line(run, tmp_path):
     path = tmp_path / "stiff.toml"
-    text = dump(default("harmonic_drive", "catalogue"))
+    text = format_parameter_file(load_default("harmonic_drive", "catalogue"))
     path.write_text(re.sub(r"^(K1 = { value = )[^,]*", r"\g<1>1e30", text, flags=re.MULTILINE))
     status, out, err = run("export", "modelica", "curve", "--params", path, "--out", tmp_path / "curve.txt")
     assert (status, out, len(err.splitlines())) == (2, "", 1)

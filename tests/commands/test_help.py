@@ -15,13 +15,13 @@ from jointfmu_fmu_src.native.compiled.cache import CACHE
 from jointfmu_fmu_src.partners import parameters as partner_parameters
 from jointfmu_tools import cli
 from jointfmu_tools.command_line.examples import EXAMPLES
-from jointfmu_tools.parser import parser
+from jointfmu_tools.parser import build_parser
 from test_readme import commands
 
 from jointfmu.contact.laws import LAWS
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
-from jointfmu.parameters import default
+from jointfmu.parameters import load_default
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -41,7 +41,7 @@ def example(parser: argparse.ArgumentParser) -> str:
     return line.strip()
 
 
-HELPS = {sub.prog: example(sub) for sub in parsers(parser())}
+HELPS = {sub.prog: example(sub) for sub in parsers(build_parser())}
 NEED = (
     "build",
     "report",
@@ -67,7 +67,7 @@ def test_no_example_is_of_a_command_that_is_gone() -> None:
 def test_an_example_is_of_its_command(prog: str) -> None:
     words = shlex.split(HELPS[prog])
     assert f"jointfmu {' '.join(words)}".startswith(prog)
-    parser().parse_args(words)
+    build_parser().parse_args(words)
 
 
 def shear() -> str:
@@ -82,7 +82,7 @@ def shear() -> str:
 def read(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """What examples read: parameters, a scan, loops, a log, stiffness over preload."""
     place = tmp_path_factory.mktemp("read")
-    curve = HarmonicDriveSpring.of(default("harmonic_drive").values).curve
+    curve = HarmonicDriveSpring.tabulate(load_default("harmonic_drive").values).curve
     torque = 15.0 * np.sin(np.linspace(0.0, 2.5 * np.pi, 200))
     angle = np.sign(torque) * np.interp(np.abs(torque), curve.load, curve.displacement)
     rows = "".join(f"{a:.8g},{b:.8g}\n" for a, b in zip(torque, angle, strict=True))
@@ -169,13 +169,13 @@ def listed(capsys: pytest.CaptureFixture[str], *words: str) -> dict[str, dict]:
 @pytest.mark.parametrize("name", MODELS)
 def test_an_fmu_lists_its_parameters(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     for law in KINDS[MODELS[name].joint].laws:
-        file = default(MODELS[name].joint, law)
-        fields = MODELS[name].of(file.joint, file.values).parameter_fields()
+        file = load_default(MODELS[name].joint, law)
+        fields = MODELS[name].with_parameters(file.joint, file.values).parameter_fields()
         rows = listed(capsys, name, "--law", law)
-        assert set(rows) == {n for n in fields if n in file.flat}
+        assert set(rows) == {n for n in fields if n in file.values_by_name}
         for stated, row in rows.items():
             meta = fields[stated].metadata
-            assert (row["meaning"], row["default"]) == (meta["doc"], file.flat[stated])
+            assert (row["meaning"], row["default"]) == (meta["doc"], file.values_by_name[stated])
             assert row["unit"] == meta.get("unit")
 
 
@@ -222,6 +222,6 @@ def test_what_cannot_be_listed_is_refused(
 
 
 def test_build_names_the_fmus() -> None:
-    (build,) = [sub for sub in parsers(parser()) if sub.prog == "jointfmu build"]
+    (build,) = [sub for sub in parsers(build_parser()) if sub.prog == "jointfmu build"]
     for name in MODELS:
         assert name in build.format_help()

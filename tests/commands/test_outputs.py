@@ -9,9 +9,9 @@ import pytest
 from clients import needs
 from conftest import refused_line
 from jointfmu_tools import cli
-from jointfmu_tools.parser import _all, parser
+from jointfmu_tools.parser import _iterate_parsers, build_parser
 
-from jointfmu.files.outputs import FOLDER, PARAMETERS, check_output
+from jointfmu.files.outputs import FOLDER, PARAMETER_FILE, check_output
 from jointfmu.files.writing import write_text
 
 INPUTS = frozenset(
@@ -31,7 +31,7 @@ INPUTS = frozenset(
     ]
 )
 """Arguments that name what a command reads; all others that take a path are outputs."""
-COMMANDS = {one.prog: one for one in _all(parser()) if one._actions}
+COMMANDS = {one.prog: one for one in _iterate_parsers(build_parser()) if one._actions}
 OUTPUTS = [
     (prog, name, kind) for prog, one in COMMANDS.items() for name, kind in getattr(one, "outputs", {}).items()
 ]
@@ -117,7 +117,7 @@ def test_links_pipes_and_devices_are_written_through(tmp_path):
     write_text(link, "one")
     assert (link.is_symlink(), target.read_text()) == (True, "one")
     os.mkfifo(pipe)
-    check_output(pipe, PARAMETERS)
+    check_output(pipe, PARAMETER_FILE)
     found = []
     reader = threading.Thread(target=lambda: found.append(pipe.read_text()), daemon=True)
     reader.start()

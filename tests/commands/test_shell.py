@@ -12,14 +12,14 @@ import pytest
 from clients import needs
 from conftest import refused_line
 from jointfmu_tools import cli
-from jointfmu_tools.parser import COMMANDS, GROUPS, SHELLS, parser
+from jointfmu_tools.parser import COMMAND_GROUPS, COMMANDS, SHELLS, build_parser
 
 from jointfmu import progress
 
 
 def test_the_help_lists_every_command_once_under_its_heading():
-    found = parser().format_help()
-    for title, names in GROUPS.items():
+    found = build_parser().format_help()
+    for title, names in COMMAND_GROUPS.items():
         section = found.partition(f"\n{title}:\n")[2].partition("\n\n")[0]
         listed = [line.split()[0] for line in section.splitlines() if line[:3].strip() and line[2] != " "]
         assert listed == [*names], title
@@ -34,12 +34,12 @@ class Terminal(io.StringIO):
 def test_long_work_says_what_it_does_on_a_terminal(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ):
-    monkeypatch.setattr(progress, "PATIENCE", 0.2)
+    monkeypatch.setattr(progress, "STATUS_DELAY", 0.2)
     for stream, shown in ((Terminal(), True), (io.StringIO(), False)):
         monkeypatch.setattr(sys, "stderr", stream)
         out = sys.stdout
-        with progress.told("jointfmu new"):
-            progress.step("members by finite elements")
+        with progress.show_status("jointfmu new"):
+            progress.set_step("members by finite elements")
             time.sleep(0.8)
             print("done")
         assert ("\rjointfmu new: members by finite elements, 1 s\x1b[K" in stream.getvalue()) == shown

@@ -180,7 +180,7 @@ def test_traction_over_friction():
     tau = HU.sigma_y / sqrt(3)
     for area, ratio in ((1.0, 3.59), (7.1197, 1.93), (205.3827, 1.39)):
         t = edge + log(area) - 1e-6  # just inside the regime below
-        load = sum(float(term.spot(t)) for term in s.terms["load"])
+        load = sum(float(term.spot_value(t)) for term in s.terms["load"])
         assert tau * HU.surface.s_min * exp(t) / (HU.mu * load) == pytest.approx(ratio, abs=5e-3)
 
 
@@ -202,10 +202,13 @@ def test_lower_bound_of_the_mean_pressure():
 
 def test_kogut_etsion_products():
     # errata: six and seven digits
-    first, second = kogut_etsion.by_area(kogut_etsion.FIRST), kogut_etsion.by_area(kogut_etsion.SECOND)
+    first, second = (
+        kogut_etsion.eliminate_deformation(kogut_etsion.FIRST_STAGE),
+        kogut_etsion.eliminate_deformation(kogut_etsion.SECOND_STAGE),
+    )
     coefficients = (first.A, second.A, first.B, second.B)
     assert coefficients == pytest.approx((1.12816, 1.49880, 1.50815, 1.79349), abs=5e-6)
-    ends = (kogut_etsion.SECOND_AREA, kogut_etsion.PLASTIC_AREA)
+    ends = (kogut_etsion.SECOND_STAGE_AREA, kogut_etsion.PLASTIC_AREA)
     assert ends == pytest.approx((7.1197, 205.3827), abs=5e-5)
     # the exponents of Eqs. 13, 14, 31, 32
     assert (first.p, second.p) == pytest.approx((1.2544, 1.1021), abs=5e-5)
@@ -216,7 +219,7 @@ def test_mean_pressure_at_the_onset_of_full_plasticity():
     law = changed(HU, {"side1.nu": 0.3})
     edge = log(hu2023.critical_area(law) / law.surface.s_min)
     t = edge + log(kogut_etsion.PLASTIC_AREA) - 1e-9
-    load = sum(float(term.spot(t)) for term in law.spots().terms["load"])
+    load = sum(float(term.spot_value(t)) for term in law.spots().terms["load"])
     mean = load / (law.surface.s_min * exp(t))
     assert mean / law.hardness == pytest.approx(0.993, abs=5e-4)  # three digits
 

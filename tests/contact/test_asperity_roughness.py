@@ -11,15 +11,15 @@ from scipy.stats import norm
 
 from jointfmu.contact.interface import at_largest_spot, at_pressure
 from jointfmu.contact.laws import persson, roughness
-from jointfmu.contact.laws.roughness import FEW_SPOTS, Roughness
+from jointfmu.contact.laws.roughness import FEW_SPOTS_FACTOR, RoughnessLaw
 from jointfmu.contact.surface import Elastic
 from jointfmu.joints import KINDS
-from jointfmu.mechanics.curve import MAX_ERROR, approach_curve
-from jointfmu.parameters import default
-from jointfmu.quantity import flatten
+from jointfmu.mechanics.curve import MAX_ERROR, tabulate_approach
+from jointfmu.parameters import load_default
+from jointfmu.quantity import flatten_parameters
 
 STEEL = Elastic(E=2.1e11, nu=0.3)
-GROUND = Roughness(
+GROUND = RoughnessLaw(
     h=1.5e-6,
     gamma=0.45,
     longest_wave=1e-3,
@@ -37,14 +37,14 @@ WITH_ROUGHNESS = [name for name, kind in KINDS.items() if "roughness" in kind.la
 
 
 def changed(**values):
-    return Roughness(**{**{k: getattr(GROUND, k) for k in GROUND.__dataclass_fields__}, **values})
+    return RoughnessLaw(**{**{k: getattr(GROUND, k) for k in GROUND.__dataclass_fields__}, **values})
 
 
 def test_many_spots_have_the_pressure_over_gamma_h():
     wide = changed(A_0=10.0)  # a load far beyond that of few spots
     p = np.array([1e6, 1e7, 1e8])
     state = at_pressure(wide, p)
-    few = FEW_SPOTS * (p * 10.0 / (MODULUS * 1.5e-6 * 1e-3)) ** (-0.8 / 1.8)
+    few = FEW_SPOTS_FACTOR * (p * 10.0 / (MODULUS * 1.5e-6 * 1e-3)) ** (-0.8 / 1.8)
     assert np.max(few) < 1e-2  # of 1/gamma = 2.2
     assert state["K_N"] / 10.0 == pytest.approx(p / 1.5e-6 * (1.0 / 0.45 + few), rel=1e-13)
     assert state["F"] == pytest.approx(10.0 * p, rel=1e-13)
@@ -96,7 +96,7 @@ def test_approach_is_the_integral_of_the_compliance(p):
 
     integral = quad(compliance, np.log(p) - 60.0, np.log(p), epsrel=1e-11, limit=400)[0]
     assert roughness.approach(GROUND, p) == pytest.approx(integral, rel=1e-9)
-    curve = approach_curve(GROUND)
+    curve = tabulate_approach(GROUND)
     from_touch = float(curve.inverse(p) - curve.displacement[0])
     # the table closes the contact its own way below a millionth of one hill's load
     assert from_touch == pytest.approx(integral, abs=0.03 * GROUND.h)
@@ -127,7 +127,10 @@ def test_the_real_area_is_perssons_with_a_wall_at_the_hardness(x, t):
 
 
 def test_series_and_images_meet():
-    both = [persson._images(np.array([0.03, 0.5]), 0.2), persson._waves(np.array([0.03, 0.5]), 0.2)]
+    both = [
+        persson._image_series(np.array([0.03, 0.5]), 0.2),
+        persson._mode_series(np.array([0.03, 0.5]), 0.2),
+    ]
     assert np.array(both[0]) == pytest.approx(np.array(both[1]), rel=1e-9)
 
 
@@ -162,20 +165,20 @@ def test_the_law_knows_no_largest_spot(capsys):
 
 @pytest.mark.parametrize("joint", WITH_ROUGHNESS)
 def test_default_files_have_the_law(joint):
-    file = default(joint, "roughness")
+    file = load_default(joint, "roughness")
     assert file.law == "roughness"
     assert file.joint == joint
 
 
 def test_many_samples_at_once():
     h = np.array([0.5e-6, 2e-6])
-    law = columns(Roughness, {**flatten(GROUND), "h": h}, 1)
+    law = columns(RoughnessLaw, {**flatten_parameters(GROUND), "h": h}, 1)
     p = np.geomspace(1.0, 1e8, 30)
     rows, _ = tabulate(law, np.full((2, 1), 1.0), np.full((2, 1), 1e8))
     found = rows(np.log(p), np.zeros((2, 1)))
     for i in range(2):
         one = changed(h=float(h[i]))
-        curve = approach_curve(one)
+        curve = tabulate_approach(one)
         at = curve.inverse(p)
         assert np.exp(found["k"][i]) == pytest.approx(curve.derivatives(at)[1], rel=2e-5)
         assert np.exp(found["s"][i]) == pytest.approx(at - curve.displacement[0], rel=2e-5)
@@ -184,7 +187,7 @@ def test_many_samples_at_once():
 @pytest.mark.parametrize("hurst", [0.05, 0.5, 0.95])
 @pytest.mark.parametrize("longest_wave", [1e-5, 3e-2])
 def test_the_curve_is_monotone_and_closes(hurst, longest_wave):
-    curve = approach_curve(changed(hurst=hurst, longest_wave=longest_wave))
+    curve = tabulate_approach(changed(hurst=hurst, longest_wave=longest_wave))
     assert curve.error <= MAX_ERROR
     assert np.all(np.diff(curve.load) > 0.0)
     assert curve.load[0] == 0.0

@@ -13,12 +13,12 @@ from jointfmu.contact import interface
 from jointfmu.contact.interface import (
     at_largest_spot,
     at_pressure,
-    largest_spot,
     newton_step,
+    solve_largest_spot,
     stiffness_curve,
 )
-from jointfmu.parameters import default
-from jointfmu.quantity import flat_fields, flatten
+from jointfmu.parameters import load_default
+from jointfmu.quantity import flat_fields, flatten_parameters
 
 EPS = np.finfo(float).eps
 RESIDUAL = 1e-12
@@ -30,7 +30,7 @@ log_pressures = st.floats(np.log(1e-9), np.log(1e13))  # Pa: far beyond any join
 
 
 def load(law, pressure):
-    return law.spots().total("load", largest_spot(law, pressure))
+    return law.spots().total("load", solve_largest_spot(law, pressure))
 
 
 @each_kind
@@ -75,22 +75,22 @@ def test_inversion_over_the_whole_range(law):
 @each_law
 def test_shapes(law):
     pressure = np.geomspace(1.0, 1e9, 12).reshape(3, 1, 4)
-    u = largest_spot(law, pressure)
+    u = solve_largest_spot(law, pressure)
     assert u.shape == (3, 1, 4)
     # a point does not see its neighbours except through the number of steps: two residuals of 1e-13
-    alone = [float(largest_spot(law, p)) for p in pressure.ravel()]
+    alone = [float(solve_largest_spot(law, p)) for p in pressure.ravel()]
     assert u.ravel() == pytest.approx(alone, rel=RESIDUAL, abs=RESIDUAL)
-    assert largest_spot(law, 1e6).shape == ()
-    assert largest_spot(law, []).shape == (0,)
+    assert solve_largest_spot(law, 1e6).shape == ()
+    assert solve_largest_spot(law, []).shape == (0,)
     state = at_pressure(law, pressure)
     assert {np.shape(value) for value in state.values()} == {(3, 1, 4)}
 
 
 @each_law
 def test_more_points_than_a_block(law, monkeypatch):
-    monkeypatch.setattr(interface, "_BLOCK", 150)
+    monkeypatch.setattr(interface, "_BLOCK_SIZE", 150)
     pressure = np.geomspace(1.0, 1e9, 400).reshape(20, 20)
-    u = largest_spot(law, pressure)
+    u = solve_largest_spot(law, pressure)
     assert u.shape == pressure.shape
     assert np.all(np.diff(u.ravel()) > 0)
     assert law.spots().total("load", u) == pytest.approx(pressure * law.A_0, rel=RESIDUAL)
@@ -136,14 +136,14 @@ def test_array_parameters(kind, name):
 def test_array_parameters_with_one_pressure(kind, name):
     values = np.geomspace(*ARRAYS[kind][name], 7)
     law = changed(LAWS[kind], {name: values})
-    u = largest_spot(law, 1e6)
+    u = solve_largest_spot(law, 1e6)
     assert u.shape == (7,)
     assert law.spots().total("load", u) == pytest.approx(1e6 * law.A_0 * np.ones(7), rel=RESIDUAL)
 
 
 @array_cases
 def test_array_parameters_with_more_points_than_a_block(kind, name, monkeypatch):
-    monkeypatch.setattr(interface, "_BLOCK", 150)
+    monkeypatch.setattr(interface, "_BLOCK_SIZE", 150)
     n = 200
     law = changed(LAWS[kind], {name: np.geomspace(*ARRAYS[kind][name], n)})
     pressure = np.full(n, 1e6)
@@ -169,8 +169,8 @@ def test_zero_pressure(law):
 
 @each_law
 def test_largest_spot_at_zero_pressure(law):
-    assert largest_spot(law, 0.0) == -np.inf
-    assert np.all(np.isfinite(largest_spot(law, [1e-60, 1.0])))
+    assert solve_largest_spot(law, 0.0) == -np.inf
+    assert np.all(np.isfinite(solve_largest_spot(law, [1e-60, 1.0])))
 
 
 @each_law
@@ -202,14 +202,14 @@ def test_impossible_spots_are_refused(law, area):
     [
         (ZHAO, {"surface.D": 1.001}),
         (YU, {"surface1.D": 1.001, "surface2.D": 1.001}),
-        (default("bolted_joint", "roughness").values, {"longest_wave": 1e300}),
+        (load_default("bolted_joint", "roughness").values, {"longest_wave": 1e300}),
     ],
     ids=["zhao", "yu", "roughness"],
 )
 def test_dimensions_without_a_representable_area_are_refused(law, values):
     # the critical area ~ G^2 (E/H)^(2/(D - 1)) is some 1e1000 m2
     with pytest.raises(ValueError, match=r"^the parameters give a reference area of [^\n]*$"):
-        largest_spot(changed(law, values), 1e6)
+        solve_largest_spot(changed(law, values), 1e6)
 
 
 def test_spots_below_the_smallest_stiff_one():
@@ -243,7 +243,7 @@ def test_everything_grows_with_the_pressure(kind, data):
     law = data.draw(RANDOM[kind])
     pressure = np.geomspace(1e-3, 1e11, 400)
     state = at_pressure(law, pressure)
-    u = largest_spot(law, pressure)
+    u = solve_largest_spot(law, pressure)
     assert np.all(np.diff(u) > 0)
     assert np.all(np.diff(state["F"]) > 0)
     assert np.all(np.diff(state["A_r"]) > 0)
@@ -295,7 +295,7 @@ def test_dimensional_homogeneity(kind, data, stress, length, mass):
     units = {name: item.metadata.get("unit") for name, item in flat_fields(type(law))}
     scaled = {
         name: value * factor[SCALES[units[name]]] if units[name] else value
-        for name, value in flatten(law).items()
+        for name, value in flatten_parameters(law).items()
     }
     u = np.array([-20.0, -5.0, -0.5, 0.5, 3.0, 8.0, 20.0])
     pressure = law.spots().total("load", u) / law.A_0

@@ -9,7 +9,16 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 from scipy.special import exprel as scipy_exprel
 
-from jointfmu.contact.powerlaw import Power, Slip, Smooth, Spots, exp_integral, exprel, gauss, within
+from jointfmu.contact.powerlaw import (
+    PowerTerm,
+    SlipTerm,
+    SmoothTerm,
+    SpotDistribution,
+    exp_integral,
+    exprel,
+    integrate_gauss,
+    regime_indicator,
+)
 
 EPS = np.finfo(float).eps
 # Exponents: ordinary ones, the singular one, and those where (exp(x span) - 1)/x cancels.
@@ -69,7 +78,7 @@ def test_gauss_is_exact_for_degree_63(degree, lower, span):
     exact = (upper ** (degree + 1) - lower ** (degree + 1)) / (degree + 1)
     scale = span * max(abs(lower), abs(upper)) ** degree
     # 32 nodes; each of the nodes and weights is right to a few eps, amplified by the degree
-    assert gauss(lambda t: t**degree, lower, upper) == pytest.approx(
+    assert integrate_gauss(lambda t: t**degree, lower, upper) == pytest.approx(
         exact, abs=4 * (degree + 4) * EPS * scale
     )
 
@@ -78,19 +87,19 @@ def test_gauss_is_not_exact_for_degree_64():
     # the 32-point rule misses t^64 by 2^65 (32!)^4/(65 (64!)^2) = 8.5e-20 on [-1, 1]: nothing to see there,
     # so the number of nodes shows on a sharp function: |error| of 1/(1 + 25 t^2) ~ (1.22)^-64 = 3e-6
     exact = 2.0 / 5.0 * np.arctan(5.0)
-    error = abs(gauss(lambda t: 1.0 / (1.0 + 25.0 * t**2), -1.0, 1.0) - exact)
+    error = abs(integrate_gauss(lambda t: 1.0 / (1.0 + 25.0 * t**2), -1.0, 1.0) - exact)
     assert 1e-7 < error < 1e-4
 
 
 def test_within_belongs_to_the_regime_below():
-    assert list(within(np.array([0.0, 1.0, 2.0, 3.0]), 1.0, 2.0)) == [0.0, 0.0, 1.0, 0.0]
-    assert list(within(np.array([-1e9, 1e9]), None, 0.0)) == [1.0, 0.0]
-    assert list(within(np.array([-1e9, 1e9]), 0.0, None)) == [0.0, 1.0]
+    assert list(regime_indicator(np.array([0.0, 1.0, 2.0, 3.0]), 1.0, 2.0)) == [0.0, 0.0, 1.0, 0.0]
+    assert list(regime_indicator(np.array([-1e9, 1e9]), None, 0.0)) == [1.0, 0.0]
+    assert list(regime_indicator(np.array([-1e9, 1e9]), 0.0, None)) == [0.0, 1.0]
 
 
 @given(p=st.floats(-1.0, 2.0), m=st.floats(0.1, 1.0), lower=points, span=st.floats(0.01, 6.0), u=points)
 def test_power(p, m, lower, span, u):
-    term = Power(2.5, p, lower, lower + span)
+    term = PowerTerm(2.5, p, lower, lower + span)
     end = min(lower + span, u)
     expected = reference(lambda t: 2.5 * np.exp((p - m) * t), lower, end) if end > lower else 0.0
     # quadrature 1e-12; the span of the clipped interval loses eps max|t|/span, absolutely
@@ -99,27 +108,31 @@ def test_power(p, m, lower, span, u):
 
 @given(p=st.floats(-1.0, 2.0), u=points)
 def test_power_at_the_singular_exponent(p, u):
-    term = Power(2.5, p, -1.0, 3.0)
+    term = PowerTerm(2.5, p, -1.0, 3.0)
     span = min(3.0, u) - min(-1.0, u)
     assert term.integral(p, u) == pytest.approx(2.5 * span, rel=4 * EPS)
 
 
 @given(m=st.floats(0.1, 0.9), u=points)
 def test_power_open_at_both_ends(m, u):
-    assert Power(2.0, 1.0).integral(m, u) == pytest.approx(2.0 * np.exp((1 - m) * u) / (1 - m), rel=8 * EPS)
+    assert PowerTerm(2.0, 1.0).integral(m, u) == pytest.approx(
+        2.0 * np.exp((1 - m) * u) / (1 - m), rel=8 * EPS
+    )
     # an open upper end is u, an open lower end below a closed upper one is clipped to u as well
     closed = min(0.0, u)
-    assert Power(2.0, 1.0, upper=0.0).integral(m, u) == pytest.approx(
+    assert PowerTerm(2.0, 1.0, upper=0.0).integral(m, u) == pytest.approx(
         2.0 * np.exp((1 - m) * closed) / (1 - m), rel=8 * EPS
     )
     above = reference(lambda t: 2.0 * np.exp((1 - m) * t), 0.0, u) if u > 0.0 else 0.0
-    assert Power(2.0, 1.0, 0.0).integral(m, u) == pytest.approx(above, rel=4e-12)
+    assert PowerTerm(2.0, 1.0, 0.0).integral(m, u) == pytest.approx(above, rel=4e-12)
 
 
 def test_power_on_one_spot():
-    term = Power(2.0, 0.5, 0.0, 1.0)
+    term = PowerTerm(2.0, 0.5, 0.0, 1.0)
     t = np.array([-0.1, 0.0, 0.5, 1.0, 1.1])
-    assert term.spot(t) == pytest.approx([0.0, 0.0, 2 * np.exp(0.25), 2 * np.exp(0.5), 0.0], rel=4 * EPS)
+    assert term.spot_value(t) == pytest.approx(
+        [0.0, 0.0, 2 * np.exp(0.25), 2 * np.exp(0.5), 0.0], rel=4 * EPS
+    )
 
 
 def bump(t):
@@ -128,13 +141,13 @@ def bump(t):
 
 @given(m=st.floats(0.1, 1.0), lower=points, span=st.floats(0.01, 12.0), u=points)
 def test_smooth(m, lower, span, u):
-    term = Smooth(bump, lower, lower + span)
+    term = SmoothTerm(bump, lower, lower + span)
     end = min(lower + span, u)
     expected = reference(lambda t: bump(t) * np.exp(-m * t), lower, end) if end > lower else 0.0
     # poles of the bump at +-10.5 i: the 32-point rule has converged (error 3.4^-64); quadrature 1e-12
     assert term.integral(m, u) == pytest.approx(expected, rel=4e-12, abs=1e-12)
-    assert term.spot(lower + 0.5 * span) == bump(lower + 0.5 * span)
-    assert term.spot(lower - 0.01) == 0.0
+    assert term.spot_value(lower + 0.5 * span) == bump(lower + 0.5 * span)
+    assert term.spot_value(lower - 0.01) == 0.0
 
 
 def slip_value(t, p, h, q):
@@ -151,7 +164,7 @@ def slip_value(t, p, h, q):
 )
 def test_slip(m, q, onset, lower, span, u):
     h = np.exp(q * onset)  # 1 - h exp(-q t) changes sign at t = onset
-    term = Slip(3.0, 0.5, h, q, lower, lower + span)
+    term = SlipTerm(3.0, 0.5, h, q, lower, lower + span)
     end = min(lower + span, u)
     start = max(lower, onset)
 
@@ -166,21 +179,21 @@ def test_slip(m, q, onset, lower, span, u):
     assert term.integral(m, u) == pytest.approx(expected, rel=1e-9, abs=1e-13)
     middle = lower + 0.5 * span
     # eps/(1 - h exp(-q t)) on the bracket, whose cube root is taken
-    assert term.spot(middle) == pytest.approx(3.0 * slip_value(middle, 0.5, h, q), rel=1e-9, abs=1e-4)
+    assert term.spot_value(middle) == pytest.approx(3.0 * slip_value(middle, 0.5, h, q), rel=1e-9, abs=1e-4)
 
 
 def test_slip_is_zero_when_every_spot_slips():
-    term = Slip(3.0, 0.5, np.exp(0.5 * 9.0), 0.5, 0.0, 8.0)  # onset 9 above the regime
+    term = SlipTerm(3.0, 0.5, np.exp(0.5 * 9.0), 0.5, 0.0, 8.0)  # onset 9 above the regime
     assert term.integral(0.7, 20.0) == 0.0
-    assert term.spot(7.0) == 0.0
+    assert term.spot_value(7.0) == 0.0
 
 
 TERMS = {
-    "load": (Power(2.0, 1.0, upper=-1.0), Smooth(bump, -1.0, 0.0), Power(3.0, 0.79, 0.0)),
-    "singular": (Power(2.0, 0.71, -3.0, 2.0),),  # p = m
-    "slip": (Slip(3.0, 0.5, np.exp(0.5 * 0.7), 0.5, 0.0, 4.0),),
+    "load": (PowerTerm(2.0, 1.0, upper=-1.0), SmoothTerm(bump, -1.0, 0.0), PowerTerm(3.0, 0.79, 0.0)),
+    "singular": (PowerTerm(2.0, 0.71, -3.0, 2.0),),  # p = m
+    "slip": (SlipTerm(3.0, 0.5, np.exp(0.5 * 0.7), 0.5, 0.0, 4.0),),
 }
-SPOTS = Spots(reference=1e-9, m=0.71, weight=1.3, terms=TERMS)
+SPOTS = SpotDistribution(reference=1e-9, m=0.71, weight=1.3, terms=TERMS)
 EDGES = (-3.0, -1.0, 0.0, 0.7, 2.0, 4.0)
 away = st.floats(-8.0, 9.0).filter(lambda u: min(abs(u - edge) for edge in EDGES) > 1e-3)
 
@@ -206,13 +219,13 @@ def test_slope_is_the_derivative_of_total(name, u):
     # eps/h = 2e-11 round-off; h^2/6 = 2e-11 times the third derivative, which the cube root makes large:
     # u^(1/3 - 3) at 1e-3 from the onset gives 1e-4 there
     tolerance = 2e-4 if name == "slip" and 0.7 < u < 1.2 else 1e-8
-    assert SPOTS.slope(name, u) == pytest.approx(finite, rel=tolerance, abs=1e-9)
+    assert SPOTS.total_derivative(name, u) == pytest.approx(finite, rel=tolerance, abs=1e-9)
 
 
 @given(u=st.floats(-30.0, 30.0))
 def test_log_total_is_the_logarithm_of_total(u):
     value, growth = SPOTS.log_total("load", u)
-    total, slope = SPOTS.total("load", u), SPOTS.slope("load", u)
+    total, slope = SPOTS.total("load", u), SPOTS.total_derivative("load", u)
     assert value == pytest.approx(np.log(total), rel=8 * EPS, abs=8 * EPS)
     assert growth == pytest.approx(slope / total, rel=16 * EPS)
 

@@ -12,9 +12,9 @@ from jointfmu_tools.fields.nodal_result import ContactField
 
 from jointfmu.contact import roughness
 from jointfmu.joints import KINDS
-from jointfmu.joints.bolted_joint.law import pressures
-from jointfmu.mechanics.footprint.bolts import pressure_shape
-from jointfmu.parameters import default, dump, load
+from jointfmu.joints.bolted_joint.law import preload_pressure
+from jointfmu.mechanics.footprint.bolts import pressure_distribution
+from jointfmu.parameters import format_parameter_file, load_default, load_parameter_file
 
 SECTION, JUDGING = "\n[roughness]\n", "\n[comparison]\n"
 
@@ -29,34 +29,34 @@ def loaded(tmp_path):
 
     def read(lines):
         path = tmp_path / "joint.toml"
-        path.write_text(dump(default("gear_contact")) + JUDGING + lines)
-        return load(path)
+        path.write_text(format_parameter_file(load_default("gear_contact")) + JUDGING + lines)
+        return load_parameter_file(path)
 
     return read
 
 
 def test_height_of_both_surfaces():
     """Gaussian: R_q is 1.25 R_a; a side that is not stated is smooth; h stands for both."""
-    assert roughness.rms_of_mean(1.0) == pytest.approx(1.2533, abs=1e-4)
-    assert roughness.height({"Ra1": 1.6e-6, "Ra2": 1.6e-6}) == pytest.approx(2.83e-6, rel=0.003)
-    assert roughness.height({"Rq1": 3e-6, "Rq2": 4e-6}) == pytest.approx(5e-6)
-    assert roughness.height({"Rq1": 3e-6, "Ra2": 4e-6 / roughness.FACTOR}) == pytest.approx(5e-6)
-    assert roughness.height({"Rq2": 4e-6}) == pytest.approx(4e-6)
-    assert roughness.height({"h": 1e-6}) == 1e-6
-    assert roughness.height({}) is None
+    assert roughness.rms_height(1.0) == pytest.approx(1.2533, abs=1e-4)
+    assert roughness.combined_height({"Ra1": 1.6e-6, "Ra2": 1.6e-6}) == pytest.approx(2.83e-6, rel=0.003)
+    assert roughness.combined_height({"Rq1": 3e-6, "Rq2": 4e-6}) == pytest.approx(5e-6)
+    assert roughness.combined_height({"Rq1": 3e-6, "Ra2": 4e-6 / roughness.RQ_OVER_RA}) == pytest.approx(5e-6)
+    assert roughness.combined_height({"Rq2": 4e-6}) == pytest.approx(4e-6)
+    assert roughness.combined_height({"h": 1e-6}) == 1e-6
+    assert roughness.combined_height({}) is None
 
 
 def test_mean_height_of_a_gaussian_surface():
     """R_q/R_a by the integral of |z| over the normal density."""
     step = 1e-3
     mean = sum(2.0 * z * math.exp(-0.5 * z * z) * step for z in (step * (i + 0.5) for i in range(10_000)))
-    assert math.sqrt(2.0 * math.pi) / mean == pytest.approx(roughness.FACTOR, rel=1e-6)
+    assert math.sqrt(2.0 * math.pi) / mean == pytest.approx(roughness.RQ_OVER_RA, rel=1e-6)
 
 
 def test_level():
     """Box specimen at 9 kN: F/(0.45 h) = 5.65e10 N/m."""
-    h = roughness.height(default("bolted_joint").roughness)
-    assert roughness.level(8 * 9e3, h) == pytest.approx(5.65e10, rel=0.005)
+    h = roughness.combined_height(load_default("bolted_joint").roughness)
+    assert roughness.predicted_stiffness(8 * 9e3, h) == pytest.approx(5.65e10, rel=0.005)
 
 
 # The section
@@ -66,7 +66,7 @@ def load_text(text):
     with TemporaryDirectory() as folder:
         path = Path(folder) / "again.toml"
         path.write_text(text)
-        return load(path)
+        return load_parameter_file(path)
 
 
 def test_nothing_is_lost(loaded):
@@ -75,22 +75,22 @@ def test_nothing_is_lost(loaded):
     assert file.sources["comparison.Ra1"] == "drawing"
     again = file.with_values({"lambda": 0.5}, "user", "measured")
     assert again.roughness == file.roughness
-    text = dump(again)
+    text = format_parameter_file(again)
     assert JUDGING in text
     assert "comparison" not in again.flat
-    assert "[comparison]" not in dump(default("gear_contact"))
+    assert "[comparison]" not in format_parameter_file(load_default("gear_contact"))
     assert load_text(text) == again
 
 
 @pytest.mark.parametrize("joint", KINDS)
 def test_every_joint_may_state_it(joint):
-    file = default(joint).with_roughness({"h": 2e-6}, "user", "scan")
-    again = load_text(dump(file))
-    assert (again.roughness, again.sources[file.surfaces + "h"]) == ({"h": 2e-6}, "scan")
+    file = load_default(joint).with_roughness({"h": 2e-6}, "user", "scan")
+    again = load_text(format_parameter_file(file))
+    assert (again.roughness, again.sources[file.heights_prefix + "h"]) == ({"h": 2e-6}, "scan")
 
 
 def test_what_is_new_replaces_what_spoke_of_the_same_side():
-    file = default("gear_contact").with_roughness({"Ra1": 1e-6, "Ra2": 2e-6}, "user", "drawing")
+    file = load_default("gear_contact").with_roughness({"Ra1": 1e-6, "Ra2": 2e-6}, "user", "drawing")
     one = file.with_roughness({"Rq1": 3e-6}, "derived", "scan")
     assert one.roughness == {"Ra2": 2e-6, "Rq1": 3e-6}
     assert (one.origins["comparison.Rq1"], one.sources["comparison.Ra2"]) == ("derived", "drawing")
@@ -109,10 +109,10 @@ WITHOUT_H = re.compile(r"^h = .*\n", re.MULTILINE)
 @pytest.mark.parametrize("joint", KINDS)
 def test_it_is_the_height_of_the_law_of_that_name(joint):
     """A file without h takes it from the heights of both sides; sqrt(pi/2) Ra each, Gaussian."""
-    text = dump(default(joint, "roughness"))
+    text = format_parameter_file(load_default(joint, "roughness"))
     found = load_text(WITHOUT_H.sub("", text) + SECTION + entry("Ra1", 0.8e-6) + entry("Rq2", 1e-6))
-    name = next(name for name in found.flat if name.split(".")[-1] == "h")
-    assert found.flat[name] == pytest.approx(np.sqrt(np.pi / 2 * 0.64e-12 + 1e-12), rel=1e-15)
+    name = next(name for name in found.values_by_name if name.split(".")[-1] == "h")
+    assert found.values_by_name[name] == pytest.approx(np.sqrt(np.pi / 2 * 0.64e-12 + 1e-12), rel=1e-15)
     assert (found.origins[name], found.sources[name]) == (
         "derived",
         "from roughness.Ra1, roughness.Rq2: drawing",
@@ -122,40 +122,42 @@ def test_it_is_the_height_of_the_law_of_that_name(joint):
 @pytest.mark.parametrize("joint", KINDS)
 def test_another_height_of_the_law_beside_it_is_refused(joint):
     """Within 1 % both may stand there, and the law's own acts."""
-    file = default(joint, "roughness")
-    name = next(name for name in file.flat if name.split(".")[-1] == "h")
-    near = load_text(dump(file) + SECTION + entry("h", 1.009 * file.flat[name]))
-    assert near.flat[name] == file.flat[name]
+    file = load_default(joint, "roughness")
+    name = next(name for name in file.values_by_name if name.split(".")[-1] == "h")
+    near = load_text(format_parameter_file(file) + SECTION + entry("h", 1.009 * file.values_by_name[name]))
+    assert near.values_by_name[name] == file.values_by_name[name]
     with pytest.raises(ValueError, match=r"h = .* m beside roughness\.Ra1, which make 1\.003e-06 m: "):
-        load_text(dump(file) + SECTION + entry("Ra1", 0.8e-6))
+        load_text(format_parameter_file(file) + SECTION + entry("Ra1", 0.8e-6))
 
 
 @pytest.mark.parametrize("joint", KINDS)
 def test_a_law_has_the_height_that_was_stated_last(joint):
     """Of its surfaces, or its own in place of theirs: what is written loads again."""
-    file = default(joint, "roughness").with_roughness({"Ra1": 1e-6, "Rq2": 2e-6}, "user", "drawing")
-    name = next(name for name in file.flat if name.split(".")[-1] == "h")
-    assert load_text(dump(file)).flat[name] == pytest.approx(np.sqrt(np.pi / 2 * 1e-12 + 4e-12), rel=1e-15)
+    file = load_default(joint, "roughness").with_roughness({"Ra1": 1e-6, "Rq2": 2e-6}, "user", "drawing")
+    name = next(name for name in file.values_by_name if name.split(".")[-1] == "h")
+    assert load_text(format_parameter_file(file)).values_by_name[name] == pytest.approx(
+        np.sqrt(np.pi / 2 * 1e-12 + 4e-12), rel=1e-15
+    )
     assert file.sources[name] == "from roughness.Ra1, roughness.Rq2: drawing"
-    fitted = load_text(dump(file.with_values({name: 3e-6}, "calibration", "fit")))
-    assert (fitted.flat[name], fitted.roughness) == (3e-6, {})
+    fitted = load_text(format_parameter_file(file.with_values({name: 3e-6}, "calibration", "fit")))
+    assert (fitted.values_by_name[name], fitted.roughness) == (3e-6, {})
 
 
 def test_a_roughness_acts_or_is_refused(tmp_path):
     """Beside a law without a height it stands in a section that says what it does."""
     path = tmp_path / "joint.toml"
-    path.write_text(dump(default("gear_contact")) + SECTION + entry("Ra1", 0.8e-6))
+    path.write_text(format_parameter_file(load_default("gear_contact")) + SECTION + entry("Ra1", 0.8e-6))
     with pytest.raises(
         ValueError, match=r"joint\.toml: \[roughness\] does not act on law = 'yu2022'; .* \[comparison\]"
     ):
-        load(path)
+        load_parameter_file(path)
 
 
 @pytest.mark.slow
 def test_a_field_keeps_it():
-    file = default("bolted_joint")
-    shape = pressure_shape(file.values.pattern)
-    pressure = pressures(file.values, shape, 9e3, 0.0)
+    file = load_default("bolted_joint")
+    shape = pressure_distribution(file.values.pattern)
+    pressure = preload_pressure(file.values, shape, 9e3, 0.0)
     field = ContactField(shape.share * file.values.A_0, shape.position, pressure)
     made, _ = with_field(file, field, 9e3, "test")
     assert made.roughness == file.roughness

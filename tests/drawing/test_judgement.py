@@ -5,25 +5,25 @@ import json
 import numpy as np
 import pytest
 from jointfmu_tools import cli
-from jointfmu_tools.drawing.tables import threads
+from jointfmu_tools.drawing.tables import read_threads
 from jointfmu_tools.drawing.vdi2230 import proof_load, stress_area
-from jointfmu_tools.fem.convergence import unlike_holes
+from jointfmu_tools.fem.convergence import check_bolt_symmetry
 from jointfmu_tools.fields.nodal_result import ContactField
-from jointfmu_tools.judgement import FACTOR, judge, known_height
+from jointfmu_tools.judgement import MAX_RATIO, assess_law, find_height
 from jointfmu_tools.pressure import judge_file, nominal_pressure
 
-from jointfmu.contact.interface import at_pressure, beyond
-from jointfmu.contact.roughness import GAMMA, level
+from jointfmu.contact.interface import at_pressure, find_validity_violations
+from jointfmu.contact.roughness import GAMMA, predicted_stiffness
 from jointfmu.joints import KINDS
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
-from jointfmu.parameters import default, dump, load
+from jointfmu.parameters import format_parameter_file, load_default, load_parameter_file
 
-BOLTED = default("bolted_joint")
+BOLTED = load_default("bolted_joint")
 REST = (0.0, 0.0, 0.0)
 
 
 def rough(joint, h):
-    return default(joint).with_roughness({"h": h}, "user", "test")
+    return load_default(joint).with_roughness({"h": h}, "user", "test")
 
 
 # The level
@@ -32,20 +32,20 @@ def rough(joint, h):
 def test_the_ratio_is_that_of_the_joint():
     """K_zz of the uneven joint over F/(0.45 h): the law at the mean pressure says it within 10 %."""
     found = judge_file(BOLTED, [9e3, 15e3])
-    for ratio, preload in zip(found.level.ratio, (9e3, 15e3), strict=True):
-        K = BoltedJointSpring.of(BOLTED.values).motion(preload, 0.0, REST, REST)["K_zz"]
-        assert ratio == pytest.approx(K * GAMMA * known_height(BOLTED) / (8 * preload), rel=0.1)
+    for ratio, preload in zip(found.comparison.ratio, (9e3, 15e3), strict=True):
+        K = BoltedJointSpring.of(BOLTED.values).evaluate(preload, 0.0, REST, REST)["K_zz"]
+        assert ratio == pytest.approx(K * GAMMA * find_height(BOLTED) / (8 * preload), rel=0.1)
     assert found.warnings == ()
 
 
 def test_the_law_roughness_is_judged_by_its_own_height():
     """Many spots on 0.04 m2: the line itself, and a little for the few spots."""
-    found = judge_file(default("bolted_joint", "roughness"), [9e3])
-    assert found.level.ratio == pytest.approx([1.0], abs=0.05)
+    found = judge_file(load_default("bolted_joint", "roughness"), [9e3])
+    assert found.comparison.ratio == pytest.approx([1.0], abs=0.05)
 
 
 def test_a_height_that_is_no_roughness():
-    file = default("bolted_joint", "roughness").with_values({"h": 8e-3}, "user", "test")
+    file = load_default("bolted_joint", "roughness").with_values({"h": 8e-3}, "user", "test")
     assert judge_file(file, [9e3]).warnings[0].startswith("h = 0.008 m is no roughness: ")
 
 
@@ -53,42 +53,48 @@ def test_a_height_that_is_no_roughness():
 def test_a_factor_of_three_either_way(side):
     p = 1e6
     k = at_pressure(BOLTED.values, p)["K_N"] / BOLTED.values.A_0
-    for factor, doubtful in ((0.99 * FACTOR, False), (1.01 * FACTOR, True)):
+    for factor, doubtful in ((0.99 * MAX_RATIO, False), (1.01 * MAX_RATIO, True)):
         h = factor**side * p / (GAMMA * k)
-        found = judge(BOLTED.values, [p], h)
-        assert found.level.ratio == pytest.approx([factor**side], rel=1e-9)
-        assert bool(found.warnings) == found.level.doubtful == doubtful
-    assert f"{found.level.ratio[0]:.3g} times" in found.warnings[0]
+        found = assess_law(BOLTED.values, [p], h)
+        assert found.comparison.ratio == pytest.approx([factor**side], rel=1e-9)
+        assert bool(found.warnings) == found.comparison.is_doubtful == doubtful
+    assert f"{found.comparison.ratio[0]:.3g} times" in found.warnings[0]
     assert "a measurement decides" in found.warnings[0]
 
 
 def test_what_is_not_known_is_not_judged():
     for joint in KINDS:
-        file = default(joint)
+        file = load_default(joint)
         found = judge_file(file)
-        assert (found.level is None) == (known_height(file) is None)
-        assert judge_file(file).document()["warnings"] == []
-    assert judge(BOLTED.values, [0.0], 1e-6).level is None
+        assert (found.comparison is None) == (find_height(file) is None)
+        assert judge_file(file).to_json()["warnings"] == []
+    assert assess_law(BOLTED.values, [0.0], 1e-6).comparison is None
 
 
 @pytest.mark.parametrize("joint", [name for name in KINDS if nominal_pressure(KINDS[name])])
 def test_every_joint_is_judged_under_its_load(joint):
     file = rough(joint, 2e-6)
     how, found = nominal_pressure(KINDS[joint]), judge_file(file)
-    assert how.load in KINDS[joint].variables
-    pressure = how.mean(file.values, how.usual(file.values))
-    assert found.level.pressure == pytest.approx([pressure])
-    law = KINDS[joint].law_of(file.values)
-    expected = at_pressure(law, pressure)["K_N"] / law.A_0 * how.scale(file.values, how.usual(file.values))
-    assert found.level.stiffness == pytest.approx([float(expected)], rel=1e-9)
-    assert found.level.ratio == pytest.approx([float(expected) / level(pressure, 2e-6)], rel=1e-9)
+    assert how.load_variable in KINDS[joint].variables
+    pressure = how.mean_pressure(file.values, how.default_load(file.values))
+    assert found.comparison.pressure == pytest.approx([pressure])
+    law = KINDS[joint].extract_law(file.values)
+    expected = (
+        at_pressure(law, pressure)["K_N"]
+        / law.A_0
+        * how.stiffness_ratio(file.values, how.default_load(file.values))
+    )
+    assert found.comparison.stiffness == pytest.approx([float(expected)], rel=1e-9)
+    assert found.comparison.ratio == pytest.approx(
+        [float(expected) / predicted_stiffness(pressure, 2e-6)], rel=1e-9
+    )
 
 
 def test_the_start_value_of_the_load_is_a_working_point(tmp_path):
-    text = dump(BOLTED).replace("preload = { value = 0.0", "preload = { value = 12e3")
+    text = format_parameter_file(BOLTED).replace("preload = { value = 0.0", "preload = { value = 12e3")
     (tmp_path / "tight.toml").write_text(text)
-    found = judge_file(load(tmp_path / "tight.toml"))
-    assert found.level.pressure == pytest.approx([8 * 12e3 / BOLTED.values.A_0])
+    found = judge_file(load_parameter_file(tmp_path / "tight.toml"))
+    assert found.comparison.pressure == pytest.approx([8 * 12e3 / BOLTED.values.A_0])
 
 
 # Where the law ends
@@ -96,9 +102,9 @@ def test_the_start_value_of_the_load_is_a_working_point(tmp_path):
 
 def test_beyond_the_hardness_and_the_nominal_area():
     law, H = BOLTED.values, BOLTED.values.H
-    assert beyond(law, 1e8) == []
-    (area,) = beyond(law, 1e9)
-    hard, same = beyond(law, 1.01 * H)
+    assert find_validity_violations(law, 1e8) == []
+    (area,) = find_validity_violations(law, 1e9)
+    hard, same = find_validity_violations(law, 1.01 * H)
     assert f"{H:.4g} Pa" in hard
     limit = float(area.split(" at ")[-1].split()[0])
     assert limit == float(same.split(" at ")[-1].split()[0])
@@ -107,16 +113,16 @@ def test_beyond_the_hardness_and_the_nominal_area():
 
 def test_the_law_roughness_is_proven_in_a_range():
     """x = p A_0/(E* h longest_wave) from 0.3, y = p longest_wave/(E* h) to 1.5 (docs/validity.md)."""
-    law = default("gear_mesh", "roughness").values
+    law = load_default("gear_mesh", "roughness").values
     modulus = 0.5 * 206e9 / (1.0 - 0.26**2) * law.h
     few, flat = 0.3 * modulus * law.longest_wave / law.A_0, 1.5 * modulus / law.longest_wave
-    assert beyond(law, 1.01 * few) == []
-    (line,) = beyond(law, 0.99 * few)
+    assert find_validity_violations(law, 1.01 * few) == []
+    (line,) = find_validity_violations(law, 0.99 * few)
     assert f"below {few:.3g} Pa, from where the law roughness is proven" in line
-    (line,) = [text for text in beyond(law, 1.01 * flat) if "wave" in text]
+    (line,) = [text for text in find_validity_violations(law, 1.01 * flat) if "wave" in text]
     assert f"above {flat:.3g} Pa, up to which the law roughness is proven" in line
-    assert not any("wave" in text for text in beyond(law, 0.99 * flat))
-    (line,) = judge(law, [0.5 * few, 2.0 * few], law.h).warnings
+    assert not any("wave" in text for text in find_validity_violations(law, 0.99 * flat))
+    (line,) = assess_law(law, [0.5 * few, 2.0 * few], law.h).warnings
     assert f"{0.5 * few:.4g} Pa is below" in line
 
 
@@ -125,7 +131,7 @@ def test_the_law_roughness_is_proven_in_a_range():
 )
 def test_bolts_of_iso_898_1(d, area, proof):
     """Stress areas and proof loads of class 12.9 as the standard's tables print them, three digits."""
-    assert 1e6 * stress_area(threads()[f"M{d}"]) == pytest.approx(area, rel=4e-3)
+    assert 1e6 * stress_area(read_threads()[f"M{d}"]) == pytest.approx(area, rel=4e-3)
     load, name = proof_load(1e-3 * (d + 1.5))
     assert load == pytest.approx(proof, rel=4e-3)
     assert f"M{d}, class 12.9" in name
@@ -150,7 +156,9 @@ def test_a_preload_that_no_bolt_bears():
 def fine(tmp_path):
     """Path of the specimen with a surface eight times finer."""
     path = tmp_path / "fine.toml"
-    path.write_text(dump(BOLTED.with_roughness({"Ra1": 0.2e-6, "Ra2": 0.2e-6}, "user", "test")))
+    path.write_text(
+        format_parameter_file(BOLTED.with_roughness({"Ra1": 0.2e-6, "Ra2": 0.2e-6}, "user", "test"))
+    )
     return path
 
 
@@ -237,14 +245,14 @@ def test_alike_bolts_with_unlike_pressures():
     position = (bolts[:, None] + around[None]).reshape(-1, 2)
     pressure = np.tile(1e6 * np.exp(-np.hypot(*around.T) / 0.01), len(bolts))
     field = ContactField(np.full(len(position), 1e-6), position, pressure)
-    assert unlike_holes(field, bolts, False) == []
+    assert check_bolt_symmetry(field, bolts, False) == []
     hot = np.repeat(np.arange(len(bolts)) >= 5, 200)  # the row y > 0: what a moment does
     tilted = ContactField(field.area, position, np.where(hot, 2.0, 1.0) * pressure)
-    assert unlike_holes(tilted, bolts, True) == []
-    (warning,) = unlike_holes(tilted, bolts, False)
+    assert check_bolt_symmetry(tilted, bolts, True) == []
+    (warning,) = check_bolt_symmetry(tilted, bolts, False)
     assert "2 times" in warning
     one = ContactField(field.area, position, np.where(np.repeat(np.arange(8) == 7, 200), 1.3, 1.0) * pressure)
     for moment in (False, True):
-        (warning,) = unlike_holes(one, bolts, moment)
+        (warning,) = check_bolt_symmetry(one, bolts, moment)
         assert "the bolt at (0.1, 0.15) m is 1.3 times" in warning
-    assert unlike_holes(one, bolts + 0.01 * np.arange(8)[:, None] ** 2, False) == []  # no symmetry
+    assert check_bolt_symmetry(one, bolts + 0.01 * np.arange(8)[:, None] ** 2, False) == []  # no symmetry

@@ -7,14 +7,24 @@ import shlex
 import pytest
 from conftest import refused_line
 from jointfmu_tools import cli
-from jointfmu_tools.drawing.reading import number, numbers
-from jointfmu_tools.drawing.tables import MATERIAL, classes, row, table, threads
-from jointfmu_tools.joint_parts import part
+from jointfmu_tools.drawing.reading import parse_number, parse_numbers
+from jointfmu_tools.drawing.tables import (
+    MATERIAL_COLUMNS,
+    find_row,
+    read_property_classes,
+    read_table,
+    read_threads,
+)
+from jointfmu_tools.joint_parts import load_tool_module
 
 from jointfmu.joints import KINDS
-from jointfmu.parameters import load
+from jointfmu.parameters import load_parameter_file
 
-NEW = {kind.name.replace("_", "-"): found.NEW for kind in KINDS.values() if (found := part(kind, "new"))}
+NEW = {
+    kind.name.replace("_", "-"): found.NEW
+    for kind in KINDS.values()
+    if (found := load_tool_module(kind, "new"))
+}
 
 
 def said(capsys, *words):
@@ -33,10 +43,10 @@ def test_the_example_makes_a_file_that_loads(capsys, tmp_path, name):
     words = ["new", name, *shlex.split(NEW[name].example), "--out", path]
     text = said(capsys, *words).out
     assert text.endswith(f"wrote {path}\n")
-    file = load(path)
+    file = load_parameter_file(path)
     assert file.joint == name.replace("-", "_")
     found = json.loads(said(capsys, *words, "--json").out)
-    assert found["parameters"] == json.loads(json.dumps(file.flat))
+    assert found["parameters"] == json.loads(json.dumps(file.values_by_name))
     assert found["inputs"] == file.inputs
     assert all(f"# {fact} = " in path.read_text() for fact in found["facts"])
     assert all(fact["unit"] and fact["text"] for fact in found["facts"].values())
@@ -89,21 +99,21 @@ def test_tables_are_printed(capsys, name):
 
 
 def test_materials_are_physical_and_have_sources():
-    for material in table("materials").values():
+    for material in read_table("materials").values():
         values = {name: known.value for name, known in material.numbers.items()}
-        assert values.keys() == MATERIAL.keys()
+        assert values.keys() == MATERIAL_COLUMNS.keys()
         assert 5e10 < values["E"] < 2.5e11
         assert 0.2 < values["nu"] < 0.4
         assert 2000 < values["density"] < 9000
         assert 5e8 < values["H"] < 1e10
         assert all(known.source for known in material.numbers.values())
         assert material.numbers["H"].kind == "estimate"  # of one usual state
-    names = [name for found in table("materials").values() for name in (found.name, *found.also)]
+    names = [name for found in read_table("materials").values() for name in (found.name, *found.aliases)]
     assert len(names) == len({name.lower() for name in names})
 
 
 def test_a_finish_is_the_middle_of_its_range():
-    for finish in table("finishes").values():
+    for finish in read_table("finishes").values():
         Ra, low, high = (finish.numbers[name].value for name in ("Ra", "Ra_low", "Ra_high"))
         assert pytest.approx(math.sqrt(low * high), rel=1e-3) == Ra
         assert high > low
@@ -111,22 +121,26 @@ def test_a_finish_is_the_middle_of_its_range():
 
 
 def test_a_row_is_found_by_any_of_its_names():
-    assert row("materials", "Cast-Iron") is row("materials", "GG25") is row("materials", "cast iron")
+    assert (
+        find_row("materials", "Cast-Iron")
+        is find_row("materials", "GG25")
+        is find_row("materials", "cast iron")
+    )
     with pytest.raises(ValueError, match=r"material 'wood' is unknown, allowed are steel, .* new materials"):
-        row("materials", "wood")
+        find_row("materials", "wood")
     with pytest.raises(ValueError, match="finish 'rough' is unknown"):
-        row("finishes", "rough")
+        find_row("finishes", "rough")
 
 
 def test_bolts_grow():
-    sizes = list(threads().values())
+    sizes = list(read_threads().values())
     for column in ("d", "hole", "hexagon", "socket"):
         values = [getattr(thread, column) for thread in sizes]
         assert values == sorted(values)
     for thread in sizes:
         assert thread.pitch < thread.d < thread.hole < thread.hexagon < thread.socket
         assert thread.d == pytest.approx(float(thread.name[1:]) * 1e-3)
-    for strength in classes().values():
+    for strength in read_property_classes().values():
         assert all(p < y for p, y in zip(strength["proof"], strength["yield"], strict=True))
 
 
@@ -138,15 +152,17 @@ def test_bolts_grow():
     [("40", 0.04), ("40mm", 0.04), ("0.04 m", 0.04), ("4e4um", 0.04), (".5", 5e-4), ("1E2", 0.1)],
 )
 def test_lengths(text, value):
-    assert number("grip", text, "mm", "m") == pytest.approx(value, rel=1e-15)
+    assert parse_number("grip", text, "mm", "m") == pytest.approx(value, rel=1e-15)
 
 
 def test_numbers_with_a_sign_between():
-    assert numbers("plate", "200x0.1m", "mm", "m", by="x", count=2) == pytest.approx([0.2, 0.1])
-    assert numbers("at", "-80,3e1", "mm", "m", by=",", count=2, least=None) == pytest.approx([-0.08, 0.03])
+    assert parse_numbers("plate", "200x0.1m", "mm", "m", separator="x", count=2) == pytest.approx([0.2, 0.1])
+    assert parse_numbers(
+        "at", "-80,3e1", "mm", "m", separator=",", count=2, lower_bound=None
+    ) == pytest.approx([-0.08, 0.03])
 
 
 @pytest.mark.parametrize("text", ["", "x", "1e999", "0", "-3", "inf", "40furlong", "40N", "4O"])
 def test_bad_numbers_are_refused(text):
     with pytest.raises(ValueError, match=r"^--grip = "):
-        number("grip", text, "mm", "m")
+        parse_number("grip", text, "mm", "m")

@@ -9,10 +9,10 @@ import pytest
 from conftest import refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.export import exports
-from jointfmu_tools.export.exports import FORMS
+from jointfmu_tools.export.exports import FORMAT_CONTENTS
 
 from jointfmu import __version__
-from jointfmu.parameters import default, dump
+from jointfmu.parameters import format_parameter_file, load_default
 
 MARKS = {"ansys": "!", "calculix": "**", "abaqus": "**", "modelica": "#", "csv": "#"}
 
@@ -30,7 +30,9 @@ def run(capsys, *arguments):
     return out
 
 
-@pytest.mark.parametrize(("form", "what"), [(form, what) for form, kinds in FORMS.items() for what in kinds])
+@pytest.mark.parametrize(
+    ("form", "what"), [(form, what) for form, kinds in FORMAT_CONTENTS.items() for what in kinds]
+)
 def test_every_file_says_what_it_is(form, what, folder, capsys):
     options = [] if what == "contact" else ["--preload", "9e3"]
     said = json.loads(run(capsys, form, what, *options, "--out", "sub/joint.txt", "--json"))
@@ -63,7 +65,7 @@ def test_says_what_it_wrote(capsys):
     out = run(capsys, "calculix", "springs", "--preload", 9e3, "--units", "mm-N-MPa-t", "--out", "s.inp")
     assert out.splitlines()[0] == "wrote s.inp: springs for calculix, mm-N-MPa-t"
     said = dict(line.split()[:2] for line in out.splitlines()[1:])
-    joint = default("bolted_joint").values
+    joint = load_default("bolted_joint").values
     assert said["pairs"] == "1188"
     assert re.search(r"K_zz +\S+ N/m$", out, flags=re.MULTILINE)
     assert float(said["K_xx"]) / float(said["K_zz"]) == pytest.approx(0.445, abs=1e-3)
@@ -71,8 +73,8 @@ def test_says_what_it_wrote(capsys):
 
 
 def test_own_parameters_and_other_joints(capsys, folder):
-    file = default("bolted_joint").with_values({"surface.D": 1.5}, "user", "test")
-    (folder / "mine.toml").write_text(dump(file))
+    file = load_default("bolted_joint").with_values({"surface.D": 1.5}, "user", "test")
+    (folder / "mine.toml").write_text(format_parameter_file(file))
     state = ("--preload", 9e3, "--json", "--out", "s.csv")
     mine = json.loads(run(capsys, "csv", "springs", "--params", "mine.toml", *state))
     plain = json.loads(run(capsys, "csv", "springs", *state))
@@ -168,7 +170,7 @@ def test_place_that_cannot_be_written(folder, capsys):
 def test_a_joint_without_the_part_is_refused(monkeypatch):
     monkeypatch.setattr(exports, "part", lambda kind, tool: None)
     with pytest.raises(ValueError, match="curve of a gear_contact cannot be written"):
-        exports.required("gear_contact", "curve")
+        exports.require_content("gear_contact", "curve")
 
 
 def test_what_can_be_written_and_fitted_is_known_without_scipy():

@@ -8,7 +8,7 @@ import pytest
 from jointfmu_tools import cli
 from jointfmu_tools.export import keywords, tables, writing
 from jointfmu_tools.export.placing import SI, UNITS
-from jointfmu_tools.joints.bolted_joint.export import STRONGEST, Tightening, pull_table
+from jointfmu_tools.joints.bolted_joint.export import MAX_FORCE_RATIO, TightenedState, tabulate_normal_force
 from scipy.interpolate import PchipInterpolator
 
 import jointfmu
@@ -16,25 +16,25 @@ from jointfmu.contact.interface import at_pressure
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.joints.gear_contact.spring import GearContactSpring
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
-from jointfmu.parameters import default
+from jointfmu.parameters import load_default
 
 MM = UNITS["mm-N-MPa-t"]
-STATE = Tightening(9e3, 0.0)
+STATE = TightenedState(9e3, 0.0)
 
 
 @pytest.fixture(scope="module")
 def bolted():
-    return BoltedJointSpring.of_nodes(default("bolted_joint").values)
+    return BoltedJointSpring.of_nodes(load_default("bolted_joint").values)
 
 
 @pytest.fixture(scope="module")
 def gear():
-    return GearContactSpring.of(default("gear_contact").values)
+    return GearContactSpring.tabulate(load_default("gear_contact").values)
 
 
 @pytest.fixture(scope="module")
 def drive():
-    return HarmonicDriveSpring.of(default("harmonic_drive").values)
+    return HarmonicDriveSpring.tabulate(load_default("harmonic_drive").values)
 
 
 # ---- errors ----
@@ -45,7 +45,7 @@ def drive():
 def test_law_table_keeps_to_the_law(joint, error, request):
     spring = request.getfixturevalue(joint)
     law, curve = spring.joint, spring.curve
-    table = tables.law_table(curve, error)
+    table = tables.tabulate_law(curve, error)
     x, p, k = table.rows.T
     assert np.all(np.diff(x) > 0.0)
     assert np.all(np.diff(p) > 0.0)
@@ -58,24 +58,24 @@ def test_law_table_keeps_to_the_law(joint, error, request):
     at = curve.inverse(some) - curve.displacement[0]
     straight = np.max(np.abs(np.interp(at, x, p) / some - 1.0))
     # between the points at which the table was measured the error hardly grows
-    assert straight <= 1.01 * table.straight[0] <= 1.01 * error
+    assert straight <= 1.01 * table.linear_errors[0] <= 1.01 * error
     slopes = (np.diff(p) / np.diff(x))[np.searchsorted(x, at, side="right") - 1]
     exact = curve.derivatives(at + curve.displacement[0], 1)[1]
-    assert np.max(np.abs(slopes / exact - 1.0)) <= 1.02 * table.straight[1]
+    assert np.max(np.abs(slopes / exact - 1.0)) <= 1.02 * table.linear_errors[1]
     cubic = PchipInterpolator(x, p)
     above = at > x[2]  # the first segment belongs to the closing
-    assert np.max(np.abs(cubic(at) / some - 1.0)[above]) <= 1.05 * table.monotone[0]
+    assert np.max(np.abs(cubic(at) / some - 1.0)[above]) <= 1.05 * table.monotone_cubic_errors[0]
 
 
 def test_error_falls_with_the_square_of_the_rows(bolted):
-    rows = [len(tables.law_table(bolted.curve, error).rows) for error in (4e-3, 1e-3, 2.5e-4)]
+    rows = [len(tables.tabulate_law(bolted.curve, error).rows) for error in (4e-3, 1e-3, 2.5e-4)]
     # straight lines: second order; a whole number of rows
     assert rows[1] / rows[0] == pytest.approx(2.0, rel=0.06)
     assert rows[2] / rows[1] == pytest.approx(2.0, rel=0.06)
 
 
 def test_pull_table_is_the_joints_force(bolted):
-    table = pull_table(bolted, 9e3, 500.0, 1e-3)
+    table = tabulate_normal_force(bolted, 9e3, 500.0, 1e-3)
     s, force, k = table.rows.T
     assert np.all(np.diff(s) > 0.0)
     assert np.all(np.diff(force) >= 0.0)
@@ -86,14 +86,14 @@ def test_pull_table_is_the_joints_force(bolted):
         assert -force[i] == pytest.approx(state["f_z"], rel=1e-9, abs=1e-6)
         assert k[i] == pytest.approx(state["K_zz"], rel=1e-9, abs=1.0)
     assert force[-1] == force[-2] == pytest.approx(72e3, rel=1e-12)
-    assert force[0] == pytest.approx(-(STRONGEST - 1.0) * 72e3, rel=1e-3)  # its end is interpolated
+    assert force[0] == pytest.approx(-(MAX_FORCE_RATIO - 1.0) * 72e3, rel=1e-3)  # its end is interpolated
     for x in np.linspace(s[0], s[-2], 101):
         exact = -bolted.motion(9e3, 500.0, (0.0, 0.0, x), (0.0, 0.0, 0.0))["f_z"]
         assert abs(np.interp(x, s, force) - exact) <= 1.01e-3 * max(abs(exact), 72e3)
 
 
 def test_drive_table_is_odd_and_keeps_to_the_curve(drive):
-    table = tables.odd_table(drive.curve, 1e-3)
+    table = tables.tabulate_odd_curve(drive.curve, 1e-3)
     np.testing.assert_array_equal(table.rows[:, :2], -table.rows[::-1, :2])
     np.testing.assert_array_equal(table.rows[:, 2], table.rows[::-1, 2])
     tau = np.geomspace(1e-3, 30.0, 5001)
@@ -104,20 +104,20 @@ def test_drive_table_is_odd_and_keeps_to_the_curve(drive):
 @pytest.mark.parametrize("error", [0.0, -1e-3, 0.5, np.nan, 1e-9])
 def test_errors_that_no_table_has_are_refused(bolted, error):
     with pytest.raises(ValueError, match="error = "):
-        tables.law_table(bolted.curve, error)
+        tables.tabulate_law(bolted.curve, error)
 
 
 def test_state_outside_the_law_is_refused(bolted):
     with pytest.raises(ValueError, match="preload = -5 N per bolt"):
-        pull_table(bolted, -5.0, 0.0, 1e-3)
+        tabulate_normal_force(bolted, -5.0, 0.0, 1e-3)
 
 
 # ---- formats ----
 
 
 def test_contact_text(bolted):
-    table = tables.law_table(bolted.curve, 1e-3)
-    text = keywords.contact_text(table, MM, ["about"], keywords.CALCULIX_ROWS)
+    table = tables.tabulate_law(bolted.curve, 1e-3)
+    text = keywords.format_contact(table, MM, ["about"], keywords.MAX_CALCULIX_ROWS)
     cards = [line for line in text.splitlines() if line.startswith("*") and not line.startswith("**")]
     assert cards == [
         "*SURFACE INTERACTION, NAME=JOINT",
@@ -133,11 +133,11 @@ def test_contact_text(bolted):
 
 
 def test_calculix_refuses_more_rows_than_it_holds():
-    file = default("bolted_joint")
-    rows = writing.contact("abaqus", file, SI, 1e-4).facts["rows"]
+    file = load_default("bolted_joint")
+    rows = writing.export_contact("abaqus", file, SI, 1e-4).facts["rows"]
     assert rows > 200
     with pytest.raises(ValueError, match=f"has {rows + 1} rows, CalculiX holds 200; allow a larger error"):
-        writing.contact("calculix", file, SI, 1e-4)
+        writing.export_contact("calculix", file, SI, 1e-4)
 
 
 @pytest.mark.parametrize(
@@ -149,7 +149,7 @@ def test_calculix_refuses_more_rows_than_it_holds():
     ],
 )
 def test_csv_is_read_by_numpy(joint, state, heads):
-    written = writing.curve("csv", default(joint), state, SI, 1e-3)
+    written = writing.export_curve("csv", load_default(joint), state, SI, 1e-3)
     lines = [line for line in written.text.splitlines() if not line.startswith("#")]
     assert lines[0] == heads
     rows = np.loadtxt(lines[1:], delimiter=",")
@@ -160,8 +160,8 @@ def test_csv_is_read_by_numpy(joint, state, heads):
 
 
 def test_units_of_a_curve():
-    metres = writing.curve("csv", default("gear_contact"), None, SI, 1e-2).text
-    millimetres = writing.curve("csv", default("gear_contact"), None, MM, 1e-2).text
+    metres = writing.export_curve("csv", load_default("gear_contact"), None, SI, 1e-2).text
+    millimetres = writing.export_curve("csv", load_default("gear_contact"), None, MM, 1e-2).text
     one, other = (
         np.loadtxt(t.splitlines(), delimiter=",", comments=["#", "s"]) for t in (metres, millimetres)
     )
@@ -171,7 +171,7 @@ def test_units_of_a_curve():
 
 def test_drive_has_no_contact_table():
     with pytest.raises(ValueError, match="export its curve"):
-        writing.contact("csv", default("harmonic_drive"), SI, 1e-3)
+        writing.export_contact("csv", load_default("harmonic_drive"), SI, 1e-3)
 
 
 # ---- Modelica: the text, and a CombiTable1D of its rows run by rumoca ----
@@ -234,11 +234,11 @@ def modelica_table(text):
     ("joint", "state"), [("harmonic_drive", None), ("gear_contact", None), ("bolted_joint", STATE)]
 )
 def test_modelica_text(joint, state):
-    written = writing.curve("modelica", default(joint), state, SI, 1e-3)
+    written = writing.export_curve("modelica", load_default(joint), state, SI, 1e-3)
     name, rows = modelica_table(written.text)
     assert name == written.facts["table"] == ("torque" if joint == "harmonic_drive" else "force")
     assert np.all(np.diff(rows[:, 0]) > 0.0)
-    csv = writing.curve("csv", default(joint), state, SI, 1e-3).text
+    csv = writing.export_curve("csv", load_default(joint), state, SI, 1e-3).text
     same = np.loadtxt([line for line in csv.splitlines() if line[0] in "-0123456789"], delimiter=",")
     np.testing.assert_array_equal(rows, same)
 
@@ -246,7 +246,7 @@ def test_modelica_text(joint, state):
 def test_rumoca_runs_a_combi_table_of_the_rows(drive):
     import rumoca
 
-    text = writing.curve("modelica", default("harmonic_drive"), None, SI, 1e-3).text
+    text = writing.export_curve("modelica", load_default("harmonic_drive"), None, SI, 1e-3).text
     rows = modelica_table(text)[1]
     matrix = "[" + "; ".join(", ".join(map(repr, row)) for row in rows.tolist()) + "]"
     span = 1.2 * float(rows[-1, 0])
@@ -270,12 +270,12 @@ def test_rumoca_runs_a_combi_table_of_the_rows(drive):
 
 
 def test_header_is_plain_text():
-    file = default("gear_contact")
+    file = load_default("gear_contact")
     odd = type(file)(file.joint, "Zähne *STEP", file.values, file.origins, file.sources)
-    text = writing.contact("abaqus", odd, SI, 1e-2).text
+    text = writing.export_contact("abaqus", odd, SI, 1e-2).text
     assert "** parameters: Z?hne *STEP (gear_contact)" in text
     assert text.isascii()
-    assert tables.modelica_text(np.eye(2), "t", ["a\nb"]).splitlines()[2] == "# a b"
+    assert tables.format_modelica_table(np.eye(2), "t", ["a\nb"]).splitlines()[2] == "# a b"
 
 
 def test_a_catalogue_drive_has_rows_for_a_per_cent_of_its_stiffness(tmp_path, capsys):

@@ -6,9 +6,9 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from clients import needs
-from jointfmu_tools.fem import installed, newton
+from jointfmu_tools.fem import newton, require_fem_packages
 from jointfmu_tools.fem.balance import RigidBalance
-from jointfmu_tools.fem.bolted_contact import BoltedContact, elastic_body, midway
+from jointfmu_tools.fem.bolted_contact import BoltedContact, bolt_midpoints, elastic_body
 from jointfmu_tools.fem.contact import ContactModel, ContactSolution, Interface
 from jointfmu_tools.fem.elasticity import Cholesky, ElasticBody
 from jointfmu_tools.fem.geometry import Assembly, BoltList, Plate, TappedPlate
@@ -16,8 +16,8 @@ from scipy.sparse import diags_array
 from skfem import MeshHex, MeshQuad
 from threadpoolctl import threadpool_info, threadpool_limits
 
-from jointfmu.mechanics.curve import approach_curve
-from jointfmu.parameters import default
+from jointfmu.mechanics.curve import tabulate_approach
+from jointfmu.parameters import load_default
 
 pytestmark = pytest.mark.slow
 
@@ -42,7 +42,7 @@ class Linear:
 
 @pytest.fixture(scope="module")
 def law():
-    return approach_curve(replace(default("bolted_joint").values, A_0=PLATE.length * PLATE.width))
+    return tabulate_approach(replace(load_default("bolted_joint").values, A_0=PLATE.length * PLATE.width))
 
 
 # two blocks pressed uniformly: p is the load over the area, each block shortens by p h / E
@@ -68,7 +68,7 @@ def test_two_blocks_pressed_uniformly(law):
         mesh = MeshHex.init_tensor(lines, lines, np.sort(sign * z))
         far = {"far": lambda x, end=sign * depth: np.isclose(x[2], end)}
         bodies.append(ElasticBody(mesh.with_boundaries(far), modulus, 0.3, 7800.0))
-    interface = Interface.of(MeshQuad.init_tensor(lines, lines))
+    interface = Interface.from_mesh(MeshQuad.init_tensor(lines, lines))
     area = 0.05**2
     loads = [
         -sign * p * area * body.uniform_load(body.mesh.boundaries["far"])
@@ -76,7 +76,7 @@ def test_two_blocks_pressed_uniformly(law):
     ]
     solution = ContactModel(tuple(bodies), interface, law).solve(loads, 0.3 * p)
     assert solution.pressure == pytest.approx(np.full(interface.area.size, p), rel=ROUND_OFF)
-    assert solution.at_nodes == pytest.approx(
+    assert solution.node_approach == pytest.approx(
         np.full(interface.nodes.shape[1], law.inverse(p)), rel=ROUND_OFF
     )
     ends = [
@@ -105,7 +105,7 @@ def wavy(n: int, mean: float, k: float, amplitude: float) -> ContactSolution:
     body = ElasticBody(mesh, 1.0, 0.3, 1.0)
     ends = np.isclose(body.nodes[0], 0.0) | np.isclose(body.nodes[0], 0.5)
     held = np.concatenate([3 * np.flatnonzero(ends), 3 * np.arange(ends.size) + 1])
-    interface = Interface.of(MeshQuad.init_tensor(x, y))
+    interface = Interface.from_mesh(MeshQuad.init_tensor(x, y))
     model = ContactModel(
         (body,), interface, Linear(k), lambda x, y: amplitude * (1.0 - np.cos(2.0 * np.pi * x)), (held,)
     )
@@ -154,7 +154,7 @@ def test_partial_contact_converges_to_westergaard():
 
 @pytest.fixture(scope="module")
 def plates():
-    return BoltedContact.of(Assembly("plates", PLATE, PLATE, BOLTS), 0.5)
+    return BoltedContact.from_assembly(Assembly("plates", PLATE, PLATE, BOLTS), 0.5)
 
 
 @needs("gmsh")
@@ -208,7 +208,7 @@ def test_a_mirror_image_equals_two_bodies(plates, law):
 @needs("gmsh")
 def test_bodies_of_different_kind(law):
     thick = replace(PLATE, thickness=0.02, length=0.16, E=7e10)
-    joint = BoltedContact.of(Assembly("plates", PLATE, thick, BOLTS), 0.5)
+    joint = BoltedContact.from_assembly(Assembly("plates", PLATE, thick, BOLTS), 0.5)
     solution = joint.solve(law, 4e3, -30.0)
     area = PLATE.length * PLATE.width
     assert joint.assembly.contact_area == pytest.approx(area - 2.0 * np.pi * 0.0033**2, rel=1e-12)
@@ -223,7 +223,7 @@ def test_bodies_of_different_kind(law):
 
 def pulled(plates, law, *forces, held=None):
     """Both heads pulled by forces [N] along +z, away from the contact."""
-    model = ContactModel(plates.bodies, plates.interface, law, held=held)
+    model = ContactModel(plates.bodies, plates.interface, law, fixed_unknowns=held)
     return model, [plates.heads[0] @ np.array(forces)]
 
 
@@ -257,7 +257,7 @@ def test_a_contact_that_flew_apart_is_refused(plates, law, factor, monkeypatch):
 @needs("gmsh")
 def test_contact_forces_are_checked_by_their_sums(plates, law):
     model, loads = pulled(plates, law, -4e3, -4e3)
-    solution, balance = model.solve(loads, 1e6), model.balance(loads)
+    solution, balance = model.solve(loads, 1e6), model.rigid_balance(loads)
     force = 0.5 * model.interface.area * solution.pressure  # the mirror image takes the other half
     balance.check_contact(force * (1.0 + 1e-8))
     with pytest.raises(RuntimeError, match=r"leaves \S+ of the loads over, allowed is 1e-06$"):
@@ -310,7 +310,9 @@ def test_loads_within_a_body_close_no_contact(plates, law):
 
 def test_neighbours_of_bolts():
     frame = np.array([[x, y] for x in (-0.1, 0.0, 0.1) for y in (-0.15, 0.0, 0.15) if (x, y) != (0.0, 0.0)])
-    middles = {tuple(np.round(m, 9)) for m in midway(frame) if max(abs(m[0]) / 0.1, abs(m[1]) / 0.15) > 0.9}
+    middles = {
+        tuple(np.round(m, 9)) for m in bolt_midpoints(frame) if max(abs(m[0]) / 0.1, abs(m[1]) / 0.15) > 0.9
+    }
     assert len(middles) == 8
     assert (0.05, 0.15) in middles
     assert (0.1, -0.075) in middles
@@ -326,7 +328,9 @@ def test_a_stiff_side_does_not_tell_how_a_bolt_holds_it(law):
     sizes = {"length": 0.08, "width": 0.06, "thickness": 0.012}
     bolts = BoltList(x=(-0.011, 0.015), y=(-0.004, 0.007), hole_diameter=0.009, head_diameter=0.016)
     fields = [
-        BoltedContact.of(Assembly("stiff", Plate(**sizes, **STEEL), side, bolts), 0.5).solve(law, 15e3).field
+        BoltedContact.from_assembly(Assembly("stiff", Plate(**sizes, **STEEL), side, bolts), 0.5)
+        .solve(law, 15e3)
+        .field
         for side in (Plate(**sizes, **stiff), TappedPlate(**sizes, **stiff, depth=0.008))
     ]
     nut, thread = fields
@@ -343,8 +347,8 @@ def test_a_thread_pulls_beside_its_hole(law):
     reach = []
     for tapped in (False, True):
         side = TappedPlate(**sizes, **STEEL, depth=0.008) if tapped else Plate(**sizes, **STEEL)
-        joint = BoltedContact.of(Assembly("thread", Plate(**sizes, **STEEL), side, bolt), 0.5)
-        field, head = joint.solve(law, 15e3).field, joint.heads[-1][:, 0].reshape(-1, 3)
+        joint = BoltedContact.from_assembly(Assembly("thread", Plate(**sizes, **STEEL), side, bolt), 0.5)
+        field, head = joint.solve(law, 15e3).field, joint.bolt_head_loads[-1][:, 0].reshape(-1, 3)
         assert head.sum(axis=0) == pytest.approx([0.0, 0.0, 1.0], abs=1e-12)
         at = joint.bodies[-1].nodes[:, np.abs(head[:, 2]) > 1e-9]
         if tapped:
@@ -361,6 +365,6 @@ def test_solutions_have_one_thread():
         return max(pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas")
 
     with threadpool_limits(2, "blas"):
-        with installed("a solution"):
+        with require_fem_packages("a solution"):
             assert threads() == 1
         assert threads() == 2

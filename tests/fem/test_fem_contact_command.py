@@ -9,10 +9,16 @@ import numpy as np
 import pytest
 from clients import needs
 from jointfmu_tools.cli import main
-from jointfmu_tools.fem.convergence import COLUMNS, MeshResult, changes, orders, refinements
+from jointfmu_tools.fem.convergence import (
+    RESULT_UNITS,
+    MeshResult,
+    observed_orders,
+    refinements,
+    relative_changes,
+)
 
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
-from jointfmu.parameters import default, load
+from jointfmu.parameters import load_default, load_parameter_file
 
 pytestmark = pytest.mark.slow
 
@@ -101,10 +107,10 @@ def test_the_picture(computed):
 @needs("gmsh")
 def test_the_joint_has_the_field(computed):
     found, folder = computed
-    joint = load(folder / "joint.toml", "bolted_joint").values
+    joint = load_parameter_file(folder / "joint.toml", "bolted_joint").values
     assert (joint.n_bolts, joint.row_bolts, joint.row_distance) == (4.0, 2.0, 0.03)
     assert (joint.side1.E, joint.side1.nu) == (2.1e11, 0.3)
-    state = BoltedJointSpring.of_nodes(joint).motion(5e3, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    state = BoltedJointSpring.of_nodes(joint).evaluate(5e3, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     for name, sum_ in (("K_zz", "K_N"), ("K_rx", "K_rx"), ("K_ry", "K_ry")):
         assert state[name] == pytest.approx(found[sum_], rel=1e-6), name  # what the reduction keeps
 
@@ -131,7 +137,7 @@ def test_a_pressure_beyond_the_hardness_is_said(plates, capsys):
     assert all(line.startswith("warning: ") for line in lines)
     assert lines[0].startswith("warning: preload = 1e+09 N is above ")
     assert "warning: a pressure of " in said.err
-    hardness = default("bolted_joint").values.hardness
+    hardness = load_default("bolted_joint").values.hardness
     assert f"above the hardness of the softer body, {hardness:.4g} Pa" in said.err
 
 
@@ -166,11 +172,13 @@ def test_refused(plates, capsys, given, text):
 def test_observed_orders():
     """Values that behave like 1 + h^2 have the order two; one that does not settle has none."""
     rows = [
-        MeshResult(refinement, 1, 1, dict.fromkeys(COLUMNS, 1.0 + 1e-4 / refinement**2))
+        MeshResult(refinement, 1, 1, dict.fromkeys(RESULT_UNITS, 1.0 + 1e-4 / refinement**2))
         for refinement in refinements(3)
     ]
-    assert orders(rows)["peak"] == pytest.approx(2.0, abs=1e-3)  # changes are relative to 1 + 1e-4 h^2
+    assert observed_orders(rows)["peak"] == pytest.approx(
+        2.0, abs=1e-3
+    )  # changes are relative to 1 + 1e-4 h^2
     assert [round(r.refinement, 3) for r in rows] == [0.707, 1.0, 1.414]
-    worse = [*rows[:2], replace(rows[2], values=dict.fromkeys(COLUMNS, 2.0))]
-    assert math.isnan(orders(worse)["peak"])
-    assert changes(rows)[0]["K_N"] < 0.0
+    worse = [*rows[:2], replace(rows[2], values=dict.fromkeys(RESULT_UNITS, 2.0))]
+    assert math.isnan(observed_orders(worse)["peak"])
+    assert relative_changes(rows)[0]["K_N"] < 0.0

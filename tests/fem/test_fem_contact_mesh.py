@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from clients import needs
-from jointfmu_tools.fem.assembly import load
+from jointfmu_tools.fem.assembly import read_assembly
 from jointfmu_tools.fem.elasticity import ElasticBody
 from jointfmu_tools.fem.geometry import Assembly, BoltGrid, BoltList, BoxSection, Plate
-from jointfmu_tools.fem.mesh import body_mesh, contact_cells, contact_mesh, plan_of
+from jointfmu_tools.fem.mesh import body_mesh, contact_mesh, find_contact_cells, mesh_plan
 from skfem import Basis, BilinearForm, ElementHexS2, ElementVector, LinearForm, MeshHex, condense, solve
 from skfem.models.elasticity import lame_parameters, linear_elasticity
 
@@ -44,7 +44,7 @@ def volume(mesh: MeshHex) -> float:
 @pytest.fixture(scope="module")
 def box_on_plate():
     assembly = Assembly("box on plate", PLATE, BOX, FRAME)
-    return assembly, plan_of(assembly, 0.6)
+    return assembly, mesh_plan(assembly, 0.6)
 
 
 @needs("gmsh")
@@ -63,7 +63,7 @@ def test_the_mesh_has_the_bodies_volumes(box_on_plate):
 @needs("gmsh")
 def test_the_contact_has_the_nodes_of_both_bodies(box_on_plate):
     assembly, plan = box_on_plate
-    contact = contact_mesh(plan, contact_cells(plan, assembly))
+    contact = contact_mesh(plan, find_contact_cells(plan, assembly))
     wanted = {tuple(p) for p in contact.p.T.tolist()}
     for side in (1, 2):
         mesh = body_mesh(plan, assembly, side, 0.6)
@@ -87,7 +87,7 @@ def test_heads_are_annuli(box_on_plate):
 @needs("gmsh")
 def test_refinement_divides_the_sizes():
     assembly = Assembly("boxes", BOX, BOX, FRAME)
-    counts = [plan_of(assembly, refinement).cells.shape[1] for refinement in (0.5, 1.0, 2.0)]
+    counts = [mesh_plan(assembly, refinement).cells.shape[1] for refinement in (0.5, 1.0, 2.0)]
     assert counts[0] < counts[1] < counts[2] / 2
 
 
@@ -139,7 +139,7 @@ def test_elasticity_converges_to_a_smooth_solution(by: float, order: float):
             np.pi**2 * (3.0 * shear * exact + (lame + shear) * (exact - sum(pair)))
             for pair in ((mixed[0], mixed[1]), (mixed[0], mixed[2]), (mixed[1], mixed[2]))
         ]
-        load = np.zeros(body.size)
+        load = np.zeros(body.unknown_count)
         for k in range(3):
             load[k::3] = LinearForm(lambda v, w, f=force[k]: f * v).assemble(body.basis)
         edge = np.any((np.abs(body.nodes) < 1e-9) | (np.abs(body.nodes - 1.0) < 1e-9), axis=0)
@@ -154,7 +154,7 @@ def test_elasticity_converges_to_a_smooth_solution(by: float, order: float):
 
 
 def test_the_shipped_assembly():
-    assembly = load(SHIPPED)
+    assembly = read_assembly(SHIPPED)
     assert assembly.side1 == assembly.side2
     x, y = assembly.bolts.positions.T
     assert x.tolist() == pytest.approx([-0.1, 0.0, 0.1, -0.1, 0.1, -0.1, 0.0, 0.1])
@@ -171,7 +171,7 @@ def test_bolts_at_given_places(tmp_path):
              (("x", [0.0, 0.1]), ("y", [0.15, 0.15]))]  # fmt: skip
     path = tmp_path / "a.toml"
     path.write_text("\n".join([head, "[bolts]", 'layout = "list"', *lists, *keep]))
-    assert load(path).bolts.positions.tolist() == [[0.0, 0.15], [0.1, 0.15]]
+    assert read_assembly(path).bolts.positions.tolist() == [[0.0, 0.15], [0.1, 0.15]]
 
 
 def entry(name: str, value: str) -> str:
@@ -206,7 +206,7 @@ def test_refused_assemblies(tmp_path, old, new, text):
     assert old in source
     path.write_text(source.replace(old, new, 1))
     with pytest.raises(ValueError, match=text) as caught:
-        load(path)
+        read_assembly(path)
     assert str(path) in str(caught.value)
     assert "\n" not in str(caught.value)
 

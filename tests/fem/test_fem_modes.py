@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from jointfmu_tools.fem.contact import Interface
 from jointfmu_tools.fem.elasticity import ElasticBody
-from jointfmu_tools.fem.modes import modes
+from jointfmu_tools.fem.modes import compute_modes
 from scipy.linalg import eigh
 from scipy.optimize import brentq
 from skfem import MeshHex, MeshQuad
@@ -34,7 +34,7 @@ class Block:
 
     def contact(self, size):
         x, y = steps(self.length, size), steps(self.width, size)
-        return Interface.of(MeshQuad.init_tensor(x - 0.5 * self.length, y - 0.5 * self.width))
+        return Interface.from_mesh(MeshQuad.init_tensor(x - 0.5 * self.length, y - 0.5 * self.width))
 
 
 def steps(end, size):
@@ -46,7 +46,7 @@ def solve(below, above, size, normal, tangential, count=6):
     bodies = tuple(one.body(size, sign) for one, sign in ((below, -1), (above, 1)) if one)
     interface = above.contact(size)
     ones = np.ones(interface.area.size)
-    return bodies, modes(bodies, interface, normal * ones, tangential * ones, count)
+    return bodies, compute_modes(bodies, interface, normal * ones, tangential * ones, count)
 
 
 def test_rod_of_two_halves():

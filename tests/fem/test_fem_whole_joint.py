@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from clients import needs
 from jointfmu_tools.fem.geometry import Assembly, BoltList, Plate
-from jointfmu_tools.fem.reduction.states import Cells
-from jointfmu_tools.fem.whole_joint import ATTACHED, WholeJoint
+from jointfmu_tools.fem.reduction.states import CellLoads
+from jointfmu_tools.fem.whole_joint import ATTACHMENT_NODES, JointFiniteElements
 
 pytestmark = pytest.mark.slow  # solves finite elements
 
@@ -36,63 +36,65 @@ def test_a_lap_has_the_compliance_of_shear_lag(reach):
     F/(E t w) (1/(beta tanh(beta L/2)) + L/2). The closed form leaves out shear through the thickness, which
     is (beta t)^2/6 of d, 2.4e-3 here at most, and the small hole."""
     assembly = lap()
-    joint = WholeJoint.of(assembly, "edge")
+    joint = JointFiniteElements.from_assembly(assembly, "edge")
     plate, beta = assembly.side1, reach / assembly.side1.length
     # no bending: both plates stay in their planes
-    flat = [np.arange(2, body.size, 3) for body in joint.bodies]
-    joint = replace(joint, held=tuple(np.union1d(a, b) for a, b in zip(joint.held, flat, strict=True)))
+    flat = [np.arange(2, body.unknown_count, 3) for body in joint.bodies]
+    joint = replace(
+        joint, held=tuple(np.union1d(a, b) for a, b in zip(joint.attachment_unknowns, flat, strict=True))
+    )
     springs = even(joint, 0.5 * beta**2 * plate.E * plate.thickness, 1e12)
-    found = joint.compliances(springs, 0.0).whole[0]
+    found = joint.compliances(springs, 0.0).total[0]
     per = plate.E * plate.thickness * plate.width
     expected = (1.0 / (beta * np.tanh(0.5 * reach)) + 0.5 * plate.length) / per
     assert found == pytest.approx(expected, rel=0.01)
 
 
 @needs("gmsh")
-@pytest.mark.parametrize("attached", ATTACHED)
+@pytest.mark.parametrize("attached", ATTACHMENT_NODES)
 def test_bodies_without_compliance_leave_the_interface(attached):
     """Plates 1e6 times as stiff: what is left of them is 1e-6 of the compliance that they had, which is up to
     13 times that of the interface."""
     assembly = block()
     stiff = replace(assembly.side1, E=206e15)
-    joint = WholeJoint.of(replace(assembly, side1=stiff, side2=stiff), attached)
+    joint = JointFiniteElements.from_assembly(replace(assembly, side1=stiff, side2=stiff), attached)
     found = joint.compliances(even(joint, 1e12, 1e12), 0.0)
-    assert found.whole == pytest.approx(found.rigid, rel=1e-4)
-    assert found.parts[0] == pytest.approx(found.rigid, rel=1e-4)
+    assert found.total == pytest.approx(found.interface_stiffness, rel=1e-4)
+    assert found.components[0] == pytest.approx(found.interface_stiffness, rel=1e-4)
 
 
 @needs("gmsh")
 def test_each_stiffer_part_makes_a_stiffer_joint():
-    joint = WholeJoint.of(block(nu=0.3), "heads")
+    joint = JointFiniteElements.from_assembly(block(nu=0.3), "heads")
     springs = even(joint, 1e12, 1e12)
     base, bolted, rough = (
         joint.compliances(springs * s, bolt) for s, bolt in ((1.0, 0.0), (1.0, 1e9), (0.5, 0.0))
     )
-    assert np.all(bolted.whole < base.whole * (1.0 + 1e-9))
-    assert np.all(rough.whole > base.whole)
+    assert np.all(bolted.total < base.total * (1.0 + 1e-9))
+    assert np.all(rough.total > base.total)
     # in equilibrium bolts and members share the load as their stiffness under the heads does, but for what a
     # mesh that is not symmetric turns
-    bolt, members = 1e9, 1.0 / base.whole[2]
+    bolt, members = 1e9, 1.0 / base.total[2]
     assert bolted.load_factor == pytest.approx(bolt / (bolt + members), rel=1e-5)
-    assert 1.0 / bolted.whole[2] == pytest.approx(bolt + members, rel=1e-9)
+    assert 1.0 / bolted.total[2] == pytest.approx(bolt + members, rel=1e-9)
 
 
 @needs("gmsh")
 def test_a_mirrored_side_moves_as_the_mirror_image(monkeypatch):
     """It is not solved for. A softer side is none, nor other heads, nor edges, held at opposite ends."""
-    joint = WholeJoint.of(block(nu=0.3), "heads")
-    near = SimpleNamespace(shape=SimpleNamespace(position=joint.interface.centred[::40]))
+    joint = JointFiniteElements.from_assembly(block(nu=0.3), "heads")
+    near = SimpleNamespace(shape=SimpleNamespace(position=joint.interface.centred_position[::40]))
     springs = even(joint, 1e12, 2e12)
 
     def moved():
-        cells = Cells.of(joint, near, np.ones(joint.interface.area.size))
-        return cells.moved, joint.linear(springs, 1e8).moved
+        cells = CellLoads.from_joint(joint, near, np.ones(joint.interface.area.size))
+        return cells.displacement, joint.linearize(springs, 1e8).displacement
 
     found = moved()
     soft = replace(joint, bodies=(joint.bodies[0], replace(joint.bodies[1], E=1e11)))
-    pulled = replace(joint, heads=(joint.heads[0], 2.0 * joint.heads[1]))
-    others = (soft, pulled, WholeJoint.of(block(), "edge"))
-    assert [each.mirrored for each in (joint, *others)] == [True, False, False, False]
-    monkeypatch.setattr(WholeJoint, "mirrored", False)
+    pulled = replace(joint, heads=(joint.bolt_head_loads[0], 2.0 * joint.bolt_head_loads[1]))
+    others = (soft, pulled, JointFiniteElements.from_assembly(block(), "edge"))
+    assert [each.is_mirrored for each in (joint, *others)] == [True, False, False, False]
+    monkeypatch.setattr(JointFiniteElements, "mirrored", False)
     for one, expected in zip(found, moved(), strict=True):
         assert np.max(np.abs(one - expected)) < 1e-9 * np.max(np.abs(expected))

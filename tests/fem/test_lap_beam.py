@@ -14,7 +14,7 @@ from lap_beam_loops import Joint, damping, foundation, frequency, masing
 from lap_beam_plan import Fineness
 from lap_beam_reduction import Structure, reduced, spectrum
 
-from jointfmu.mechanics.curve import approach_curve
+from jointfmu.mechanics.curve import tabulate_approach
 
 pytestmark = pytest.mark.slow
 
@@ -38,7 +38,7 @@ def joint():
     """The Brake-Reuss beam on a coarse mesh."""
     structure = Structure.of(cases.beam(), Fineness(near=6e-3, far=8e-3, layers=1))
     law = cases.laws()["roughness"]
-    curve, shear = approach_curve(law), float(law.shear_ratio())
+    curve, shear = tabulate_approach(law), float(law.shear_ratio())
     part = reduced(structure, curve, cases.data()["beam"]["preload"], shear)
     return Joint(part, foundation(curve, shear, brake_reuss.FRICTION))
 

@@ -3,19 +3,19 @@
 import numpy as np
 import pytest
 from jointfmu_tools.fem.reduction.patch_work import (
+    FrictionPoints,
     LinearContact,
-    PatchWork,
-    Shears,
-    Surface,
-    into_slip,
-    moved,
-    rigid_shifts,
-    stiffness,
-    work_of,
+    PatchFit,
+    ShearStates,
+    compute_friction_work,
+    evaluate_friction,
+    rigid_displacement_matrix,
+    shear_combinations,
+    stick_stiffness_matrix,
 )
 
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
-from jointfmu.parameters import default
+from jointfmu.parameters import load_default
 
 RADIUS, COUNT, PATCHES = 0.02, 24, 10
 LEVELS = np.array([0.05, 0.2, 0.4, 0.6, 0.8, 1.0, 1.3])
@@ -24,7 +24,7 @@ LEVELS = np.array([0.05, 0.2, 0.4, 0.6, 0.8, 1.0, 1.3])
 @pytest.fixture(scope="module")
 def disc():
     """An evenly pressed disc of many points, whose middle lags behind by two modes, and patches of it."""
-    law = BoltedJointSpring.of(default("bolted_joint").values).foundation()
+    law = BoltedJointSpring.of(load_default("bolted_joint").values).foundation()
     line = RADIUS * (np.arange(COUNT) + 0.5) / COUNT * 2.0 - RADIUS
     place = np.stack([each.ravel() for each in np.meshgrid(line, line)], axis=1)
     place = place[np.hypot(*place.T) < RADIUS]
@@ -32,37 +32,41 @@ def disc():
     rows = np.concatenate([np.stack([-lag, nothing], axis=1), np.stack([nothing, -lag], axis=1)])
     approach = float(law.curve.inverse(5e6))
     area = np.full(len(place), 1e-6)
-    points = Surface(area, np.full(len(place), approach), rigid_shifts(place))
+    points = FrictionPoints(area, np.full(len(place), approach), rigid_displacement_matrix(place))
     number = np.arange(PATCHES) + 0.5
     far, angle = RADIUS * np.sqrt(number / PATCHES), np.pi * (3.0 - np.sqrt(5.0)) * number
     seed = np.stack([far * np.cos(angle), far * np.sin(angle)], axis=1)
     cell = np.argmin(np.hypot(*(place[:, None] - seed).transpose(2, 0, 1)), axis=1)
     means = np.stack([cell == i for i in range(PATCHES)]) / np.bincount(cell)[:, None]
-    few = Surface(1e-6 * np.bincount(cell), np.full(PATCHES, approach), rigid_shifts(means @ place))
+    few = FrictionPoints(
+        1e-6 * np.bincount(cell), np.full(PATCHES, approach), rigid_displacement_matrix(means @ place)
+    )
     both = np.concatenate([means @ rows[: len(place)], means @ rows[len(place) :]])
     motion = np.zeros((21, 6))
-    reach = law.friction / law.ratio * approach
+    reach = law.friction_coefficient / law.stiffness_ratio * approach
     for i, (axis, arm) in enumerate(((0, 1.0), (1, 1.0), (5, RADIUS))):
         motion[7 * i : 7 * i + 7, axis] = 0.3 * reach / arm * LEVELS
     amplitude = 0.7 * motion[:, :2]
-    slip = into_slip(motion)
-    shears = Shears((slip @ motion)[:, (0, 1, 5)], slip @ amplitude)
+    slip = shear_combinations(motion)
+    shears = ShearStates((slip @ motion)[:, (0, 1, 5)], slip @ amplitude)
     return law, points, rows, few, both, shears
 
 
-LINEAR = Shears(np.eye(3), np.array([[0.7, 0.0], [0.0, 0.7], [0.0, 0.0]]))
+LINEAR = ShearStates(np.eye(3), np.array([[0.7, 0.0], [0.0, 0.7], [0.0, 0.0]]))
 
 
 def tightened(disc) -> LinearContact:
     """A joint twice as stiff as its contact against shifts."""
     law, points, rows = disc[:3]
-    full = stiffness(moved(law, LINEAR, points, rows)[1], points.area)
+    full = stick_stiffness_matrix(evaluate_friction(law, LINEAR, points, rows)[1], points.area)
     return LinearContact(LINEAR, full, 2.0 * full.diagonal())
 
 
-def fit(disc) -> PatchWork:
+def fit(disc) -> PatchFit:
     law, points, rows, few, means, shears = disc
-    return PatchWork(law, shears, few, 0.0 * means, work_of(law, shears, points, rows), tightened(disc))
+    return PatchFit(
+        law, shears, few, 0.0 * means, compute_friction_work(law, shears, points, rows), tightened(disc)
+    )
 
 
 def test_ways_are_single_and_paired_motions(disc):
@@ -75,9 +79,9 @@ def test_ways_are_single_and_paired_motions(disc):
 def test_patches_lose_and_resist_as_all_points(disc):
     """At their means they lose too little in partial slip; fitted, hardly anything."""
     law, points, rows, few, means, shears = disc
-    aim = work_of(law, shears, points, rows)
-    fitted = fit(disc).fitted(means)
-    before, after = (work_of(law, shears, few, each) for each in (means, fitted))
+    aim = compute_friction_work(law, shears, points, rows)
+    fitted = fit(disc).fit(means)
+    before, after = (compute_friction_work(law, shears, few, each) for each in (means, fitted))
     partial = np.arange(1, 7)  # along x
     assert np.min(before.loss[partial] / aim.loss[partial]) < 0.97
     np.testing.assert_allclose(after.loss[partial], aim.loss[partial], rtol=0.03)
@@ -89,9 +93,12 @@ def test_patches_lose_and_resist_as_all_points(disc):
 def test_the_tightened_joint_stays_as_stiff(disc):
     """What linear ways store without slip, while the same fit meets the loss."""
     law, few, means = disc[0], disc[3], disc[4]
-    working, full = fit(disc), tightened(disc).shear
-    fitted = working.fitted(means)
-    found = [stiffness(moved(law, LINEAR, few, each)[1], few.area) for each in (means, fitted)]
+    working, full = fit(disc), tightened(disc).contact_stiffness
+    fitted = working.fit(means)
+    found = [
+        stick_stiffness_matrix(evaluate_friction(law, LINEAR, few, each)[1], few.area)
+        for each in (means, fitted)
+    ]
     missed = [np.max(np.abs(each - full)[:2]) / np.max(np.abs(full)) for each in found]
     assert missed[0] > 0.01
     assert missed[1] < 2e-4
@@ -100,23 +107,23 @@ def test_the_tightened_joint_stays_as_stiff(disc):
 
 def test_slopes_of_the_tightened_stiffness_are_those_of_differences(disc):
     means, working, step = disc[4], fit(disc), 1e-6
-    slope = working._tightened_slopes(means)
+    slope = working._stiffness_jacobian(means)
     for index in ((0, 0), (5, 1), (PATCHES + 2, 1)):
         there = [means.copy(), means.copy()]
         there[0][index] -= step
         there[1][index] += step
-        low, high = (working._tightened(each) for each in there)
+        low, high = (working._stiffness_residual(each) for each in there)
         column = slope[:, np.ravel_multi_index(index, means.shape)]
         np.testing.assert_allclose((high - low) / (2 * step), column, atol=1e-6 * np.abs(slope).max())
 
 
 def test_slopes_are_those_of_differences(disc):
     means, working = disc[4], fit(disc)
-    slope, still, step = working._slopes(means), np.zeros_like(means), 1e-6
+    slope, still, step = working._work_jacobian(means), np.zeros_like(means), 1e-6
     for index in ((0, 0), (5, 1)):
         there = [means.copy(), means.copy()]
         there[0][index] -= step
         there[1][index] += step
-        low, high = (working._missed(each, still)[: len(slope)] for each in there)
+        low, high = (working._work_residual(each, still)[: len(slope)] for each in there)
         column = slope[:, np.ravel_multi_index(index, means.shape)]
         np.testing.assert_allclose((high - low) / (2 * step), column, atol=2e-4 * np.abs(column).max())

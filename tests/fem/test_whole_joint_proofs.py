@@ -10,13 +10,13 @@ import pytest
 from clients import needs
 from coulomb_springs import Springs
 from elastic_sides import Joint, stiffnesses
-from jointfmu_tools.fem.whole_joint import WholeJoint
+from jointfmu_tools.fem.whole_joint import JointFiniteElements
 from lap_beam_reduction import patches
 from whole_joint_forms import PRESS, Lap, by_hand
 from whole_joint_nodes import JOINTS, STEPS, Elements, along_motion, way
 
-from jointfmu.joints.bolted_joint.contact import Place
-from jointfmu.mechanics.curve import approach_curve
+from jointfmu.joints.bolted_joint.contact import RelativeDisplacement
+from jointfmu.mechanics.curve import tabulate_approach
 from jointfmu.mechanics.sliders import Foundation
 
 
@@ -63,19 +63,19 @@ def test_vdi_2230_by_hand():
 def test_springs_of_coulomb_have_backbone_and_loop_of_the_theorem():
     """What the distance of the springs takes: 0.17 % of the force and 3 % of the loss at the first amplitude,
     0.08 % of the loss at the others."""
-    law = approach_curve(cases.laws()["roughness"])
+    law = tabulate_approach(cases.laws()["roughness"])
     springs = Springs.of(law, 0.8, 0.15)
     exact = Foundation(law, 0.8, 0.15, springs.edges)
     delta = law.inverse(np.array([1e6, 5e6, 2e7]))
-    full = 0.15 * law.derivatives(delta, 0)[0] / exact.stick(delta)
+    full = 0.15 * law.derivatives(delta, 0)[0] / exact.stick_stiffness(delta)
     for part in (0.1, 0.5, 1.0, 2.0):
         shift = np.column_stack([0.6 * part * full, 0.8 * part * full])
         up = springs.moved(springs.at_rest(3), delta, delta, shift)
         force = np.hypot(*up.traction.T)
-        np.testing.assert_allclose(force, exact.backbone(delta, part * full), rtol=3e-3)
+        np.testing.assert_allclose(force, exact.virgin_traction(delta, part * full), rtol=3e-3)
         down = springs.moved(up.force, delta, delta, -2.0 * shift)
         again = springs.moved(down.force, delta, delta, 2.0 * shift)
-        heat = exact.loop(delta, part * full)[0]
+        heat = exact.cycle_energies(delta, part * full)[0]
         np.testing.assert_allclose(down.loss + again.loss, heat, rtol=2e-3 if part > 0.1 else 0.05)
 
 
@@ -110,8 +110,10 @@ def test_a_bracket_slips_under_a_lever_as_its_elements_do(monkeypatch):
     Friction has the normal force of the contact, however it bends: patches that open by themselves do not,
     and find no equilibrium on the wide way of six directions at the end.
     """
-    fine = WholeJoint.of
-    monkeypatch.setattr(WholeJoint, "of", lambda assembly, attached, *_: fine(assembly, attached, 0.7))
+    fine = JointFiniteElements.from_assembly
+    monkeypatch.setattr(
+        JointFiniteElements, "of", lambda assembly, attached, *_: fine(assembly, attached, 0.7)
+    )
     attached, drawing, wrench = JOINTS["bracket"]
     joint = Joint.of(attached, drawing, elements=True)
     elements = Elements.clamped(joint, wrench)
@@ -126,11 +128,11 @@ def test_a_bracket_slips_under_a_lever_as_its_elements_do(monkeypatch):
     spring, rng = joint.spring, np.random.default_rng(5)
     there, back = rng.uniform(-0.2, 0.2, (2, 6)) * joint.load() / stiffnesses(joint)[0]
     angles = np.linspace(0.0, 2.0 * np.pi, 25)
-    memory, start = spring.at_rest(), spring.tightened(joint.preload, 0.0)
+    memory, start = spring.initial_history(), spring.preloaded_approach(joint.preload, 0.0)
     for six in np.outer(np.sin(angles), there) + np.outer(1.0 - np.cos(angles), back):
-        place = Place(six)
-        memory = spring.evolve(joint.preload, 0.0, place, (0.0,) * 6, memory)[1]
-        after = spring.memory.split(memory)
-        opened = place.apart(spring.shape) + spring.modes.opening @ after["amplitude"]
+        place = RelativeDisplacement(six)
+        memory = spring.advance(joint.preload, 0.0, place, (0.0,) * 6, memory)[1]
+        after = spring.history_layout.split(memory)
+        opened = place.opening(spring.shape) + spring.modes.opening @ after["amplitude"]
         points, few = (spring.curve.derivatives(x, 0)[0] for x in (start - opened, after["approach"]))
         assert spring.patches.share @ few == pytest.approx(spring.shape.share @ points, rel=2e-4)

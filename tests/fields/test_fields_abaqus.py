@@ -7,8 +7,8 @@ with contact variables for displacements. Contact tables of a data file have a s
 
 import numpy as np
 import pytest
-from jointfmu_tools.fields.contact_surface import Plane
-from jointfmu_tools.fields.reading import Reading
+from jointfmu_tools.fields.contact_surface import ContactPlane
+from jointfmu_tools.fields.reading import FieldReader
 from test_fields_files import UNITS, blocks, faces, grid
 
 DIGITS = 1e-5  # six of them are printed
@@ -76,7 +76,7 @@ def test_a_report_with_areas(tmp_path, name, per_line):
     table, path = listed(), tmp_path / "a.rpt"
     table[5, [0, 4]] = 0.0
     path.write_text(report([name, *AREAS], table, per_line=per_line))
-    field, _ = Reading(**UNITS).field(path)
+    field, _ = FieldReader(**UNITS).read_field(path)
     kept = table[table[:, 4] > 0.0]
     np.testing.assert_allclose(field.pressure, 1e6 * kept[:, 0], rtol=DIGITS)
     np.testing.assert_allclose(field.position, 1e-3 * kept[:, 1:3], rtol=DIGITS, atol=1e-12)
@@ -91,8 +91,8 @@ def test_columns_in_reports_of_their_own(tmp_path):
     first.write_text(early + report(["CPRESS", "CNAREA"], table[:, [0, 4]], increment=7))
     second.write_text(report(["COORD.Magnitude", *AREAS[:3]], table[:, [0, 1, 2, 3]], increment=0))
     with pytest.raises(ValueError, match=r"p.rpt: has no coordinates, .*; list them too, or give the input"):
-        Reading(**UNITS).field(first)
-    field, _ = Reading(**UNITS, beside=(second,)).field(first)
+        FieldReader(**UNITS).read_field(first)
+    field, _ = FieldReader(**UNITS, companion_files=(second,)).read_field(first)
     np.testing.assert_allclose(field.pressure, 1e6 * table[:, 0], rtol=DIGITS)
 
 
@@ -104,7 +104,7 @@ def test_nodes_of_two_parts_are_two(tmp_path):
     columns = ["CPRESS", *AREAS]
     upper = report(columns, other, "region: UPPER-1.Region_2")
     path.write_text(report(columns, table, "region: LOWER-1.Region_1") + upper)
-    assert Reading(**UNITS).field(path)[0].area.size == len(table)
+    assert FieldReader(**UNITS).read_field(path)[0].area.size == len(table)
 
 
 def deck(points, cells, kind, labels):
@@ -128,14 +128,16 @@ def test_a_report_on_the_faces_of_a_deck(tmp_path):
     mesh.write_text(deck(points, bricks, "C3D8R", labels))
     path.write_text(report(["CPRESS"], np.concatenate([p, 1.1 * p])[:, None], labels=labels[n : 3 * n]))
     with pytest.raises(ValueError, match=r"has no coordinates, .*give the input deck \(.inp\)"):
-        Reading(**UNITS).field(path)
+        FieldReader(**UNITS).read_field(path)
     for side, factor in (("below", 1.0), ("above", 1.1)):
-        field, _ = Reading(**UNITS, beside=(mesh,), plane=Plane(side=side)).field(path)
+        field, _ = FieldReader(**UNITS, companion_files=(mesh,), plane=ContactPlane(side=side)).read_field(
+            path
+        )
         assert field.area.sum() == pytest.approx(8e-6, rel=1e-13)
         np.testing.assert_allclose(field.pressure, factor * p * 1e6, rtol=DIGITS)
     part = 10  # of the nodes are listed: the others are no contact
     path.write_text(report(["CPRESS"], p[:part, None], labels=labels[n : n + part]))
-    some, _ = Reading(**UNITS, beside=(mesh,)).field(path)
+    some, _ = FieldReader(**UNITS, companion_files=(mesh,)).read_field(path)
     assert 0 < some.area.size <= part
 
 
@@ -182,13 +184,13 @@ def test_a_data_file_on_the_faces_of_a_deck(tmp_path):
     tables = [INCREMENT.format(i) + printed(columns, i * shear, labels, "CL") for i in (1, 2)]
     path.write_text(STEP + "".join(tables) + printed(["U1", "U2"], points, labels))
     with pytest.raises(ValueError, match=r"joint.dat: node \d+: is open \(no pressure\)"):
-        Reading(**UNITS, beside=(mesh,)).field(path)
-    field, _ = Reading(**UNITS, beside=(mesh,), open="keep").field(path)
+        FieldReader(**UNITS, companion_files=(mesh,)).read_field(path)
+    field, _ = FieldReader(**UNITS, companion_files=(mesh,), open_nodes="keep").read_field(path)
     np.testing.assert_allclose(field.pressure, 2e6 * p, rtol=5e-5)  # five digits are printed
     assert field.area.sum() == pytest.approx(8e-6, rel=1e-13)
     again = printed(["CPRESS", "COOR1", "COOR2", "COOR3", "CNAREA"], listed(), labels[: len(listed())])
     path.write_text(STEP + INCREMENT.format(1) + again)
-    alone, _ = Reading(**UNITS).field(path)
+    alone, _ = FieldReader(**UNITS).read_field(path)
     np.testing.assert_allclose(alone.pressure, 1e6 * listed()[:, 0], rtol=5e-5)
 
 
@@ -210,7 +212,7 @@ def test_broken_reports_are_refused_with_the_line(tmp_path, text, message):
     path = tmp_path / "a.rpt"
     path.write_text(text)
     with pytest.raises(ValueError, match=message) as error:
-        Reading(**UNITS).field(path)
+        FieldReader(**UNITS).read_field(path)
     assert str(error.value).startswith(f"{path}: ")
     assert "\n" not in str(error.value)
 
@@ -233,7 +235,7 @@ def test_broken_decks_are_refused(tmp_path, old, new, message):
     mesh.write_text(text.replace(old, new, 1))
     path.write_text(report(["CPRESS"], listed()[:, :1]))
     with pytest.raises(ValueError, match=message) as error:
-        Reading(**UNITS, beside=(mesh,)).field(path)
+        FieldReader(**UNITS, companion_files=(mesh,)).read_field(path)
     assert str(error.value).startswith(f"{mesh}: ")
     assert "\n" not in str(error.value)
 
@@ -248,7 +250,7 @@ def test_a_deck_has_one_numbering(tmp_path):
     with pytest.raises(
         ValueError, match=r"lists nodes of 2 parts \(LOWER-1, UPPER-1\), an input deck has one"
     ):
-        Reading(**UNITS, beside=(mesh,)).field(path)
+        FieldReader(**UNITS, companion_files=(mesh,)).read_field(path)
     path.write_text(report(["CPRESS"], listed()[:, :1], labels=[n + 1 for n in labels]))
     with pytest.raises(ValueError, match=r"node 21 has a pressure and is not in .*joint.inp"):
-        Reading(**UNITS, beside=(mesh,)).field(path)
+        FieldReader(**UNITS, companion_files=(mesh,)).read_field(path)

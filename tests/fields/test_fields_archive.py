@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from jointfmu_tools.fields import ansys
-from jointfmu_tools.fields.contact_surface import Plane
+from jointfmu_tools.fields.contact_surface import ContactPlane
 from jointfmu_tools.fields.mesh import nodal_areas
-from jointfmu_tools.fields.reading import Reading
+from jointfmu_tools.fields.reading import FieldReader
 from mapdl_archive import examples
 from test_fields_files import UNITS, blocks, faces, listing
 
@@ -39,10 +39,10 @@ def test_contact_elements_of_an_archive(tmp_path):
     p = np.round(1.0 + points[:, 0] * points[:, 1], 4)
     path, mesh = tmp_path / "p.lis", tmp_path / "mesh.cdb"
     path.write_text(listing(p, points, cells))
-    expected, _ = Reading(**UNITS).field(path)
+    expected, _ = FieldReader(**UNITS).read_field(path)
     path.write_text(pressures(p, points, cells))
     with pytest.raises(ValueError, match=r"has no nodes, a table with .* \(NLIST\); give further listings"):
-        Reading(**UNITS).field(path)
+        FieldReader(**UNITS).read_field(path)
     n = len(points)
     place = np.vstack(
         [np.column_stack([points, np.full(n, 5.0)]), np.column_stack([points, np.full(n, 5.0)])]
@@ -51,14 +51,14 @@ def test_contact_elements_of_an_archive(tmp_path):
         [(1, cell) for cell in cells] + [(1, cell + n) for cell in cells] + [(2, cell) for cell in cells]
     )
     mesh.write_text(archive(place, elements, {1: 174, 2: 170}))
-    field, _ = Reading(**UNITS, beside=(mesh,)).field(path)
+    field, _ = FieldReader(**UNITS, companion_files=(mesh,)).read_field(path)
     np.testing.assert_allclose(field.pressure, expected.pressure, rtol=1e-12)
     np.testing.assert_allclose(field.area, expected.area, rtol=1e-5)  # six digits are listed
     triangle = cells[0][[0, 1, 2, 2, 4, 5, 2, 7]]  # K = L = O
     mesh.write_text(archive(place, [(1, triangle), *elements[1 : len(cells)]], {1: 174}))
     half = nodal_areas(points, [triangle[None, [0, 1, 2, 4, 5, 7]]]).sum()
     rest = nodal_areas(points, [cells[1:]]).sum()
-    cut, _ = Reading(**UNITS, beside=(mesh,)).field(path)
+    cut, _ = FieldReader(**UNITS, companion_files=(mesh,)).read_field(path)
     assert cut.area.sum() == pytest.approx((half + rest) * 1e-6, rel=1e-12)
 
 
@@ -76,7 +76,9 @@ def test_solids_of_an_archive(tmp_path):
     text = pressures(np.concatenate([0 * p, p, 1.1 * p, 0 * p]), points[:, :2], bricks)
     path.write_text(text)
     for side, factor in (("below", 1.0), ("above", 1.1)):
-        field, _ = Reading(**UNITS, beside=(mesh,), plane=Plane(side=side)).field(path)
+        field, _ = FieldReader(**UNITS, companion_files=(mesh,), plane=ContactPlane(side=side)).read_field(
+            path
+        )
         assert field.area.sum() == pytest.approx(8e-6, rel=1e-12)
         np.testing.assert_allclose(field.pressure, factor * p * 1e6, rtol=1e-5)  # five digits are printed
 
@@ -91,8 +93,8 @@ def test_files_of_ansys(example, area):
     found = 0.0
     for axis in range(3):
         for block in mesh.faces():
-            flat = np.ptp(mesh.place[block][:, :, axis], axis=1) < 1e-9
-            found += nodal_areas(np.delete(mesh.place, axis, axis=1), [block[flat]]).sum()
+            flat = np.ptp(mesh.position[block][:, :, axis], axis=1) < 1e-9
+            found += nodal_areas(np.delete(mesh.position, axis, axis=1), [block[flat]]).sum()
     assert found == pytest.approx(area, rel=1e-9)
 
 
@@ -108,7 +110,7 @@ def test_broken_archives_are_refused(tmp_path, elements, types, message):
     path.write_text(pressures(1.0 + points[:, 0], points, cells))
     mesh.write_text(archive(np.column_stack([points, np.zeros(len(points))]), elements, types))
     with pytest.raises(ValueError, match=message) as error:
-        Reading(**UNITS, beside=(mesh,)).field(path)
+        FieldReader(**UNITS, companion_files=(mesh,)).read_field(path)
     assert "\n" not in str(error.value)
 
 
@@ -123,7 +125,7 @@ def test_what_is_no_archive_is_one_line(tmp_path, text, message):
     if text:
         mesh.write_text(text)
     with pytest.raises(ValueError, match=message) as error:
-        Reading(**UNITS, beside=(mesh,)).field(path)
+        FieldReader(**UNITS, companion_files=(mesh,)).read_field(path)
     assert str(error.value).startswith(f"{mesh}: ")
     assert "\n" not in str(error.value)
 
@@ -141,4 +143,4 @@ def test_a_node_that_the_archive_has_not(tmp_path):
     flat = np.column_stack([points, np.zeros(len(points))])
     mesh.write_text(archive(flat, [(1, cell) for cell in cells], {1: 173}))
     with pytest.raises(ValueError, match=r"p.lis: node 911 has a pressure and is not in .*mesh.cdb"):
-        Reading(**UNITS, beside=(mesh,)).field(path)
+        FieldReader(**UNITS, companion_files=(mesh,)).read_field(path)

@@ -6,9 +6,9 @@ import meshio
 import numpy as np
 import pytest
 from jointfmu_tools.fields import nodal_result
-from jointfmu_tools.fields.contact_surface import Plane
-from jointfmu_tools.fields.mesh import SURFACES, VOLUMES, boundary, nodal_areas
-from jointfmu_tools.fields.reading import Reading
+from jointfmu_tools.fields.contact_surface import ContactPlane
+from jointfmu_tools.fields.mesh import SURFACE_CELLS, VOLUME_CELLS, boundary_faces, nodal_areas
+from jointfmu_tools.fields.reading import FieldReader
 
 DATA = Path(__file__).parent
 UNITS = {"length": "mm", "pressure": "MPa"}
@@ -41,7 +41,7 @@ def faces(kind, n):
     return points, np.concatenate([quads[:, [0, 1, 2, 4, 5, 8]], quads[:, [0, 2, 3, 8, 6, 7]]])
 
 
-@pytest.mark.parametrize("kind", SURFACES)
+@pytest.mark.parametrize("kind", SURFACE_CELLS)
 def test_areas_are_positive_and_make_the_whole_surface(kind):
     points, cells = faces(kind, 4)
     areas = nodal_areas(points, [cells])
@@ -50,7 +50,7 @@ def test_areas_are_positive_and_make_the_whole_surface(kind):
     assert areas.sum() == pytest.approx(8.0, rel=1e-13)
 
 
-@pytest.mark.parametrize("kind", SURFACES)
+@pytest.mark.parametrize("kind", SURFACE_CELLS)
 def test_sums_of_a_nonlinear_function_converge_with_the_second_order(kind):
     """k(p) = p^0.9 of a smooth pressure; order by three meshes, the trapezoidal rule has two."""
 
@@ -76,9 +76,9 @@ def test_boundary_of_one_cell_is_all_its_faces(kind, count, area):
     )
     pick = {"tetra": [0, 1, 3, 4], "wedge": [0, 1, 3, 4, 5, 7], "pyramid": [0, 1, 2, 3, 4]}
     points = corners[pick.get(kind.rstrip("0123456789"), range(8))]
-    _, _, edges = VOLUMES[kind]
+    _, _, edges = VOLUME_CELLS[kind]
     points = np.concatenate([points, *[points[list(e)].mean(axis=0)[None] for e in edges]])
-    found = boundary({kind: np.arange(len(points))[None, :]})
+    found = boundary_faces({kind: np.arange(len(points))[None, :]})
     assert sum(map(len, found)) == count
     assert sum(_area(points, f) for block in found for f in block) == pytest.approx(area, rel=1e-13)
 
@@ -92,7 +92,7 @@ def _area(points, face):
 
 def test_faces_between_cells_are_not_boundary():
     cells = np.array([[0, 1, 2, 3, 4, 5, 6, 7], [4, 5, 6, 7, 8, 9, 10, 11]])
-    assert len(boundary({"hexahedron": cells})[0]) == 10
+    assert len(boundary_faces({"hexahedron": cells})[0]) == 10
 
 
 def write_csv(path, rows, head="x [mm],y [mm],area [mm2],pressure [MPa]"):
@@ -104,12 +104,12 @@ ROWS = ["0,0,10,1", "10,0,10,2", "10,20,10,1.5", "0,20,10,3"]
 
 
 def test_csv_states_its_units(tmp_path):
-    field, tilted = Reading().field(write_csv(tmp_path / "a.csv", ROWS))
+    field, tilted = FieldReader().read_field(write_csv(tmp_path / "a.csv", ROWS))
     assert tilted is None
     np.testing.assert_allclose(field.area, 1e-5, rtol=1e-15)
     np.testing.assert_allclose(field.position[2], [0.01, 0.02], rtol=1e-15)
     np.testing.assert_allclose(field.pressure, [1e6, 2e6, 1.5e6, 3e6], rtol=1e-15)
-    again, _ = Reading().field(_written(tmp_path / "b.csv", field))
+    again, _ = FieldReader().read_field(_written(tmp_path / "b.csv", field))
     np.testing.assert_array_equal(again.pressure, field.pressure)
     np.testing.assert_array_equal(again.position, field.position)
 
@@ -130,31 +130,31 @@ def _written(path, field):
 def test_csv_is_refused_with_the_line(tmp_path, row, message):
     path = write_csv(tmp_path / "a.csv", [*ROWS[:2], row, ROWS[3]])
     with pytest.raises(ValueError, match=message) as error:
-        Reading().field(path)
+        FieldReader().read_field(path)
     assert str(error.value).startswith(f"{path}: ")
     assert "\n" not in str(error.value)
 
 
 def test_missing_column_and_units_are_refused(tmp_path):
     with pytest.raises(ValueError, match=r"has no column 'area'; expected area \[m2 \| mm2 \| um2\]"):
-        Reading().field(write_csv(tmp_path / "a.csv", ["0,0,1"], "x [mm],y [mm],pressure [MPa]"))
+        FieldReader().read_field(write_csv(tmp_path / "a.csv", ["0,0,1"], "x [mm],y [mm],pressure [MPa]"))
     with pytest.raises(ValueError, match=r"column 'pressure' has no unit"):
-        Reading().field(write_csv(tmp_path / "b.csv", ROWS, "x [mm],y [mm],area [mm2],pressure"))
+        FieldReader().read_field(write_csv(tmp_path / "b.csv", ROWS, "x [mm],y [mm],area [mm2],pressure"))
     with pytest.raises(ValueError, match=r"states no unit of length; expected one of m, mm, um"):
-        Reading().field(DATA / "blocks.frd")
+        FieldReader().read_field(DATA / "blocks.frd")
     (tmp_path / "rnd.bin").write_bytes(bytes(range(256)))
     with pytest.raises(
         ValueError, match=r"suffix '.bin' is of no format known here; state the format, one of"
     ):
-        Reading().field(tmp_path / "rnd.bin")
+        FieldReader().read_field(tmp_path / "rnd.bin")
     with pytest.raises(ValueError, match=r"length = 'mm': a CSV file states units"):
-        Reading(length="mm").field(write_csv(tmp_path / "c.csv", ROWS))
+        FieldReader(length_unit="mm").read_field(write_csv(tmp_path / "c.csv", ROWS))
 
 
 def test_open_nodes_are_kept_or_left_out(tmp_path):
     path = write_csv(tmp_path / "a.csv", [*ROWS, "5,10,10,0"])
-    assert Reading(open="keep").field(path)[0].area.size == 5
-    assert Reading(open="drop").field(path)[0].area.size == 4
+    assert FieldReader(open_nodes="keep").read_field(path)[0].area.size == 5
+    assert FieldReader(open_nodes="drop").read_field(path)[0].area.size == 4
 
 
 @pytest.mark.parametrize(("name", "nodes"), [("blocks.frd", 35), ("blocks_quadratic.frd", 21)])
@@ -164,7 +164,7 @@ def test_calculix_result(name, nodes):
     The area is the blocks' own. CalculiX extrapolates the pressure to the nodes, which costs half a per
     cent of the force on these coarse meshes; 1 % is what the import lets pass.
     """
-    field, _ = Reading(**UNITS).field(DATA / name)
+    field, _ = FieldReader(**UNITS).read_field(DATA / name)
     assert field.area.size == nodes
     assert field.area.sum() == pytest.approx(1.2e-3, rel=1e-5)  # five digits of the coordinates
     assert field.force == pytest.approx(8e3, rel=0.01)
@@ -177,11 +177,11 @@ def test_nodes_that_calculix_leaves_out_are_open(tmp_path):
     listed = path.read_text().split(" -4  CONTACT")[1].split(" -3")[0].count("\n -1")
     assert listed < 35
     with pytest.raises(ValueError, match=r"node \d+: is open \(no pressure\), with 17 of 35 nodes"):
-        Reading(**UNITS).field(path)
-    kept, _ = Reading(**UNITS, open="keep").field(path)
+        FieldReader(**UNITS).read_field(path)
+    kept, _ = FieldReader(**UNITS, open_nodes="keep").read_field(path)
     assert kept.area.size == 35
     assert kept.area.sum() == pytest.approx(1.2e-3, rel=1e-5)  # five digits of the coordinates
-    dropped, _ = Reading(**UNITS, open="drop").field(path)
+    dropped, _ = FieldReader(**UNITS, open_nodes="drop").read_field(path)
     assert dropped.area.size == 18
     for field in (kept, dropped):
         assert field.force == pytest.approx(160e3, rel=1e-3)  # what presses less what draws
@@ -189,16 +189,16 @@ def test_nodes_that_calculix_leaves_out_are_open(tmp_path):
     head, contact = path.read_text().split(" -4  CONTACT")
     broken.write_text(head + " -4  CONTACT" + contact.replace(" 0.00000E+00", "         NaN", 1))
     with pytest.raises(ValueError, match=r"line \d+: .* is no node with 6 numbers"):
-        Reading(**UNITS, open="keep").field(broken)
+        FieldReader(**UNITS, open_nodes="keep").read_field(broken)
 
 
 def test_middles_of_upright_edges_are_where_calculix_has_them():
     """Every middle node of every boundary face lies between its corners, on the upright faces too."""
     from jointfmu_tools.fields import frd
 
-    found = frd.read(DATA / "blocks_quadratic.frd", 1e-3, 1e6)
+    found = frd.read_frd(DATA / "blocks_quadratic.frd", 1e-3, 1e6)
     for block in found.faces:
-        corners, middles = found.place[block[:, :4]], found.place[block[:, 4:]]
+        corners, middles = found.position[block[:, :4]], found.position[block[:, 4:]]
         expected = 0.5 * (corners + np.roll(corners, -1, axis=1))
         np.testing.assert_allclose(middles, expected, atol=1e-7)  # five digits of 0.02 m
 
@@ -208,13 +208,13 @@ def test_broken_frd_is_refused_with_the_line(tmp_path):
     path = tmp_path / "a.frd"
     path.write_text(text.replace("CONTACT", "DISPLAY"))
     with pytest.raises(ValueError, match=r"has no result CONTACT .*; there are DISP, DISPLAY"):
-        Reading(**UNITS).field(path)
+        FieldReader(**UNITS).read_field(path)
     path.write_text(text.replace(" -1         1-2.00000E+01", " -1         1-2.0x000E+01", 1))
     with pytest.raises(ValueError, match=r"line \d+: .* is no node with 3 numbers"):
-        Reading(**UNITS).field(path)
+        FieldReader(**UNITS).read_field(path)
     path.write_text("hello")
     with pytest.raises(ValueError, match="is no CalculiX result"):
-        Reading(**UNITS).field(path)
+        FieldReader(**UNITS).read_field(path)
 
 
 def blocks(quadratic=False):
@@ -234,15 +234,15 @@ def test_volume_mesh_of_two_bodies(tmp_path):
     path = tmp_path / "a.vtu"
     meshio.Mesh(points, {"hexahedron": bricks}, {"CPRESS": both, "U": np.zeros((4 * n, 3))}).write(path)
     with pytest.raises(ValueError, match=r"state the point data .*; there are CPRESS, U \(3 components\)"):
-        Reading(**UNITS).field(path)
+        FieldReader(**UNITS).read_field(path)
     with pytest.raises(ValueError, match=r"has no point data 'PRES'; there are CPRESS"):
-        Reading(**UNITS, data="PRES").field(path)
+        FieldReader(**UNITS, data="PRES").read_field(path)
     with pytest.raises(ValueError, match=r"'U' is no component of U; expected U:1 to U:3"):
-        Reading(**UNITS, data="U").field(path)
+        FieldReader(**UNITS, data="U").read_field(path)
     with pytest.raises(ValueError, match=r"node \d+: is at the same place as node \d+"):
-        Reading(**UNITS, data="CPRESS").field(path)
+        FieldReader(**UNITS, data="CPRESS").read_field(path)
     for side, factor in (("below", 1.0), ("above", 1.1)):
-        field, _ = Reading(**UNITS, data="CPRESS", plane=Plane(side=side)).field(path)
+        field, _ = FieldReader(**UNITS, data="CPRESS", plane=ContactPlane(side=side)).read_field(path)
         assert field.area.sum() == pytest.approx(8e-6, rel=1e-13)
         np.testing.assert_allclose(np.sort(field.pressure), np.sort(factor * p) * 1e6, rtol=1e-14)
 
@@ -256,13 +256,13 @@ def test_surface_mesh_in_another_plane(tmp_path, suffix, monkeypatch):
     p = 1.0 + points[:, 0]
     path = tmp_path / f"a{suffix}"
     meshio.write(path, meshio.Mesh(place, {"quad": cells}, {"p": p}))
-    field, _ = Reading(**UNITS, data="p", plane=Plane("x"), format="mesh").field(path)
+    field, _ = FieldReader(**UNITS, data="p", plane=ContactPlane("x"), format="mesh").read_field(path)
     np.testing.assert_allclose(1e3 * field.position, points, rtol=1e-12, atol=1e-15)
-    turned, _ = Reading(**UNITS, data="p", plane=Plane("x", "z"), format="mesh").field(path)
+    turned, _ = FieldReader(**UNITS, data="p", plane=ContactPlane("x", "z"), format="mesh").read_field(path)
     np.testing.assert_allclose(turned.position[:, 0], field.position[:, 1])
     np.testing.assert_allclose(turned.position[:, 1], -field.position[:, 0])
     with pytest.raises(ValueError, match=r"node \d+: lies .* off the plane z = "):
-        Reading(**UNITS, data="p", format="mesh").field(path)
+        FieldReader(**UNITS, data="p", format="mesh").read_field(path)
 
 
 @pytest.mark.parametrize("normal", ["y", "z"])
@@ -272,16 +272,16 @@ def test_a_result_of_two_dimensions_is_refused_by_a_line_that_says_so(tmp_path, 
     p = np.where(points[:, 1] == 0.0, 5.0, np.nan)
     path = tmp_path / "plane.vtu"
     meshio.write(path, meshio.Mesh(place, {"quad": quads}, {"p": p}))
-    reading = Reading(length="mm", pressure="MPa", data="p", plane=Plane(normal))
+    reading = FieldReader(length_unit="mm", pressure_unit="MPa", data="p", plane=ContactPlane(normal))
     with pytest.raises(ValueError, match="lie on one line, as in a two-dimensional or axisymmetric model"):
-        reading.field(path)
+        reading.read_field(path)
 
 
 def test_unreadable_mesh_is_one_line(tmp_path):
     path = tmp_path / "a.vtu"
     path.write_text("no mesh\nat all")
     with pytest.raises(ValueError, match="meshio cannot read it") as error:
-        Reading(**UNITS, data="p").field(path)
+        FieldReader(**UNITS, data="p").read_field(path)
     assert "\n" not in str(error.value)
 
 
@@ -322,14 +322,14 @@ def test_ansys_listing(tmp_path):
     p = np.round(1.0 + points[:, 0] * points[:, 1], 4)
     path = tmp_path / "contact.lis"
     path.write_text(listing(p, points, cells))
-    field, _ = Reading(**UNITS).field(path)
+    field, _ = FieldReader(**UNITS).read_field(path)
     np.testing.assert_allclose(field.pressure, 1e6 * p, rtol=1e-5)  # five digits are printed
     assert field.area.sum() == pytest.approx(8e-6, rel=1e-6)
     corners = np.isin(np.arange(len(p)), cells[:, :4])
     text = listing(p, points, cells).splitlines()
     gone = {f"{i + 11:8d}{3:12.4f}{-1e-6 * i:12.5E}" for i in np.flatnonzero(~corners)}
     path.write_text("\n".join(line for line in text if line[:32] not in gone))
-    linear, _ = Reading(**UNITS).field(path)  # corners alone are listed
+    linear, _ = FieldReader(**UNITS).read_field(path)  # corners alone are listed
     assert linear.area.size == corners.sum()
     assert linear.area.sum() == pytest.approx(8e-6, rel=1e-6)
 
@@ -343,11 +343,11 @@ def test_ansys_listings_in_parts(tmp_path):
     first.write_text(text[:cut])
     second.write_text(text[cut:])
     with pytest.raises(ValueError, match=r"has no nodes, a table with .* \(NLIST\); give further listings"):
-        Reading(**UNITS).field(first)
-    field, _ = Reading(**UNITS, beside=(second,)).field(first)
+        FieldReader(**UNITS).read_field(first)
+    field, _ = FieldReader(**UNITS, companion_files=(second,)).read_field(first)
     half = nodal_areas(points, [cells[:1, :3]]).sum()
     rest = nodal_areas(points, [cells[1:]]).sum()
     assert field.area.sum() == pytest.approx((half + rest) * 1e-6, rel=1e-5)
     first.write_text(text[:cut].replace(f"{15:8d}{3:12.4f}", f"{14:8d}{3:12.4f}"))
     with pytest.raises(ValueError, match=r"p.lis: line \d+: node 14 has a second pressure"):
-        Reading(**UNITS, beside=(second,)).field(first)
+        FieldReader(**UNITS, companion_files=(second,)).read_field(first)

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from jointfmu_tools.columns import read, rows, text
+from jointfmu_tools.columns import format_rows, format_table, read_columns
 
-from jointfmu.quantity.units import sizes
+from jointfmu.quantity.units import unit_sizes
 
-SPEC = {"load": sizes("N", "kN"), "angle": sizes("rad", "deg", "arcmin")}
+SPEC = {"load": unit_sizes("N", "kN"), "angle": unit_sizes("rad", "deg", "arcmin")}
 HEAD = "load [kN], angle [arcmin]"
 
 
@@ -21,21 +21,27 @@ def saved(folder, content, encoding="utf-8"):
 
 
 def test_a_unit_at_the_end_of_a_name(tmp_path):
-    spec = {"speed": sizes("rad/s", "deg/s"), "load": sizes("N", "kN"), "warmth": {"K": 1.0, "degC": 1.0}}
+    spec = {
+        "speed": unit_sizes("rad/s", "deg/s"),
+        "load": unit_sizes("N", "kN"),
+        "warmth": {"K": 1.0, "degC": 1.0},
+    }
     words = {"speed": ("joint_speed",), "load": ("axial_load",), "warmth": ("oil_temperature",)}
     path = saved(tmp_path, "joint_speed_rad_per_s,axial_load_kN,oil_temperature_degC,note_s\n1,2,3,4\n")
-    found = read(path, spec, 1, words)
+    found = read_columns(path, spec, 1, words)
     assert found.units == {"speed": "rad/s", "load": "kN", "warmth": "degC"}
     assert [float(found.columns[name][0]) for name in spec] == [1.0, 2e3, 3.0]
     wrong = saved(tmp_path, "axial_load_mm,speed [rad/s]\n1,2\n")
-    assert list(read(wrong, spec, 1, words).columns) == ["speed"]
+    assert list(read_columns(wrong, spec, 1, words).columns) == ["speed"]
 
 
 @given(st.lists(st.tuples(*[st.floats(allow_nan=False, allow_infinity=False)] * 2), min_size=1, max_size=20))
 def test_round_trip_to_the_last_bit(tmp_path_factory, values):
     load, angle = np.array(values).T
-    path = saved(tmp_path_factory.mktemp("round"), text([("load", "N"), ("angle", "rad")], [load, angle]))
-    found = read(path, SPEC, 1)
+    path = saved(
+        tmp_path_factory.mktemp("round"), format_table([("load", "N"), ("angle", "rad")], [load, angle])
+    )
+    found = read_columns(path, SPEC, 1)
     np.testing.assert_array_equal(found.columns["load"], load)
     np.testing.assert_array_equal(found.columns["angle"], angle)
     assert found.lines == list(range(2, 2 + load.size))
@@ -44,20 +50,20 @@ def test_round_trip_to_the_last_bit(tmp_path_factory, values):
 def test_what_is_written():
     columns = [np.array([1, 20]), np.array([-0.0, 2.0 / 3.0]), np.array([1e-30, 1e22])]
     heads = [("node", "1"), ("a [b, c]", None), ("K_N", "N/m")]
-    assert text(heads, columns, above=["# said before"]).splitlines() == [
+    assert format_table(heads, columns, header_lines=["# said before"]).splitlines() == [
         "# said before",
         'node [1],"a [b, c]",K_N [N/m]',
         "1,-0.0,1e-30",
         "20,0.6666666666666666,1e+22",
     ]
-    assert text(heads, columns, digits=3).splitlines()[1:] == ["1,0,1e-30", "20,0.667,1e+22"]
-    assert rows(columns[1:], [2, None], between=" ") == ["0 1e-30", "0.67 1e+22"]
+    assert format_table(heads, columns, digits=3).splitlines()[1:] == ["1,0,1e-30", "20,0.667,1e+22"]
+    assert format_rows(columns[1:], [2, None], delimiter=" ") == ["0 1e-30", "0.67 1e+22"]
     with pytest.raises(ValueError, match="zip"):
-        text(heads, [columns[0][:1], *columns[1:]])
+        format_table(heads, [columns[0][:1], *columns[1:]])
 
 
 def test_an_empty_table_is_its_heading():
-    assert text([("load", "N")], [np.array([])]) == "load [N]\n"
+    assert format_table([("load", "N")], [np.array([])]) == "load [N]\n"
 
 
 @pytest.mark.parametrize("mark", [",", ";", "\t"])
@@ -66,7 +72,7 @@ def test_separators_order_and_strangers(tmp_path, mark, encoding):
     cells = ("Angle [deg]", " note", "LOAD[ kN ]"), ("1", "x", " 2"), ("3", "", "4e0")
     head, *rows = map(mark.join, cells)
     lines = ["# by hand", head, "", "  # indented", *rows]
-    found = read(saved(tmp_path, "\n".join(lines), encoding), SPEC, 2)
+    found = read_columns(saved(tmp_path, "\n".join(lines), encoding), SPEC, 2)
     np.testing.assert_array_equal(found.columns["load"], [2e3, 4e3])
     np.testing.assert_allclose(found.columns["angle"], np.radians([1.0, 3.0]), rtol=4e-16)
     assert found.lines == [5, 6]
@@ -74,8 +80,8 @@ def test_separators_order_and_strangers(tmp_path, mark, encoding):
 
 def test_cells_in_quotes(tmp_path):
     path = saved(tmp_path, 'load [N],"note, or not"\n"1.5","a, b"\n2,"open\n')
-    np.testing.assert_array_equal(read(path, SPEC, 2).columns["load"], [1.5, 2.0])
-    first, *rest = csv.reader(text([("a,b", "N")], [np.ones(1)]).splitlines())
+    np.testing.assert_array_equal(read_columns(path, SPEC, 2).columns["load"], [1.5, 2.0])
+    first, *rest = csv.reader(format_table([("a,b", "N")], [np.ones(1)]).splitlines())
     assert (first, rest) == (["a,b [N]"], [["1.0"]])
 
 
@@ -102,22 +108,22 @@ def test_cells_in_quotes(tmp_path):
 def test_faults_are_named_with_their_place(tmp_path, content, said):
     path = saved(tmp_path, content)
     with pytest.raises(ValueError, match=f"a.csv: {said}") as error:
-        read(path, SPEC, 1)
+        read_columns(path, SPEC, 1)
     assert "\n" not in str(error.value)
 
 
 def test_files_that_are_none(tmp_path):
     with pytest.raises(ValueError, match=r"none.csv: cannot be read \(No such file .*; expected a CSV file"):
-        read(tmp_path / "none.csv", SPEC, 1)
+        read_columns(tmp_path / "none.csv", SPEC, 1)
     (tmp_path / "b.csv").write_bytes(b"\xff\xfe\x00")
     with pytest.raises(ValueError, match=r"b.csv: is no text file; expected CSV \(UTF-8\)"):
-        read(tmp_path / "b.csv", SPEC, 1)
+        read_columns(tmp_path / "b.csv", SPEC, 1)
 
 
 def test_a_column_that_is_missing_is_named_with_its_units(tmp_path):
-    found = read(saved(tmp_path, "load [N]\n1\n"), SPEC, 1)
+    found = read_columns(saved(tmp_path, "load [N]\n1\n"), SPEC, 1)
     with pytest.raises(ValueError, match=r"a.csv: has no column 'angle'; expected angle \[rad \| deg"):
-        found.require("angle", SPEC)
+        found.require_column("angle", SPEC)
 
 
 @pytest.mark.parametrize(
@@ -127,15 +133,15 @@ def test_a_column_that_is_missing_is_named_with_its_units(tmp_path):
 def test_a_unit_is_read_as_people_write_it(tmp_path, heads, mark):
     point = "." if mark == "," else ","
     path = saved(tmp_path, f"\ufeff{heads}\n1{point}5{mark}2\n")
-    found = read(path, SPEC, 1)
+    found = read_columns(path, SPEC, 1)
     assert found.columns["load"] == pytest.approx([1500.0])
     assert found.columns["angle"] == pytest.approx([2.0 * np.pi / 10800.0])
 
 
 def test_other_names_of_columns_are_told_by_their_units(tmp_path):
     others = {"load": ("f", "kraft"), "angle": ("f", "winkel")}
-    found = read(saved(tmp_path, "F [deg],Kraft [N]\n90,2\n"), SPEC, 1, others)
+    found = read_columns(saved(tmp_path, "F [deg],Kraft [N]\n90,2\n"), SPEC, 1, others)
     assert found.columns["load"].tolist() == [2.0]
     assert found.columns["angle"] == pytest.approx([0.5 * np.pi])
     with pytest.raises(ValueError, match="expected columns"):
-        read(saved(tmp_path, "F [Hz],Kraft\n90,2\n"), SPEC, 1, others)
+        read_columns(saved(tmp_path, "F [Hz],Kraft\n90,2\n"), SPEC, 1, others)

@@ -18,20 +18,20 @@ from jointfmu_fmu_src.ssv import Value, parameter_set
 from jointfmu_fmu_src.xml_parts import comment as xml_comment
 from jointfmu_tools.export import writing
 from jointfmu_tools.export.placing import SI
-from jointfmu_tools.joint_parts import part
-from jointfmu_tools.modelica.library import library, system_text
+from jointfmu_tools.joint_parts import load_tool_module
+from jointfmu_tools.modelica.library import render_library, render_system
 from jointfmu_tools.report.joint import write_joint_report
 from jointfmu_tools.robots import urdf
 from jointfmu_tools.robots.names import identifier
 from jointfmu_tools.robots.transmission import transmission
-from jointfmu_tools.systems.system import read
+from jointfmu_tools.systems.system import read_system
 
 from jointfmu.files.text import MAX_NAME_LENGTH, MAX_TEXT_LENGTH
 from jointfmu.joints import KINDS, MODELS
-from jointfmu.parameters import ParameterFile, default, dump, load
+from jointfmu.parameters import ParameterFile, format_parameter_file, load_default, load_parameter_file
 
 ROOT = Path(__file__).resolve().parents[2]
-DRIVE = next(name for name, kind in KINDS.items() if part(kind, "transmission"))
+DRIVE = next(name for name, kind in KINDS.items() if load_tool_module(kind, "transmission"))
 FMU = KINDS[DRIVE].models[0].name
 TEXTS = (
     '*/ __attribute__((constructor)) static void run(void) { printf("run"); } /*',
@@ -57,7 +57,7 @@ CONTROLS = ("\0", "\x1b[31m", "\n", "\r", "\t", "\x7f", "\x85", "\u2028", "\u202
 
 def hostile(text: str, joint: str = DRIVE) -> ParameterFile:
     """The default parameters of a joint with this text as name and as every source."""
-    file = default(joint)
+    file = load_default(joint)
     return replace(file, name=text, sources=dict.fromkeys(file.sources, text))
 
 
@@ -116,9 +116,9 @@ def test_a_comment_of_c_neither_ends_nor_begins() -> None:
 @pytest.mark.parametrize("text", TEXTS)
 def test_toml_gives_the_text_back(text: str, tmp_path: Path) -> None:
     path = tmp_path / "file.toml"
-    path.write_text(dump(hostile(text)), encoding="utf-8")
-    assert load(path).name == text
-    assert set(load(path).sources.values()) == {text}
+    path.write_text(format_parameter_file(hostile(text)), encoding="utf-8")
+    assert load_parameter_file(path).name == text
+    assert set(load_parameter_file(path).sources.values()) == {text}
 
 
 @pytest.mark.parametrize("text", TEXTS)
@@ -143,7 +143,9 @@ def test_documentation_pages_have_the_elements_of_any_name(joint: str) -> None:
 
     def elements(text: str) -> Any:
         file = hostile(text, joint)
-        return Tags(documentation(model.of(joint, file.values), file)["index.html"].decode()).found
+        return Tags(
+            documentation(model.with_parameters(joint, file.values), file)["index.html"].decode()
+        ).found
 
     assert elements(" ".join(TEXTS[5:9])) == elements("plain")
 
@@ -161,7 +163,7 @@ def test_modelica_reads_the_text_as_text(text: str) -> None:
     """Rumoca's parser is a hundred times faster than pymoca's."""
     import rumoca
 
-    plain, written = library(hostile("plain")), library(hostile(text))
+    plain, written = render_library(hostile("plain")), render_library(hostile(text))
     assert len(written) == len(plain)
     changed = {path: content for path, content in written.items() if plain.get(path) != content}
     assert changed
@@ -185,7 +187,7 @@ def test_a_system_in_modelica_reads_the_text_as_text(tmp_path: Path) -> None:
     text = text.replace('source = "rotor of', f'source = "{everything}')
     path = tmp_path / "mine.toml"
     path.write_text(text, encoding="utf-8")
-    written = system_text(read(path))
+    written = render_system(read_system(path))
     rumoca.format(written, filename="Mine.mo")  # raises where it cannot be parsed
     info = written[written.rindex('info="') :]
     assert "<script" not in info
@@ -196,7 +198,8 @@ def test_a_system_in_modelica_reads_the_text_as_text(tmp_path: Path) -> None:
 @pytest.mark.parametrize(("form", "mark"), [("csv", "#"), ("modelica", "#")])
 def test_decks_keep_the_text_in_their_comment(text: str, form: str, mark: str) -> None:
     one, other = (
-        writing.curve(form, hostile(name), None, SI, 1e-3).text.splitlines() for name in (text, "plain")
+        writing.export_curve(form, hostile(name), None, SI, 1e-3).text.splitlines()
+        for name in (text, "plain")
     )
     assert len(one) == len(other)
     assert all(a == b or a.startswith(mark) for a, b in zip(one, other, strict=True))
@@ -208,7 +211,7 @@ def test_control_characters_are_refused_when_a_file_is_read(
     control: str, place: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     escaped = "".join(f"\\u{ord(c):04X}" for c in control[0]) + control[1:]
-    text = dump(hostile("plain"))
+    text = format_parameter_file(hostile("plain"))
     text = {
         "name": text.replace('name = "plain"', f'name = "a{escaped}b"', 1),
         "source": text.replace('source = "plain"', f'source = "a{escaped}b"', 1),
@@ -242,14 +245,14 @@ def test_control_characters_are_refused_in_python(control: str) -> None:
 
 
 def test_long_texts_are_refused_at_once(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    path, text = tmp_path / "file.toml", dump(hostile("plain"))
+    path, text = tmp_path / "file.toml", format_parameter_file(hostile("plain"))
     for what, most in (("name", MAX_NAME_LENGTH), ("source", MAX_TEXT_LENGTH)):
         for length, refused in ((most, False), (most + 1, True), (1_000_000, True)):
             path.write_text(
                 text.replace(f'{what} = "plain"', f'{what} = "{"a" * length}"', 1), encoding="utf-8"
             )
             if not refused:
-                assert load(path)
+                assert load_parameter_file(path)
                 continue
             begin = time.perf_counter()
             line = refused_line(capsys, "report", path, "--out", tmp_path / "out.html")
@@ -278,11 +281,11 @@ def test_reserved_words_name_neither_fmus_nor_components(
 @pytest.mark.parametrize("name", ["CON", "nul", "end", "int"])
 def test_files_of_drives_and_classes_are_never_named_by_reserved_words(name: str) -> None:
     assert identifier(name) == f"_{name}"
-    written = library(hostile(name))
+    written = render_library(hostile(name))
     assert f"Data/Joint_{name}.mo" in written
 
 
 @pytest.mark.parametrize("name", [model for model in MODELS if model in {"GearMesh", "GearContact"}])
 def test_a_record_never_replaces_a_class_of_the_library(name: str) -> None:
     with pytest.raises(ValueError, match=f"the library has a class {name}"):
-        library(hostile(name, MODELS[name].joint))
+        render_library(hostile(name, MODELS[name].joint))

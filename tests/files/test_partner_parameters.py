@@ -6,7 +6,7 @@ import pytest
 from jointfmu_fmu_src.partners import PARTNERS, models, parameters
 
 from jointfmu.parameters import ORIGINS
-from jointfmu.quantity import flatten
+from jointfmu.quantity import flatten_parameters
 
 SHIPPED = Path(__file__).resolve().parents[2] / "models" / "partners"
 
@@ -19,7 +19,7 @@ def test_every_partner_has_one_file() -> None:
 def test_a_file_gives_every_parameter_with_its_source(name: str) -> None:
     file = parameters(name)
     assert isinstance(file.values, PARTNERS[name].parameters)
-    assert set(flatten(file.values)) == set(file.origins) == set(file.sources)
+    assert set(flatten_parameters(file.values)) == set(file.origins) == set(file.sources)
     assert set(file.origins.values()) <= set(ORIGINS)
 
 

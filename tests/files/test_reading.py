@@ -13,13 +13,13 @@ import pytest
 from clients import needs
 from conftest import refused_line
 from jointfmu_tools import host
-from jointfmu_tools.parser import _all, parser
-from jointfmu_tools.proof.manifest import Related
-from jointfmu_tools.surfaces.reading import read as heights
+from jointfmu_tools.parser import _iterate_parsers, build_parser
+from jointfmu_tools.proof.manifest import RelatedFiles
+from jointfmu_tools.surfaces.reading import read_heights as heights
 
 from jointfmu.files import archives
 from jointfmu.files.reading import read_bytes
-from jointfmu.parameters import load
+from jointfmu.parameters import load_parameter_file
 
 DESCRIPTION = (
     '<fmiModelDescription fmiVersion="2.0" modelName="Bomb" guid="0"><CoSimulation modelIdentifier="Bomb"/>'
@@ -75,7 +75,12 @@ def test_an_archive_is_refused_before_anything_is_unpacked(
     own.mkdir()
     monkeypatch.setattr("tempfile.tempdir", str(own))
     monkeypatch.setattr(zipfile.ZipFile, "open", lambda *_: pytest.fail("a member is read"))
-    for read in (archives.Members, Related, host.description, lambda p: host.unpacked(p).__enter__()):
+    for read in (
+        archives.FmuMembers,
+        RelatedFiles,
+        host.read_description,
+        lambda p: host.unpack_fmu(p).__enter__(),
+    ):
         with pytest.raises(ValueError, match=words) as refused:
             read(path)
         assert str(refused.value).startswith(f"{path}: ")
@@ -87,19 +92,19 @@ def test_a_declared_size_is_refused(size: int, tmp_path: Path) -> None:
     noise = np.random.default_rng(0).bytes(1 << 21)
     path = larger(archive(tmp_path / "large.fmu", {"extra/large.xml": noise}), "extra/large.xml", size)
     with pytest.raises(ValueError, match=r"bytes unpacked.*allowed are"):
-        host.description(path)
+        host.read_description(path)
 
 
 def test_a_member_is_unpacked_to_its_declared_size_at_most(tmp_path: Path) -> None:
     """Its list says 10 bytes, the member has a million."""
     path = larger(archive(tmp_path / "lies.fmu", {"resources/x": ZEROS}), "resources/x", 10)
     with pytest.raises(ValueError, match=r"lies.fmu: is no FMU \(Bad CRC-32"):
-        archives.Members(path)["resources/x"]
+        archives.FmuMembers(path)["resources/x"]
     with (
         pytest.raises(ValueError, match=r"lies.fmu: is no FMU \(Bad CRC-32"),
         archives.open_archive(path) as opened,
     ):
-        archives.extract(opened, tmp_path / "out", lambda name: True)
+        archives.extract_members(opened, tmp_path / "out", lambda name: True)
     assert sum(file.stat().st_size for file in tmp_path.glob("out/resources/*")) <= 10
 
 
@@ -113,7 +118,7 @@ def test_other_compression_is_refused(tmp_path: Path) -> None:
     """bzip2 and LZMA unpack a member in one go, whatever size it declares."""
     for method in (zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA):
         with pytest.raises(ValueError, match="expected deflate or none"):
-            host.description(archive(tmp_path / f"{method}.fmu", {"resources/x": ZEROS}, method))
+            host.read_description(archive(tmp_path / f"{method}.fmu", {"resources/x": ZEROS}, method))
 
 
 def test_what_was_unpacked_of_a_broken_fmu_is_removed(
@@ -123,16 +128,16 @@ def test_what_was_unpacked_of_a_broken_fmu_is_removed(
     larger(path, "resources/x", 10)
     own.mkdir()
     monkeypatch.setattr("tempfile.tempdir", str(own))
-    with pytest.raises(ValueError, match="Bad CRC-32"), host.unpacked(path):
+    with pytest.raises(ValueError, match="Bad CRC-32"), host.unpack_fmu(path):
         pass
     assert [*own.iterdir()] == []
 
 
 def test_a_usual_fmu_is_read(tmp_path: Path) -> None:
     path = archive(tmp_path / "usual.fmu", {"resources/x": ZEROS, "extra/y.csv": b"1"})
-    assert host.description(path).modelName == "Bomb"
-    assert archives.Members(path)["extra/y.csv"] == b"1"
-    with host.unpacked(path) as (folder, _):
+    assert host.read_description(path).modelName == "Bomb"
+    assert archives.FmuMembers(path)["extra/y.csv"] == b"1"
+    with host.unpack_fmu(path) as (folder, _):
         assert Path(folder, "resources", "x").stat().st_size == len(ZEROS)
     assert not Path(folder).exists()
 
@@ -145,14 +150,14 @@ def test_a_pipe_and_a_device_are_refused(tmp_path: Path) -> None:
     pipe = tmp_path / "pipe.toml"
     os.mkfifo(pipe)
     for path, kind in ((pipe, "a pipe"), (Path("/dev/zero"), "a device")):
-        for read in (load, host.description, lambda p: read_bytes(p, "a file")):
+        for read in (load_parameter_file, host.read_description, lambda p: read_bytes(p, "a file")):
             with pytest.raises(ValueError, match=f"{path}: is {kind}, no regular file; expected"):
                 read(path)
 
 
 INPUTS = {
     (one.prog.partition(" ")[2], action.dest)
-    for one in _all(parser())
+    for one in _iterate_parsers(build_parser())
     for action in one._actions
     if action.type is Path and action.dest not in (*one.outputs, "fmus")
 }

@@ -10,13 +10,13 @@ import pytest
 from conftest import refused_line
 from jointfmu_tools import cli, columns
 from jointfmu_tools.fitting.least_squares import Unknown, solve
-from jointfmu_tools.fitting.loop import backbone
+from jointfmu_tools.fitting.loop import find_backbone
 from jointfmu_tools.joints.bolted_joint.fit import preload
 from jointfmu_tools.joints.harmonic_drive.fit import torque_angle
-from jointfmu_tools.joints.harmonic_drive.fit.drive import windup
+from jointfmu_tools.joints.harmonic_drive.fit.drive import wind_up
 
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
-from jointfmu.parameters import default, dump, load
+from jointfmu.parameters import format_parameter_file, load_default, load_parameter_file
 
 pytestmark = pytest.mark.slow
 
@@ -98,9 +98,9 @@ def test_loop_is_taken_apart(loops):
 
 def test_the_loop_of_a_drive_has_its_midline():
     """At the tips friction acts on both branches: their mean is half the gap at zero torque off there."""
-    line = backbone(*trips.loops(np.random.default_rng(1), noise=0.0, drift=0.0))
-    drive = default("harmonic_drive").with_values(trips.DRIVE, "user", "true").values
-    rest = line.angle - 5.0 * ARCMIN - windup(drive, line.torque)
+    line = find_backbone(*trips.loops(np.random.default_rng(1), noise=0.0, drift=0.0))
+    drive = load_default("harmonic_drive").with_values(trips.DRIVE, "user", "true").values
+    rest = line.angle - 5.0 * ARCMIN - wind_up(drive, line.torque)
     # 0.5 mN m of noise in the torque moves the angle by 2e-3 arcmin where the drive is soft
     assert np.max(np.abs(rest)) < 0.01 * ARCMIN
 
@@ -118,18 +118,18 @@ def test_torque_before_angle_before_unit(loops, tmp_path):
 
 
 def test_one_direction_has_no_loop():
-    drive = default("harmonic_drive").values
+    drive = load_default("harmonic_drive").values
     torque = np.linspace(0.0, 20.0, 100)
-    line = backbone(torque, windup(drive, torque))
+    line = find_backbone(torque, wind_up(drive, torque))
     assert (line.loop_area, line.backlash, line.drift) == (None, None, None)
     np.testing.assert_array_equal(line.torque, torque)
 
 
 def test_single_open_loop_has_no_drift():
-    drive = default("harmonic_drive").values
+    drive = load_default("harmonic_drive").values
     torque = np.concatenate([np.linspace(-9.0, 9.0, 200), np.linspace(9.0, -9.0, 200)])
     gap = 1e-4 * np.repeat([-0.5, 0.5], 200) * (1.0 - (torque / 9.0) ** 2)
-    line = backbone(torque, windup(drive, torque) + gap)
+    line = find_backbone(torque, wind_up(drive, torque) + gap)
     assert line.drift is None
     assert line.backlash[0] == pytest.approx(1e-4, rel=0.01)  # polygon of 20 pieces
     assert line.loop_area[0] == pytest.approx(2.0 / 3.0 * 1e-4 * 18.0, rel=0.01)
@@ -137,7 +137,7 @@ def test_single_open_loop_has_no_drift():
 
 def test_what_is_not_determined_is_said_by_name(loops):
     """drive_scale and mean_over_peak act only as a product."""
-    found = torque_angle.fit(loops, free=[*torque_angle.FREE, "mean_over_peak"])
+    found = torque_angle.fit(loops, fitted_names=[*torque_angle.FITTED_PARAMETERS, "mean_over_peak"])
     rows = {row["name"]: row["determined"] for row in found.rows()}
     assert rows == {
         "K_FTS0": True,
@@ -149,7 +149,7 @@ def test_what_is_not_determined_is_said_by_name(loops):
         "the data do not determine drive_scale, mean_over_peak: other values fit as well" in found.warnings()
     )
     known = torque_angle.fit(loops).solution.values
-    mean = default("harmonic_drive").values.mean_over_peak
+    mean = load_default("harmonic_drive").values.mean_over_peak
     product = found.solution.values["drive_scale"] * found.solution.values["mean_over_peak"] / mean
     assert product == pytest.approx(known["drive_scale"], rel=1e-4)
 
@@ -178,11 +178,11 @@ def test_written_file_says_where_it_comes_from(loops, tmp_path, monkeypatch, cap
         == 0
     )
     document = json.loads(capsys.readouterr().out)
-    file = load(out, "harmonic_drive")
+    file = load_parameter_file(out, "harmonic_drive")
     assert {
         n for n, s in file.sources.items() if s.startswith("fitted to loops.csv, 2026-01-01, torque -2")
-    } == {*torque_angle.FREE}
-    assert {file.origins[name] for name in torque_angle.FREE} == {"calibration"}
+    } == {*torque_angle.FITTED_PARAMETERS}
+    assert {file.origins[name] for name in torque_angle.FITTED_PARAMETERS} == {"calibration"}
     assert document["parameters"]["K_FTS0"] == file.values.K_FTS0
     assert picture.read_bytes().startswith(b"\x89PNG")
 
@@ -193,18 +193,18 @@ def test_written_file_says_where_it_comes_from(loops, tmp_path, monkeypatch, cap
 @pytest.mark.parametrize("direction", ["normal", "tangential"])
 def test_joint_stiffness_is_the_exported_one(direction):
     """Also at 20 N of preload, where most nodes are still closing."""
-    joint = default("bolted_joint").values
+    joint = load_default("bolted_joint").values
     spring = BoltedJointSpring.of_nodes(replace(joint, memory=False))
     loads = np.array([20.0, 2e3, 3e4])
     name = {"normal": "K_zz", "tangential": "K_xx"}[direction]
-    exported = [spring.motion(load, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))[name] for load in loads]
+    exported = [spring.evaluate(load, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))[name] for load in loads]
     # the table's error
     np.testing.assert_allclose(preload.joint_stiffness(joint, loads, direction), exported, rtol=1e-8)
 
 
 def test_area_has_no_effect(stiffness):
     """The law knows loads, no pressures: a start elsewhere stays there."""
-    start = default("bolted_joint").with_values({"A_0": 0.05}, "user", "test")
+    start = load_default("bolted_joint").with_values({"A_0": 0.05}, "user", "test")
     found = preload.fit(stiffness, start, ["surface.D", "surface.G", "A_0"])
     rows = {row["name"]: row["determined"] for row in found.rows()}
     assert rows == {"surface.D": True, "surface.G": True, "A_0": False}
@@ -224,10 +224,10 @@ def test_frequency_without_mass_keeps_the_surface(tmp_path):
 
 def test_series_stiffness_is_in_series(tmp_path):
     """K/2 where the joint is as stiff as the structure."""
-    joint = default("bolted_joint").values
+    joint = load_default("bolted_joint").values
     P = np.array([1e4])
     K = float(preload.joint_stiffness(joint, P)[0])
-    assert preload.PreloadCurve("stiffness", P, P).predicted(joint, K, "normal") == pytest.approx([K / 2.0])
+    assert preload.PreloadCurve("stiffness", P, P).predict(joint, K, "normal") == pytest.approx([K / 2.0])
 
 
 # Bad data
@@ -295,7 +295,7 @@ def test_units_of_a_record_do_not_matter(force, times, turn, by, tmp_path):
         path = tmp_path / "curve.csv"
         rows = (f"{T * x!r},{(T / 5e3 - T**3 / 1e6) * y!r}" for T in np.linspace(-5.0, 5.0, 30).tolist())
         path.write_text("\n".join([head, *rows]))
-        found.append(columns.read(path, torque_angle.COLUMNS, 10).columns)
+        found.append(columns.read_columns(path, torque_angle.COLUMN_UNITS, 10).columns)
     for name, column in found[0].items():
         assert found[1][name] == pytest.approx(column, rel=1e-14, abs=1e-18)
 
@@ -304,7 +304,9 @@ def test_titles_are_those_of_loops(tmp_path):
     path = tmp_path / "curve.csv"
     rows = (f"{T / 5e3 - T**3 / 1e6};{T}" for T in np.linspace(-5.0, 5.0, 30))
     path.write_text("\n".join(["Winkel (rad);Drehmoment / Nm", *rows]))
-    assert torque_angle.read(path, None, None).line.torque == pytest.approx(np.linspace(-5.0, 5.0, 30))
+    assert torque_angle.read_curve(path, None, None).midline.torque == pytest.approx(
+        np.linspace(-5.0, 5.0, 30)
+    )
 
 
 RISING = ["1e3,1e9", "2e3,2e9", "3e3,3e9", "4e3,4e9"]
@@ -345,7 +347,7 @@ def test_zero_cannot_be_fitted(loops, capsys):
 
 def test_another_joints_file(loops, tmp_path, capsys):
     path = tmp_path / "bolts.toml"
-    path.write_text(dump(default("bolted_joint")))
+    path.write_text(format_parameter_file(load_default("bolted_joint")))
     assert "expected a parameter file of a 'harmonic_drive'" in refused_line(
         capsys, "fit", "torque-angle", loops, "--params", path
     )

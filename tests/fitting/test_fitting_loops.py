@@ -12,14 +12,14 @@ from jointfmu_tools import cli
 from jointfmu_tools.fitting import branches, decay
 from jointfmu_tools.fitting.hysteresis import HysteresisLaw, NonlinearSpring, Oscillator
 from jointfmu_tools.fitting.least_squares import Solution, Unknown
-from jointfmu_tools.fitting.measurement import LEAST, Heads, read
+from jointfmu_tools.fitting.measurement import MIN_ROWS, ColumnNames, read_columns
 from jointfmu_tools.fitting.outcome import FitResult, Picture
 from jointfmu_tools.joints.bolted_joint.fit import loop
-from jointfmu_tools.joints.harmonic_drive.fit.hysteresis import HEADS as DRIVE_HEADS
+from jointfmu_tools.joints.harmonic_drive.fit.hysteresis import COLUMN_NAMES as DRIVE_HEADS
 
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
-from jointfmu.parameters import default, load
-from jointfmu.quantity.units import sizes
+from jointfmu.parameters import load_default, load_parameter_file
+from jointfmu.quantity.units import unit_sizes
 
 PRELOAD = measurements.PRELOAD
 K, C = 2e9, 4e13
@@ -33,12 +33,12 @@ AMPLITUDES = np.array([1e-7, 1e-6, 1e-5])
 
 def test_first_loading_is_the_normal_curve_once_more():
     """B(u) = mu (F_N(0) - F_N(kappa u/mu)) with the normal force of the exported joint, all of its nodes."""
-    joint = default("bolted_joint").values
+    joint = load_default("bolted_joint").values
     law, told = loop.first_loading(joint, PRELOAD)
     spring = BoltedJointSpring.of_nodes(joint)
 
     def state(apart):
-        return spring.motion(PRELOAD, 0.0, (0.0, 0.0, apart), (0.0, 0.0, 0.0))
+        return spring.evaluate(PRELOAD, 0.0, (0.0, 0.0, apart), (0.0, 0.0, 0.0))
 
     rest = state(0.0)
     kappa = float(joint.shear_ratio())
@@ -57,17 +57,17 @@ def test_first_loading_is_the_normal_curve_once_more():
 def test_work_is_the_integral_of_the_friction():
     law, u = measurements.joint_law(), np.linspace(0.0, 12e-6, 20001)
     whole = np.concatenate([[0.0], np.cumsum(0.5 * (law.friction(u)[1:] + law.friction(u)[:-1])) * u[1]])
-    np.testing.assert_allclose(law.work(u)[1000:], whole[1000:], rtol=1e-6)  # trapezoids
+    np.testing.assert_allclose(law.friction_work(u)[1000:], whole[1000:], rtol=1e-6)  # trapezoids
 
 
 def test_loop_of_a_parabola():
     """In phase K - C a, area 4/3 C a^3; the loop by trapezoids has the same area."""
-    stiffness, loss = PARABOLA.equivalent(AMPLITUDES)
+    stiffness, loss = PARABOLA.equivalent_spring(AMPLITUDES)
     np.testing.assert_allclose(stiffness, K - C * AMPLITUDES, rtol=1e-12)
     area = 4.0 / 3.0 * C * AMPLITUDES**3
     np.testing.assert_allclose(loss, area / (np.pi * stiffness * AMPLITUDES**2), rtol=1e-9)
     u = 1e-6 * np.cos(np.linspace(0.0, np.pi, 4001))
-    falling = PARABOLA.change(u, np.full(u.size, 1e-6))
+    falling = PARABOLA.force_change(u, np.full(u.size, 1e-6))
     middle = falling - 0.5 * falling[-1]
     assert 2.0 * np.sum(0.5 * (middle[1:] + middle[:-1]) * np.diff(u)) == pytest.approx(area[1], rel=1e-5)
 
@@ -90,9 +90,9 @@ def test_decay_of_a_viscous_spring():
 
 def test_free_vibration_agrees_with_integration_in_time():
     """Velocity Verlet, 1e-5 with 500 steps a period; the windows miss what their own spreads say."""
-    found = decay.points(*measurements.joint_decay())
+    found = decay.analyse_decay(*measurements.joint_decay())
     law, mass = measurements.joint_law(), measurements.MASS
-    frequency, damping = Oscillator(law, mass).free(found.amplitude)
+    frequency, damping = Oscillator(law, mass).free_vibration(found.amplitude)
     assert np.all(np.abs(found.frequency / frequency - 1.0) < found.frequency_spread + 2e-4)
     assert np.all(np.abs(found.damping / damping - 1.0) < found.damping_spread / damping + 5e-3)
     assert found.damping[0] > 2.0 * found.damping[-1]
@@ -101,7 +101,9 @@ def test_free_vibration_agrees_with_integration_in_time():
 def test_response_agrees_with_integration_in_time():
     """Amplitude of a steady state; the first harmonic alone leaves out 1/9 of the third: below 1 %."""
     law, mass, force, frequency = measurements.joint_law(), measurements.MASS, 800.0, 1080.0
-    expected = Oscillator(law, mass).response(np.array([frequency]), np.array([force]), np.array([1e-6]))[0]
+    expected = Oscillator(law, mass).response_amplitude(
+        np.array([frequency]), np.array([force]), np.array([1e-6])
+    )[0]
     found = measurements.forced(law, mass, force, frequency, 3.0 * expected)
     assert found == pytest.approx(expected, rel=1e-2)
 
@@ -116,10 +118,10 @@ def joint_loops(**noise):
 def test_branches_follow_their_law():
     run, motion, force = joint_loops()
     parts = [("", motion[run == k], force[run == k]) for k in (1.0, 2.0)]
-    found = branches.cut(parts)
+    found = branches.cut_branches(parts)
     assert found.start.size == 6  # three turning points inside each run of two periods
     law = measurements.joint_law()
-    _, start, rest = found.fitted(law, np.full(found.motion.size, 30.0))
+    _, start, rest = found.fit_turning_points(law, np.full(found.motion.size, 30.0))
     # the noise is 0.3 % of the force, and 0.1 % of the motion
     assert np.std(rest[found.run == 1]) < 6e-3 * force.max()
     np.testing.assert_allclose(np.abs(start[found.start > 3e-6]), 6e-6, rtol=5e-3)
@@ -129,7 +131,7 @@ def test_a_branch_ends_where_it_passes_the_turning_point_before():
     """Growing swings: what goes beyond the last loop has another history."""
     turns = np.array([0.0, 1.0, -1.5, 2.0, -2.0])
     motion = np.concatenate([np.linspace(a, b, 50, endpoint=False) for a, b in pairwise(turns)])
-    found = branches.cut([("", motion, motion)])
+    found = branches.cut_branches([("", motion, motion)])
     ends = [(found.motion[found.branch == k].min(), found.motion[found.branch == k].max()) for k in range(3)]
     assert ends[0][0] == pytest.approx(-1.5, abs=0.1)
     assert ends[1][1] == pytest.approx(1.0, abs=0.1)
@@ -153,18 +155,20 @@ def test_the_place_of_rest_is_found_in_loops(middle):
     hardening = NonlinearSpring(lambda u: K * u + 1e20 * u**3, lambda u: 0.5 * K * u**2 + 2.5e19 * u**4)
     law = replace(PARABOLA, elastic=hardening)
     motion, force = swung(law, [middle + a for a in (5e-6, -5e-6, 5e-6, -5e-6)])
-    found = branches.cut([("", motion + 3e-5, force - 7e3)])
-    rest = found.rest(law, found.scale)
+    found = branches.cut_branches([("", motion + 3e-5, force - 7e3)])
+    rest = found.rest_position(law, found.scale)
     assert rest == pytest.approx(3e-5, rel=1e-6)
     # steps of 50 nm: the turning points are the outermost samples
-    assert np.max(np.abs(found.fitted(law.about(rest), found.scale)[2])) < 1e-9 * np.ptp(force)
+    assert np.max(np.abs(found.fit_turning_points(law.shift_rest(rest), found.scale)[2])) < 1e-9 * np.ptp(
+        force
+    )
 
 
 def test_a_linear_spring_has_no_place_of_rest():
     law = replace(PARABOLA, elastic=SPRING)
     motion, force = swung(law, [5e-6, -5e-6, 5e-6, -5e-6])
-    found = branches.cut([("", motion + 3e-5, force - 7e3)])
-    assert found.rest(law, found.scale) in (0.0, pytest.approx(3e-5, rel=2e-3))
+    found = branches.cut_branches([("", motion + 3e-5, force - 7e3)])
+    assert found.rest_position(law, found.scale) in (0.0, pytest.approx(3e-5, rel=2e-3))
     assert np.max(np.abs(found.residuals(law, found.scale))) < 1e-9
 
 
@@ -172,8 +176,8 @@ def test_noise_does_not_widen_the_loops():
     """The largest of several noisy samples lies two deviations too far out; the parabola does not."""
     rng = np.random.default_rng(1)
     motion = np.cos(np.linspace(1.0, 99.0, 98 * 300)) + 1e-3 * rng.standard_normal(98 * 300)
-    turns = branches.turning_points(motion)
-    values = [abs(branches.turning_value(motion, k, branches.noise(motion))) for k in turns]
+    turns = branches.find_turning_points(motion)
+    values = [abs(branches.turning_value(motion, k, branches.noise_deviation(motion))) for k in turns]
     assert turns.size == 31
     assert np.mean(np.abs(motion[turns])) > 1.0 + 1.5e-3
     assert np.mean(values) == pytest.approx(1.0, abs=4e-4)
@@ -182,8 +186,8 @@ def test_noise_does_not_widen_the_loops():
 def test_motion_at_the_turning_points_is_part_of_the_doubt():
     """Coarse triangles miss their corners by up to half a step."""
     motion = np.abs((np.arange(200) * 0.07 + 0.03) % 4.0 - 2.0)
-    found = branches.cut([("", motion, 2.0 * motion)])
-    assert np.all(found.doubt > 0.02)
+    found = branches.cut_branches([("", motion, 2.0 * motion)])
+    assert np.all(found.start_deviation > 0.02)
 
 
 # Round trips
@@ -224,7 +228,7 @@ def test_the_command_writes_what_it_found(tmp_path, capsys):
     assert document["facts"]["friction_limit"]["value"] == pytest.approx(
         document["parameters"]["mu"] * 8 * 9e3
     )
-    file = load(out, "bolted_joint")
+    file = load_parameter_file(out, "bolted_joint")
     assert file.values.mu == document["parameters"]["mu"]
     assert file.sources["mu"].startswith("fitted to shear.csv")
     assert "preload 9000 N" in file.sources["mu"]
@@ -233,7 +237,7 @@ def test_the_command_writes_what_it_found(tmp_path, capsys):
 
 @pytest.mark.slow
 def test_law_of_a_roughness_has_a_level_and_no_exponent(tmp_path):
-    file = load("models/bolted_joint/box_specimen_roughness.toml", "bolted_joint")
+    file = load_parameter_file("models/bolted_joint/box_specimen_roughness.toml", "bolted_joint")
     law = loop.first_loading(file.with_values({"mu": 0.3, "h": 4e-6}, "user", "true").values, PRELOAD)[0]
     run, motion, force = measurements.loops(law, (1e-6, 4e-6), np.random.default_rng(1))
     path = measurements.save(
@@ -363,7 +367,7 @@ def test_a_record_needs_samples_and_periods(tmp_path, capsys):
 
 
 def test_kinds_of_files(tmp_path):
-    heads = Heads("force", "displacement", sizes("N"), sizes("m", "um"))
+    heads = ColumnNames("force", "displacement", unit_sizes("N"), unit_sizes("m", "um"))
     for names, kind in (
         ("displacement [um], force [N], time [s]", "loops"),
         ("time [s], displacement [um]", "decay"),
@@ -371,14 +375,14 @@ def test_kinds_of_files(tmp_path):
         ("frequency [Hz], displacement [um], force [N]", "response"),
     ):
         path = write(tmp_path, names, *(np.ones(10) for _ in names.split(",")))
-        assert read(path, heads)[0] == kind
+        assert read_columns(path, heads)[0] == kind
 
 
 @pytest.mark.slow
 def test_frequency_and_damping_over_the_amplitude(tmp_path):
     """A backbone that somebody else has evaluated; the structure's own damping ratio is found beside."""
     a = np.geomspace(1e-7, 3e-6, 25)
-    frequency, damping = Oscillator(measurements.joint_law(), measurements.MASS, 0.004).free(a)
+    frequency, damping = Oscillator(measurements.joint_law(), measurements.MASS, 0.004).free_vibration(a)
     rng = np.random.default_rng(1)
     frequency, damping = (
         x * np.exp(s * rng.standard_normal(25)) for x, s in ((frequency, 1e-3), (damping, 0.03))
@@ -404,7 +408,7 @@ def test_a_structure_in_series_is_told_from_the_joint(tmp_path):
     motion = np.geomspace(1e-8, 3e-6, 20)
     both = motion + alone.friction(motion) / (series * joint)
     np.testing.assert_allclose(law.friction(both), alone.friction(motion), rtol=1e-4)  # between its nodes
-    frequency, damping = Oscillator(law, measurements.MASS).free(np.geomspace(1e-7, 1e-5, 25))
+    frequency, damping = Oscillator(law, measurements.MASS).free_vibration(np.geomspace(1e-7, 1e-5, 25))
     noise = np.random.default_rng(1)
     frequency, damping = (
         x * np.exp(s * noise.standard_normal(25)) for x, s in ((frequency, 1e-4), (damping, 0.01))
@@ -434,31 +438,31 @@ def test_an_area_is_that_of_a_loop_that_closes(end, areas):
     """From a tip on; half a branch after the last whole one closes none."""
     t = np.linspace(0.25, end, 400)
     motion = np.sin(2.0 * np.pi * t)
-    found = branches.cut([("", motion, motion + 0.1 * np.sign(np.cos(2.0 * np.pi * t)))]).areas
+    found = branches.cut_branches([("", motion, motion + 0.1 * np.sign(np.cos(2.0 * np.pi * t)))]).areas
     assert [area for area, _ in found] == pytest.approx(areas, rel=0.02)
 
 
 def test_runs_of_their_own_size_have_their_own_noise():
     run, motion, force = joint_loops()
     force[run == 2.0] += 1e3 * np.random.default_rng(2).standard_normal(np.count_nonzero(run == 2.0))
-    found = branches.cut([("", motion[run == k], force[run == k]) for k in (1.0, 2.0)])
-    rest = found.fitted(measurements.joint_law(), found.scale)[2]
+    found = branches.cut_branches([("", motion[run == k], force[run == k]) for k in (1.0, 2.0)])
+    rest = found.fit_turning_points(measurements.joint_law(), found.scale)[2]
     assert np.std(rest[found.run == 1]) > 20.0 * np.std(rest[found.run == 0])
-    assert replace(found, areas=()).groups is found.run
+    assert replace(found, areas=()).noise_groups is found.run
 
 
 @pytest.mark.slow
 def test_level_and_exponent_of_a_vibration_go_along_the_valley_of_its_stiffness(tmp_path):
     """The stiffness is known a hundred times better than level and exponent; the search ends all the same."""
     a = np.geomspace(1e-7, 6e-6, 25)
-    frequency, damping = Oscillator(measurements.joint_law(), measurements.MASS).free(a)
+    frequency, damping = Oscillator(measurements.joint_law(), measurements.MASS).free_vibration(a)
     rng = np.random.default_rng(1)
     frequency, damping = (
         x * np.exp(s * rng.standard_normal(25)) for x, s in ((frequency, 1e-4), (damping, 0.01))
     )
     path = write(tmp_path, "displacement [um], frequency [Hz], damping [1]", 1e6 * a, frequency, damping)
-    names = list(loop.FREE["zhao2018"])
-    found = loop.fit(path, free=names, preload=PRELOAD, modal_mass=measurements.MASS)
+    names = list(loop.FITTED_PARAMETERS["zhao2018"])
+    found = loop.fit(path, fitted_names=names, preload=PRELOAD, modal_mass=measurements.MASS)
     for name, deviation in found.solution.deviations.items():
         assert abs(np.log(found.solution.values[name] / measurements.JOINT[name])) < 3.0 * deviation, name
     assert found.facts["shear_stiffness"][0] == pytest.approx(
@@ -478,9 +482,9 @@ def test_level_and_exponent_of_a_vibration_go_along_the_valley_of_its_stiffness(
 )
 def test_titles_as_people_write_them(tmp_path, titles):
     mark = next(m for m in ";\t," if m in titles)
-    rows = "".join(f"{i}{mark}{2 * i}\n" for i in range(LEAST))
+    rows = "".join(f"{i}{mark}{2 * i}\n" for i in range(MIN_ROWS))
     (tmp_path / "a.csv").write_text(f"{titles}\n{rows}")
-    kind, table = read(tmp_path / "a.csv", DRIVE_HEADS)
+    kind, table = read_columns(tmp_path / "a.csv", DRIVE_HEADS)
     assert kind == "loops"
     assert table.columns["torque"].tolist() == [2 * a for a in table.columns["angle"]]
 
@@ -502,7 +506,7 @@ def test_a_fit_that_says_nothing_is_not_written(tmp_path, capsys, monkeypatch):
     assert cli.main([*words, "--json"]) == 1
     assert json.loads(capsys.readouterr().out)["doubt"].startswith("the area of the widest loop")
     assert cli.main([*words, "--force"]) == 0
-    assert load("bar.toml", "bolted_joint").flat["mu"] > 0.0
+    assert load_parameter_file("bar.toml", "bolted_joint").values_by_name["mu"] > 0.0
 
 
 @pytest.mark.parametrize(
@@ -527,4 +531,4 @@ def test_what_a_fit_does_not_say(stuck, deviation, h, says):
     values = {"mu": 0.1, "h": h}
     solution = Solution(wanted, values, nothing, deviation, seen, deviation**2 * seen, stuck, None)
     picture = Picture(nothing, nothing, nothing, (nothing, nothing), ("", "", ""))
-    assert FitResult(default("bolted_joint"), solution, {}, picture).doubt() == says
+    assert FitResult(load_default("bolted_joint"), solution, {}, picture).rejection_reason() == says

@@ -10,24 +10,24 @@ from jointfmu_tools.joints.bolted_joint.fit import loop as shear
 from jointfmu_tools.joints.harmonic_drive.fit import hysteresis
 from jointfmu_tools.ramps import loops, ramp
 
-from jointfmu.parameters import default
+from jointfmu.parameters import load_default
 
 HYSTERESIS = {"hysteresis_loss": 3.5e-4, "hysteresis_stiffness": 6000.0}
 SET = [f"{name}={value}" for name, value in HYSTERESIS.items()]
 AMPLITUDES = (1e-4, 1e-3)
-FINE = loops.Swing(shape="sine", points=400)
+FINE = loops.CyclicPath(shape="sine", points=400)
 
 
 @pytest.fixture(scope="module")
 def drive(native):
     """Loops of a drive with hysteresis."""
     fmu = native / "fmi2" / "HarmonicDriveSpring.fmu"
-    return loops.run(fmu, "phi2", AMPLITUDES, FINE, settings=HYSTERESIS)
+    return loops.run_loops(fmu, "phi2", AMPLITUDES, FINE, settings=HYSTERESIS)
 
 
 @pytest.mark.parametrize("shape", loops.SHAPES)
 def test_first_loading_then_whole_cycles(shape):
-    points = loops.Swing(about=1.0, shape=shape, points=8, cycles=2).along(3.0)
+    points = loops.CyclicPath(centre=1.0, shape=shape, points=8, cycles=2).path(3.0)
     near = 1.5 if shape == "triangle" else 3.0 * np.sqrt(0.5)
     cycle = [0.0, near, 3.0, near, 0.0, -near, -3.0, -near]
     np.testing.assert_allclose(points, 1.0 + np.array([*cycle, *cycle, *cycle[:3]]), atol=1e-12)
@@ -37,9 +37,9 @@ def test_first_loading_then_whole_cycles(shape):
 def test_hysteresis_appears(drive, amplitude):
     """Area by Masing's rule, from the law and not from the FMU; trapezoids of 400 points, and the sliders."""
     row = drive.rows()[amplitude]
-    law = hysteresis.law(default("harmonic_drive").with_values(HYSTERESIS, "user", "test").values)
+    law = hysteresis.make_law(load_default("harmonic_drive").with_values(HYSTERESIS, "user", "test").values)
     u = np.array([AMPLITUDES[amplitude]])
-    assert row["loss"] == pytest.approx(float(law.area(u)[0]), rel=1e-3)
+    assert row["loss"] == pytest.approx(float(law.loop_area(u)[0]), rel=1e-3)
     assert row["loss"] == pytest.approx(row["E_loss"], rel=1e-3)
     force = law.friction(u) + law.elastic.force(u)
     assert row["secant_stiffness"] == pytest.approx(float(force[0] / u[0]), rel=1e-9)
@@ -58,7 +58,7 @@ def test_force_acts_on_the_joint(drive):
 def test_without_memory_nothing_is_lost(native, version):
     """A force drives, a motion answers; about a working point, as the contact takes no pull."""
     fmu = native / version / "GearContact.fmu"
-    found = loops.run(fmu, "f", [100.0, 300.0], loops.Swing(about=500.0))
+    found = loops.run_loops(fmu, "f", [100.0, 300.0], loops.CyclicPath(centre=500.0))
     assert (found.motion, found.force) == ("s_rel", "f")
     assert [row["loss"] for row in found.rows()] == [0.0, 0.0]
     assert found.rows()[1]["force"] == 300.0
@@ -78,8 +78,11 @@ def test_without_memory_nothing_is_lost(native, version):
     ],
 )
 def test_conjugate_output(native, fmu, input_name, expected):
-    with ramp.unpacked(native / "fmi3" / f"{fmu}.fmu") as (_, description):
-        assert loops.conjugate(*loops.variables(description), input_name, None, fmu) == expected
+    with ramp.unpack_fmu(native / "fmi3" / f"{fmu}.fmu") as (_, description):
+        assert (
+            loops.find_conjugate(*loops.input_and_output_units(description), input_name, None, fmu)
+            == expected
+        )
 
 
 def test_the_command_prints_a_table_and_writes_what_fit_reads(native, tmp_path, capsys):
@@ -97,11 +100,11 @@ def test_the_command_prints_a_table_and_writes_what_fit_reads(native, tmp_path, 
 
 def test_loops_of_a_bolted_joint_give_its_friction_and_level_back(native, tmp_path):
     """The FMU's few sliders and patches against the law of all nodes: loops alike within 2 %."""
-    path, true = tmp_path / "shear.csv", default("bolted_joint").values
+    path, true = tmp_path / "shear.csv", load_default("bolted_joint").values
     fmu, amplitudes = native / "fmi3" / "BoltedJoint.fmu", ["5e-7", "2e-6", "6e-6"]
     words = ["--input", "s_rel_x", "--loop", *amplitudes, "--set", "preload=9e3", "--csv", path, "--json"]
     assert cli.main([*map(str, ["ramp", fmu, *words])]) == 0
-    found = shear.fit(path, free=["mu", "surface.G"], preload=9e3)
+    found = shear.fit(path, fitted_names=["mu", "surface.G"], preload=9e3)
     assert found.solution.values["mu"] == pytest.approx(true.mu, rel=2e-3)  # as the force in gross slip
     assert found.facts["shear_stiffness"][0] == pytest.approx(shear.rest_stiffness(true, 9e3), rel=0.01)
     assert found.facts["loop_area"][0] == pytest.approx(found.facts["loop_area_law"][0], rel=0.01)

@@ -35,7 +35,7 @@ def folder(tmp_path, monkeypatch):
 @pytest.fixture
 def plate(monkeypatch):
     """Makes a bolted joint of PLATE, without the finite elements beside it."""
-    monkeypatch.setattr(computed, "facts", lambda file, *arguments: computed.NewJoint(file, {}, []))
+    monkeypatch.setattr(computed, "compute_facts", lambda file, *arguments: computed.NewJoint(file, {}, []))
     return lambda **changes: jointfmu.bolted_joint(**PLATE | changes)
 
 

@@ -15,11 +15,11 @@ from fmpy.validation import validate_fmu
 from jointfmu_fmu_src import joints as builders
 from jointfmu_fmu_src.building import FLAVOURS, build
 from jointfmu_tools import cli
-from jointfmu_tools.job.checks import check, default_ramp, same
+from jointfmu_tools.job.checks import check_ramp, compare_flavour, run_default_ramp
 from jointfmu_tools.modelica import library
 
 from jointfmu import joints
-from jointfmu.parameters import default, dump
+from jointfmu.parameters import format_parameter_file, load_default
 
 pytestmark = pytest.mark.slow
 
@@ -28,7 +28,7 @@ C = 1e4
 
 @pytest.fixture(scope="module", autouse=True)
 def toy():
-    joints.register(toy_joint.KIND)
+    joints.register_joint(toy_joint.KIND)
     builders.PARTS["toy"], tools.PARTS["toy"] = toy_fmu.PARTS, toy_tools.PARTS
     yield
     del builders.PARTS["toy"], tools.PARTS["toy"]
@@ -52,26 +52,26 @@ def test_it_is_short():
 
 def test_a_name_is_taken_once():
     with pytest.raises(ValueError, match="joint 'toy': the name 'toy' is taken"):
-        joints.register(toy_joint.KIND)
+        joints.register_joint(toy_joint.KIND)
 
 
 @pytest.mark.parametrize("flavour", FLAVOURS)
 def test_every_flavour_is_valid_and_gives_hookes_law(built, flavour):
     path = built / flavour / "ToySpring.fmu"
     assert validate_fmu(str(path)) == []
-    ramp = default_ramp("ToySpring", built / flavour)
+    ramp = run_default_ramp("ToySpring", built / flavour)
     assert ramp.columns["f"] == pytest.approx(-C * ramp.columns["s_rel"], rel=1e-15, abs=0.0)
     assert ramp.columns["K"] == pytest.approx(np.full(101, C), rel=1e-15)
     assert ramp.messages == ()
-    assert all(one.passed for one in check("ToySpring", built / flavour, ramp))
-    assert same("ToySpring", built / "python", ramp).passed
+    assert all(one.is_passed for one in check_ramp("ToySpring", built / flavour, ramp))
+    assert compare_flavour("ToySpring", built / "python", ramp).is_passed
 
 
 def test_a_stiffness_that_is_none_is_refused_by_the_fmu(built):
     from jointfmu_tools.ramps import ramp
 
     with pytest.raises(ValueError, match=r"c = -1 N/m is outside \(0, inf\): stiffness"):
-        ramp.run(built / "fmi3" / "ToySpring.fmu", "s_rel", 1e-3, 1e-3, {"c": -1.0})
+        ramp.run_ramp(built / "fmi3" / "ToySpring.fmu", "s_rel", 1e-3, 1e-3, {"c": -1.0})
 
 
 def test_it_has_page_icon_and_flange(built):
@@ -85,7 +85,7 @@ def test_it_has_page_icon_and_flange(built):
 
 
 def test_modelica_has_its_interface_and_wrapper():
-    files = library.library()
+    files = library.render_library()
     assert (
         "input Real s_rel" in files["Interfaces/ToySpring.mo"] or "s_rel" in files["Interfaces/ToySpring.mo"]
     )
@@ -117,7 +117,7 @@ def test_what_it_lacks_is_refused_by_name(tmp_path, capsys):
 
 
 def test_its_parameter_file_is_read_and_written():
-    file = default("toy")
+    file = load_default("toy")
     assert (file.joint, file.values.c) == ("toy", C)
     with pytest.raises(ValueError, match=r"c = 0 N/m is outside \(0, inf\)"):
         file.with_values({"c": 0.0}, "user", "test")
@@ -126,7 +126,7 @@ def test_its_parameter_file_is_read_and_written():
 def test_it_has_a_page_of_its_own_file(tmp_path, monkeypatch):
     """Of a joint that says nothing of pages and loops: the line over its load, and its parameters."""
     monkeypatch.chdir(tmp_path)
-    Path("mine.toml").write_text(dump(default("toy")))
+    Path("mine.toml").write_text(format_parameter_file(load_default("toy")))
     assert cli.main(["report", "mine.toml"]) == 0
     page = Path("mine.html").read_text(encoding="utf-8")
     assert "<td><code>c</code></td>" in page

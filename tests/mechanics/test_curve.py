@@ -10,10 +10,17 @@ from laws import RANDOM, YU, ZHAO, changed, decades
 from numpy.polynomial import Polynomial, polynomial
 from scipy.integrate import quad
 
-from jointfmu.contact.interface import at_largest_spot, largest_spot, stiffness_curve
+from jointfmu.contact.interface import at_largest_spot, solve_largest_spot, stiffness_curve
 from jointfmu.joints.harmonic_drive.spring import torque_curve
-from jointfmu.mechanics.curve import CLOSING_RATIO, MAX_ERROR, Curve, approach_curve, assemble, closing
-from jointfmu.parameters import default
+from jointfmu.mechanics.curve import (
+    CLOSING_RATIO,
+    MAX_ERROR,
+    Curve,
+    assemble_curve,
+    closing_pressure,
+    tabulate_approach,
+)
+from jointfmu.parameters import load_default
 
 EPS = np.finfo(float).eps
 STENCIL = np.array([-1.0, 9.0, -45.0, 0.0, 45.0, -9.0, 1.0]) / 60.0
@@ -39,8 +46,8 @@ each_set = pytest.mark.parametrize("law", SETS.values(), ids=SETS)
 @pytest.fixture(scope="module")
 def curves():
     """Every exported kind of table."""
-    made = {name: approach_curve(law) for name, law in SETS.items()}
-    return made | {"drive": torque_curve(default("harmonic_drive").values)}
+    made = {name: tabulate_approach(law) for name, law in SETS.items()}
+    return made | {"drive": torque_curve(load_default("harmonic_drive").values)}
 
 
 def polynomial_curve(p, nodes):
@@ -187,10 +194,10 @@ def test_load_is_the_slope_of_the_energy(curves, name):
 
 def test_energy_of_the_closing():
     """V = p L z^4 (a/4 + b z/5 + c z^2/6) from first touch on, without loss at the smallest z."""
-    curve = approach_curve(ZHAO)
-    p, length = curve.closed, -curve.displacement[0]
+    curve = tabulate_approach(ZHAO)
+    p, length = curve.closing_end_load, -curve.displacement[0]
     i = int(np.searchsorted(curve.displacement, 0.0))
-    c = 0.5 * curve.bend_end[i - 1] * length**2 / p - 6.0
+    c = 0.5 * curve.slope_end[i - 1] * length**2 / p - 6.0
     z = np.array([1e-3, 1e-2, 0.1, 0.5, 1.0])
     expected = p * length * z**4 * (c / 4.0 + (1.0 - 2.0 * c) * z / 5.0 + c * z**2 / 6.0)
     # x = (z - 1) L keeps 1e-16 of L, the load grows with z^3
@@ -230,7 +237,7 @@ def test_inverse_continues_with_the_last_tangents(x, y):
 
 
 def test_a_flat_beginning_is_inverted_to_the_first_node():
-    curve = approach_curve(ZHAO)
+    curve = tabulate_approach(ZHAO)
     assert np.all(curve.inverse([-1e9, -1.0, 0.0]) == curve.displacement[0])
 
 
@@ -240,7 +247,7 @@ def test_pieces_keep_their_bends():
     for ends, bend in (((-0.5, 0.0), 2.0), ((0.0, 1.0), 6.0)):
         x = np.linspace(*ends, 5)
         pieces.append((x, 3.0 + 2.0 * x + 0.5 * bend * x**2, 2.0 + bend * x, np.full(5, bend)))
-    curve = assemble(pieces)
+    curve = assemble_curve(pieces)
     x = np.linspace(-0.5, 1.0, 301)
     bend = np.where(x < 0.0, 2.0, 6.0)
     found = curve.derivatives(x, 2)
@@ -264,7 +271,7 @@ def test_measured_error_covers_the_true_error(name, segments):
     """Of load and stiffness, anywhere between the nodes."""
     f, slope, bend = SMOOTH[name]
     x = np.linspace(1.0, 3.0, segments + 1)
-    curve = assemble([(x, f(x), slope(x), bend(x))])
+    curve = assemble_curve([(x, f(x), slope(x), bend(x))])
     dense = np.linspace(1.0, 3.0, 20 * segments + 1)
     load, stiffness = curve.derivatives(dense, 1)
     true = max(np.max(np.abs(load / f(dense) - 1.0)), np.max(np.abs(stiffness / slope(dense) - 1.0)))
@@ -277,7 +284,7 @@ def test_measured_error_covers_the_true_error(name, segments):
 @each_set
 def test_approach_is_the_integral_of_dp_over_k(law):
     """Pressure and stiffness at an approach integrated by adaptive quadrature, to MAX_ERROR."""
-    curve = approach_curve(law)
+    curve = tabulate_approach(law)
     spots = law.spots()
     start = float(curve.load[np.searchsorted(curve.displacement, 0.0)])
     pressures = np.geomspace(start, 0.999 * law.hardness, 7)
@@ -300,7 +307,7 @@ def test_approach_is_the_integral_of_dp_over_k(law):
 @each_set
 def test_stiffness_is_the_laws(law):
     """Everywhere between the nodes, at the pressure that the table gives there."""
-    curve = approach_curve(law)
+    curve = tabulate_approach(law)
     x = curve.displacement[curve.displacement >= 0.0]
     t = np.linspace(0.0, 1.0, 11)[:-1, None]
     p, k = curve.derivatives((x[:-1] + t * np.diff(x)).ravel(), 1)
@@ -313,11 +320,11 @@ def test_stiffness_is_the_laws(law):
 @given(data=st.data())
 def test_any_law_gives_a_monotone_table_or_is_refused(kind, data):
     law = data.draw(RANDOM[kind])
-    if law.spots().stiff_onset + np.log(CLOSING_RATIO) >= largest_spot(law, law.hardness):
+    if law.spots().stiff_onset + np.log(CLOSING_RATIO) >= solve_largest_spot(law, law.hardness):
         with pytest.raises(ValueError, match="plastic"):
-            approach_curve(law)
+            tabulate_approach(law)
         return
-    curve = approach_curve(law)
+    curve = tabulate_approach(law)
     assert curve.error <= MAX_ERROR
     x = curve.displacement
     load, stiffness = curve.derivatives((x[:-1] + np.linspace(0, 1, 9)[:-1, None] * np.diff(x)).T.ravel(), 1)
@@ -327,19 +334,19 @@ def test_any_law_gives_a_monotone_table_or_is_refused(kind, data):
 
 @each_set
 def test_closing_begins_at_nothing_and_joins_smoothly(law):
-    curve = approach_curve(law)
-    assert (curve.load[0], curve.stiffness[0], curve.bend_start[0]) == (0.0, 0.0, 0.0)
+    curve = tabulate_approach(law)
+    assert (curve.load[0], curve.stiffness[0], curve.slope_start[0]) == (0.0, 0.0, 0.0)
     assert np.all(np.array(curve.derivatives(curve.displacement[0] - 1e-6, 3)) == 0.0)
     i = int(np.searchsorted(curve.displacement, 0.0))
     assert curve.displacement[i] == 0.0
     p, k = curve.load[i], curve.stiffness[i]
     assert curve.displacement[0] == pytest.approx(-4.0 * p / k, rel=1e-14)  # one multiplication
     # the closing takes over the very same numbers; its last polynomial sums three of them
-    assert curve.bend_end[i - 1] == pytest.approx(curve.bend_start[i], rel=1e-12)
+    assert curve.slope_end[i - 1] == pytest.approx(curve.slope_start[i], rel=1e-12)
     state = at_largest_spot(law, law.spots().reference * np.exp(law.spots().stiff_onset) * CLOSING_RATIO)
     assert p == pytest.approx(float(state["pressure"]), rel=1e-12)  # round-off of exp and log
     slope = stiffness_curve(law, p)[1]
-    assert curve.bend_start[i] == pytest.approx(float(k * slope), rel=1e-7)  # taken 1e-9 inside the regime
+    assert curve.slope_start[i] == pytest.approx(float(k * slope), rel=1e-7)  # taken 1e-9 inside the regime
 
 
 @given(
@@ -355,7 +362,7 @@ def test_closing(p, k, growth):
     """
     bend = growth * k * k / p
     z = np.linspace(0.0, 1.0, 49)
-    x, load, stiffness, slope = closing(p, k, bend, z)
+    x, load, stiffness, slope = closing_pressure(p, k, bend, z)
     assert (load[0], stiffness[0], slope[0]) == (0.0, 0.0, 0.0)
     assert x[-1] == 0.0
     # sums of three terms up to 60 times the result
@@ -383,7 +390,7 @@ def test_closing(p, k, growth):
 )
 def test_only_plastic_spots_are_refused(law):
     with pytest.raises(ValueError, match="only plastic spots") as error:
-        approach_curve(law)
+        tabulate_approach(law)
     text = str(error.value)
     assert "\n" not in text
     said = float(text.split("below ")[1].split(" Pa")[0])

@@ -8,11 +8,11 @@ from elastic_ring.nodes import Footprint
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from jointfmu.joints.bolted_joint.law import pressures, row_forces
-from jointfmu.mechanics.footprint.bolts import BoltPattern, cells, pressure_shape, unit_pressures
-from jointfmu.mechanics.footprint.shape import ALIKE
-from jointfmu.parameters import default
-from jointfmu.quantity import flatten
+from jointfmu.joints.bolted_joint.law import preload_pressure, row_forces
+from jointfmu.mechanics.footprint.bolts import BoltedFrame, bolt_pressures, frame_cells, pressure_distribution
+from jointfmu.mechanics.footprint.shape import PRESSURE_DECIMALS
+from jointfmu.parameters import load_default
+from jointfmu.quantity import flatten_parameters
 
 EPS = np.finfo(float).eps
 SUM = 1e-12
@@ -20,10 +20,10 @@ SUM = 1e-12
 FIT = 1e-8
 """Relative residual at which the calibration is accepted [1]."""
 
-JOINT = default("bolted_joint").values
+JOINT = load_default("bolted_joint").values
 
 patterns = st.builds(
-    BoltPattern,
+    BoltedFrame,
     row_spacing=st.floats(0.15, 0.6),
     column_spacing=st.floats(0.15, 0.6),
     flange_width=st.floats(0.03, 0.07),
@@ -40,19 +40,19 @@ patterns = st.builds(
 @given(pattern=patterns)
 def test_force_is_conserved(pattern):
     """1 N in a bolt is 1 N in the contact, for each bolt and for the shapes of all."""
-    areas, points = cells(pattern)
-    np.testing.assert_allclose(unit_pressures(pattern, areas, points, points) @ areas, 1.0, rtol=SUM)
-    shape = pressure_shape(pattern)
+    areas, points = frame_cells(pattern)
+    np.testing.assert_allclose(bolt_pressures(pattern, areas, points, points) @ areas, 1.0, rtol=SUM)
+    shape = pressure_distribution(pattern)
     assert shape.share.sum() == pytest.approx(1.0, rel=SUM)
-    assert shape.share @ shape.equal == pytest.approx(1.0, rel=SUM)
-    assert shape.share @ shape.tilt == pytest.approx(0.0, abs=SUM)
+    assert shape.share @ shape.preload_shape == pytest.approx(1.0, rel=SUM)
+    assert shape.share @ shape.moment_shape == pytest.approx(0.0, abs=SUM)
     np.testing.assert_allclose(shape.share @ shape.position, 0.0, atol=SUM)  # m, about the centroid
 
 
 def test_cells_fill_the_frame():
     """Their area is that of the frame without its holes, and they lie on its solid part."""
     pattern = JOINT.pattern
-    areas, points = cells(pattern)
+    areas, points = frame_cells(pattern)
     width = pattern.flange_width
     outer = (pattern.column_spacing + width) * (pattern.row_spacing + width)
     inner = (pattern.column_spacing - width) * (pattern.row_spacing - width)
@@ -87,9 +87,9 @@ def mirrored(points, values, sign):
 @settings(max_examples=10)
 @given(pattern=patterns)
 def test_shapes_are_symmetric(pattern):
-    shape = pressure_shape(pattern)
+    shape = pressure_distribution(pattern)
     for sign, parity in (((-1, 1), 1.0), ((1, -1), -1.0)):
-        for values, factor in ((shape.equal, 1.0), (shape.tilt, parity), (shape.share, 1.0)):
+        for values, factor in ((shape.preload_shape, 1.0), (shape.moment_shape, parity), (shape.share, 1.0)):
             image = mirrored(shape.position, values, np.array(sign))
             # round-off of the positions over the decay length
             np.testing.assert_allclose(image, factor * values, rtol=1e-9, atol=1e-9 * np.max(np.abs(values)))
@@ -102,9 +102,9 @@ def test_pressure_decays_with_the_distance(pattern, r, further):
 
 
 def test_pressure_of_one_bolt_falls_outwards():
-    areas, points = cells(JOINT.pattern)
+    areas, points = frame_cells(JOINT.pattern)
     for bolt, unit in zip(
-        JOINT.pattern.bolts, unit_pressures(JOINT.pattern, areas, points, points), strict=True
+        JOINT.pattern.bolts, bolt_pressures(JOINT.pattern, areas, points, points), strict=True
     ):
         outwards = np.argsort(np.hypot(*(points - bolt).T))
         assert np.all(np.diff(unit[outwards]) <= 0.0)
@@ -116,10 +116,10 @@ def test_pressures_are_those_of_the_bolt_forces(preload, moment):
     shift = moment / (JOINT.row_distance * 3)
     forces = preload + shift * np.array([1, 1, 1, 0, 0, -1, -1, -1])
     assert row_forces(JOINT, preload, moment) == pytest.approx((forces[0], forces[-1]), rel=1e-15)
-    areas, points = cells(JOINT.pattern)
-    expected = forces @ unit_pressures(JOINT.pattern, areas, points, points) * areas.sum() / JOINT.A_0
-    shape = pressure_shape(JOINT.pattern)
-    found = pressures(JOINT, shape, preload, moment)
+    areas, points = frame_cells(JOINT.pattern)
+    expected = forces @ bolt_pressures(JOINT.pattern, areas, points, points) * areas.sum() / JOINT.A_0
+    shape = pressure_distribution(JOINT.pattern)
+    found = preload_pressure(JOINT, shape, preload, moment)
     np.testing.assert_allclose(found, expected, rtol=SUM)
     assert np.all(found > 0.0)
     assert JOINT.A_0 * shape.share @ found == pytest.approx(8 * preload, rel=SUM)
@@ -132,24 +132,24 @@ def test_published_bolt_forces():
 
 def test_published_pressures():
     """Zhao 2018, section 3: 7.98 MPa at the holes, 0.62 MPa between bolts, at 9 kN (both fitted)."""
-    shape = pressure_shape(JOINT.pattern)
-    p = pressures(JOINT, shape, 9e3, 0.0)
+    shape = pressure_distribution(JOINT.pattern)
+    p = preload_pressure(JOINT, shape, 9e3, 0.0)
     assert np.max(p) == pytest.approx(7.98e6, rel=FIT)
     rim = np.min(np.hypot(*(shape.position[np.argmax(p)] - JOINT.pattern.bolts).T))
     assert rim < 0.5 * JOINT.pattern.hole_diameter + JOINT.pattern.flange_width / 7  # within one cell
-    areas, points = cells(JOINT.pattern)
+    areas, points = frame_cells(JOINT.pattern)
     between = 0.5 * (JOINT.pattern.bolts[0] + JOINT.pattern.bolts[3])
-    unit = unit_pressures(JOINT.pattern, areas, points, between[None, :]).sum()
+    unit = bolt_pressures(JOINT.pattern, areas, points, between[None, :]).sum()
     assert 9e3 * unit * areas.sum() / JOINT.A_0 == pytest.approx(0.62e6, rel=FIT)
 
 
 def test_pressures_of_many_load_cases():
-    shape = pressure_shape(JOINT.pattern)
+    shape = pressure_distribution(JOINT.pattern)
     preload, moment = np.array([[5e3], [9e3]]), np.array([0.0, 1e3, 2e3])
-    together = pressures(JOINT, shape, preload, moment)
+    together = preload_pressure(JOINT, shape, preload, moment)
     assert together.shape == (2, 3, shape.share.size)
     # the same sum of two products
-    np.testing.assert_allclose(together[1, 2], pressures(JOINT, shape, 9e3, 2e3), rtol=4 * EPS)
+    np.testing.assert_allclose(together[1, 2], preload_pressure(JOINT, shape, 9e3, 2e3), rtol=4 * EPS)
 
 
 @pytest.mark.parametrize(
@@ -225,27 +225,31 @@ def test_translation_and_mean():
 
 def test_calibrated_values_are_marked():
     """What the published pressures fixed says so in the parameter file."""
-    kinds = default("bolted_joint").origins
-    fitted = {name for name in flatten(JOINT) if kinds.get(name) == "calibration"}
+    kinds = load_default("bolted_joint").origins
+    fitted = {name for name in flatten_parameters(JOINT) if kinds.get(name) == "calibration"}
     assert fitted == {"pattern.decay_length", "pattern.decay_exponent"}
 
 
 @pytest.mark.parametrize("moment", [True, False])
 def test_merged_nodes_keep_the_sums(moment):
     """Area, pressure and second moments of area in total, and node by node those that only mirrors share."""
-    shape = pressure_shape(JOINT.pattern)
-    merged = shape.merged(moment=moment)
+    shape = pressure_distribution(JOINT.pattern)
+    merged = shape.merge_nodes(with_moment=moment)
     mirrors = 2 if moment else 4  # the frame's axes; a moment tells its two rows apart
     assert merged.share.size <= shape.share.size / mirrors + 4  # but for nodes on an axis
     x2, y2 = shape.position.T**2
     for found, expected in (
         (1.0, 1.0 + 0.0 * x2),
-        (merged.equal, shape.equal),
-        (merged.equal**2, shape.equal**2),
+        (merged.preload_shape, shape.preload_shape),
+        (merged.preload_shape**2, shape.preload_shape**2),
         (merged.x2, x2),
-        (merged.y2 * merged.equal, y2 * shape.equal),
-        (merged.tilt**2, moment * shape.tilt**2),
+        (merged.y2 * merged.preload_shape, y2 * shape.preload_shape),
+        (merged.moment_shape**2, moment * shape.moment_shape**2),
     ):
         # equal is rounded to ALIKE decimals where nodes are compared
-        assert np.sum(merged.share * found) == pytest.approx(shape.share @ expected, rel=10.0**-ALIKE)
-    assert np.max(merged.equal) == pytest.approx(np.max(shape.equal), rel=10.0**-ALIKE)
+        assert np.sum(merged.share * found) == pytest.approx(
+            shape.share @ expected, rel=10.0**-PRESSURE_DECIMALS
+        )
+    assert np.max(merged.preload_shape) == pytest.approx(
+        np.max(shape.preload_shape), rel=10.0**-PRESSURE_DECIMALS
+    )

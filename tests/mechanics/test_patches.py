@@ -7,20 +7,20 @@ import patch_reduction
 import pytest
 
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
-from jointfmu.mechanics.footprint.bolts import pressure_shape
-from jointfmu.mechanics.footprint.elimination import solved
-from jointfmu.mechanics.footprint.friction import friction_patches
-from jointfmu.mechanics.footprint.patches import few_points
+from jointfmu.mechanics.footprint.bolts import pressure_distribution
+from jointfmu.mechanics.footprint.elimination import solve_linear
+from jointfmu.mechanics.footprint.friction import reduce_patches
+from jointfmu.mechanics.footprint.patches import reduce_points
 from jointfmu.mechanics.footprint.plate import BoltedPlate
-from jointfmu.mechanics.footprint.shape import FrictionPatches, PressureShape
-from jointfmu.mechanics.sliders import SLIDERS, turning
-from jointfmu.parameters import default
+from jointfmu.mechanics.footprint.shape import FrictionPatches, PressureDistribution
+from jointfmu.mechanics.sliders import FOUNDATION_SLIDERS, torsion_directions
+from jointfmu.parameters import load_default
 
 CONTACTS = ("frame", "plate", "row")
 
 
 @cache
-def contact(name: str) -> PressureShape:
+def contact(name: str) -> PressureDistribution:
     """The default frame, a plate without symmetry, one with bolts at random, one with a row of bolts."""
     if name == "random":
         return patch_reduction.random_plate(4)
@@ -29,29 +29,33 @@ def contact(name: str) -> PressureShape:
     if name == "square":
         return dict(patch_reduction.contacts())["plate, 4 x M12"]
     if name == "frame":
-        return pressure_shape(default("bolted_joint").values.pattern)
+        return pressure_distribution(load_default("bolted_joint").values.pattern)
     if name == "plate":
         x, y, hole, cone = (-0.1, 0.0, 0.1, 0.1), (0.02, -0.03, 0.02, -0.02), 0.011, 0.03
-        return BoltedPlate(length=0.3, width=0.1, x=x, y=y, hole_diameter=hole, cone_diameter=cone).shape()
+        return BoltedPlate(
+            length=0.3, width=0.1, x=x, y=y, hole_diameter=hole, cone_diameter=cone
+        ).pressure_distribution()
     x, y, hole, cone = (-0.03, 0.0, 0.03), (0.0, 0.0, 0.0), 0.0085, 0.02
-    return BoltedPlate(length=0.12, width=0.025, x=x, y=y, hole_diameter=hole, cone_diameter=cone).shape()
+    return BoltedPlate(
+        length=0.12, width=0.025, x=x, y=y, hole_diameter=hole, cone_diameter=cone
+    ).pressure_distribution()
 
 
 @cache
-def reduced(name: str, count: int) -> PressureShape:
+def reduced(name: str, count: int) -> PressureDistribution:
     """Few points of it."""
-    return few_points(contact(name), count)
+    return reduce_points(contact(name), count)
 
 
 @cache
 def moved(name: str) -> FrictionPatches:
     """The patches of its friction."""
-    return friction_patches(contact(name), 22)
+    return reduce_patches(contact(name), 22)
 
 
-def balance(shape: PressureShape) -> np.ndarray:
+def balance(shape: PressureDistribution) -> np.ndarray:
     """Sums that are exact, each over the sum of its sizes."""
-    (x, y), share, equal, tilt = shape.position.T, shape.share, shape.equal, shape.tilt
+    (x, y), share, equal, tilt = shape.position.T, shape.share, shape.preload_shape, shape.moment_shape
     one, own = np.ones_like(x), 0.5 * shape.radius**2 if isinstance(shape, FrictionPatches) else 0.0
     rows = np.stack(
         [one, x, y, x * x + own, x * y, y * y + own, equal, equal * x, equal * y, tilt, tilt * x, tilt * y]
@@ -77,7 +81,7 @@ def test_patches_that_left_the_nodes_keep_the_same_sums(name):
     shape, patches = contact(name), moved(name)
     assert patches.share.size <= 22
     assert np.min(patches.share) > 0.0
-    assert np.min(patches.equal) >= 0.0
+    assert np.min(patches.preload_shape) >= 0.0
     there, size = balance(shape)
     np.testing.assert_allclose(balance(patches)[0] / size, there / size, rtol=0.0, atol=1e-13)
 
@@ -88,14 +92,16 @@ def test_largest_pressure_is_that_of_all_nodes(name):
     shape = contact(name)
     points = reduced(name, 160)
     for moment in np.linspace(-1.0, 1.0, 41):
-        highest = np.max(shape.equal + moment * shape.tilt)
-        assert np.max(points.equal + moment * points.tilt) == pytest.approx(highest, rel=1e-14)
+        highest = np.max(shape.preload_shape + moment * shape.moment_shape)
+        assert np.max(points.preload_shape + moment * points.moment_shape) == pytest.approx(
+            highest, rel=1e-14
+        )
 
 
 def test_few_nodes_stay_as_they_are():
     shape = contact("frame")
-    assert few_points(shape, shape.share.size) is shape
-    few = friction_patches(shape, shape.share.size)
+    assert reduce_points(shape, shape.share.size) is shape
+    few = reduce_patches(shape, shape.share.size)
     assert few.position is shape.position
     assert not np.any(few.radius)
 
@@ -105,18 +111,20 @@ def test_equations_are_solved_as_lapack_does():
     slopes = np.random.default_rng(2).standard_normal((300, 110)) * np.geomspace(0.1, 10.0, 110)
     matrix, right = slopes.T @ slopes, np.ones(110)
     there = np.linalg.solve(matrix, right)
-    np.testing.assert_allclose(solved(matrix, right), there, rtol=0.0, atol=1e-11 * np.max(np.abs(there)))
+    np.testing.assert_allclose(
+        solve_linear(matrix, right), there, rtol=0.0, atol=1e-11 * np.max(np.abs(there))
+    )
 
 
 def test_too_few_points_are_refused():
     with pytest.raises(ValueError, match=r"^6 points are too few, expected at least \d+ for this contact$"):
-        few_points(contact("frame"), 6)
+        reduce_points(contact("frame"), 6)
 
 
 @pytest.fixture(scope="module")
 def spring() -> BoltedJointSpring:
     """The default joint, whose curve the points do not know."""
-    return BoltedJointSpring.of(default("bolted_joint").values)
+    return BoltedJointSpring.of(load_default("bolted_joint").values)
 
 
 @pytest.mark.parametrize(
@@ -147,7 +155,7 @@ def test_a_turn_about_any_pole_slips_as_all_nodes_do(spring, name):
     mean = patch_reduction.mean_pressure(spring)
     largest = np.max(patch_reduction.tightened(spring.curve, shape, (mean, 0.0)))
     largest -= spring.curve.displacement[0]
-    circle = turning(SLIDERS)[::-1].T
+    circle = torsion_directions(FOUNDATION_SLIDERS)[::-1].T
 
     def friction(points, load, turn, pole):
         start = patch_reduction.tightened(spring.curve, points, load)
@@ -179,7 +187,10 @@ def test_gross_slip_about_poles_inside_has_the_force_of_all_nodes(name, most):
     found = patch_reduction.pole_deviations(contact(name), patches)
     assert found[0] < most
     assert found[1] < 0.02
-    assert patch_reduction.pole_deviations(contact(name), PressureShape.as_patches(patches))[0] > 2.0 * most
+    assert (
+        patch_reduction.pole_deviations(contact(name), PressureDistribution.as_patches(patches))[0]
+        > 2.0 * most
+    )
 
 
 @pytest.mark.slow

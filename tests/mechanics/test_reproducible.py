@@ -6,8 +6,14 @@ import pytest
 from test_patches import CONTACTS, balance, contact
 
 from jointfmu.mechanics.footprint import friction, patches
-from jointfmu.mechanics.footprint.reproducible import cleared, product, root, rounded, to_power
-from jointfmu.mechanics.footprint.shape import PressureShape
+from jointfmu.mechanics.footprint.reproducible import (
+    binary_power,
+    binary_root,
+    clear_round_off,
+    matrix_product,
+    round_distribution,
+)
+from jointfmu.mechanics.footprint.shape import PressureDistribution
 
 TIMES = 20
 """Each moves thousands of numbers, so that many lie where rounding changes its mind if any do."""
@@ -15,7 +21,7 @@ AGREE = 1e-9
 NUMBERS = ("share", "position", "equal", "tilt")
 
 
-def shape_of(name: str) -> PressureShape:
+def shape_of(name: str) -> PressureDistribution:
     """The default frame, plates without symmetry and with a row, a nodal field, the README's plate."""
     if name == "readme":
         bolts = ((x, y) for x in (-0.08, 0.08) for y in (-0.03, 0.03))
@@ -23,17 +29,17 @@ def shape_of(name: str) -> PressureShape:
     return patch_reduction.field() if name == "field" else contact(name)
 
 
-def perturbed(shape: PressureShape, rng: np.random.Generator) -> PressureShape:
+def perturbed(shape: PressureDistribution, rng: np.random.Generator) -> PressureDistribution:
     """Every number by 1e-15 of itself, up or down."""
     values = (getattr(shape, name) for name in NUMBERS)
-    return PressureShape(*(v * (1.0 + 1e-15 * rng.choice([-1.0, 1.0], v.shape)) for v in values))
+    return PressureDistribution(*(v * (1.0 + 1e-15 * rng.choice([-1.0, 1.0], v.shape)) for v in values))
 
 
 def content(value: object) -> bytes:
     """What a search depends on, as bytes."""
     if isinstance(value, np.ndarray):
         return value.tobytes()
-    if isinstance(value, PressureShape):
+    if isinstance(value, PressureDistribution):
         return b"".join(getattr(value, name).tobytes() for name in NUMBERS)
     return value.sums.tobytes() if hasattr(value, "sums") else str(value).encode()
 
@@ -52,8 +58,8 @@ def searched(monkeypatch):
 
         return known
 
-    monkeypatch.setattr(patches, "_kept", once(patches._kept))
-    monkeypatch.setattr(friction, "_moved", once(friction._moved))
+    monkeypatch.setattr(patches, "_select_groups", once(patches._select_groups))
+    monkeypatch.setattr(friction, "_fit_points", once(friction._fit_points))
     return done
 
 
@@ -62,13 +68,13 @@ def searched(monkeypatch):
 def test_points_and_patches_are_those_of_inputs_a_bit_off(name, searched):
     """All numbers within 1e-9, and the exact sums those of the perturbed contact."""
     shape, rng = shape_of(name), np.random.default_rng(4)
-    before = [patches.few_points(shape, 120), friction.friction_patches(shape, 22)]
+    before = [patches.reduce_points(shape, 120), friction.reduce_patches(shape, 22)]
     searches = len(searched)
     for _ in range(TIMES):
         other = perturbed(shape, rng)
         there, size = balance(other)
         for one, few in zip(
-            before, (patches.few_points(other, 120), friction.friction_patches(other, 22)), strict=True
+            before, (patches.reduce_points(other, 120), friction.reduce_patches(other, 22)), strict=True
         ):
             np.testing.assert_allclose(few.share, one.share, rtol=AGREE)
             for number in NUMBERS[1:]:
@@ -82,24 +88,28 @@ def test_points_and_patches_are_those_of_inputs_a_bit_off(name, searched):
 def test_rounded_numbers_keep_their_place():
     """A number is moved by half a step at most but for the shift of the border, and not twice."""
     rng = np.random.default_rng(2)
-    shape = PressureShape(
+    shape = PressureDistribution(
         rng.random(99), rng.standard_normal((99, 2)), rng.random(99), rng.standard_normal(99)
     )
-    once = rounded(shape)
-    assert content(rounded(once)) == content(once)
+    once = round_distribution(shape)
+    assert content(round_distribution(once)) == content(once)
     assert np.max(np.abs(once.share / shape.share - 1.0)) < 2.0**-19
-    assert np.max(np.abs(once.tilt - shape.tilt)) < 2.0**-19 * np.max(np.abs(shape.tilt))
-    mirrored = rounded(PressureShape(shape.share, -shape.position, shape.equal, -shape.tilt))
+    assert np.max(np.abs(once.moment_shape - shape.moment_shape)) < 2.0**-19 * np.max(
+        np.abs(shape.moment_shape)
+    )
+    mirrored = round_distribution(
+        PressureDistribution(shape.share, -shape.position, shape.preload_shape, -shape.moment_shape)
+    )
     assert np.array_equal(mirrored.position, -once.position)
-    assert np.array_equal(mirrored.tilt, -once.tilt)
+    assert np.array_equal(mirrored.moment_shape, -once.moment_shape)
 
 
 def test_what_rounding_leaves_is_zero():
-    shape = PressureShape(
+    shape = PressureDistribution(
         np.ones(2), np.array([[1.0, 1e-17], [-1.0, 2.0]]), np.ones(2), np.array([1e-18, 0.5])
     )
-    found = cleared(shape)
-    assert found.position[0, 1] == found.tilt[0] == 0.0
+    found = clear_round_off(shape)
+    assert found.position[0, 1] == found.moment_shape[0] == 0.0
     assert np.array_equal(found.position[1], shape.position[1])
 
 
@@ -107,7 +117,7 @@ def test_functions_are_those_of_numpy():
     """Roots and powers of two, products of matrices."""
     rng = np.random.default_rng(3)
     values, power = rng.random((4, 9)), np.array([[2.0], [4.0], [16.0], [64.0]])
-    np.testing.assert_allclose(root(values, power), values ** (1.0 / power), rtol=1e-15)
-    np.testing.assert_allclose(to_power(values, power), values**power, rtol=1e-14)
+    np.testing.assert_allclose(binary_root(values, power), values ** (1.0 / power), rtol=1e-15)
+    np.testing.assert_allclose(binary_power(values, power), values**power, rtol=1e-14)
     one, other = rng.standard_normal((3, 50)), rng.standard_normal((4, 50))
-    np.testing.assert_allclose(product(one, other), one @ other.T, rtol=0.0, atol=1e-13)
+    np.testing.assert_allclose(matrix_product(one, other), one @ other.T, rtol=0.0, atol=1e-13)

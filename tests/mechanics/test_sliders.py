@@ -21,7 +21,7 @@ from friction_sliders import (
     walk,
 )
 
-from jointfmu.mechanics.jenkins import slide
+from jointfmu.mechanics.jenkins import return_map
 
 APPROACH = 0.4
 LARGEST = FRICTION * float(load(APPROACH))
@@ -202,13 +202,13 @@ def test_steps_on_a_circle_converge_with_second_order(sliders):
 def test_a_slipping_force_turns_towards_the_shift():
     """tan(angle/2) falls as exp(-K way/limit), with the heat limit ln(cosh g + cos sinh g): within g^3."""
     angle, g = np.meshgrid(np.linspace(0.0, 0.5 * np.pi, 31), np.geomspace(1e-3, 0.3, 31))
-    slid = slide([np.cos(angle), np.sin(angle)], 1.0, 1.0, [g, 0.0 * g], 1.0, 1.0, 1.0, 1.0)
+    slid = return_map([np.cos(angle), np.sin(angle)], 1.0, 1.0, [g, 0.0 * g], 1.0, 1.0, 1.0, 1.0)
     np.testing.assert_allclose(np.hypot(*slid.force), 1.0, rtol=1e-14)
     turned = 2.0 * np.arctan(np.tan(0.5 * angle) * np.exp(-g))
     assert np.all(
         np.abs(np.arctan2(slid.force[1], slid.force[0]) - turned) < 0.3 * g**3 + 1e-12
     )  # seen: 0.24
-    far = slide([np.cos(angle), np.sin(angle)], 1.0, 1.0, [1e7 * g, 0.0 * g], 1.0, 1.0, 1.0, 1.0)
+    far = return_map([np.cos(angle), np.sin(angle)], 1.0, 1.0, [1e7 * g, 0.0 * g], 1.0, 1.0, 1.0, 1.0)
     np.testing.assert_allclose(far.force[0], 1.0, rtol=1e-6)
     heat = np.log(np.cosh(g) + np.cos(angle) * np.sinh(g))
     assert np.all(np.abs(slid.loss - heat) < 0.02 * g**3 + 1e-12)  # seen: 0.016
@@ -227,7 +227,7 @@ def test_combined_motions_follow_many_springs(name):
 
 def stored(sliders: Foundation, force: np.ndarray, approach: np.ndarray) -> np.ndarray:
     """Elastic energy of sliders."""
-    stiff = sliders.carried(approach).stiffness[..., None, :]
+    stiff = sliders.slider_properties(approach).stiffness[..., None, :]
     return np.sum(np.divide(force**2, 2.0 * stiff, out=0.0 * force, where=stiff > 0.0), axis=(-1, -2))
 
 
@@ -242,10 +242,10 @@ def closed_paths(few: Foundation, count: int, steps: int) -> tuple[np.ndarray, .
     waves = [f(n * angle) for n in (1, 2, 3) for f in (np.sin, np.cos)]
     approach, x, y = (sum(wave * rng.normal(0.0, size, count) for wave in waves) for size in (0.15, 0.1, 0.1))
     approach = np.minimum(approach + rng.uniform(-0.1, 0.5, count), 0.95)
-    force, work, lost, least = few.at_rest(count), np.zeros(count), np.zeros(count), np.zeros(count)
+    force, work, lost, least = few.virgin_forces(count), np.zeros(count), np.zeros(count), np.zeros(count)
     for now in range(steps):
         shift = np.stack([x[now + 1] - x[now], y[now + 1] - y[now]], axis=-1)
-        moved = few.moved(force, approach[now], approach[now + 1], shift)
+        moved = few.advance(force, approach[now], approach[now + 1], shift)
         work += 0.5 * np.sum((np.sum(force, axis=-1) + moved.traction) * shift, axis=-1)
         lost += moved.loss
         least, force = np.minimum(least, moved.loss), moved.force

@@ -17,20 +17,20 @@ import numpy as np
 import pytest
 from jointfmu_fmu_src.partners import parameters as partner_parameters
 from jointfmu_tools.cli import main
-from jointfmu_tools.joint_parts import part
+from jointfmu_tools.joint_parts import load_tool_module
 from jointfmu_tools.joints.bolted_joint import modelica as bolted_modelica
 from jointfmu_tools.modelica import library, records
-from jointfmu_tools.modelica.records import identifier
+from jointfmu_tools.modelica.records import make_identifier
 from numpy.typing import NDArray
 from read_modelica import Read, read, solution
 
 from jointfmu.joints import MODELS
-from jointfmu.joints.bolted_joint.contact import Place, elastic_shear
+from jointfmu.joints.bolted_joint.contact import RelativeDisplacement, elastic_shear
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.joints.gear_contact.spring import GearContactSpring
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
-from jointfmu.parameters import default, dump
-from jointfmu.quantity import changed
+from jointfmu.parameters import format_parameter_file, load_default
+from jointfmu.quantity import replace_values
 
 pytestmark = pytest.mark.slow
 
@@ -46,7 +46,7 @@ EXACT = 2e-7  # twice the tolerance of the tables: the package's own is 1e-8
 
 @pytest.fixture(scope="module")
 def files() -> dict[str, str]:
-    return library.library()
+    return library.render_library()
 
 
 @pytest.fixture(scope="module")
@@ -58,17 +58,17 @@ def rumoca() -> Any:
 
 @pytest.fixture(scope="module")
 def drive() -> HarmonicDriveSpring:
-    return HarmonicDriveSpring.of(default("harmonic_drive").values)
+    return HarmonicDriveSpring.tabulate(load_default("harmonic_drive").values)
 
 
 @pytest.fixture(scope="module")
 def bolted() -> BoltedJointSpring:
-    return BoltedJointSpring.of(default("bolted_joint").values)
+    return BoltedJointSpring.of(load_default("bolted_joint").values)
 
 
 @pytest.fixture(scope="module")
 def gear() -> GearContactSpring:
-    return GearContactSpring.of(default("gear_contact").values)
+    return GearContactSpring.tabulate(load_default("gear_contact").values)
 
 
 def simulate(
@@ -107,11 +107,11 @@ end Move;
 def test_partners_have_the_defaults_of_their_fmus(files: dict[str, str], block: str, fmu: str):
     text = files[f"Components/{block}.mo"]
     stated = re.findall(r"^  parameter .*? (\w+)(?:\(.*?\))?=(\S+) ", text.partition("protected")[0], re.M)
-    assert {name: float(value) for name, value in stated} == partner_parameters(fmu).flat
+    assert {name: float(value) for name, value in stated} == partner_parameters(fmu).values_by_name
 
 
 def test_the_committed_library_is_what_the_generator_writes(files: dict[str, str]):
-    root = COMMITTED / library.NAME
+    root = COMMITTED / library.LIBRARY_NAME
     assert {str(p.relative_to(root)) for p in root.rglob("*") if p.is_file()} == set(files)
     for name, text in files.items():
         committed = (root / name).read_text(encoding="utf-8")
@@ -133,8 +133,8 @@ def test_every_class_stands_in_the_order_of_its_package(files: dict[str, str]):
             }
             assert sorted(listed) == sorted(found - {"package", "package.order"}), name
         else:
-            within = ".".join([library.NAME, *folder.split("/")]) if folder else ""
-            own = folder.split("/")[-1] or library.NAME
+            within = ".".join([library.LIBRARY_NAME, *folder.split("/")]) if folder else ""
+            own = folder.split("/")[-1] or library.LIBRARY_NAME
             if leaf == "package.mo":
                 within = within.rpartition(".")[0]
             assert text.startswith(f"within {within};")
@@ -171,10 +171,10 @@ def test_a_joint_without_a_part_keeps_its_wrapper_and_leaves_the_rest(
     files: dict[str, str], monkeypatch: pytest.MonkeyPatch
 ):
     def none(kind: Any, builder: str) -> Any:
-        return None if kind.name == "gear_contact" else part(kind, builder)
+        return None if kind.name == "gear_contact" else load_tool_module(kind, builder)
 
     monkeypatch.setattr(library, "part", none)
-    less = library.library()
+    less = library.render_library()
     gone = {"Components/GearContact.mo", "Data/GearContact.mo", "Data/Beveloid_gear_of_Yu_2022.mo"}
     assert set(files) - set(less) == gone
     for name in gone:
@@ -190,20 +190,20 @@ def test_a_joint_without_a_part_keeps_its_wrapper_and_leaves_the_rest(
 @pytest.mark.parametrize("kind", ["drive", "gear"])
 def test_a_thinned_curve_keeps_load_and_stiffness(kind: str, request: pytest.FixtureRequest):
     curve = request.getfixturevalue(kind).curve
-    table = records.thinned(curve)
+    table = records.decimate_curve(curve)
     assert table.rows.shape[0] < curve.displacement.size / 3
     x = np.linspace(curve.displacement[0], 1.1 * curve.end[0], 20001)[1:]
-    for exact, rough in zip(curve.derivatives(x), records.curve_of(table).derivatives(x), strict=True):
+    for exact, rough in zip(curve.derivatives(x), records.to_curve(table).derivatives(x), strict=True):
         assert np.all(np.abs(rough - exact) <= EXACT * np.abs(exact))
 
 
 def test_one_total_stands_for_all_nodes_of_the_bolted_joint(bolted: BoltedJointSpring):
-    joint = bolted_modelica.tightened(bolted, 15e3, 4500.0)
-    total = records.curve_of(joint.table)
+    joint = bolted_modelica.combine_nodes(bolted, 15e3, 4500.0)
+    total = records.to_curve(joint.table)
     preload = 15e3 * bolted.joint.n_bolts
-    rest = bolted.motion(15e3, 4500.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    rest = bolted.evaluate(15e3, 4500.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     for s_z in (-5e-6, -1e-6, -1e-7, 0.0, 1e-7, 1e-6, 5e-6, 2e-5, 4e-5):
-        exact = bolted.motion(15e3, 4500.0, (0.0, 0.0, s_z), (0.0, 0.0, 0.0))
+        exact = bolted.evaluate(15e3, 4500.0, (0.0, 0.0, s_z), (0.0, 0.0, 0.0))
         load, stiffness = (float(x) for x in total.derivatives(-s_z))
         assert load == pytest.approx(exact["f_z"], abs=EXACT * max(preload, abs(exact["f_z"])))
         assert stiffness == pytest.approx(exact["K_zz"], abs=EXACT * max(rest["K_zz"], exact["K_zz"]))
@@ -214,7 +214,7 @@ def test_one_total_stands_for_all_nodes_of_the_bolted_joint(bolted: BoltedJointS
 @pytest.mark.parametrize("preload", [0.0, -1.0, math.nan, 1e9])
 def test_a_preload_outside_the_law_is_refused(bolted: BoltedJointSpring, preload: float):
     with pytest.raises(ValueError, match=r"preload = .* N per bolt"):
-        bolted_modelica.tightened(bolted, preload, 0.0)
+        bolted_modelica.combine_nodes(bolted, preload, 0.0)
 
 
 # ---- the command ----
@@ -222,9 +222,9 @@ def test_a_preload_outside_the_law_is_refused(bolted: BoltedJointSpring, preload
 
 def test_command_writes_the_library_of_another_joint(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     """And of another preload."""
-    file = default("harmonic_drive").with_values({"ratio": 50.0}, "user", "test")
+    file = load_default("harmonic_drive").with_values({"ratio": 50.0}, "user", "test")
     params = tmp_path / "mine.toml"
-    params.write_text(dump(file).replace(file.name, "my drive, 50:1"), encoding="utf-8")
+    params.write_text(format_parameter_file(file).replace(file.name, "my drive, 50:1"), encoding="utf-8")
     loaded = ["--preload", "20e3", "--moment", "100"]
     words = ["modelica", "--params", str(params), *loaded, "--out", str(tmp_path / "out"), "--json"]
     assert main(words) == 0
@@ -240,7 +240,9 @@ def test_command_writes_the_library_of_another_joint(tmp_path: Path, capsys: pyt
 
 def test_command_takes_the_preload_of_the_file(tmp_path: Path):
     """Its own record comes first, so the component shows it; the shipped systems find theirs as before."""
-    text = dump(default("bolted_joint")).replace("preload = { value = 0.0", "preload = { value = 43.1e3")
+    text = format_parameter_file(load_default("bolted_joint")).replace(
+        "preload = { value = 0.0", "preload = { value = 43.1e3"
+    )
     params = tmp_path / "plate.toml"
     params.write_text(text, encoding="utf-8")
     assert main(["modelica", "--params", str(params), "--out", str(tmp_path)]) == 0
@@ -282,7 +284,7 @@ def test_pymoca_reads_every_file_and_flattens_every_model():
     for path in sorted(COMMITTED.rglob("*.mo")):
         folder, name = path.parent.name, path.stem
         if folder in ("Components", "Wrappers", "Examples") and name != "package":
-            full = f"{library.NAME}.{folder}.{name}"
+            full = f"{library.LIBRARY_NAME}.{folder}.{name}"
             flat = tree.flatten(root, ast.ComponentRef.from_string(full)).classes[full]
             assert flat.equations, full
             if f"{folder}.{name}" in expected:
@@ -312,7 +314,7 @@ def test_drive_component_gives_the_torque_of_the_package(rumoca: Any, drive: Har
     )
     found = simulate(rumoca, text, 1.0, 4e-3)
     phi = reach * (2.0 * found.time - 1.0)
-    exact = drive.motion(0.0, 0.0, phi, 0.0)
+    exact = drive.evaluate_motion(0.0, 0.0, phi, 0.0)
     for name, mine in (("tau", "tau"), ("K_WTS", "K_WTS"), ("K_TS", "K_TS")):
         # K_TS is a difference of compliances: its error grows by K_TS/K_WTS, at most 2
         factor = 2.5 if name == "K_TS" else 1.0
@@ -334,7 +336,7 @@ def test_drive_component_errs_as_the_package(rumoca: Any, drive: HarmonicDriveSp
     )
     found = simulate(rumoca, text, 1.0, 4e-3)
     turned = replace(drive, joint=replace(drive.joint, ratio=-100.0, **error))
-    exact = turned.motion(9.0 * found.time, 9.0, -0.09 * found.time, -0.09)
+    exact = turned.evaluate_motion(9.0 * found.time, 9.0, -0.09 * found.time, -0.09)
     for name, mine in (("phi_error", "phi_error"), ("tau", "tau"), ("tau1", "flange_a.tau")):
         sign = -1.0 if name == "tau1" else 1.0
         wrong = np.abs(sign * found[f"drive.{mine}"] - exact[name]).max()
@@ -354,7 +356,7 @@ def test_drive_without_damping_and_inertia_is_its_own_inverse(rumoca: Any, drive
     )
     found = simulate(rumoca, top(body, equations), 1.0, 1e-2)
     late = found.time > 0.1
-    given = drive.motion(0.0, 0.0, found["drive.phi_rel"][late], 0.0)
+    given = drive.evaluate_motion(0.0, 0.0, found["drive.phi_rel"][late], 0.0)
     # 1e-6: of the nonlinear equation that the tool solves
     assert -given["tau2"] == pytest.approx(5.0 * found.time[late], rel=1e-6)
 
@@ -378,8 +380,8 @@ def test_bolted_component_gives_the_forces_of_the_package(rumoca: Any, bolted: B
     """Without memory: far below the limit, which the FMU has for each of its nodes."""
     s, v = (0.0, -2e-9, -4e-6), (2e-6, -1e-6, 6e-3)
     flags = {"memory": False, "damping": True, "plastic_damping": True}
-    plastic = BoltedJointSpring.of_nodes(changed(bolted.joint, flags))
-    record = identifier(f"{default('bolted_joint').name} 15 kN 4500 Nm")
+    plastic = BoltedJointSpring.of_nodes(replace_values(bolted.joint, flags))
+    record = make_identifier(f"{load_default('bolted_joint').name} 15 kN 4500 Nm")
     body = (
         f"JointStiffness.Components.BoltedJoint joint(data=JointStiffness.Data.{record}(), "
         "memory=false, damping=true, plastic_damping=true);"
@@ -392,7 +394,7 @@ def test_bolted_component_gives_the_forces_of_the_package(rumoca: Any, bolted: B
     scale = 15e3 * bolted.joint.n_bolts
     for k, t in enumerate(found.time):
         x, y, z = (at + rate * t for at, rate in zip(s, v, strict=True))
-        exact = plastic.motion(15e3, 4500.0, (x, y, z), v)
+        exact = plastic.evaluate(15e3, 4500.0, (x, y, z), v)
         damping = max(abs(exact["C_zz"] * v[2]), 1.0)
         for i, axis in enumerate("xyz"):
             error = abs(found[f"joint.f[{i + 1}]"][k] - exact[f"f_{axis}"])
@@ -405,16 +407,18 @@ def test_bolted_component_gives_the_forces_of_the_package(rumoca: Any, bolted: B
 def test_bolts_of_the_component_lift_off_as_those_of_the_package(rumoca: Any, tmp_path: Path):
     """Rows lift off one after the other, as the moment loads them unevenly. Stiff bolts, so that the contact
     is far from its end."""
-    file = default("bolted_joint").with_values({"bolt_stiffness": 1e10}, "user", "test")
+    file = load_default("bolted_joint").with_values({"bolt_stiffness": 1e10}, "user", "test")
     params, stated = tmp_path / "stiff.toml", ["--preload", "15e3", "--moment", "4500"]
-    params.write_text(dump(file), encoding="utf-8")
+    params.write_text(format_parameter_file(file), encoding="utf-8")
     assert main(["modelica", "--params", str(params), *stated, "--out", str(tmp_path)]) == 0
     body = "JointStiffness.Components.BoltedJoint joint(memory=false, damping=false);"
     body += "\n  Move mx; Move my; Move mz(at=1e-6, rate=-4e-6);"
     wires = "\n  ".join(f"connect(joint.flange_{a}, m{a}.flange);" for a in "xyz")
     found = simulate(rumoca, top(body, wires, move("Translational", "s")), 1.0, 2e-2, written=tmp_path)
     spring = BoltedJointSpring.of_nodes(replace(file.values, memory=False))
-    exact = [spring.motion(15e3, 4500.0, (0.0, 0.0, z), (0.0,) * 3)["f_z"] for z in 1e-6 - 4e-6 * found.time]
+    exact = [
+        spring.evaluate(15e3, 4500.0, (0.0, 0.0, z), (0.0,) * 3)["f_z"] for z in 1e-6 - 4e-6 * found.time
+    ]
     np.testing.assert_allclose(found["joint.f[3]"], exact, rtol=EXACT, atol=EXACT * 8 * 15e3)
     least = [found[f"joint.pull[{j + 1}]"].min() for j in range(8)]
     np.testing.assert_allclose(least, [-20e3] * 3 + [-15e3] * 2 + [-10e3] * 3, rtol=1e-9)
@@ -427,11 +431,11 @@ def test_elastic_shear_of_the_bolted_component_is_that_of_the_package(rumoca: An
     body += "".join(f"\n  Move m{a}(at=0.0, rate={v!r});" for a, v in zip("xyz", rates, strict=True))
     wires = "\n  ".join(f"connect(joint.flange_{a}, m{a}.flange);" for a in "xyz")
     found = simulate(rumoca, top(body, wires, move("Translational", "s")), 1.0, 1e-2)
-    total = bolted_modelica.tightened(bolted, 9e3, 0.0)
+    total = bolted_modelica.combine_nodes(bolted, 9e3, 0.0)
     limit, u = bolted.joint.mu * total.force, (found["joint.s_rel[1]"], found["joint.s_rel[2]"])
     assert np.max(np.hypot(*u) * found["joint.K_t"]) > 2.0 * limit
     curve = [found[f"joint.{name}"] for name in ("G", "K_n", "bend")]
-    x, y, *_, lifted, _ = elastic_shear(limit, total.shear, [*curve, 0.0 * u[0]], *u)
+    x, y, *_, lifted, _ = elastic_shear(limit, total.shear_ratio, [*curve, 0.0 * u[0]], *u)
     for name, force in (("f[1]", x), ("f[2]", y)):
         np.testing.assert_allclose(found[f"joint.{name}"], -force, rtol=0.0, atol=EXACT * limit)
     normal = found["joint.G"] - total.force + lifted
@@ -458,11 +462,11 @@ def test_bolted_component_slips_as_the_package(rumoca: Any, bolted: BoltedJointS
         rumoca, top(body, f"{wires}\n  der(loss) = joint.lossPower;", _CIRCLE), 1.5, 1e-2, rtol=1e-6
     )
     first = np.unique(found.time, return_index=True)[1]
-    memory, preload, rows = bolted.at_rest(), 9e3, []  # of the component's own record
+    memory, preload, rows = bolted.initial_history(), 9e3, []  # of the component's own record
     limit = bolted.joint.mu * preload * bolted.joint.n_bolts
     for x, y, z in zip(*(found[f"joint.s_rel[{i}]"][first] for i in (1, 2, 3)), strict=True):
-        place = Place(np.array([x, y, z, 0.0, 0.0, 0.0]))
-        out, memory = bolted.evolve(preload, 0.0, place, (0.0,) * 6, memory)
+        place = RelativeDisplacement(np.array([x, y, z, 0.0, 0.0, 0.0]))
+        out, memory = bolted.advance(preload, 0.0, place, (0.0,) * 6, memory)
         rows.append([out["f_x"], out["f_y"], out["f_z"], out["E_loss"]])
     exact = np.array(rows).T
     for i in (1, 2):
@@ -481,7 +485,7 @@ def test_the_bolted_component_read_by_another_parser_holds_along_the_solution(ru
     wires = " ".join(f"connect(joint.flange_{a}, way.{a});" for a in "xyz")
     found = simulate(rumoca, top(body, wires, _CIRCLE), 0.7, 4e-3, rtol=1e-6)
     times, first = np.unique(found.time, return_index=True)
-    record = identifier(f"{default('bolted_joint').name} 9 kN")
+    record = make_identifier(f"{load_default('bolted_joint').name} 9 kN")
     seen, root = solution(found, "joint", first), read(STAND_IN, COMMITTED)
     errors = Read(root, "BoltedJoint", record, times, seen, {}).errors()
     states = {"der(s_rel)"}
@@ -491,27 +495,27 @@ def test_the_bolted_component_read_by_another_parser_holds_along_the_solution(ru
 
 
 def test_joints_with_the_law_roughness_give_the_forces_of_the_package(rumoca: Any, tmp_path: Path):
-    bolted, gear = (default(joint, "roughness") for joint in ("bolted_joint", "gear_contact"))
-    library.write(tmp_path, bolted, {"bolted_joint": [(9e3, 0.0)]})
-    record = identifier(f"{bolted.name} 9 kN")
+    bolted, gear = (load_default(joint, "roughness") for joint in ("bolted_joint", "gear_contact"))
+    library.write_library(tmp_path, bolted, {"bolted_joint": [(9e3, 0.0)]})
+    record = make_identifier(f"{bolted.name} 9 kN")
     body = f"JointStiffness.Components.BoltedJoint joint(data=JointStiffness.Data.{record}(), memory=false);"
     at, rate = (0.0, 0.0, -1e-6), (2e-7, -1e-7, 1e-3)
     body += "".join(f"\n  Move m{a}(at={x!r}, rate={v!r});" for a, x, v in zip("xyz", at, rate, strict=True))
     wires = "\n  ".join(f"connect(joint.flange_{a}, m{a}.flange);" for a in "xyz")
     found = simulate(rumoca, top(body, wires, move("Translational", "s")), 2e-3, 1e-4, tmp_path)
-    spring = BoltedJointSpring.of(changed(bolted.values, {"memory": False}))
+    spring = BoltedJointSpring.of(replace_values(bolted.values, {"memory": False}))
     for k, t in enumerate(found.time):
-        exact = spring.motion(9e3, 0.0, tuple(x + v * t for x, v in zip(at, rate, strict=True)), rate)
+        exact = spring.evaluate(9e3, 0.0, tuple(x + v * t for x, v in zip(at, rate, strict=True)), rate)
         for i, axis in enumerate("xyz"):
             assert found[f"joint.f[{i + 1}]"][k] == pytest.approx(exact[f"f_{axis}"], abs=2.0 * EXACT * 72e3)
-    library.write(tmp_path / "gear", gear)
+    library.write_library(tmp_path / "gear", gear)
     text = top(
         "JointStiffness.Components.GearContact gear;\n  Move one;\n  Move other(at=4e-7, rate=-4e-6);",
         "connect(one.flange, gear.flange_a);\n  connect(gear.flange_b, other.flange);",
         move("Translational", "s"),
     )
     found = simulate(rumoca, text, 0.5, 1e-2, tmp_path / "gear")
-    contact = GearContactSpring.of(gear.values)
+    contact = GearContactSpring.tabulate(gear.values)
     load = contact.curve.derivatives(4e-6 * found.time - 4e-7 + contact.curve.displacement[0])[0]
     assert np.all(np.abs(found["gear.f"] + contact.joint.A_0 * load) <= EXACT * load + 1e-12)
 
@@ -550,7 +554,7 @@ def test_wrapper_moves_as_the_component(rumoca: Any):
         f"connect(motor{n}.flange_b, {a});\n  connect({b}, link{n}.flange_a);"
         for n, a, b in ((1, "one.flange1", "one.flange2"), (2, "other.flange_a", "other.flange_b"))
     )
-    record = identifier(default("harmonic_drive").name)
+    record = make_identifier(load_default("harmonic_drive").name)
     found = simulate(rumoca, top(body, wires, _BLOCK.format(record=record)), 0.2, 1e-3)
     assert np.ptp(found["link2.phi"]) > 1e-3
     assert np.abs(found["link1.phi"] - found["link2.phi"]).max() <= 1e-6 * np.ptp(found["link2.phi"])

@@ -14,7 +14,7 @@ from jointfmu_fmu_src.building import build
 from jointfmu_fmu_src.native.code.generate import sources
 from jointfmu_fmu_src.native.compiled import cache, kept
 from jointfmu_fmu_src.native.compiled.ahead import structures
-from jointfmu_fmu_src.native.compiled.binary import finished
+from jointfmu_fmu_src.native.compiled.binary import fill_library
 from jointfmu_fmu_src.native.data import PLACEHOLDER, block, data_of, placeholder, split
 from natives import close
 from test_bare import EXTRAS
@@ -22,15 +22,15 @@ from test_native_binaries import check_signature, images, members
 
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.joints.model import Model
-from jointfmu.parameters import ParameterFile, default, dump
+from jointfmu.parameters import ParameterFile, format_parameter_file, load_default
 
 NAMES = tuple(MODELS)
 
 
 def of(name: str, changes: dict[str, Any] | None = None) -> tuple[Model, ParameterFile]:
-    file = default(MODELS[name].joint)
+    file = load_default(MODELS[name].joint)
     file = file.with_values(changes or {}, "user", "test")
-    return MODELS[name].of(file.joint, file.values), file
+    return MODELS[name].with_parameters(file.joint, file.values), file
 
 
 def part_name(model: Model, file: ParameterFile) -> str:
@@ -46,7 +46,7 @@ def test_numbers_are_data_and_choices_are_code(name: str) -> None:
     model, file = of(name)
     given = split(model, file)
     assert {*given.exposed} == {*model.parameter_fields()}
-    numbers = {n: v for n, v in file.flat.items() if type(v) is float and v and not v.is_integer()}
+    numbers = {n: v for n, v in file.values_by_name.items() if type(v) is float and v and not v.is_integer()}
     changed = file.with_values({n: v * (1.0 + 1e-6) for n, v in numbers.items()}, "user", "test")
     assert part_name(model, changed) == part_name(model, file)
     every = [part_name(*one) for one in structures(MODELS[name])]
@@ -70,18 +70,18 @@ def test_a_part_is_of_the_sources_it_was_made_of(tmp_path: Path, monkeypatch: py
     assert part_name(model, file) == before
 
 
-def a_part() -> kept.Part:
+def a_part() -> kept.CompiledModel:
     libraries = {v: {"x86_64-linux": f"library {v}".encode() * 100} for v in kept.VERSIONS}
-    return kept.Part({"law.c": "int x;\n", "law.h": ""}, libraries)
+    return kept.CompiledModel({"law.c": "int x;\n", "law.h": ""}, libraries)
 
 
 def test_a_part_is_read_as_it_was_written() -> None:
-    content = kept.written(a_part())
-    assert kept.read(content) == a_part()
-    assert kept.written(kept.read(content)) == content
+    content = kept.pack_model(a_part())
+    assert kept.unpack_model(content) == a_part()
+    assert kept.pack_model(kept.unpack_model(content)) == content
     for broken in (b"", content[:-40], content[:100], b"x" + content):
         with pytest.raises((OSError, ValueError, EOFError, kept.lzma.LZMAError, kept.tarfile.TarError)):
-            kept.read(broken)
+            kept.unpack_model(broken)
 
 
 def test_it_is_compiled_once_and_again_where_the_file_is_broken(
@@ -89,14 +89,14 @@ def test_it_is_compiled_once_and_again_where_the_file_is_broken(
 ) -> None:
     compiled = []
     monkeypatch.setenv(cache.CACHE, str(tmp_path))
-    monkeypatch.setattr(kept, "compiled", lambda *_: compiled.append(1) or a_part())
+    monkeypatch.setattr(kept, "compile_model", lambda *_: compiled.append(1) or a_part())
     model, file = of(NAMES[0])
     for _ in range(3):
-        assert kept.part_of(model, file, split(model, file)) == a_part()
+        assert kept.compiled_model(model, file, split(model, file)) == a_part()
     assert len(compiled) == 1
     (found,) = tmp_path.rglob("*.tar.xz")
     found.write_bytes(found.read_bytes()[:-40])
-    assert kept.part_of(model, file, split(model, file)) == a_part()
+    assert kept.compiled_model(model, file, split(model, file)) == a_part()
     assert len(compiled) == 2
     assert [p for p in tmp_path.rglob("*") if p.is_file()] == [found]
 
@@ -104,23 +104,23 @@ def test_it_is_compiled_once_and_again_where_the_file_is_broken(
 def test_a_cache_that_cannot_be_written_is_no_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "file").write_text("mine")
     monkeypatch.setenv(cache.CACHE, str(tmp_path / "file" / "below"))
-    monkeypatch.setattr(kept, "compiled", lambda *_: a_part())
+    monkeypatch.setattr(kept, "compile_model", lambda *_: a_part())
     model, file = of(NAMES[0])
-    assert kept.part_of(model, file, split(model, file)) == a_part()
+    assert kept.compiled_model(model, file, split(model, file)) == a_part()
 
 
 def test_many_may_keep_the_same_part_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Old ones go, and nobody reads half a file."""
     monkeypatch.setattr(kept, "MOST_KEPT", 3)
-    place, content = tmp_path / "new.tar.xz", kept.written(a_part())
+    place, content = tmp_path / "new.tar.xz", kept.pack_model(a_part())
     for i in range(6):
         old = tmp_path / f"{i}.tar.xz"
         old.write_bytes(b"")
         os.utime(old, (i, i))
 
-    def keep_and_read(_: int) -> kept.Part:
+    def keep_and_read(_: int) -> kept.CompiledModel:
         kept._keep(place, content)
-        return kept.read(place.read_bytes())
+        return kept.unpack_model(place.read_bytes())
 
     with ThreadPoolExecutor(8) as pool:
         assert set(map(str, pool.map(keep_and_read, range(64)))) == {str(a_part())}
@@ -133,10 +133,10 @@ def test_many_may_keep_the_same_part_at_once(tmp_path: Path, monkeypatch: pytest
 def test_a_library_of_other_data_is_refused() -> None:
     before, after = block(PLACEHOLDER, "", [0.0] * 3), block("Mine", "{1}", [1.0] * 3)
     library = b"head" + before.content + b"tail"
-    assert finished(library, before, after, "Mine") == b"head" + after.content + b"tail"
+    assert fill_library(library, before, after, "Mine") == b"head" + after.content + b"tail"
     for other in (b"head", library + before.content):
         with pytest.raises(ValueError, match="Mine: the compiled part is not that of these data"):
-            finished(other, before, after, "Mine")
+            fill_library(other, before, after, "Mine")
 
 
 PRINTED = """
@@ -181,7 +181,7 @@ def test_each_variant_is_signed_and_has_a_number_of_its_own(tmp_path: Path) -> N
     for alias, factor in (("First", 1.0), ("Second", 1.1), ("a" * 63, 1.1)):
         model, file = of(NAMES[0])
         name = next(iter(model.parameter_fields()))
-        changed = file.with_values({name: factor * file.flat[name]}, "user", "test")
+        changed = file.with_values({name: factor * file.values_by_name[name]}, "user", "test")
         (path,) = build([NAMES[0]], ["fmi3"], changed, tmp_path, alias=alias)
         for member, content in members(path).items():
             if not member.endswith(".dylib"):
@@ -215,11 +215,11 @@ def test_a_variant_needs_no_compiler(name: str, native: Path, tmp_path: Path) ->
     joint have what is fixed in common."""
     kind = KINDS[MODELS[name].joint]
     tuned = ({n: v} for n, v in CASES[name].tuning.tuned.items())
-    alone = [one for one in tuned if not list(kind.contradictions(of(name, one)[1].values))]
+    alone = [one for one in tuned if not list(kind.find_contradictions(of(name, one)[1].values))]
     model, file = of(name, alone[0])
-    fixed = {n: 0.99 * file.flat[n] for n in split(model, file).fixed if n in file.flat}
+    fixed = {n: 0.99 * file.values_by_name[n] for n in split(model, file).fixed if n in file.values_by_name}
     changed = file.with_values(fixed, "user", "test")
-    (tmp_path / "variant.toml").write_text(dump(changed))
+    (tmp_path / "variant.toml").write_text(format_parameter_file(changed))
     begin = os.times()
     done = run_host(VARIANT, name, tmp_path / "variant.toml", tmp_path / "out")
     assert done.returncode == 0, done.stderr
@@ -230,4 +230,4 @@ def test_a_variant_needs_no_compiler(name: str, native: Path, tmp_path: Path) ->
     expected = law(name, changed.values).after(STATE[name])
     for inputs in random_inputs(name, 5, seed=61):
         assert instance.at(inputs) == close(expected(inputs))
-    instance.free()
+    instance.free_instance()

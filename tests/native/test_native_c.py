@@ -32,7 +32,7 @@ from jointfmu_tools.systems.system import system
 from natives import SAID
 
 from jointfmu.joints import MODELS
-from jointfmu.parameters import default
+from jointfmu.parameters import load_default
 
 pytestmark = pytest.mark.slow
 
@@ -114,7 +114,7 @@ class Sources(NamedTuple):
 def c_of(name: str) -> Sources:
     """The sources of an FMU, or of the joint in a folder of tests/native/hosts."""
     if model := (MODELS | PARTNERS).get(name):
-        files = sources(name, partner_parameters(name) if name in PARTNERS else default(model.joint))
+        files = sources(name, partner_parameters(name) if name in PARTNERS else load_default(model.joint))
         return Sources(files, len(model.inputs), len(model.outputs), len(model.parameter_fields()))
     if name == SYSTEM:
         parts = assembly(system(name))

@@ -74,7 +74,7 @@ def test_casadi_evaluates_and_differentiates_it(
     given = [[s[i] for i in inputs] for s in states]
     found = run_client(CASADI, tmp_path, folder, parameters=changes, seed=seed, states=given)
     assert (found["x"], found["u"], found["y"]) == ([], inputs, outputs)
-    assert found["structure"] == [[float(i in model.depends(o)) for i in inputs] for o in outputs]
+    assert found["structure"] == [[float(i in model.list_dependencies(o)) for i in inputs] for o in outputs]
     check(name, [row["y"] for row in found["rows"]], states, changes, steps=False)
     instance = Fmu(path, exchange=True).start(changes)
     for state, row in zip(states, found["rows"], strict=True):
@@ -90,7 +90,7 @@ def test_casadi_evaluates_and_differentiates_it(
             continue
         for k, moved in enumerate(inputs):
             check_slopes(name, state, moved, dict(zip(outputs, J[:, k].tolist(), strict=True)), changes)
-    instance.free()
+    instance.free_instance()
 
 
 SOLVE = """

@@ -21,13 +21,13 @@ def test_directional_derivatives_are_those_of_the_package(host: Host, name: str)
     three = natives[-1]
     for state in random_inputs(name, 12, seed=32):
         for one in natives:
-            one.set(state)
+            one.set_values(state)
         found, *others = map(jacobian, natives)
         assert others == [found] * 3
         for moved in state:
             check_slopes(name, state, moved, {output: found[output, moved] for output in three.outputs})
         model = MODELS[name]
-        apart = {key for key in found if key[1] not in model.depends(key[0])}
+        apart = {key for key in found if key[1] not in model.list_dependencies(key[0])}
         assert {key: found[key] for key in apart} == dict.fromkeys(apart, 0.0)
 
 
@@ -45,9 +45,9 @@ def test_derivatives_are_linear_in_the_seed_and_follow_the_state(host: Host, nam
         assert abs(found - sum(terms)) <= 1e-12 * sum(map(abs, terms))
     values = instance.get()
     assert jacobian(instance) == before  # asking changes nothing
-    instance.set({i: 1.1 * value for i, value in STATE[name].items()})
+    instance.set_values({i: 1.1 * value for i, value in STATE[name].items()})
     assert jacobian(instance) != before  # it is that of the present inputs, though no output was read
-    instance.set(STATE[name])
+    instance.set_values(STATE[name])
     assert instance.get() == values
 
 
@@ -85,7 +85,7 @@ def test_stiffnesses_of_a_sheared_joint_have_the_slopes_of_their_differences(
     """Springs that begin to touch under the preload of the first shear count: stiff across it alone."""
     state = {"preload": 3e4, "s_rel_x": 5e-7, "s_rel_z": 0.0}
     instance = host("BoltedJoint", version).start({"preload": 3e4})
-    instance.set(state)
+    instance.set_values(state)
     if accepted:
         instance.step()
     found = jacobian(instance)
@@ -111,7 +111,7 @@ def test_derivatives_after_a_history_are_those_of_differences(host: Host, versio
         rng, instance = np.random.default_rng(seed), host("BoltedJoint", version).start({"preload": 1e4})
         for step in range(5):
             state = {name: size * rng.uniform(-0.5, 0.5) for name, size in sizes.items() if size < 1.0}
-            instance.set(state := {"preload": 1e4 * (1.0 - 0.3 * (step % 2)), **state})
+            instance.set_values(state := {"preload": 1e4 * (1.0 - 0.3 * (step % 2)), **state})
             if step < 4:
                 instance.step()
         here, found = instance.get(), jacobian(instance)
@@ -128,5 +128,5 @@ def test_derivatives_by_parameters_and_of_inputs_are_refused(host: Host, version
     derivative = instance.fmu.getDirectionalDerivative
     assert "e is among the knowns; expected inputs" in instance.refused(derivative, [K], [e], [1.0])
     assert "f is among the unknowns; expected outputs" in instance.refused(derivative, [f], [f], [1.0])
-    instance.set({"f": math.nan})
+    instance.set_values({"f": math.nan})
     assert instance.refused(derivative, [K], [f], [1.0]).startswith("f = nan N is outside (-inf, inf)")

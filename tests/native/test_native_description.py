@@ -34,8 +34,8 @@ from test_fmu_description import dimension, si_value
 
 from jointfmu import __version__
 from jointfmu.joints import MODELS
-from jointfmu.parameters import default
-from jointfmu.quantity import flatten
+from jointfmu.parameters import load_default
+from jointfmu.quantity import flatten_parameters
 
 TOKEN = "{01234567-89ab-5cde-8f01-23456789abcd}"
 SOURCES = ("fmi2.c", "instance.c", "law.c")
@@ -58,7 +58,7 @@ def version(request: pytest.FixtureRequest) -> int:
 
 def description(name: str, version: int) -> bytes:
     model = MODELS[name]
-    parameters = default(model.joint)
+    parameters = load_default(model.joint)
     if version == 2:
         return fmi2_xml(model, parameters, TOKEN, SOURCES)
     return fmi3_xml(model, parameters, TOKEN)
@@ -66,7 +66,7 @@ def description(name: str, version: int) -> bytes:
 
 @cache
 def pages(name: str) -> dict[str, bytes]:
-    return documentation(MODELS[name], default(MODELS[name].joint))
+    return documentation(MODELS[name], load_default(MODELS[name].joint))
 
 
 @cache
@@ -192,7 +192,7 @@ def test_what_the_fmu_can_do(name: str, version: int, interface: str, expected: 
         "needsExecutionTool": "false",
         "canBeInstantiatedOnlyOncePerProcess": "false",
     }
-    if MODELS[name].rest and interface == "ModelExchange":  # it has to be told what is accepted
+    if MODELS[name].initial_history and interface == "ModelExchange":  # it has to be told what is accepted
         opposite = {"true": "false", "false": "true"}
         expected = {k: opposite[v] for k, v in expected.items()}
     flags = etree.fromstring(description(name, version)).find(interface).attrib
@@ -232,14 +232,14 @@ def test_inputs_and_outputs_are_those_of_the_list(name: str, version: int) -> No
             assert node["type"] == "Real"
             assert (node["unit"], node["description"]) == (v.unit, v.doc)
             assert float(node["nominal"]) == v.nominal > 0.0
-            assert float(node.get("min", "-inf")) == v.low
+            assert float(node.get("min", "-inf")) == v.minimum
             assert "max" not in node
             assert node.get("start") == {"input": repr(v.start), "output": None}[causality]
             assert node.get("initial") == {"input": None, "output": "calculated"}[causality]
 
 
 def test_parameters_are_tunable_and_start_at_the_baked_in_values(name: str, version: int) -> None:
-    values, found = flatten(default(MODELS[name].joint).values), listed(name, version)
+    values, found = flatten_parameters(load_default(MODELS[name].joint).values), listed(name, version)
     for variable, item in MODELS[name].parameter_fields().items():
         node, value = found[variable], values[variable]
         assert (node["causality"], node["variability"]) == ("parameter", "tunable")
@@ -275,7 +275,7 @@ def test_bounds_are_those_of_the_parameters(name: str, version: int) -> None:
 
 
 def test_fixed_parameters_are_fixed_and_nothing_else_changes(name: str, version: int) -> None:
-    model, file = MODELS[name], default(MODELS[name].joint)
+    model, file = MODELS[name], load_default(MODELS[name].joint)
     xml = (
         fmi2_xml(model, file, TOKEN, SOURCES, "fixed")
         if version == 2
@@ -287,7 +287,7 @@ def test_fixed_parameters_are_fixed_and_nothing_else_changes(name: str, version:
 
 def test_another_parameter_file_changes_the_start_values_only(version: int) -> None:
     model = MODELS["GearContact"]
-    file = default(model.joint).with_values({"e": 0.125, "rigid_flat": False}, "user", "test")
+    file = load_default(model.joint).with_values({"e": 0.125, "rigid_flat": False}, "user", "test")
     xml = fmi2_xml(model, file, TOKEN, SOURCES) if version == 2 else fmi3_xml(model, file, TOKEN)
     changed = {
         ours.strip()
@@ -338,7 +338,7 @@ def test_outputs_depend_on_the_inputs_of_the_list(name: str, version: int) -> No
     found = structure(name, version, "Output")
     assert list(found) == [v.name for v in model.outputs]
     for output, knowns in found.items():
-        assert set(knowns) == set(model.depends(output))
+        assert set(knowns) == set(model.list_dependencies(output))
 
 
 def test_initial_unknowns_are_the_outputs_and_know_the_parameters_too(name: str, version: int) -> None:
@@ -347,7 +347,7 @@ def test_initial_unknowns_are_the_outputs_and_know_the_parameters_too(name: str,
     later = structure(name, version, "Output")
     assert list(found) == [v.name for v in model.outputs]
     for output, knowns in found.items():
-        assert set(knowns) == set(model.depends(output)) | set(model.parameter_fields())
+        assert set(knowns) == set(model.list_dependencies(output)) | set(model.parameter_fields())
         for known, kind in knowns.items():  # parameters still change, so a factor of them is not known yet
             assert kind == ("constant" if later[output].get(known) == "constant" else "dependent")
 
@@ -358,15 +358,15 @@ def samples(name: str, n: int) -> list[dict[str, float]]:
     scale = {v.name: v.nominal for v in model.inputs} | {model.ramp.input: model.ramp.end}
     scale |= {"phi1": 0.1, "phi2": 1e-3}
     return [
-        {v.name: scale[v.name] * rng.uniform(0.0 if v.low == 0.0 else -1.0, 1.0) for v in model.inputs}
+        {v.name: scale[v.name] * rng.uniform(0.0 if v.minimum == 0.0 else -1.0, 1.0) for v in model.inputs}
         for _ in range(n)
     ]
 
 
 def outputs(name: str, inputs: dict[str, float], **parameters: float) -> dict[str, float]:
     model = MODELS[name]
-    file = default(model.joint).with_values(parameters, "user", "test")
-    return {k: float(v) for k, v in model.evaluate(model.spring(file.values), inputs).items()}
+    file = load_default(model.joint).with_values(parameters, "user", "test")
+    return {k: float(v) for k, v in model.evaluate(model.tabulate(file.values), inputs).items()}
 
 
 @pytest.mark.slow
@@ -621,14 +621,14 @@ def test_the_page_is_well_formed_small_and_complete_in_itself(name: str) -> None
 
 def test_the_page_lists_every_variable_and_every_parameter(name: str) -> None:
     model = MODELS[name]
-    file = default(model.joint)
+    file = load_default(model.joint)
     rows = {row[0]: row[1:] for row in Page(pages(name)["index.html"].decode()).rows}
     units = listed(name, 3)
     for v in (*model.inputs, *model.outputs):
         unit, shown, doc = rows[v.name]
         assert (unit, shown) == (v.unit, units[v.name]["displayUnit"])
         assert doc.startswith(v.doc)
-    for parameter, value in flatten(file.values).items():
+    for parameter, value in flatten_parameters(file.values).items():
         shown, _, allowed, _, kind, source = rows[parameter]
         assert allowed
         assert kind == file.origins.get(parameter, "user")
@@ -642,7 +642,7 @@ def test_the_page_lists_every_variable_and_every_parameter(name: str) -> None:
 def test_the_page_shows_every_warning_and_typical_refusals(name: str) -> None:
     rows = Page(pages(name)["index.html"].decode()).rows
     warnings = [row[1] for row in rows if row[0] == "warning"]
-    outside = MODELS[name].outside
+    outside = MODELS[name].validity_limits
     assert len(warnings) == len(outside)
     for text, o in zip(warnings, outside, strict=True):
         assert text.startswith(f"{o.variable} = ")
@@ -654,7 +654,7 @@ def test_the_page_shows_every_warning_and_typical_refusals(name: str) -> None:
 
 def test_the_page_draws_the_ramp_of_its_own_parameters() -> None:
     model = MODELS["GearContact"]
-    file = default(model.joint).with_values({"lambda": 0.5}, "user", "my own")
+    file = load_default(model.joint).with_values({"lambda": 0.5}, "user", "my own")
     usual, other = pages(model.name)["index.html"].decode(), documentation(model, file)["index.html"].decode()
 
     def figure(text: str) -> str:
@@ -701,7 +701,7 @@ def test_a_browser_draws_every_chart_of_the_page(tmp_path: Path, name: str) -> N
 def test_a_joint_may_say_nothing_of_flanges_and_plot() -> None:
     """Then the page has no terminals, and the plot shows the first output over the driven input."""
     model = MODELS["GearContact"]
-    text = documentation(replace(model, name="Other"), default(model.joint))["index.html"].decode()
+    text = documentation(replace(model, name="Other"), load_default(model.joint))["index.html"].decode()
     assert "<h3>Terminals</h3>" not in text
     assert "<h3>Terminals</h3>" in pages(model.name)["index.html"].decode()
     assert ("s_rel [um]" in text, "K_N [N/um]" in text) == (True, False)

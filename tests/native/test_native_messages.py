@@ -11,9 +11,9 @@ from joint_cases import BEYOND, CASES, GOOD, NAMES, RANGES, parameters
 from natives import SAME, VERSIONS, Host, attempt, close, jacobian, near, package, settle
 
 from jointfmu.joints import MODELS
-from jointfmu.parameters import default
-from jointfmu.quantity import build as make
-from jointfmu.quantity import flatten
+from jointfmu.parameters import load_default
+from jointfmu.quantity import build_parameter_set as make
+from jointfmu.quantity import flatten_parameters
 
 
 @pytest.fixture(params=NAMES)
@@ -66,18 +66,18 @@ def test_each_way_of_leaving_the_tables_is_warned_of_once_as_in_the_package(
     host: Host, name: str, version: str
 ) -> None:
     model, rng, also = MODELS[name], np.random.default_rng(37), dict(CASES[name].tuning.also)
-    spring, instance = model.spring(parameters(name, also)), host(name, version).start(GOOD[name] | also)
+    spring, instance = model.tabulate(parameters(name, also)), host(name, version).start(GOOD[name] | also)
     warned: dict[int, str] = {}
     for _ in range(150):
         # far outside, and on both sides of every limit
         state = {k: float(rng.normal()) * 3.0 * max(map(abs, ends)) for k, ends in RANGES[name].items()}
-        state |= {v.name: abs(state[v.name]) for v in model.inputs if v.low == 0.0}
+        state |= {v.name: abs(state[v.name]) for v in model.inputs if v.minimum == 0.0}
         outputs = model.evaluate(spring, state)
-        for key, text in model.warnings(spring, {**state, **outputs}).items():
+        for key, text in model.find_warnings(spring, {**state, **outputs}).items():
             warned.setdefault(key, text)
         assert instance.at(state) == near(name, {k: float(v) for k, v in outputs.items()})
         assert instance.warnings == list(warned.values())
-    assert len(warned) == len(model.outside)
+    assert len(warned) == len(model.validity_limits)
     assert {m.category for m in instance.messages if m.status == 1} == {"logStatusWarning"}
 
 
@@ -88,7 +88,7 @@ def test_a_value_at_the_end_of_every_interval_is_refused_or_not_as_in_the_packag
     host: Host, name: str, version: str
 ) -> None:
     instance, model = host(name, version), MODELS[name]
-    start, refusals = flatten(default(model.joint).values), 0
+    start, refusals = flatten_parameters(load_default(model.joint).values), 0
     for parameter, item in model.parameter_fields().items():
         meta = item.metadata
         if "unit" not in meta:
@@ -98,8 +98,10 @@ def test_a_value_at_the_end_of_every_interval_is_refused_or_not_as_in_the_packag
         for value in (math.nan, math.inf, -math.inf, *ends, *beside):
             instance.reset()
             instance.begin()
-            instance.set({parameter: value})
-            reason = attempt(lambda v: model.spring(make(model.parameters, v)), start | {parameter: value})[1]
+            instance.set_values({parameter: value})
+            reason = attempt(lambda v: model.tabulate(make(model.parameters, v)), start | {parameter: value})[
+                1
+            ]
             if not reason:
                 instance.fmu.exitInitializationMode()
                 continue
@@ -121,7 +123,7 @@ FORBIDDEN: list[tuple[str, dict[str, Any]]] = [
 def test_a_refusal_reads_the_same_in_every_flavour(
     host: Host, fmu: Host, name: str, values: dict[str, Any]
 ) -> None:
-    python, start = fmu(name), flatten(default(MODELS[name].joint).values)
+    python, start = fmu(name), flatten_parameters(load_default(MODELS[name].joint).values)
     expected = python.refused(python.start, values)
     for version in VERSIONS:
         for exchange in (False, True):
@@ -129,7 +131,7 @@ def test_a_refusal_reads_the_same_in_every_flavour(
             before = instance.start(GOOD[name]).get()
             instance.reset()
             assert instance.refused(instance.start, GOOD[name] | values) == expected
-            instance.set({k: start.get(k, 0.0) for k in values} | GOOD[name])
+            instance.set_values({k: start.get(k, 0.0) for k in values} | GOOD[name])
             instance.fmu.exitInitializationMode()  # a right value may come
             assert instance.get() == before
 
@@ -142,17 +144,17 @@ def test_an_input_that_is_no_number_is_refused_and_the_instance_can_be_used_agai
     instance, bystander = (host(name, version, exchange=exchange).start(GOOD[name]) for _ in range(2))
     before = bystander.get()
     for variable in MODELS[name].inputs:
-        python.set({variable.name: value})
+        python.set_values({variable.name: value})
         expected = python.refused(python.get)
-        python.set({variable.name: 0.0} | GOOD[name])
-        instance.set({variable.name: value})
+        python.set_values({variable.name: 0.0} | GOOD[name])
+        instance.set_values({variable.name: value})
         assert instance.refused(instance.get) == expected
         if not exchange:
             assert instance.refused(instance.step) == expected
-        instance.set({variable.name: 0.0} | GOOD[name])  # without a reset
+        instance.set_values({variable.name: 0.0} | GOOD[name])  # without a reset
         assert instance.get() == before
         settle(instance)
-        instance.set({variable.name: value})
+        instance.set_values({variable.name: value})
         instance.refused(instance.get)
         instance.reset()
         assert instance.start(GOOD[name]).get() == before
@@ -164,10 +166,10 @@ def test_an_input_that_is_no_number_is_refused_and_the_instance_can_be_used_agai
 def test_inputs_too_large_for_an_output_are_named(host: Host, version: str) -> None:
     instance = host("HarmonicDriveSpring", version).start(GOOD["HarmonicDriveSpring"])
     before = instance.get()
-    instance.set({"phi2": 1e308, "w2": 3.0})
+    instance.set_values({"phi2": 1e308, "w2": 3.0})
     message = "phi2 = 1e+308 rad, w2 = 3 rad/s, temperature = 293.15 K: too large, tau1 is not finite"
     assert instance.refused(instance.step) == message
-    instance.set({"w2": 0.0} | GOOD["HarmonicDriveSpring"])
+    instance.set_values({"w2": 0.0} | GOOD["HarmonicDriveSpring"])
     assert instance.get() == before
 
 
@@ -190,7 +192,7 @@ def test_events_are_logged_on_request_errors_and_warnings_always(host: Host, ver
         instance = host("GearContact", version, logging=logging).start({"f": 900.0})
         instance.at({"e": 0.3})
         instance.at({"f": -5.0})
-        instance.set({"f": math.nan})
+        instance.set_values({"f": math.nan})
         instance.refused(instance.step)
         found = [(m.status, m.category) for m in instance.messages]
         assert found.count((3, "logStatusError")) == 1
@@ -220,7 +222,7 @@ def test_categories_are_selected(
     instance.messages.clear()
     instance.at({"e": 0.3})
     instance.at({"f": -5.0})
-    instance.set({"f": math.nan})
+    instance.set_values({"f": math.nan})
     with pytest.raises(FMICallException):
         instance.step()
     assert {m.category for m in instance.messages} == expected
@@ -230,5 +232,5 @@ def test_an_unknown_category_is_refused(host: Host, version: str) -> None:
     instance = host("GearContact", version).start({"f": 900.0})
     message = instance.refused(instance.fmu.setDebugLogging, True, ["logEvents", "logStuff"])
     assert "'logStuff' is unknown; expected logStatusError, logStatusWarning, logEvents" in message
-    instance.set({"f": math.nan})
+    instance.set_values({"f": math.nan})
     instance.refused(instance.step)  # the selection is as before

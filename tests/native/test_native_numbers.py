@@ -17,7 +17,7 @@ import jointfmu
 from jointfmu.joints import MODELS
 from jointfmu.joints.harmonic_drive import hysteresis
 from jointfmu.mechanics import curve
-from jointfmu.parameters import default
+from jointfmu.parameters import load_default
 
 pytestmark = pytest.mark.slow
 
@@ -39,7 +39,7 @@ EVERY = {
 def c_of(name: str) -> dict[str, str]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(generate, "_laws", {})  # what is kept is of other numbers
-        return generate.sources(name, default(MODELS[name].joint))
+        return generate.sources(name, load_default(MODELS[name].joint))
 
 
 @cache
@@ -119,7 +119,7 @@ def test_build_refuses_what_does_not_fit(
 
 
 def test_build_refuses_a_table_without_room(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setattr(curve, "MOST_NODES", 100)  # fewer than its first steps
+    monkeypatch.setattr(curve, "MAX_NODES", 100)  # fewer than its first steps
     with pytest.raises(RuntimeError, match="the table needs more than 100 nodes"):
         jointfmu.load(DRIVE).build(tmp_path)
     assert not list(tmp_path.iterdir())

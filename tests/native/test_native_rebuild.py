@@ -41,7 +41,7 @@ def test_fmpy_compiles_the_sources_to_the_same_fmu(
     assert "warning" not in done.stdout + done.stderr
     model = MODELS[name]
     step = model.ramp.end / 20
-    first, second = (ramp.run(fmu, model.ramp.input, model.ramp.end, step) for fmu in (built, again))
+    first, second = (ramp.run_ramp(fmu, model.ramp.input, model.ramp.end, step) for fmu in (built, again))
     for column, values in first.columns.items():
         scale = np.abs(values).max()
         np.testing.assert_allclose(second.columns[column], values, rtol=0.0, atol=COMPILER_TOLERANCE * scale)

@@ -12,8 +12,8 @@ from jointfmu_fmu_src.building import build
 from natives import VERSIONS, Host, close, numbers, package, settle, slope
 
 from jointfmu.joints import MODELS
-from jointfmu.parameters import default
-from jointfmu.quantity import flatten
+from jointfmu.parameters import load_default
+from jointfmu.quantity import flatten_parameters
 
 
 @pytest.fixture(params=NAMES)
@@ -104,7 +104,7 @@ def test_a_state_of_a_joint_with_other_parameters_is_refused_by_name(
     host: Host, tmp_path: Path, version: str
 ) -> None:
     """Both have the same size: only the instantiation token tells them apart."""
-    file = default(MODELS["BoltedJoint"].joint).with_values({"embedding": 800.0}, "user", "test")
+    file = load_default(MODELS["BoltedJoint"].joint).with_values({"embedding": 800.0}, "user", "test")
     with here_alone(version[-1]):
         build(["BoltedJoint"], [version], file, tmp_path)
     sender, receiver = host("BoltedJoint", version).start(), host("BoltedJoint", version, tmp_path).start()
@@ -187,7 +187,7 @@ def test_two_instances_do_not_see_each_other(host: Host, name: str, version: str
         assert one.get() == before
         settle(other)
         changed = changed.after(inputs)
-    other.set({"surface.gamma": -1.0})
+    other.set_values({"surface.gamma": -1.0})
     other.refused(other.step)
     assert one.get() == before
     other.reset()
@@ -197,7 +197,7 @@ def test_two_instances_do_not_see_each_other(host: Host, name: str, version: str
 def test_instances_in_parallel_threads_give_the_same_bits(host: Host, name: str, version: str) -> None:
     count, inputs = 8, random_inputs(name, 60, seed=31)
     parameter, value = next(iter(TUNED[name].items()))
-    start = flatten(default(MODELS[name].joint).values)[parameter]
+    start = flatten_parameters(load_default(MODELS[name].joint).values)[parameter]
     instances = [host(name, version) for _ in range(count)]
     together = Barrier(count)
 
@@ -207,7 +207,7 @@ def test_instances_in_parallel_threads_give_the_same_bits(host: Host, name: str,
         instance.start()
         for k, state in enumerate(inputs):
             if k % 10 == 0:
-                instance.set({parameter: start + (value - start) * (i + k / 60.0) / count})
+                instance.set_values({parameter: start + (value - start) * (i + k / 60.0) / count})
             found.append(instance.at(state))
             instance.step()
         return found

@@ -19,9 +19,9 @@ from jointfmu_fmu_src.building import build
 from natives import VERSIONS, Host, attempt, close, near, package, settle, slope
 
 from jointfmu.joints import MODELS
-from jointfmu.parameters import default
-from jointfmu.quantity import build as make
-from jointfmu.quantity import flatten
+from jointfmu.parameters import load_default
+from jointfmu.quantity import build_parameter_set as make
+from jointfmu.quantity import flatten_parameters
 
 
 @pytest.fixture(params=NAMES)
@@ -83,7 +83,7 @@ def test_each_input_counts_when_it_moves_alone(host: Host, name: str, version: s
 def varied(name: str, rng: np.random.Generator) -> dict[str, Any]:
     """Parameters around the defaults, some of them so far that the law or another parameter forbids it."""
     changes: dict[str, Any] = {}
-    start = flatten(default(MODELS[name].joint).values)
+    start = flatten_parameters(load_default(MODELS[name].joint).values)
     for parameter, item in MODELS[name].parameter_fields().items():
         value, meta = start[parameter], item.metadata
         if isinstance(value, bool):
@@ -119,7 +119,7 @@ def test_random_parameters_give_the_numbers_or_the_refusal_of_the_package(host: 
 
 
 def test_each_parameter_changes_the_outputs_that_it_should(host: Host, name: str, version: str) -> None:
-    start, case = flatten(default(MODELS[name].joint).values), CASES[name]
+    start, case = flatten_parameters(load_default(MODELS[name].joint).values), CASES[name]
     base = dict(case.tuning.base)
     instance, without = host(name, version), set()
     instance.begin()  # while it initializes a joint with memory comes from rest, as in the package
@@ -140,7 +140,7 @@ def test_a_boolean_is_read_as_it_was_set(host: Host, version: str) -> None:
     instance = host("GearContact", version).start(STATE["GearContact"])
     reference, seen = [instance.variables["rigid_flat"].valueReference], []
     for value in (True, False, True):
-        instance.set({"rigid_flat": value})
+        instance.set_values({"rigid_flat": value})
         assert [bool(v) for v in instance.fmu.getBoolean(reference)] == [value]
         seen.append(instance.get())
     assert seen[0] == seen[2] != seen[1]
@@ -155,7 +155,7 @@ def test_outputs_are_right_in_initialization_and_after_each_set(
 ) -> None:
     expected, instance = package(name), host(name, version, exchange=exchange)
     first, second, third = random_inputs(name, 3, seed=24)
-    instance.set(first)  # start values may be set right after instantiation
+    instance.set_values(first)  # start values may be set right after instantiation
     instance.begin()
     assert instance.get() == close(expected(first))
     assert instance.at(second) == close(expected(second))
@@ -174,10 +174,10 @@ def test_outputs_are_right_in_initialization_and_after_each_set(
 
 def test_parameters_count_until_initialization_ends(host: Host, version: str, exchange: bool) -> None:
     instance = host("HarmonicDriveCompliance", version, exchange=exchange)
-    instance.set({"K_FTS0": 1e4, "tau": 3.0})
+    instance.set_values({"K_FTS0": 1e4, "tau": 3.0})
     instance.begin()
     assert instance.get("K_FTS") == {"K_FTS": 1e4}
-    instance.set({"K_FTS0": 3e4})
+    instance.set_values({"K_FTS0": 3e4})
     assert instance.get("K_FTS", "K_FTS0") == {"K_FTS": 3e4, "K_FTS0": 3e4}
     instance.fmu.exitInitializationMode()
     assert instance.get() == close(package("HarmonicDriveCompliance", {"K_FTS0": 3e4})({"tau": 3.0}))
@@ -208,7 +208,7 @@ def test_steps_of_any_size_end_where_they_should_and_change_nothing(
 
 def test_a_simulation_may_start_at_any_time(host: Host, version: str) -> None:
     instance = host("GearContact", version)
-    instance.set({"f": 900.0})
+    instance.set_values({"f": 900.0})
     instance.begin(start=-5.0, stop=-3.0)
     instance.fmu.exitInitializationMode()
     instance.step()
@@ -242,10 +242,10 @@ def test_input_derivatives_that_cannot_be_used_are_refused(host: Host) -> None:
         assert message.startswith("fmi2SetRealInputDerivatives: ")
         assert "; expected " in message
     slope(instance, f=-1e308)
-    instance.set({"f": -1e308})
+    instance.set_values({"f": -1e308})
     with pytest.raises(FMICallException):  # not finite at the end of the step
         instance.step()
-    instance.set({"f": 900.0})
+    instance.set_values({"f": 900.0})
     slope(instance, f=0.0)
     instance.step()
     assert instance.get() == before
@@ -261,7 +261,7 @@ def test_a_parameter_changed_between_steps_is_as_if_it_had_always_been_so(
     instance, fresh = (host(name, version, exchange=exchange) for _ in range(2))
     given = STATE[name] | CASES[name].tuning.also
     before = instance.start(given).get()
-    start = flatten(default(MODELS[name].joint).values)
+    start = flatten_parameters(load_default(MODELS[name].joint).values)
     changes: dict[str, Any] = {}
     for parameter, value in TUNED[name].items():
         settle(instance)
@@ -306,12 +306,12 @@ def test_a_parameter_out_of_range_refuses_every_call_until_it_is_right(
 ) -> None:
     instance = host("GearContact", version, exchange=exchange).start({"f": 900.0})
     before = instance.get()
-    instance.set({"e": 2.0})
+    instance.set_values({"e": 2.0})
     end_of_event = {"fmi2": "newDiscreteStates", "fmi3": "updateDiscreteStates"}[version]
     for call in (instance.get, getattr(instance.fmu, end_of_event) if exchange else instance.step):
         assert instance.refused(call) == "e = 2 is outside [0, 1): eccentricity of the contact ellipses"
     assert instance.get("e", "f") == {"e": 2.0, "f": 900.0}
-    instance.set({"e": 0.2})
+    instance.set_values({"e": 0.2})
     assert instance.get() == before
     settle(instance)
     assert instance.get() == before
@@ -321,8 +321,8 @@ def test_a_parameter_is_not_set_in_continuous_time(host: Host, version: str) -> 
     instance = host("GearContact", version, exchange=True).start({"f": 900.0})
     instance.fmu.enterContinuousTimeMode()
     before = instance.get()
-    assert "e is a tunable parameter" in instance.refused(instance.set, {"e": 0.3})
-    assert "event mode" in instance.refused(instance.set, {"rigid_flat": False})
+    assert "e is a tunable parameter" in instance.refused(instance.set_values, {"e": 0.3})
+    assert "event mode" in instance.refused(instance.set_values, {"rigid_flat": False})
     assert instance.get() == before
     instance.fmu.enterEventMode()
     assert instance.at({"e": 0.3}) != before
@@ -332,7 +332,7 @@ def test_reconfiguration_mode_takes_parameters(host: Host, name: str, exchange: 
     instance, fresh = (host(name, "fmi3", exchange=exchange) for _ in range(2))
     given = STATE[name] | CASES[name].tuning.also
     instance.start(given).fmu.enterConfigurationMode()
-    instance.set(TUNED[name])
+    instance.set_values(TUNED[name])
     instance.fmu.exitConfigurationMode()
     assert instance.get() == fresh.start(TUNED[name] | given).get()
 
@@ -344,7 +344,7 @@ def test_reconfiguration_mode_takes_parameters(host: Host, name: str, exchange: 
     ("name", "changes"), [(name, changes) for name, case in CASES.items() for changes in case.tuning.baked]
 )
 def test_a_parameter_file_is_baked_in(host: Host, tmp_path: Path, name: str, changes: dict[str, Any]) -> None:
-    file = default(MODELS[name].joint).with_values(changes, "user", "test")
+    file = load_default(MODELS[name].joint).with_values(changes, "user", "test")
     with here_alone("3"):
         build([name], ["fmi3"], file, tmp_path)
     instance, plain = host(name, folder=tmp_path).start(STATE[name]), host(name).start(STATE[name])
@@ -359,7 +359,7 @@ def test_a_parameter_file_is_baked_in(host: Host, tmp_path: Path, name: str, cha
     for i in range(10):  # every other parameter can be set as ever
         tuned = varied(name, rng)
         instance.reset()
-        values = flatten(file.values) | tuned
+        values = flatten_parameters(file.values) | tuned
         expected, reason = attempt(lambda v: law(name, make(type(file.values), v)), values)
         if reason:
             assert instance.refused(instance.start, tuned) == reason

@@ -14,8 +14,8 @@ from jointfmu_fmu_src.native.code.emit import HELPERS, function
 from jointfmu_fmu_src.native.code.generate import RUNTIME
 from jointfmu_fmu_src.native.compiled import compiler
 
-from jointfmu.mechanics.jenkins import Sliders, beyond, reaches, slide, trial
-from jointfmu.mechanics.sliders import together, turning
+from jointfmu.mechanics.jenkins import Sliders, elastic_predictor, limit_function, return_map, yield_function
+from jointfmu.mechanics.sliders import resultant, torsion_directions
 
 pytestmark = pytest.mark.slow
 
@@ -111,7 +111,7 @@ def rows_of(K: np.ndarray, before: np.ndarray, after: np.ndarray, force: np.ndar
     """What C gets of sliders whose stiffness stays."""
     x, y = force
     per_K = np.divide(1.0, K, out=np.zeros_like(K), where=K > 0.0)
-    e_x, e_y = np.ascontiguousarray(turning(SLIDERS))
+    e_x, e_y = np.ascontiguousarray(torsion_directions(SLIDERS))
     rows = {"K": K, "per_K": per_K, "before": before, "after": after, "force": x, "force_x": x, "force_y": y}
     return rows | {"turning_x": e_x, "turning_y": e_y, "keeps": np.ones_like(K), "carries": K}
 
@@ -133,7 +133,7 @@ def test_along_one_direction(library: CDLL) -> None:
         s = in_c(rows)
         total, rate = Sum(), Sum()
         library.sliders_line(SLIDERS, byref(s), c_double(u), pointer(moved), byref(total))
-        expected = Sliders(K).along(force[0], u, before, after)
+        expected = Sliders(K).advance_1d(force[0], u, before, after)
         size = 1.0 + abs(u) * float(np.sum(K))
         assert_close(moved, expected.force, size)
         assert_close([total.force[0], total.loss], [expected.traction, expected.loss], SLIDERS * size**2)
@@ -154,7 +154,7 @@ def test_along_one_direction(library: CDLL) -> None:
 
 def of_each(shift: np.ndarray) -> np.ndarray:
     """Shifts (2, n) of the sliders."""
-    return np.asarray(shift[:2, None] + shift[2] * turning(SLIDERS))
+    return np.asarray(shift[:2, None] + shift[2] * torsion_directions(SLIDERS))
 
 
 def in_plane(library: CDLL, rows: dict[str, np.ndarray], shift: np.ndarray) -> np.ndarray:
@@ -164,9 +164,9 @@ def in_plane(library: CDLL, rows: dict[str, np.ndarray], shift: np.ndarray) -> n
     tried, sticks = np.empty((2, SLIDERS)), (c_double * 3)()
     out = (POINTER_TO * 2)(*map(pointer, tried))
     first = library.sliders_stick(AVX, SLIDERS, byref(s), out, sticks)
-    at_limit = np.append(reaches(list(tried), rows["after"]) > 0.0, True)
+    at_limit = np.append(limit_function(list(tried), rows["after"]) > 0.0, True)
     assert first == np.argmax(at_limit) // 2 * 2
-    sums = together(np.where(np.arange(SLIDERS) < first, tried, 0.0))
+    sums = resultant(np.where(np.arange(SLIDERS) < first, tried, 0.0))
     assert_close(list(sticks), sums, SLIDERS * (1.0 + np.max(np.abs(tried))))
     found, fours, alone = np.empty((3, 7, SLIDERS))
     for slid, by_four, forces in ((found, False, False), (fours, AVX, False), (alone, AVX, True)):
@@ -174,7 +174,7 @@ def in_plane(library: CDLL, rows: dict[str, np.ndarray], shift: np.ndarray) -> n
         library.sliders_slide(by_four, 0, SLIDERS, byref(s), into, forces)
         total = Sum()
         library.sliders_sum(by_four, 0, SLIDERS, byref(s), into, byref(total))
-        assert_close(list(total.force), together(slid[:2]), SLIDERS * (1.0 + np.max(np.abs(tried))))
+        assert_close(list(total.force), resultant(slid[:2]), SLIDERS * (1.0 + np.max(np.abs(tried))))
     np.testing.assert_array_equal(fours, found)
     assert_close(alone[:2], found[:2], 1.0 + np.max(np.abs(tried)))
     np.testing.assert_array_equal(found[:2, :first], tried[:, :first])
@@ -187,13 +187,13 @@ def test_in_a_plane(library: CDLL) -> None:
     for K, before, after, force, shift in moves(plane=True):
         rows = rows_of(K, before, after, force)
         moved, tangent, loss = np.split(in_plane(library, rows, shift)[:6], [2, 5])
-        tried = trial(list(force), 1.0, K, list(of_each(shift)))
-        slid = slide(list(force), 1.0, K, list(of_each(shift)), before, after, K, rows["per_K"])
+        tried = elastic_predictor(list(force), 1.0, K, list(of_each(shift)))
+        slid = return_map(list(force), 1.0, K, list(of_each(shift)), before, after, K, rows["per_K"])
         size = 1.0 + float(np.linalg.norm(shift) * np.sum(K))
         assert_close(moved, slid.force, size)
         assert_close(loss[0], slid.loss, size**2)
         assert_close(tangent, slid.tangent, SLIDERS)
-        slips = beyond(tried, after) > 0.0
+        slips = yield_function(tried, after) > 0.0
         slipped += int(np.sum(slips))
         assert np.all(np.isfinite(moved)), (K, before, after)
         assert np.all(np.hypot(*moved) <= after * (1.0 + ROUND_OFF) + ROUND_OFF)
@@ -218,8 +218,10 @@ def forces_together(
     force, K = [rows["force_x"], rows["force_y"]], rows["K"]
     after = rows["after"] + motion[3] * rates[0]
     each = list(of_each(shift + motion[:3]) + motion[3] * rates[1:])
-    slid = slide(force, 1.0, K, each, rows["before"], after, K, rows["per_K"])
-    return together(np.array(slid.force)), beyond(trial(force, 1.0, K, each), after) > 0.0
+    slid = return_map(force, 1.0, K, each, rows["before"], after, K, rows["per_K"])
+    return resultant(np.array(slid.force)), yield_function(
+        elastic_predictor(force, 1.0, K, each), after
+    ) > 0.0
 
 
 def test_slopes(library: CDLL) -> None:
@@ -273,6 +275,6 @@ def test_force_alone(library: CDLL) -> None:
         s = in_c(rows)
         tangent = c_double()
         found = library.sliders_force(c_int(SLIDERS), byref(s), c_double(u), byref(tangent))
-        expected = Sliders(K).along(force[0], u, limit, limit)
+        expected = Sliders(K).advance_1d(force[0], u, limit, limit)
         size = 1.0 + abs(u) * float(np.sum(K))
         assert_close([found, tangent.value], [expected.traction, expected.tangent], SLIDERS * size)

@@ -29,8 +29,8 @@ from lxml import etree
 
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.joints.model import Model
-from jointfmu.parameters import ParameterFile, default, load
-from jointfmu.quantity import changed
+from jointfmu.parameters import ParameterFile, load_default, load_parameter_file
+from jointfmu.quantity import replace_values
 
 SCHEMAS = Path(str(files("fmpy") / "schema" / "fmi3"))
 EVERY = [*NAMES, *PARTNERS]
@@ -39,8 +39,8 @@ pytestmark = pytest.mark.slow  # each joint is tabulated some forty times
 
 @cache
 def given(name: str) -> tuple[Model, ParameterFile]:
-    file = default(MODELS[name].joint) if name in MODELS else partner_parameters(name)
-    return (MODELS | PARTNERS)[name].of(file.joint, file.values), file
+    file = load_default(MODELS[name].joint) if name in MODELS else partner_parameters(name)
+    return (MODELS | PARTNERS)[name].with_parameters(file.joint, file.values), file
 
 
 @cache
@@ -96,7 +96,7 @@ def test_parameter_sets_are_valid_and_have_every_parameter(name: str) -> None:
     model, _ = given(name)
     exposed = model.parameter_fields().keys()
     for path in (p for p in sets if "/parameters/" in p):
-        nodes = ElementTree.fromstring(sets[path]).iter(f"{{{manifest.VALUES}}}Parameter")
+        nodes = ElementTree.fromstring(sets[path]).iter(f"{{{manifest.SSV_NAMESPACE}}}Parameter")
         assert {node.get("name") for node in nodes} == exposed
 
 
@@ -116,8 +116,8 @@ def test_references_are_those_of_the_joint_itself(name: str) -> None:
     model, file = given(name)
     ramp = next(one for one in made(name) if one.name == "load ramp")
     joint = law(name, parameters(name))
-    rest = {v.name: file.start(v.name) for v in model.inputs}
-    end = model.loaded(joint.spring, rest).ramp.end
+    rest = {v.name: file.start_value(v.name) for v in model.inputs}
+    end = model.with_load_range(joint.spring, rest).ramp.end
     assert ramp.drive.levels[-1] == pytest.approx(end, rel=1e-8)
     for i in (5, 20):
         expected = joint(rest | {model.ramp.input: float(ramp.drive.levels[i])})
@@ -126,7 +126,7 @@ def test_references_are_those_of_the_joint_itself(name: str) -> None:
             assert ramp.results.columns[output][i] == pytest.approx(value, rel=1e-9, abs=1e-15)
 
 
-@pytest.mark.parametrize("name", [name for name in NAMES if MODELS[name].evolve])
+@pytest.mark.parametrize("name", [name for name in NAMES if MODELS[name].advance])
 def test_the_loop_shows_memory(name: str) -> None:
     """At the same input on the way up and down outputs differ, by far more than the tolerance."""
     loop = next(one for one in made(name) if one.name == "loop")
@@ -141,7 +141,7 @@ def test_the_loop_shows_memory(name: str) -> None:
 
 
 def test_every_joint_with_memory_has_a_loop() -> None:
-    assert [m.name for m in MODELS.values() if m.evolve and not m.loop] == []
+    assert [m.name for m in MODELS.values() if m.advance and not m.loop] == []
 
 
 @pytest.mark.parametrize("name", EVERY)
@@ -154,7 +154,7 @@ def test_neighbours_lie_just_inside_what_is_refused(name: str) -> None:
         usual = {model.ramp.input: model.ramp.end, **model.ramp.settings}  # what drives states, and a course
         ((parameter, value),) = one.settings.items() - usual.items()
         interval = model.parameter_fields()[parameter].metadata["interval"]
-        own = file.flat[parameter]
+        own = file.values_by_name[parameter]
         end = interval.low if value < own else interval.high
         assert interval.contains(value)
         further = end + math.copysign(1e-9, end - own) if value == end else 0.1 * value + 0.9 * end
@@ -165,8 +165,8 @@ def test_neighbours_lie_just_inside_what_is_refused(name: str) -> None:
         with pytest.raises((ValueError, RuntimeError, ArithmeticError)):
             results(
                 model,
-                changed(file.values, {parameter: further}),
-                {v.name: file.start(v.name) for v in model.inputs},
+                replace_values(file.values, {parameter: further}),
+                {v.name: file.start_value(v.name) for v in model.inputs},
                 Stimulus(model.ramp.input, np.array([0.0, model.ramp.end]), 1.0),
             )
 
@@ -177,7 +177,10 @@ def test_shipped_models_of_the_same_structure_are_carried(name: str) -> None:
     carried = models(model, file)
     assert carried[0] == (file, {})
     folder = KINDS[model.joint].default_file().parent
-    same = [load(path) for path in (*folder.glob("*.toml"), *folder.parent.glob("catalogue/*.toml"))]
+    same = [
+        load_parameter_file(path)
+        for path in (*folder.glob("*.toml"), *folder.parent.glob("catalogue/*.toml"))
+    ]
     assert {one.name for one, _ in carried} <= {one.name for one in same}
     assert {one.law for one, _ in carried} == {file.law}
 
@@ -190,12 +193,12 @@ def test_one_shipped_model_at_least_is_carried_by_the_fmu_of_another() -> None:
 def test_the_uncertainty_experiment_can_be_read_as_a_study(name: str, tmp_path: Path) -> None:
     path = tmp_path / "study.toml"
     path.write_bytes(members(name)[f"{standard.FOLDER}/parameters/study.toml"])
-    assert study_files.read(path) == study(*given(name))
+    assert study_files.read_study(path) == study(*given(name))
     samples = [one for one in made(name) if one.purpose == "uncertainty-analysis"]
     assert len(samples) == 6
     for one in samples:
         for parameter, value in one.settings.items():
-            assert abs(value / given(name)[1].flat[parameter] - 1.0) <= 0.01 * (1.0 + 1e-9)
+            assert abs(value / given(name)[1].values_by_name[parameter] - 1.0) <= 0.01 * (1.0 + 1e-9)
     assert len({tuple(one.settings.values()) for one in samples}) == 6
 
 
@@ -203,7 +206,7 @@ def test_the_sources_of_parameters_can_be_built_from(tmp_path: Path) -> None:
     name = NAMES[0]
     (path,) = (p for p in members(name) if p.endswith(".toml") and "study" not in p)
     (tmp_path / "own.toml").write_bytes(members(name)[path])
-    assert load(tmp_path / "own.toml").flat == given(name)[1].flat
+    assert load_parameter_file(tmp_path / "own.toml").values_by_name == given(name)[1].values_by_name
 
 
 @pytest.mark.parametrize("name", EVERY)
@@ -229,7 +232,7 @@ def test_the_text_says_how_many_and_how_near(name: str) -> None:
 def test_a_course_over_time_shows_itself_in_its_proof_alone(name: str) -> None:
     """A system's file that states no pulse and no turn has none."""
     model, file = given(name)
-    assert not any(value for key, value in file.flat.items() if key.endswith("height"))
+    assert not any(value for key, value in file.values_by_name.items() if key.endswith("height"))
     one = made(name)[1]
     column = one.results.columns[model.outputs[0].name]
     assert np.max(np.abs(column - np.linspace(0.0, column[-1], column.size))) > 1e-9 * column[-1]
@@ -247,7 +250,7 @@ def test_a_mass_under_a_constant_force_moves_as_newton_says() -> None:
 def test_a_weight_keeps_its_energy() -> None:
     """The integration of states: kinetic and potential energy against the work of the torque."""
     model, file = given("RotationalInertia")
-    values = changed(file.values, {"m": 2.0, "l": 0.3})
+    values = replace_values(file.values, {"m": 2.0, "l": 0.3})
     drive = Stimulus("tau_a", np.full(21, 1.0), 0.05)
     found = results(model, values, {v.name: 0.0 for v in model.inputs}, drive).columns
     potential = 2.0 * GRAVITY * 0.3 * (1.0 - np.cos(found["phi"]))
@@ -276,9 +279,9 @@ def test_series_are_written_and_read_alike() -> None:
 def test_a_jump_is_taken_where_it_stands() -> None:
     series = parse("time,u\n0,0\n1,1\n1,5\n2,6\n", "x")
     times = np.array([0.5, 1.0, 1.5, 3.0])
-    assert series.at("u", times).tolist() == [0.5, 5.0, 5.5, 6.0]
-    assert series.before("u", times).tolist() == [0.5, 1.0, 5.5, 6.0]
-    assert series.held("u", times).tolist() == [0.0, 5.0, 5.0, 6.0]
+    assert series.interpolate("u", times).tolist() == [0.5, 5.0, 5.5, 6.0]
+    assert series.interpolate_left("u", times).tolist() == [0.5, 1.0, 5.5, 6.0]
+    assert series.hold("u", times).tolist() == [0.0, 5.0, 5.0, 6.0]
 
 
 @pytest.mark.parametrize(

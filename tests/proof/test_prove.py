@@ -21,12 +21,12 @@ from jointfmu_fmu_src.proof.files import TOLERANCE
 from jointfmu_fmu_src.proof.members import proof
 from jointfmu_fmu_src.proof.standard import FOLDER
 from jointfmu_tools import cli
-from jointfmu_tools.proof.importers import VERSIONS as KNOWN
+from jointfmu_tools.proof.importers import FMI_VERSIONS as KNOWN
 from natives import VERSIONS
 from proofs import BOTH, ECOS, MEASURED, copy, other_manifest, proved, replaced
 
 from jointfmu.joints import KINDS, MODELS
-from jointfmu.parameters import default
+from jointfmu.parameters import load_default
 
 pytestmark = pytest.mark.slow
 
@@ -79,7 +79,7 @@ def test_fmus_of_other_laws_prove_themselves(
     """Under a name of the user's own, too."""
     name = KINDS[joint].models[-1].name
     with here_alone("3"):
-        fmu = native_build(name, default(joint, law), tmp_path, "3", alias="own_joint")
+        fmu = native_build(name, load_default(joint, law), tmp_path, "3", alias="own_joint")
     assert fmu.name == "own_joint.fmu"
     assert_all_pass(proved(capsys, fmu))
 
@@ -293,8 +293,8 @@ def resealed(source: Path, target: Path, parameter: str, value: float) -> Path:
     """A copy of an FMU with another value of a parameter in the description, and references that the package
     computes of it: all that can be changed without a compiler, so that it agrees with itself."""
     model = MODELS[source.stem]
-    file = default(model.joint).with_values({parameter: value}, "user", "test")
-    made = proof(model.of(file.joint, file.values), file)
+    file = load_default(model.joint).with_values({parameter: value}, "user", "test")
+    made = proof(model.with_parameters(file.joint, file.values), file)
     own = {path.removeprefix(f"{FOLDER}/"): data for path, data in made.items() if path.startswith(FOLDER)}
     old = rf'name="{re.escape(parameter)}".*?start="([^"]*)"'.encode()
 

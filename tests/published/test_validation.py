@@ -9,36 +9,36 @@ import pytest
 from jointfmu_tools.published import calibration
 from jointfmu_tools.published import validation as comparison
 from jointfmu_tools.published.calibration import calibrate
-from jointfmu_tools.published.computed import published
+from jointfmu_tools.published.computed import published_numbers
 from jointfmu_tools.published.reference import (
     CALIBRATION_TOLERANCE,
-    GUESSED,
+    GUESS_ROLES,
     ROLES,
     Guess,
     Point,
-    guesses,
-    points,
+    read_points,
+    trivial_guesses,
 )
-from jointfmu_tools.published.validation import compare, counts, missed, summary, table, validate
+from jointfmu_tools.published.validation import compare, counts, missed_points, summary, table, validate
 from matplotlib.lines import Line2D
 from published_marks import published_mark
 
 from jointfmu.joints import KINDS
-from jointfmu.parameters import default
-from jointfmu.quantity import flat_fields, flatten
+from jointfmu.parameters import load_default
+from jointfmu.quantity import flat_fields, flatten_parameters
 
 REPRODUCED = 1e-6
 """Relative tolerance of a value fitted again [1]: the fit stops at residuals of 1e-8, and the worst of
 its parameters moves about ten times as much."""
 
-PAPERS = [paper for kind in KINDS.values() for paper in published(kind).papers]
-OBSERVABLES = {q: f for kind in KINDS.values() for q, f in published(kind).observables.items()}
+PAPERS = [paper for kind in KINDS.values() for paper in published_numbers(kind).papers]
+OBSERVABLES = {q: f for kind in KINDS.values() for q, f in published_numbers(kind).observables.items()}
 FITS = {
-    name: (published(kind).papers[0], published(kind).calibration)
+    name: (published_numbers(kind).papers[0], published_numbers(kind).calibration)
     for name, kind in KINDS.items()
-    if published(kind).calibration
+    if published_numbers(kind).calibration
 }
-ALL = [point for paper in PAPERS for point in points(paper)]
+ALL = [point for paper in PAPERS for point in read_points(paper)]
 
 
 @pytest.fixture(scope="module")
@@ -58,7 +58,7 @@ def test_published_point_is_met(rows, point):
 def test_every_point_is_compared_once(rows):
     assert [row.point for row in rows] == ALL
     assert len({(p.paper, p.id) for p in ALL}) == len(ALL)
-    assert missed(rows) == []
+    assert missed_points(rows) == []
     assert {p.paper for p in ALL} == set(PAPERS)
 
 
@@ -68,7 +68,7 @@ def test_points_say_where_they_stand():
         assert p.quantity in OBSERVABLES
         assert any(word in p.place for word in ("section", "Eq", "Table", "conclusion", "yield")), p.id
         assert p.absolute or p.unit != "%", p.id  # a change in per cent is off by percentage points
-        assert (p.guess is not None) == (p.role in GUESSED), p.id
+        assert (p.guess is not None) == (p.role in GUESS_ROLES), p.id
         if p.role == "calibration":
             assert p.tolerance == CALIBRATION_TOLERANCE
         elif p.role != "claim":
@@ -164,7 +164,7 @@ def test_compare(changes, computed, error, passed):
     assert row.error == pytest.approx(error, rel=1e-9, nan_ok=True)  # differences of three digits
     assert row.passed is passed
     assert row.as_dict()["verdict"] == ("pass" if passed else "miss")
-    assert missed([row]) == ([] if passed else [row])
+    assert missed_points([row]) == ([] if passed else [row])
 
 
 @pytest.mark.parametrize("role", [role for role in ROLES if role != "claim"])
@@ -172,8 +172,8 @@ def test_what_a_miss_means(role):
     """It counts, unless the point was met by calibration or by construction."""
     row = compare(point(role=role), -300.0)
     assert not row.passed
-    assert missed([row]) == ([] if role in ("calibration", "circular") else [row])
-    assert counts([row]).missed == [r.point.id for r in missed([row])]
+    assert missed_points([row]) == ([] if role in ("calibration", "circular") else [row])
+    assert counts([row]).missed == [r.point.id for r in missed_points([row])]
 
 
 def test_who_is_nearer():
@@ -228,7 +228,7 @@ A, B, C = (
 def test_guess(how, guess, text):
     asked = point(value=1.0, where={"torque": 9.0}, guess=Guess(**how))
     other = point(id="y", value=99.0, guess=Guess(rule="constant", points=["b"]))
-    assert guesses([A, B, C, other, asked])["x"] == pytest.approx(guess, rel=1e-12)
+    assert trivial_guesses([A, B, C, other, asked])["x"] == pytest.approx(guess, rel=1e-12)
     assert text in str(asked.guess)
 
 
@@ -251,7 +251,7 @@ def test_a_guess_from_what_was_not_calibrated_is_refused(name):
     """From itself, from a prediction without a guess, from nothing."""
     asked = point(guess=Guess(rule="constant", points=[name]))
     with pytest.raises(ValueError, match=f"x: guess from '{name}', allowed are calibration points"):
-        guesses([point(id="z"), asked])
+        trivial_guesses([point(id="z"), asked])
 
 
 def test_guesses_are_those_by_hand(rows):
@@ -265,9 +265,9 @@ def test_guesses_are_those_by_hand(rows):
 
 
 def test_modes_are_guessed_from_the_lower_preload():
-    published = points("zhao2018_modes")
+    published = read_points("zhao2018_modes")
     measured = {p.id: p.value for p in published}
-    found = guesses(published)
+    found = trivial_guesses(published)
     assert len(found) == 12
     assert all(value == measured[name.split(".")[0] + ".9kN"] for name, value in found.items())
 
@@ -285,11 +285,11 @@ def test_a_wrong_computed_value_is_a_miss(monkeypatch):
                 off = first.tolerance * (1.0 if first.absolute else abs(first.value))
                 wrong = first.value + sign * 2.0 * off
             assert not compare(first, wrong).passed
-    monkeypatch.setitem(published(KINDS["bolted_joint"]).observables, "psi", lambda values, D: 2.0)
+    monkeypatch.setitem(published_numbers(KINDS["bolted_joint"]).observables, "psi", lambda values, D: 2.0)
     found = validate()
     wrong = [p.id for p in ALL if p.quantity == "psi"]
     assert "psi.1.5" in wrong
-    assert [row.point.id for row in missed(found)] == wrong
+    assert [row.point.id for row in missed_points(found)] == wrong
     assert summary(found).endswith("missed: " + ", ".join(wrong))
     lines = table(found).splitlines()
     assert len(lines) == len(ALL) + 1
@@ -302,7 +302,7 @@ def test_counts(rows):
     assert found.roles == {role: sum(p.role == role for p in ALL) for role in ROLES} == found.met
     assert found.numbers == found.printed + found.derived == len(ALL) - found.roles["claim"]
     assert found.printed == len(PRINTED)
-    assert found.guessed == {role: n if role in GUESSED else 0 for role, n in found.roles.items()}
+    assert found.guessed == {role: n if role in GUESS_ROLES else 0 for role, n in found.roles.items()}
     assert found.nearer == {
         role: sum(r.nearer == "law" and r.point.role == role for r in rows) for role in ROLES
     }
@@ -348,7 +348,7 @@ def test_summary(rows):
 
 def test_another_parameter_set_is_compared():
     """Those given count, the others are the defaults."""
-    soft = default("harmonic_drive").with_values({"K_FTS0": 1e4}, "user", "test")
+    soft = load_default("harmonic_drive").with_values({"K_FTS0": 1e4}, "user", "test")
     found = validate({"harmonic_drive": soft})
     names = {row.point.id for row in found if not row.passed}
     assert "K_WTS.measured.5" in names
@@ -388,7 +388,7 @@ def test_part_of_every_curve_is_not_fitted(curve, most):
 @pytest.mark.parametrize("joint", FITS)
 def test_fitted_values_are_marked_in_the_code_and_in_the_file(joint):
     unknowns = {name for fit in FITS[joint][1] for name in fit.unknowns}
-    file = default(joint)
+    file = load_default(joint)
     assert unknowns == {name for name, kind in file.origins.items() if kind == "calibration"}
     declared = {name for name, item in flat_fields(type(file.values)) if item.metadata.get("calibration")}
     assert declared <= unknowns
@@ -399,7 +399,9 @@ def test_fitted_values_are_marked_in_the_code_and_in_the_file(joint):
 
 def refitted(monkeypatch, fits):
     """Let the calibration use other fits."""
-    monkeypatch.setattr(calibration, "published", lambda kind: replace(published(kind), calibration=fits))
+    monkeypatch.setattr(
+        calibration, "published", lambda kind: replace(published_numbers(kind), calibration=fits)
+    )
 
 
 @pytest.mark.slow
@@ -407,10 +409,10 @@ def refitted(monkeypatch, fits):
 def test_calibration_reproduces_the_committed_values(joint, monkeypatch):
     """From other values in the file, from other starting values of the fit, with every other
     point made unusable."""
-    committed = default(joint)
+    committed = load_default(joint)
     paper, fits = FITS[joint]
     unknowns = [name for fit in fits for name in fit.unknowns]
-    values = flatten(committed.values)
+    values = flatten_parameters(committed.values)
     factors = {"rated_pressure": 1.02, "radial_deformation": 1.005}
     start = committed.with_values(
         {name: values[name] * factors.get(name, 0.9) for name in unknowns}, "user", "perturbed"
@@ -421,17 +423,17 @@ def test_calibration_reproduces_the_committed_values(joint, monkeypatch):
     )
     spoilt = [
         p if p.role == "calibration" or p.role == "claim" else replace(p, value=np.nan, where={})
-        for p in points(paper)
+        for p in read_points(paper)
     ]
     refitted(monkeypatch, moved)
     monkeypatch.setattr(calibration, "points", lambda asked: spoilt if asked == paper else [])
     again = calibrate(start)
     for name in unknowns:
-        assert flatten(again.values)[name] == pytest.approx(values[name], rel=REPRODUCED), name
+        assert flatten_parameters(again.values)[name] == pytest.approx(values[name], rel=REPRODUCED), name
         assert again.origins[name] == "calibration"
         assert again.sources[name] == committed.sources[name]
     untouched = {name: value for name, value in values.items() if name not in unknowns}
-    assert {name: flatten(again.values)[name] for name in untouched} == untouched
+    assert {name: flatten_parameters(again.values)[name] for name in untouched} == untouched
 
 
 def test_a_point_of_another_role_cannot_be_fitted(monkeypatch):
@@ -440,12 +442,12 @@ def test_a_point_of_another_role_cannot_be_fitted(monkeypatch):
     peeking = replace(fit, points=("p_max.9kN", "psi.1.5"))
     refitted(monkeypatch, (peeking,))
     with pytest.raises(KeyError, match=r"psi\.1\.5"):
-        calibrate(default("bolted_joint"))
+        calibrate(load_default("bolted_joint"))
 
 
 def test_a_joint_without_points_is_refused():
     with pytest.raises(ValueError, match="gear_contact") as error:
-        calibrate(default("gear_contact"))
+        calibrate(load_default("gear_contact"))
     assert "harmonic_drive, bolted_joint" in str(error.value)
 
 
@@ -453,10 +455,10 @@ def test_a_joint_without_points_is_refused():
 def test_a_fit_that_cannot_be_met_is_reported(monkeypatch):
     """A pressure between the bolts above the largest one."""
     paper = FITS["bolted_joint"][0]
-    bad = [replace(p, value=9e6) if p.id == "p_between.9kN" else p for p in points(paper)]
+    bad = [replace(p, value=9e6) if p.id == "p_between.9kN" else p for p in read_points(paper)]
     monkeypatch.setattr(calibration, "points", lambda asked: bad)
     with pytest.raises((RuntimeError, ValueError), match=r"pattern\.decay|decay_"):
-        calibrate(default("bolted_joint"))
+        calibrate(load_default("bolted_joint"))
 
 
 UNKNOWNS = [(joint, name) for joint, (_, fits) in FITS.items() for fit in fits for name in fit.unknowns]
@@ -465,8 +467,8 @@ UNKNOWNS = [(joint, name) for joint, (_, fits) in FITS.items() for fit in fits f
 @pytest.mark.parametrize(("joint", "name"), UNKNOWNS)
 def test_computed_values_follow_the_calibrated_ones(rows, joint, name):
     """One per mille off moves a computed value; of the drive, one that was not fitted."""
-    file = default(joint)
-    changed = file.with_values({name: flatten(file.values)[name] * 1.001}, "user", "test")
+    file = load_default(joint)
+    changed = file.with_values({name: flatten_parameters(file.values)[name] * 1.001}, "user", "test")
     paper = FITS[joint][0]
     moved = set()
     for row in rows:
@@ -476,14 +478,16 @@ def test_computed_values_follow_the_calibrated_ones(rows, joint, name):
                 moved.add(row.point.role)
     assert "calibration" in moved
     assert (
-        joint == "bolted_joint" or moved & set(GUESSED) or "circular" in moved
+        joint == "bolted_joint" or moved & set(GUESS_ROLES) or "circular" in moved
     )  # Zhao's two are both fitted
 
 
 def test_validation_reads_nothing_but_the_parameter_set(rows, monkeypatch):
     """Published values do not leak into what is computed."""
     shifted = {
-        paper: [p if isinstance(p.value, bool) else replace(p, value=0.1 * p.value) for p in points(paper)]
+        paper: [
+            p if isinstance(p.value, bool) else replace(p, value=0.1 * p.value) for p in read_points(paper)
+        ]
         for paper in PAPERS
     }
     monkeypatch.setattr(comparison, "points", shifted.__getitem__)

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from jointfmu.quantity import Interval, Limit
+from jointfmu.quantity import Interval, ParameterLimit
 
 NUMBERS = st.floats(-1e300, 1e300, allow_nan=False)
 ENDS = st.one_of(NUMBERS, st.sampled_from([0.0, 1.0, math.inf, -math.inf]))
@@ -32,7 +32,7 @@ INTERVALS = st.builds(Interval, ENDS, ENDS, st.booleans(), st.booleans())
     ],
 )
 def test_text_and_membership(ends, text, inside, outside):
-    interval = Interval.of(**ends)
+    interval = Interval.from_bounds(**ends)
     assert str(interval) == text
     assert [interval.contains(x) for x in inside] == [True] * len(inside)
     outside = [*outside, math.nan, math.inf, -math.inf]
@@ -45,12 +45,12 @@ def test_text_and_membership(ends, text, inside, outside):
                                              ({"lt": 2.0, "le": 2.0}, "lt and le = 2.0, 2.0")])  # fmt: skip
 def test_an_end_is_given_once(ends, names):
     with pytest.raises(ValueError, match=f"^{names} are the same end; allowed is one$"):
-        Interval.of(**ends)
+        Interval.from_bounds(**ends)
 
 
 def test_ends_may_be_arrays():
     """Samples of a parameter and of the interval that others decide for it, in broadcast shapes."""
-    interval = Interval.of(ge=np.array([0.0, 1.0, np.nan]), lt=2.0)
+    interval = Interval.from_bounds(ge=np.array([0.0, 1.0, np.nan]), lt=2.0)
     np.testing.assert_array_equal(interval.contains(1.0), [True, True, False])
     np.testing.assert_array_equal(
         interval.contains(np.array([[0.5], [2.0]])), [[True, False, False], [False, False, False]]
@@ -59,9 +59,9 @@ def test_ends_may_be_arrays():
 
 def test_symbols_pass():
     x = casadi.SX.sym("x")
-    assert Interval.of(gt=0.0).contains(x) is True
-    assert Interval.of(gt=x).contains(-1.0) is True
-    assert Interval.of(le=x * x).contains(np.inf) is True
+    assert Interval.from_bounds(gt=0.0).contains(x) is True
+    assert Interval.from_bounds(gt=x).contains(-1.0) is True
+    assert Interval.from_bounds(le=x * x).contains(np.inf) is True
 
 
 @given(INTERVALS, INTERVALS, st.one_of(ENDS, st.just(math.nan)))
@@ -113,9 +113,9 @@ def test_infinite_ends_are_open(flags):
     ],
 )
 def test_an_interval_that_shows_no_number_is_empty(low, high, empty):
-    limit = Limit("w", Interval(low, high), "why")
-    assert Interval(low, high).empty == empty
-    assert not Interval(0.0, 0.0, low_open=False, high_open=False).empty
-    text = limit.problem(math.nan, "m")
+    limit = ParameterLimit("w", Interval(low, high), "why")
+    assert Interval(low, high).is_empty == empty
+    assert not Interval(0.0, 0.0, low_open=False, high_open=False).is_empty
+    text = limit.find_problem(math.nan, "m")
     assert ("leave no value for it: why" in text) == empty
     assert ("is outside" in text) != empty

@@ -10,27 +10,37 @@ from laws import HU, LAWS, YU, ZHAO
 from jointfmu.contact.laws.yu2022 import Yu2022
 from jointfmu.contact.laws.zhao2018 import Zhao2018
 from jointfmu.contact.surface import Elastic, ElasticPlastic, FlankSurface, ProfileSurface
-from jointfmu.quantity import build, changed, check, choice, flat_fields, flatten, group, problem, quantity
+from jointfmu.quantity import (
+    build_parameter_set,
+    check_fields,
+    choice_field,
+    find_problem,
+    flat_fields,
+    flatten_parameters,
+    group_field,
+    quantity_field,
+    replace_values,
+)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Inner:
-    stress: float = quantity("Pa", "some stress", gt=0.0, le=1e9)
-    share: float = quantity("1", "some share", ge=0.0, lt=1.0)
+    stress: float = quantity_field("Pa", "some stress", gt=0.0, le=1e9)
+    share: float = quantity_field("1", "some share", ge=0.0, lt=1.0)
 
     def __post_init__(self) -> None:
-        check(self)
+        check_fields(self)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Outer:
-    inner: Inner = group("the inner thing")
-    lambda_: float = quantity("m", "some length")
-    mode: str = choice("slow", "fast", doc="how fast")
-    rigid: bool = choice(True, False, doc="whether it gives")
+    inner: Inner = group_field("the inner thing")
+    lambda_: float = quantity_field("m", "some length")
+    mode: str = choice_field("slow", "fast", doc="how fast")
+    rigid: bool = choice_field(True, False, doc="whether it gives")
 
     def __post_init__(self) -> None:
-        check(self)
+        check_fields(self)
 
 
 VALUES = {"inner.stress": 2e8, "inner.share": 0.25, "lambda": -3.0}
@@ -38,37 +48,37 @@ VALUES = {"inner.stress": 2e8, "inner.share": 0.25, "lambda": -3.0}
 
 def refusal(values):
     with pytest.raises(ValueError, match=r".") as error:
-        build(Outer, values)
+        build_parameter_set(Outer, values)
     text = str(error.value)
     assert "\n" not in text
     return text
 
 
 def test_build_and_flatten_are_inverse():
-    outer = build(Outer, VALUES)
+    outer = build_parameter_set(Outer, VALUES)
     assert outer == Outer(inner=Inner(stress=2e8, share=0.25), lambda_=-3.0, mode="slow", rigid=True)
-    assert flatten(outer) == {**VALUES, "mode": "slow", "rigid": True}
+    assert flatten_parameters(outer) == {**VALUES, "mode": "slow", "rigid": True}
     other = {**VALUES, "mode": "fast", "rigid": False}
-    assert flatten(build(Outer, other)) == other
+    assert flatten_parameters(build_parameter_set(Outer, other)) == other
 
 
 @pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
 def test_laws_survive_flattening(law):
-    assert build(type(law), flatten(law)) == law
+    assert build_parameter_set(type(law), flatten_parameters(law)) == law
     names = [name for name, _ in flat_fields(type(law))]
-    assert names == list(flatten(law))
+    assert names == list(flatten_parameters(law))
     assert len(names) == len(set(names))
     assert not any(name.endswith("_") for name in names)
 
 
 def test_lambda_has_its_published_name():
-    assert "lambda" in flatten(YU)
+    assert "lambda" in flatten_parameters(YU)
     assert dict(flat_fields(Yu2022))["lambda"].name == "lambda_"
-    assert changed(YU, {"lambda": 0.125}).lambda_ == 0.125
+    assert replace_values(YU, {"lambda": 0.125}).lambda_ == 0.125
 
 
 def test_integers_become_floats():
-    outer = build(Outer, VALUES | {"lambda": 7})
+    outer = build_parameter_set(Outer, VALUES | {"lambda": 7})
     assert outer.lambda_ == 7.0
     assert type(outer.lambda_) is float
 
@@ -128,16 +138,16 @@ def test_all_problems_are_named_at_once():
 
 @pytest.mark.parametrize("edge", [("inner.stress", 1e9), ("inner.share", 0.0), ("inner.stress", 5e-324)])
 def test_closed_ends_are_allowed(edge):
-    assert flatten(build(Outer, VALUES | dict([edge])))[edge[0]] == edge[1]
+    assert flatten_parameters(build_parameter_set(Outer, VALUES | dict([edge])))[edge[0]] == edge[1]
 
 
 def test_arrays_are_checked_everywhere():
     good = np.array([0.0, 0.5])
-    assert build(Outer, VALUES | {"inner.share": good}).inner.share is good
+    assert build_parameter_set(Outer, VALUES | {"inner.share": good}).inner.share is good
     for bad in (1.25, np.nan):
         values = VALUES | {"inner.share": np.array([0.0, bad, 0.5])}
         assert refusal(values) == f"inner.share = {bad:g} is outside [0, 1): some share"
-    assert build(Outer, VALUES | {"lambda": np.float32(0.5)}).lambda_ == 0.5
+    assert build_parameter_set(Outer, VALUES | {"lambda": np.float32(0.5)}).lambda_ == 0.5
 
 
 @pytest.mark.parametrize("array", [np.array([True, False]), np.array(["a", "b"]), np.array([1j, 2.0])])
@@ -151,24 +161,24 @@ def test_a_large_array_of_other_things_is_still_one_line():
 
 @dataclass(frozen=True, kw_only=True)
 class Round:
-    radius: float = quantity("m", "radius", gt=0.0)
+    radius: float = quantity_field("m", "radius", gt=0.0)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Square:
-    side: float = quantity("m", "side", gt=0.0)
-    corner: float = quantity("m", "radius of the corners", ge=0.0)
+    side: float = quantity_field("m", "side", gt=0.0)
+    corner: float = quantity_field("m", "radius of the corners", ge=0.0)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Hole:
-    depth: float = quantity("m", "depth", gt=0.0)
-    outline: Round | Square = group("outline", round=Round, square=Square)
+    depth: float = quantity_field("m", "depth", gt=0.0)
+    outline: Round | Square = group_field("outline", round=Round, square=Square)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Part:
-    hole: Hole = group("the hole")
+    hole: Hole = group_field("the hole")
 
 
 ROUND = {"depth": 1.0, "round.radius": 2.0}
@@ -181,9 +191,9 @@ def nested(values):
 
 @pytest.mark.parametrize("values", [ROUND, SQUARE])
 def test_a_set_has_one_of_the_alternatives(values):
-    hole = build(Hole, values)
-    assert flatten(hole) == values
-    assert flatten(build(Part, nested(values))) == nested(values)
+    hole = build_parameter_set(Hole, values)
+    assert flatten_parameters(hole) == values
+    assert flatten_parameters(build_parameter_set(Part, nested(values))) == nested(values)
     assert list(dict(flat_fields(Hole))) == ["depth", "round.radius", "square.side", "square.corner"]
     assert list(dict(flat_fields(Hole, names=values))) == list(values)
 
@@ -194,31 +204,33 @@ def test_names_of_two_alternatives_are_refused_whatever_their_number(most):
     corner = ", square.corner" if most is SQUARE else ""
     text = f"round.radius beside square.side{corner}: allowed is one of [round], [square]"
     with pytest.raises(ValueError, match=f"^{re.escape(text)}$"):
-        build(Hole, values)
+        build_parameter_set(Hole, values)
     with pytest.raises(
         ValueError, match=r"^hole.round.radius beside .* one of \[hole.round\], \[hole.square\]$"
     ):
-        build(Part, nested(values))
+        build_parameter_set(Part, nested(values))
 
 
 def test_changes_of_an_alternative_that_is_not_there_are_refused():
-    hole, part = build(Hole, SQUARE), build(Part, nested(SQUARE))
-    assert changed(hole, {"square.side": 3}) == build(Hole, SQUARE | {"square.side": 3.0})
+    hole, part = build_parameter_set(Hole, SQUARE), build_parameter_set(Part, nested(SQUARE))
+    assert replace_values(hole, {"square.side": 3}) == build_parameter_set(
+        Hole, SQUARE | {"square.side": 3.0}
+    )
     allowed = "allowed are depth, square.side, square.corner"
     text = f"round.radius is no parameter of a set that has [square]; {allowed}"
     with pytest.raises(ValueError, match=f"^{re.escape(text)}$"):
-        changed(hole, {"round.radius": 1.0})
+        replace_values(hole, {"round.radius": 1.0})
     with pytest.raises(
         ValueError, match=r"^hole.round.radius is no .* that has \[hole.square\]; allowed are hole.d"
     ):
-        changed(part, {"hole.round.radius": 1.0})
+        replace_values(part, {"hole.round.radius": 1.0})
     with pytest.raises(ValueError, match=r"^unknown name 'width'; allowed are depth, square.side"):
-        changed(hole, {"width": 1.0})
+        replace_values(hole, {"width": 1.0})
 
 
 def test_missing_alternatives_are_named():
     with pytest.raises(ValueError, match=r"^missing round.radius$"):
-        build(Hole, {"depth": 1.0})
+        build_parameter_set(Hole, {"depth": 1.0})
 
 
 def test_construction_checks_as_well():
@@ -262,7 +274,7 @@ def test_construction_checks_as_well():
 )
 def test_laws_refuse_what_is_outside(law, name, value, text):
     with pytest.raises(ValueError, match=r"^[^\n]*$") as error:
-        changed(law, {name: value})
+        replace_values(law, {name: value})
     assert str(error.value).startswith(text)
 
 
@@ -275,7 +287,7 @@ def test_construction_of_a_law_uses_the_published_name():
 def test_no_physical_value_has_a_default():
     for cls in (Zhao2018, type(HU), Yu2022):
         with pytest.raises(ValueError, match=r"^missing ") as error:
-            build(cls, {})
+            build_parameter_set(cls, {})
         missing = set(str(error.value).removeprefix("missing ").split(", "))
         assert missing == {name for name, item in flat_fields(cls) if "unit" in item.metadata}
 
@@ -294,6 +306,6 @@ def test_problem_and_interval():
     length = next(item for item in fields(Outer) if item.name == "lambda_")
     texts = [str(item.metadata["interval"]) for item in (share, stress, length)]
     assert texts == ["[0, 1)", "(0, 1e+09]", "(-inf, inf)"]
-    assert problem("x", 0.5, share) is None
-    assert problem("x", np.float64(0.5), share) is None
-    assert problem("x", 1.0, share) == "x = 1 is outside [0, 1): some share"
+    assert find_problem("x", 0.5, share) is None
+    assert find_problem("x", np.float64(0.5), share) is None
+    assert find_problem("x", 1.0, share) == "x = 1 is outside [0, 1): some share"

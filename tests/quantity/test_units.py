@@ -7,16 +7,24 @@ from jointfmu_tools.export import tables
 from jointfmu_tools.export.mesh import COLUMNS as PAIRS
 from jointfmu_tools.export.placing import UNITS as SETS
 from jointfmu_tools.fem.geometry import BoxSection, Layer, Plate
-from jointfmu_tools.fields.nodal_result import COLUMNS as FIELD
+from jointfmu_tools.fields.nodal_result import COLUMN_UNITS as FIELD
 from jointfmu_tools.joints.bolted_joint.fit import preload
 from jointfmu_tools.joints.harmonic_drive.fit import torque_angle
-from jointfmu_tools.surfaces.csvfile import LENGTHS
+from jointfmu_tools.surfaces.csvfile import LENGTH_UNITS
 from jointfmu_tools.systems.system import systems
 from scipy import constants
 
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.quantity import flat_fields
-from jointfmu.quantity.units import UNITS, base, display_unit, factor, rewritten, size, sizes
+from jointfmu.quantity.units import (
+    UNITS,
+    base_exponents,
+    conversion_factor,
+    display_unit,
+    replace_symbols,
+    unit_size,
+    unit_sizes,
+)
 
 SIZES = {
     "mm": constants.milli,
@@ -93,32 +101,34 @@ EXPONENTS = {  # of kg, m, s, rad, K
 @pytest.mark.parametrize("written", TENS)
 def test_units_of_catalogues(written):
     expected, unit = TENS[written]
-    assert factor(written, unit) == pytest.approx(expected, rel=1e-15)
+    assert conversion_factor(written, unit) == pytest.approx(expected, rel=1e-15)
 
 
 @pytest.mark.parametrize("wrong", ["1e4", "1e99 N.m", "10^ N.m", "1e4 1e4 N"])
 def test_a_power_of_ten_alone_is_no_unit(wrong):
     with pytest.raises(ValueError, match="unit"):
-        factor(wrong, "N.m")
+        conversion_factor(wrong, "N.m")
 
 
 @pytest.mark.parametrize("unit", SIZES)
 def test_size(unit):
-    assert size(unit) == pytest.approx(SIZES[unit], rel=4e-16)  # a rounding or two of the product here
+    assert unit_size(unit) == pytest.approx(SIZES[unit], rel=4e-16)  # a rounding or two of the product here
 
 
 @pytest.mark.parametrize("unit", UNITS)
 def test_exponents(unit):
     expected = dict(zip(("kg", "m", "s", "rad", "K"), EXPONENTS[unit], strict=True))
-    assert UNITS[unit].base == base(unit) == {name: n for name, n in expected.items() if n}
-    assert size(unit) == 1.0
+    assert UNITS[unit].base == base_exponents(unit) == {name: n for name, n in expected.items() if n}
+    assert unit_size(unit) == 1.0
 
 
 @pytest.mark.parametrize("unit", UNITS)
 def test_display_units_measure_the_same(unit):
     for shown, times in UNITS[unit].display.items():
-        assert base(shown) == base(unit)
-        assert times * size(shown) == pytest.approx(1.0, rel=2e-16)  # one is the other's inverse, rounded
+        assert base_exponents(shown) == base_exponents(unit)
+        assert times * unit_size(shown) == pytest.approx(
+            1.0, rel=2e-16
+        )  # one is the other's inverse, rounded
 
 
 def test_quantities_name_one_unit_each():
@@ -132,10 +142,10 @@ def test_display_unit_is_the_one_nearest_to_30(typical, shown):
 
 
 def test_sizes_are_of_one_kind():
-    assert sizes("Pa", "kPa", "MPa") == {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6}
-    assert factor("MPa", "kPa") == 1e3
+    assert unit_sizes("Pa", "kPa", "MPa") == {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6}
+    assert conversion_factor("MPa", "kPa") == 1e3
     with pytest.raises(ValueError, match="unit 'Pa' does not measure what 'N' does"):
-        sizes("Pa", "N")
+        unit_sizes("Pa", "N")
 
 
 @pytest.mark.parametrize(
@@ -162,12 +172,12 @@ def test_sizes_are_of_one_kind():
     ],
 )
 def test_units_as_people_write_them(written, ours):
-    assert (size(written), base(written)) == (size(ours), base(ours))
+    assert (unit_size(written), base_exponents(written)) == (unit_size(ours), base_exponents(ours))
 
 
 def test_kilogram_force():
-    assert size("kgf.m") == constants.g
-    assert size("kgf.m/arcmin") == pytest.approx(constants.g / constants.arcmin, rel=1e-15)
+    assert unit_size("kgf.m") == constants.g
+    assert unit_size("kgf.m/arcmin") == pytest.approx(constants.g / constants.arcmin, rel=1e-15)
 
 
 @pytest.mark.parametrize(
@@ -175,21 +185,21 @@ def test_kilogram_force():
 )
 def test_what_is_no_unit_is_refused_by_name(unit):
     with pytest.raises(ValueError, match=f"unit '{unit}'"):
-        size(unit)
+        unit_size(unit)
 
 
 def test_other_symbols_keep_exponents():
-    assert rewritten("N.m.s/rad", {"m": "mm", "s": "min"}) == "N.mm.min/rad"
-    assert rewritten("Pa/m2", {"m": "mm", "Pa": "MPa"}) == "MPa/mm2"
-    assert rewritten("1", {"m": "mm"}) == "1"
+    assert replace_symbols("N.m.s/rad", {"m": "mm", "s": "min"}) == "N.mm.min/rad"
+    assert replace_symbols("Pa/m2", {"m": "mm", "Pa": "MPa"}) == "MPa/mm2"
+    assert replace_symbols("1", {"m": "mm"}) == "1"
 
 
 def test_sets_are_consistent():
     """Newton's law and the pressure of a force have no factor in a set."""
     for one in SETS.values():
-        assert factor(one.symbol("kg.m/s2"), one.symbol("N")) == 1.0
-        assert factor(one.symbol("N/m2"), one.symbol("Pa")) == 1.0
-        assert factor(one.symbol("kg/s2"), one.symbol("N/m")) == 1.0
+        assert conversion_factor(one.symbol("kg.m/s2"), one.symbol("N")) == 1.0
+        assert conversion_factor(one.symbol("N/m2"), one.symbol("Pa")) == 1.0
+        assert conversion_factor(one.symbol("kg/s2"), one.symbol("N/m")) == 1.0
 
 
 def declared():
@@ -206,7 +216,7 @@ def declared():
     for name, example in systems().items():
         for part in example.components.values():
             yield from ((f"{name}.{part.name}.{key}", unit) for key, unit in part.units.items() if unit)
-    for spec in (preload.COLUMNS, torque_angle.COLUMNS, PAIRS, FIELD, {"height": LENGTHS}):
+    for spec in (preload.COLUMN_UNITS, torque_angle.COLUMN_UNITS, PAIRS, FIELD, {"height": LENGTH_UNITS}):
         yield from ((name, next(iter(units))) for name, units in spec.items())
     yield from (*tables.LABEL_HEADS, *tables.SPRING_HEADS)
 
@@ -219,4 +229,4 @@ def test_no_unit_is_declared_that_the_table_lacks():
 
 def test_factors_of_one_are_exact():
     values = np.array([0.1, 1.0 / 3.0])
-    np.testing.assert_array_equal(values * factor("N.m", "J"), values)
+    np.testing.assert_array_equal(values * conversion_factor("N.m", "J"), values)

@@ -20,17 +20,17 @@ from joint_cases import CASES, law
 from jointfmu_fmu_src.native.data import split
 from jointfmu_tools import cli
 from jointfmu_tools.laboratory.assemble import write_laboratory
-from jointfmu_tools.laboratory.describe import Module, modules
+from jointfmu_tools.laboratory.describe import Module, list_modules
 from natives import close
 from webassembly import Instance, random_values
 
 from jointfmu.joints import KINDS, MODELS
-from jointfmu.parameters import default, dump, load
+from jointfmu.parameters import format_parameter_file, load_default, load_parameter_file
 
 pytestmark = pytest.mark.slow
 needed = needs("Chromium")
 
-EVERY = modules()
+EVERY = list_modules()
 FOLDER = KINDS["bolted_joint"].default_file().parents[1]
 FOLDERS = (*KINDS, "catalogue")
 """Of parameter files of joints."""
@@ -157,7 +157,7 @@ _STATE = """laboratory.then((lab) => {
 
 def check_shown(shown: Browser, text: str, folder: Path) -> None:
     """The page shows the joint of a file: values, outputs at the sliders, the end of the ramp, the map."""
-    file = load(write(folder / "mine.toml", text))
+    file = load_parameter_file(write(folder / "mine.toml", text))
     found = drop(shown, text)
     assert not found["refused"], found["said"]
     assert found["said"] == f"mine.toml: {file.name} shown."
@@ -165,11 +165,16 @@ def check_shown(shown: Browser, text: str, folder: Path) -> None:
     model = MODELS[state["model"]]
     assert (model.joint, state["law"]) == (file.joint, file.law)
     assert state["names"] == [file.name] * 3
-    exposed = {name: file.flat[name] for name in model.of(file.joint, file.values).parameter_fields()}
+    exposed = {
+        name: file.values_by_name[name]
+        for name in model.with_parameters(file.joint, file.values).parameter_fields()
+    }
     assert {name: state["values"][name] for name in exposed} == exposed
     assert state["controls"] == {name: state["values"][name] for name in state["controls"]}
     inputs = {v.name: state["values"][v.name] for v in model.inputs}
-    own = {name: file.start(name) for name in inputs if file.start(name) or name != state["ramp"][0]}
+    own = {
+        name: file.start_value(name) for name in inputs if file.start_value(name) or name != state["ramp"][0]
+    }
     assert {name: inputs[name] for name in own} == own
     outputs = {v.name: state["now"][v.name] for v in model.outputs}
     expected = law(state["model"], file.values)(inputs)
@@ -177,7 +182,7 @@ def check_shown(shown: Browser, text: str, folder: Path) -> None:
         near = pytest.approx(expected[v.name], rel=COMPILED, abs=ROUND_OFF * v.nominal)
         assert outputs[v.name] == near, v.name
     module = next(m for m in EVERY if (m.model.name, m.files[0].law) == (model.name, file.law))
-    instance = Instance(module, module.compiled(), file)
+    instance = Instance(module, module.compile_module(), file)
     assert instance.start(exposed | inputs)
     assert instance.get() == outputs
     if state["marks"]:
@@ -200,7 +205,7 @@ def write(path: Path, text: str) -> Path:
 @needed
 @pytest.mark.parametrize("stem", SHIPPED)
 def test_a_shipped_file_is_shown_whatever_was_shown_before(shown: Browser, stem: str, tmp_path: Path) -> None:
-    choose(shown, OTHER_MODEL.get(load(SHIPPED[stem]).joint, "BoltedJoint"))
+    choose(shown, OTHER_MODEL.get(load_parameter_file(SHIPPED[stem]).joint, "BoltedJoint"))
     check_shown(shown, SHIPPED[stem].read_text(encoding="utf-8"), tmp_path)
 
 
@@ -214,10 +219,10 @@ def test_a_file_with_other_numbers_is_shown(
     rng = np.random.default_rng(seed)
     choose(shown, module.model.name)
     drawn = random_values(module, rng, False)
-    drawn |= {name: module.files[0].flat[name] for name in BOUND & drawn.keys()}
+    drawn |= {name: module.files[0].values_by_name[name] for name in BOUND & drawn.keys()}
     changed = module.files[0].with_values(drawn, "user", "at random")
     inputs = CASES[module.model.name].numbers.state if seed else {}
-    check_shown(shown, dump(replace(changed, name=f"other {seed}", inputs=inputs)), tmp_path)
+    check_shown(shown, format_parameter_file(replace(changed, name=f"other {seed}", inputs=inputs)), tmp_path)
 
 
 @needed
@@ -232,9 +237,11 @@ def test_what_new_writes_without_lists_is_shown(
 def test_a_file_is_read_however_it_is_written(shown: Browser, tmp_path: Path) -> None:
     """Without its law, with whole numbers, in tables and dotted keys, with comments and other line ends."""
     choose(shown, "HarmonicDriveSpring", 3)
-    text = dump(default("harmonic_drive"))
+    text = format_parameter_file(load_default("harmonic_drive"))
     check_shown(shown, re.sub(r"(?m)^law = .*\n", "", text), tmp_path)
-    text = dump(default("bolted_joint").with_values({"surface.D": 1.45, "H": 2e9}, "user", "x"))
+    text = format_parameter_file(
+        load_default("bolted_joint").with_values({"surface.D": 1.45, "H": 2e9}, "user", "x")
+    )
     odd = with_entry(text, "H", "2_000_000_000 ", "Pa")
     odd = re.sub(r"(?m)^(D|G) = ", r"'\1' = ", odd)
     gamma = r'(?m)^gamma = \{ value = (\S+), unit = "1", kind = "(\w+)", source = (".*") \}$'
@@ -249,7 +256,7 @@ gamma.source = \3"""
 
 @needed
 def test_roughnesses_make_the_height_of_the_law(shown: Browser, tmp_path: Path) -> None:
-    text = dump(default("gear_contact", "roughness"))
+    text = format_parameter_file(load_default("gear_contact", "roughness"))
     alone = re.sub(r"(?m)^h = .*\n", "", text) + roughness(0.7e-6)
     check_shown(shown, alone, tmp_path)
     said = refusal(shown, text + roughness(3e-6))
@@ -272,7 +279,10 @@ def test_a_bolted_joint_of_a_drawing_is_refused(
         assert said.endswith("jointfmu report mine.toml")
 
 
-BOX, DRIVE = dump(default("bolted_joint")), dump(default("harmonic_drive"))
+BOX, DRIVE = (
+    format_parameter_file(load_default("bolted_joint")),
+    format_parameter_file(load_default("harmonic_drive")),
+)
 
 
 def field_text() -> str:
@@ -286,7 +296,9 @@ def field_text() -> str:
 OTHERS = {
     "a field of pressures": (field_text(), "field.share = [0.5, 0.5] (2 numbers)"),
     "a midline": (
-        with_text(dump(default("harmonic_drive", "table")), "5.25443e-05", "5.35443e-05"),
+        with_text(
+            format_parameter_file(load_default("harmonic_drive", "table")), "5.25443e-05", "5.35443e-05"
+        ),
         "table.angle = [0.0000535443, 0.000101494, 0.000168896, ...] (19 numbers)",
     ),
     "a choice": (with_text(BOX, 'value = "family"', 'value = "hertz"'), 'spot_stiffness = "hertz"'),
@@ -346,7 +358,7 @@ def test_a_faulty_file_is_refused(shown: Browser, what: str, tmp_path: Path) -> 
     text, named = FAULTS[what]
     path = write(tmp_path / "mine.toml", text)
     with pytest.raises(ValueError, match=re.escape(str(path))):
-        load(path)
+        load_parameter_file(path)
     choose(shown, "BoltedJoint")
     assert named in refusal(shown, text)
 
@@ -386,7 +398,10 @@ def test_an_address_of_another_page_is_said_and_not_mixed_in(shown: Browser) -> 
     where = shown.run("laboratory.then((lab) => (lab.keep(), location.href))")
     assert "H=2200000000" in where
     reopen(shown, where.replace("set=box", "set=fox"))
-    assert shown.run("laboratory.then((lab) => lab.values.get('H'))") == default("bolted_joint").flat["H"]
+    assert (
+        shown.run("laboratory.then((lab) => lab.values.get('H'))")
+        == load_default("bolted_joint").values_by_name["H"]
+    )
     assert "fox" in shown.run("document.getElementById('done').textContent")
 
 
@@ -394,16 +409,19 @@ def test_an_address_of_another_page_is_said_and_not_mixed_in(shown: Browser) -> 
 def test_an_opened_file_is_reset_and_saved(shown: Browser, drawings: dict[str, str], tmp_path: Path) -> None:
     """Back to the file is back to this file; what is saved is this file with what was moved."""
     drop(shown, drawings["contact"])
-    first = load(write(tmp_path / "first.toml", drawings["contact"]))
+    first = load_parameter_file(write(tmp_path / "first.toml", drawings["contact"]))
     text, back = shown.run("""laboratory.then((lab) => {
       lab.controls.h.moved(2 * lab.values.get("h"));
       const text = lab.toml();
       lab.take(lab.set);
       return [text, lab.toml()];
     })""")
-    again, moved = load(write(tmp_path / "back.toml", back)), load(write(tmp_path / "moved.toml", text))
+    again, moved = (
+        load_parameter_file(write(tmp_path / "back.toml", back)),
+        load_parameter_file(write(tmp_path / "moved.toml", text)),
+    )
     assert replace(again, inputs=first.inputs) == first
-    assert moved.flat == first.flat | {"h": 2.0 * first.flat["h"]}
+    assert moved.values_by_name == first.values_by_name | {"h": 2.0 * first.values_by_name["h"]}
     assert moved.roughness == {}  # the height stands in their place
 
 
@@ -412,8 +430,8 @@ def test_a_number_beside_the_code_enters_the_data_as_itself_alone(module: Module
     """So the page may write it there."""
     file = module.files[0]
     given = split(module.model, file)
-    for name in given.fixed.keys() & file.flat.keys():
-        value = 0.9 * file.flat[name] or 1e-6
+    for name in given.fixed.keys() & file.values_by_name.keys():
+        value = 0.9 * file.values_by_name[name] or 1e-6
         other = split(module.model, file.with_values({name: value}, "user", "x"))
         assert other.fixed == given.fixed | {name: value}
         assert other.code == given.code

@@ -12,10 +12,10 @@ from conftest import made_once
 from joint_cases import JOINTS
 from jointfmu_tools import cli
 from jointfmu_tools.laboratory.assemble import write_laboratory
-from jointfmu_tools.laboratory.describe import modules
+from jointfmu_tools.laboratory.describe import list_modules
 
 from jointfmu.joints import KINDS, MODELS
-from jointfmu.parameters import default, dump, load
+from jointfmu.parameters import format_parameter_file, load_default, load_parameter_file
 
 pytestmark = pytest.mark.slow
 
@@ -71,12 +71,12 @@ def test_the_page_carries_the_licences_of_what_is_linked_into_its_modules(page: 
 
 
 def test_all_models_and_parameter_files_are_there() -> None:
-    every = modules()
+    every = list_modules()
     assert {m.model.name for m in every} == set(MODELS)
     for kind in KINDS.values():
         stems = {path.stem for path in kind.default_file().parent.glob("*.toml")}
         names = {file.name for m in every if m.model.joint == kind.name for file in m.files}
-        shipped = {load(kind.default_file().with_name(f"{stem}.toml")).name for stem in stems}
+        shipped = {load_parameter_file(kind.default_file().with_name(f"{stem}.toml")).name for stem in stems}
         assert names == shipped
 
 
@@ -228,9 +228,9 @@ def test_a_chart_zooms_by_pointer_and_keys(shown: Browser) -> None:
 
 @needed
 def test_parameters_come_out_as_a_file_that_build_takes(shown: Browser, tmp_path: Path) -> None:
-    for module in modules():
+    for module in list_modules():
         name, first = module.model.name, module.files[0]
-        index = [f.name for m in modules() if m.model.name == name for f in m.files].index(first.name)
+        index = [f.name for m in list_modules() if m.model.name == name for f in m.files].index(first.name)
         choose(shown, name, index)
         script = """laboratory.then((lab) => {
           for (const v of lab.about.variables) {
@@ -243,15 +243,17 @@ def test_parameters_come_out_as_a_file_that_build_takes(shown: Browser, tmp_path
         text, values = shown.run(script)
         path = tmp_path / "out.toml"
         path.write_text(text, encoding="utf-8")
-        file = load(path, first.joint)
+        file = load_parameter_file(path, first.joint)
         assert file.law == first.law
         for key in module.model.parameter_fields():
-            assert file.flat[key] == values[key], key
-        assert {v.name: file.start(v.name) for v in module.model.inputs} == {
+            assert file.values_by_name[key] == values[key], key
+        assert {v.name: file.start_value(v.name) for v in module.model.inputs} == {
             v.name: values[v.name] for v in module.model.inputs
         }
-        others = set(file.flat) - set(module.model.parameter_fields())
-        assert {key: file.flat[key] for key in others} == {key: first.flat[key] for key in others}
+        others = set(file.values_by_name) - set(module.model.parameter_fields())
+        assert {key: file.values_by_name[key] for key in others} == {
+            key: first.values_by_name[key] for key in others
+        }
         if index:
             continue  # the file is read, and builders take what is read of any law
         words = ("build", name, "--params", str(path), "--flavour", "python", "--out", str(tmp_path))
@@ -262,15 +264,17 @@ def test_parameters_come_out_as_a_file_that_build_takes(shown: Browser, tmp_path
 @needed
 def test_a_parameter_file_is_shown(shown: Browser) -> None:
     for kind in KINDS.values():
-        file = default(kind.name)
-        name = next(name for name, value in file.flat.items() if isinstance(value, float) and value > 0.0)
-        changed = file.with_values({name: 0.99 * file.flat[name]}, "user", "a test")
-        said = drop(shown, "mine.toml", dump(changed))
+        file = load_default(kind.name)
+        name = next(
+            name for name, value in file.values_by_name.items() if isinstance(value, float) and value > 0.0
+        )
+        changed = file.with_values({name: 0.99 * file.values_by_name[name]}, "user", "a test")
+        said = drop(shown, "mine.toml", format_parameter_file(changed))
         assert said == f"mine.toml: {file.name} shown."
         joint, value = shown.run(
             f"laboratory.then((lab) => [lab.about.joint, lab.values.get({json.dumps(name)})])"
         )
-        assert (joint, value) == (kind.name, changed.flat[name])
+        assert (joint, value) == (kind.name, changed.values_by_name[name])
     assert "expected a parameter file" in drop(shown, "mine.toml", "x = 1")
 
 

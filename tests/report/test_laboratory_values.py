@@ -16,7 +16,7 @@ from clients import needs
 from conftest import Fmu
 from joint_cases import random_inputs
 from jointfmu_tools.laboratory.assemble import write_laboratory
-from jointfmu_tools.laboratory.describe import Module, modules
+from jointfmu_tools.laboratory.describe import Module, list_modules
 from webassembly import Instance, native_fmu, random_values, refused_values
 
 pytestmark = pytest.mark.slow
@@ -25,7 +25,7 @@ needed = needs("Chromium")
 SETS, REFUSED, STEPS = 22, 2, 4
 """Parameter sets that are accepted but for the few whose law has no table, those that are not, and steps."""
 ACCEPTED = 20
-EVERY = {f"{m.model.name}, {m.files[0].law}": m for m in modules()}
+EVERY = {f"{m.model.name}, {m.files[0].law}": m for m in list_modules()}
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ def module(request: pytest.FixtureRequest) -> Module:
 def fmu(module: Module, folder: Path) -> Iterator[Fmu]:
     made = Fmu(native_fmu(module, folder / module.files[0].law))
     yield made
-    made.free()
+    made.free_instance()
 
 
 @pytest.fixture(scope="module")
@@ -85,7 +85,7 @@ def native(fmu: Fmu, values: dict[str, Any], path: list[dict[str, float]]) -> Ca
         return Case(values, path, [], errors[0])
     outputs = []
     for inputs in path:
-        fmu.set(inputs)
+        fmu.set_values(inputs)
         fmu.step()
         outputs.append(fmu.get())
     return Case(values, path, outputs, "")
@@ -98,7 +98,7 @@ def compare(case: Case, found: list[dict[str, float]]) -> None:
 
 @pytest.fixture(scope="module")
 def instance(module: Module) -> Instance:
-    return Instance(module, module.compiled())
+    return Instance(module, module.compile_module())
 
 
 def test_wasmtime_gives_the_numbers_and_refusals(

@@ -18,7 +18,7 @@ from jointfmu_tools.report import figure
 from jointfmu_tools.report.joint import write_joint_report
 
 from jointfmu.joints import KINDS
-from jointfmu.parameters import default
+from jointfmu.parameters import load_default
 
 ROOT = Path(__file__).resolve().parents[2]
 ALLOWED = {"'none'", "'unsafe-inline'", "'wasm-unsafe-eval'", "data:", "'self'", "file:"}
@@ -55,12 +55,12 @@ def pages(folder: Path) -> dict[str, Path]:
     """A page of each template of FMUs, and a report."""
     found = {}
     for name, kind in KINDS.items():
-        model, file = kind.models[0], default(name)
+        model, file = kind.models[0], load_default(name)
         found[name] = folder / "documentation" / f"{name}.html"
         found[name].parent.mkdir(exist_ok=True)
-        found[name].write_bytes(documentation(model.of(name, file.values), file)["index.html"])
+        found[name].write_bytes(documentation(model.with_parameters(name, file.values), file)["index.html"])
     found["report"] = folder / "report.html"
-    write_joint_report(found["report"], default(next(iter(KINDS))))
+    write_joint_report(found["report"], load_default(next(iter(KINDS))))
     return found
 
 
@@ -75,7 +75,7 @@ def test_the_template_of_all_reports_forbids_the_network() -> None:
     """The report of all joints takes minutes; it extends this template, as that of one joint does."""
     folder = Path(figure.__file__).parent
     assert '{% extends "base.html" %}' in (folder / "page.html").read_text(encoding="utf-8")
-    script = figure.script("tabs.js")
+    script = figure.page_script("tabs.js")
     check(template(folder / "base.html").render(style="", script=script))
 
 

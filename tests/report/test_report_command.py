@@ -12,11 +12,11 @@ from jointfmu_fmu_src.native.page import documentation, panels
 from jointfmu_fmu_src.proof.experiments import experiments
 from jointfmu_tools import cli
 from jointfmu_tools.pressure import judge_file
-from jointfmu_tools.report.course import Course
+from jointfmu_tools.report.course import LoadHistory
 from jointfmu_tools.report.joint import TOPICS, write_joint_report
 
 from jointfmu.joints import KINDS, MODELS
-from jointfmu.parameters import ParameterFile, default, dump
+from jointfmu.parameters import ParameterFile, format_parameter_file, load_default
 from jointfmu.quantity import units
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -36,13 +36,13 @@ def figures(page: str) -> list[list[dict]]:
 @pytest.mark.slow
 @pytest.mark.parametrize(("joint", "law"), LAWS)
 def test_the_page_of_every_law_says_each_number_and_its_source(joint: str, law: str, tmp_path: Path) -> None:
-    file = default(joint, law)
+    file = load_default(joint, law)
     page = unescape(written(tmp_path, file))
-    for name in file.flat:
+    for name in file.values_by_name:
         (row,) = re.findall(rf"<tr><td><code>{re.escape(name)}</code></td>(.*?)</tr>", page)
         assert f"<td>{file.origins.get(name, 'user')}</td>" in row, name
         assert f">{file.sources.get(name, 'default choice')}</td>" in row, name
-    for line in judge_file(file).lines():
+    for line in judge_file(file).format_lines():
         assert line in page
     (opening,) = re.findall(r"<main[^>]*>\s*<p>(.*?)</p>", page)
     assert KINDS[joint].title in opening
@@ -54,15 +54,15 @@ def test_the_page_of_every_law_says_each_number_and_its_source(joint: str, law: 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", MODELS)
 def test_curves_are_those_of_the_spring(name: str, tmp_path: Path) -> None:
-    model, file = MODELS[name], default(MODELS[name].joint)
+    model, file = MODELS[name], load_default(MODELS[name].joint)
     drawn = figures(written(tmp_path, file, name))[0]
-    spring = model.spring(file.values)
-    rest = {v.name: file.start(v.name) for v in model.inputs}
+    spring = model.tabulate(file.values)
+    rest = {v.name: file.start_value(v.name) for v in model.inputs}
     variables = {v.name: v for v in (*model.inputs, *model.outputs)}
-    ramp = model.loaded(spring, rest).ramp.points(101)
+    ramp = model.with_load_range(spring, rest).ramp.sample_inputs(101)
     for panel, (over, names) in zip(drawn, panels(model), strict=True):
         shown = panel["y"].rpartition("[")[2].rstrip("]").replace("µ", "u").replace(" ", ".")
-        factor = units.factor(variables[names[0]].unit, shown)
+        factor = units.conversion_factor(variables[names[0]].unit, shown)
         for series in panel["series"]:
             for i in (0, 50, 100):
                 inputs = {**rest, model.ramp.input: float(ramp[i])}
@@ -75,10 +75,12 @@ def test_what_the_user_changed_is_there_with_his_words(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    file = default("gear_contact")
-    name = next(n for n, value in file.flat.items() if isinstance(value, float) and value > 0.0)
+    file = load_default("gear_contact")
+    name = next(n for n, value in file.values_by_name.items() if isinstance(value, float) and value > 0.0)
     words = 'drawing 4711, <b>rev.</b> C & "all"'
-    Path("mine.toml").write_text(dump(file.with_values({name: file.flat[name]}, "user", words)))
+    Path("mine.toml").write_text(
+        format_parameter_file(file.with_values({name: file.values_by_name[name]}, "user", words))
+    )
     assert cli.main(["report", "mine.toml", "--json"]) == 0
     assert json.loads(capsys.readouterr().out) == {"report": "mine.html"}
     page = Path("mine.html").read_text(encoding="utf-8")
@@ -90,19 +92,19 @@ def test_what_the_user_changed_is_there_with_his_words(
 def test_loops_lose_what_the_joint_says_it_lost(name: str) -> None:
     model = MODELS[name]
     own = {n: v for n, v in model.loop.settings.items() if n in model.parameter_fields()}
-    file = default(model.joint).with_values(own, "user", "with memory")
-    loops = Course(model, file).loops()
+    file = load_default(model.joint).with_values(own, "user", "with memory")
+    loops = LoadHistory(model, file).compute_loops()
     for row in loops.rows():
         # trapezoids over 80 points of a cycle, a branch of which is about a parabola: 1/40^2 of it
         assert row["loss"] == pytest.approx(row["E_loss"], rel=2e-2)
         assert row["loss"] > 0.0
 
 
-CATALOGUE = default("harmonic_drive", "catalogue")
+CATALOGUE = load_default("harmonic_drive", "catalogue")
 FAR = [
-    ("GearMesh", default("gear_mesh").with_values({"backlash": 2e-3}, "user", "loose"), "K", 0.9),
-    ("HarmonicDriveSpring", CATALOGUE, "K_WTS", CATALOGUE.flat["K3"]),
-    ("HarmonicDriveCompliance", CATALOGUE, "K_WTS", CATALOGUE.flat["K3"]),
+    ("GearMesh", load_default("gear_mesh").with_values({"backlash": 2e-3}, "user", "loose"), "K", 0.9),
+    ("HarmonicDriveSpring", CATALOGUE, "K_WTS", CATALOGUE.values_by_name["K3"]),
+    ("HarmonicDriveCompliance", CATALOGUE, "K_WTS", CATALOGUE.values_by_name["K3"]),
 ]
 
 
@@ -111,14 +113,14 @@ def test_the_ramp_reaches_where_the_joint_is_loaded(
     name: str, file: ParameterFile, stiffness: str, least: float
 ) -> None:
     """Report, page and proof show a mesh beyond its backlash, and the last of a catalogue's lines."""
-    model = MODELS[name].of(file.joint, file.values)
-    course = Course(model, file)
-    columns = course.ramp()
+    model = MODELS[name].with_parameters(file.joint, file.values)
+    course = LoadHistory(model, file)
+    columns = course.compute_ramp()
     if name == "GearMesh":
         assert np.count_nonzero(columns["f"]) >= columns["f"].size - 1
-        least *= file.flat["contact_ratio"] // 1.0 * file.flat["K_tooth"]
+        least *= file.values_by_name["contact_ratio"] // 1.0 * file.values_by_name["K_tooth"]
     else:
-        assert columns["tau"][-1] == pytest.approx(file.flat["max_torque"], rel=1e-9)
+        assert columns["tau"][-1] == pytest.approx(file.values_by_name["max_torque"], rel=1e-9)
     assert columns[stiffness][-1] >= least * (1.0 - 1e-9)
     stem = {"GearMesh": "phi1", "HarmonicDriveSpring": "phi2"}.get(name, "tau")
     said = f"<code>{stem}</code> from 0 to {course.model.ramp.end:.6g} "
@@ -131,16 +133,16 @@ def test_the_ramp_reaches_where_the_joint_is_loaded(
 
 def test_what_is_said_of_the_end_of_the_law_is_so_there() -> None:
     for name, model in MODELS.items():
-        course = Course(model, default(model.joint))
-        assert course.model.ramp.end > course.rest[model.ramp.input], name
+        course = LoadHistory(model, load_default(model.joint))
+        assert course.model.ramp.end > course.start_values[model.ramp.input], name
         if course.limit:
             value, text = course.limit
-            inputs = {**course.rest, model.ramp.input: value}
+            inputs = {**course.start_values, model.ramp.input: value}
             outputs = model.evaluate(course.spring, inputs)
-            assert text in model.warnings(course.spring, {**inputs, **outputs}).values()
-            below = {**course.rest, model.ramp.input: 0.99 * value}
+            assert text in model.find_warnings(course.spring, {**inputs, **outputs}).values()
+            below = {**course.start_values, model.ramp.input: 0.99 * value}
             assert text.split("=")[0] not in "".join(
-                model.warnings(course.spring, {**below, **model.evaluate(course.spring, below)}).values()
+                model.find_warnings(course.spring, {**below, **model.evaluate(course.spring, below)}).values()
             )
 
 
@@ -163,7 +165,7 @@ def test_what_makes_no_page_is_one_line(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    Path("good.toml").write_text(dump(default(next(iter(KINDS)))))
+    Path("good.toml").write_text(format_parameter_file(load_default(next(iter(KINDS)))))
     Path("broken.toml").write_text('schema = 1\njoint = "nothing"\n')
     Path("folder.html").mkdir()
     before = {path.name: path.is_file() and path.read_bytes() for path in tmp_path.iterdir()}

@@ -10,7 +10,7 @@ from jointfmu_fmu_src.native.build import build as native_build
 from jointfmu_fmu_src.partners import parameters as partner_parameters
 
 from jointfmu.joints import KINDS
-from jointfmu.parameters import default, dump
+from jointfmu.parameters import format_parameter_file, load_default
 
 pytestmark = pytest.mark.slow  # each command is a process of its own
 
@@ -64,7 +64,7 @@ def test_an_fmu_proves_itself_without_an_extra(tmp_path: Path, native: Path) -> 
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_joint_has_its_page_without_an_extra(kind: str, tmp_path: Path) -> None:
-    (tmp_path / "joint.toml").write_text(dump(default(kind)))
+    (tmp_path / "joint.toml").write_text(format_parameter_file(load_default(kind)))
     done = bare(tmp_path, "report", "joint.toml", first=FEW)
     assert (done.returncode, done.stderr) == (0, "")
     assert (tmp_path / "joint.html").exists()
@@ -83,7 +83,7 @@ def test_what_is_missing_is_named_in_one_line(
     words: tuple[str, ...], package: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("JOINTFMU_CACHE", str(tmp_path / "nothing kept"))
-    (tmp_path / "joint.toml").write_text(dump(default(next(iter(KINDS)))))
+    (tmp_path / "joint.toml").write_text(format_parameter_file(load_default(next(iter(KINDS)))))
     done = bare(tmp_path, *words)
     assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
     assert package in done.stderr

@@ -23,8 +23,8 @@ from clients import CHROMIUM_OPTIONS, chromium, needs
 from conftest import here_alone
 from jointfmu_fmu_src.joint_parts import Parts
 from jointfmu_tools import cli
-from jointfmu_tools.joint_parts import TOOLS
-from jointfmu_tools.parser import parser
+from jointfmu_tools.joint_parts import TOOL_NAMES
+from jointfmu_tools.parser import build_parser
 from PIL import Image
 
 import jointfmu
@@ -183,8 +183,8 @@ def python_of(folder: str) -> str:
 def test_every_part_of_a_joint_is_explained() -> None:
     """Those that a tool asks for, and those that the builders read."""
     asked = set(re.findall(r'(?<!def )\bpart\((?:[^()"]|\([^()]*\)|\[[^]]*\])*"(\w+)"', python_of("tools")))
-    assert asked == {*TOOLS}
-    for tool in TOOLS:
+    assert asked == {*TOOL_NAMES}
+    for tool in TOOL_NAMES:
         assert re.search(rf"^\| `{tool}` \| `[A-Z_a-z]+`", ARCHITECTURE, re.M), tool
     for field in fields(Parts):
         assert re.search(rf"^\| `{field.name}` \| ", ARCHITECTURE, re.M), field.name
@@ -353,7 +353,7 @@ def test_commands_parse(path: Path) -> None:
         if not words:
             continue
         if words[0] == "jointfmu":
-            parser().parse_args(words[1:])  # leaves with 2 if it does not parse
+            build_parser().parse_args(words[1:])  # leaves with 2 if it does not parse
             continue
         assert words[0] in OTHERS, line
         if words[0] == "python" and words[1] != "-m" and path.name != "tutorial.md":

@@ -70,7 +70,7 @@ def paths(tmp_path_factory) -> list[Path]:
     with pytest.MonkeyPatch.context() as patch:
         for name in PLATES:
             assert cli.main(drawing(name, folder)) == 0
-            patch.setattr(computed, "facts", lambda file, *arguments: computed.NewJoint(file, {}, []))
+            patch.setattr(computed, "compute_facts", lambda file, *arguments: computed.NewJoint(file, {}, []))
     return sorted(folder.iterdir())
 
 

@@ -21,7 +21,7 @@ from jointfmu_tools.published import validation
 
 from jointfmu.files.outputs import write_parameter_text
 from jointfmu.mechanics.footprint import bolts
-from jointfmu.parameters import default
+from jointfmu.parameters import load_default
 
 ROOT = Path(__file__).resolve().parents[2]
 ASSEMBLY = "models/assemblies/box_specimen.toml"
@@ -81,7 +81,7 @@ def folder(tmp_path_factory, native):
     write_parameter_text(place / "my_joint.toml", specimen)  # as a command that the page does not show
     (place / "models/assemblies").mkdir(parents=True)
     (place / ASSEMBLY).write_text((ROOT / ASSEMBLY).read_text())
-    joint = default("bolted_joint").values
+    joint = load_default("bolted_joint").values
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(bolts, "CELLS_ACROSS", 3)  # few nodes are read as many are
         shape, mean = joint.pattern.shape(), 9e3 * joint.n_bolts / joint.A_0

@@ -19,7 +19,7 @@ from packaging.requirements import Requirement
 from test_native_binaries import BINARIES, members
 
 from jointfmu.joints import MODELS
-from jointfmu.parameters import default, dump
+from jointfmu.parameters import format_parameter_file, load_default
 
 pytestmark = pytest.mark.slow
 
@@ -113,8 +113,8 @@ def test_the_wheel_alone_builds_variants_for_every_platform(clean: Path, tmp_pat
     where = run(clean, tmp_path, "-c", "import jointfmu, jointfmu_fmu_src.native as n; print(n.__file__)")
     assert str(clean / "env") in where.stdout, where.stderr
     changes = dict([next(iter(CASES[NAME].tuning.tuned.items()))])
-    file = default(MODELS[NAME].joint).with_values(changes, "user", "test")
-    (tmp_path / "variant.toml").write_text(dump(file))
+    file = load_default(MODELS[NAME].joint).with_values(changes, "user", "test")
+    (tmp_path / "variant.toml").write_text(format_parameter_file(file))
     build = ("-m", "jointfmu", "build", NAME, "--params", "variant.toml", "--name", "Mine", "--out", "out")
     done = run(clean, tmp_path, *build)
     assert done.returncode == 0, done.stderr
@@ -125,7 +125,7 @@ def test_the_wheel_alone_builds_variants_for_every_platform(clean: Path, tmp_pat
         instance, expected = Fmu(path).start(STATE[NAME]), law(NAME, file.values).after(STATE[NAME])
         for inputs in random_inputs(NAME, 5, seed=62):
             assert instance.at(inputs) == close(expected(inputs))
-        instance.free()
+        instance.free_instance()
 
 
 def test_the_bytes_are_those_of_a_build_here(clean: Path, tmp_path: Path, native: Path) -> None:

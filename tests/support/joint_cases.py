@@ -11,9 +11,9 @@ from case import Case, Inputs, Joint
 
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.mechanics.curve import MAX_ERROR
-from jointfmu.parameters import default
-from jointfmu.quantity import build as make
-from jointfmu.quantity import flatten
+from jointfmu.parameters import load_default
+from jointfmu.quantity import build_parameter_set as make
+from jointfmu.quantity import flatten_parameters
 
 SAME = 1e-12
 """The python flavour calls the package with the same numbers: round-off of another order of sums at most."""
@@ -65,13 +65,13 @@ def random_inputs(name: str, count: int, seed: int) -> list[Inputs]:
 
 def parameters(name: str, changes: dict[str, Any] | None = None) -> Any:
     """The default parameter set behind an FMU, changed."""
-    values = default(MODELS[name].joint).values
-    return make(type(values), flatten(values) | (changes or {}))
+    values = load_default(MODELS[name].joint).values
+    return make(type(values), flatten_parameters(values) | (changes or {}))
 
 
 @cache
 def _tabulated(joint: str, p: Any) -> Any:
-    return KINDS[joint].spring(p)
+    return KINDS[joint].tabulate(p)
 
 
 @dataclass(frozen=True)
@@ -86,17 +86,17 @@ class Law:
         if self.memory is None:
             found = CASES[self.name].numbers.outputs(self.spring, inputs)
         else:
-            found = MODELS[self.name].evolve(self.spring, inputs, self.memory)[0]
+            found = MODELS[self.name].advance(self.spring, inputs, self.memory)[0]
         return {k: float(x) for k, x in found.items()}
 
     def after(self, inputs: Inputs | None = None) -> "Law":
         """When these inputs (the others zero) were accepted, as at the end of initialization or by a step."""
         model = MODELS[self.name]
-        if model.evolve is None:
+        if model.advance is None:
             return self
-        before = model.rest(self.spring) if self.memory is None else self.memory
+        before = model.initial_history(self.spring) if self.memory is None else self.memory
         given = dict.fromkeys((v.name for v in model.inputs), 0.0) | (inputs or {})
-        return replace(self, memory=model.evolve(self.spring, given, before)[1])
+        return replace(self, memory=model.advance(self.spring, given, before)[1])
 
 
 def law(name: str, p: Any) -> Law:

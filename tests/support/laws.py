@@ -12,7 +12,7 @@ from jointfmu.contact.laws.hu2023 import Hu2023
 from jointfmu.contact.laws.yu2022 import Yu2022
 from jointfmu.contact.laws.zhao2018 import Zhao2018
 from jointfmu.contact.surface import ArealSurface, Elastic, FlankSurface, ProfileSurface, Spectrum
-from jointfmu.quantity import build, flatten
+from jointfmu.quantity import build_parameter_set, flatten_parameters
 
 T = TypeVar("T")
 
@@ -64,7 +64,7 @@ LAWS = {"zhao": ZHAO, "hu": HU, "yu": YU}
 
 def changed(law: T, values: Mapping[str, Any]) -> T:
     """The law with other values, by structured name."""
-    return build(type(law), flatten(law) | dict(values))
+    return build_parameter_set(type(law), flatten_parameters(law) | dict(values))
 
 
 def decades(low: float, high: float) -> st.SearchStrategy[float]:

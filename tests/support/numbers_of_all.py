@@ -16,7 +16,7 @@ from jointfmu_fmu_src.proof.members import proof
 from jointfmu_tools.cli import main
 
 from jointfmu.joints import KINDS, MODELS
-from jointfmu.parameters import load
+from jointfmu.parameters import load_parameter_file
 
 GENERATED = ("data.c", "law.c", "law.h", "variables.c")
 
@@ -26,9 +26,9 @@ def texts(paths: list[Path]) -> dict[str, str]:
     shipped = files("jointfmu_models")
     found: dict[str, str] = {}
     for path in [*(Path(str(p)) for kind in KINDS for p in sorted((shipped / kind).glob("*.toml"))), *paths]:
-        file = load(path)
+        file = load_parameter_file(path)
         for name in (name for name, model in MODELS.items() if model.joint == file.joint):
-            model = MODELS[name].of(file.joint, file.values)
+            model = MODELS[name].with_parameters(file.joint, file.values)
             made = {k: v for k, v in sources(name, file).items() if k in GENERATED}
             made |= {k: v.decode() for k, v in proof(model, file).items() if k.endswith(".csv")}
             found |= {f"{path.stem}/{name}/{k}": text for k, text in made.items()}

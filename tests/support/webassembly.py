@@ -10,16 +10,16 @@ from typing import Any
 import fmpy
 import numpy as np
 from conftest import here_alone
-from jointfmu_fmu_src.native.compiled.binary import finished
+from jointfmu_fmu_src.native.compiled.binary import fill_library
 from jointfmu_fmu_src.native.compiled.compiler import file_name
-from jointfmu_fmu_src.native.compiled.kept import part_of
+from jointfmu_fmu_src.native.compiled.kept import compiled_model
 from jointfmu_fmu_src.native.data import data_of, placeholder, split
 from jointfmu_fmu_src.native.description import fmi3_xml
 from jointfmu_tools.laboratory.describe import Module
 
 from jointfmu.parameters import ParameterFile
-from jointfmu.quantity import build as make
-from jointfmu.quantity import flatten
+from jointfmu.quantity import build_parameter_set as make
+from jointfmu.quantity import flatten_parameters
 
 
 def native_fmu(module: Module, folder: Path) -> Path:
@@ -27,9 +27,9 @@ def native_fmu(module: Module, folder: Path) -> Path:
     name, file, here = module.model.name, module.files[0], fmpy.platform_tuple
     given = split(module.model, file)
     with here_alone("3"):
-        part = part_of(module.model, file, given)
+        part = compiled_model(module.model, file, given)
     data = data_of(module.model, file, given, part.sources)
-    library = finished(part.libraries["3"][here], placeholder(module.model, given), data, name)
+    library = fill_library(part.libraries["3"][here], placeholder(module.model, given), data, name)
     folder.mkdir(parents=True, exist_ok=True)
     with zipfile.ZipFile(folder / f"{name}.fmu", "w") as archive:
         archive.writestr("modelDescription.xml", fmi3_xml(module.model, file, data.token, "tunable"))
@@ -98,7 +98,7 @@ def random_values(module: Module, rng: np.random.Generator, switched: bool) -> d
     while True:
         found = _drawn(module, rng, switched)
         with suppress(ValueError):
-            make(type(values), flatten(values) | found)
+            make(type(values), flatten_parameters(values) | found)
             return found
 
 
@@ -118,7 +118,7 @@ def _ends(item: Field[Any]) -> tuple[float, float]:
 
 def _drawn(module: Module, rng: np.random.Generator, switched: bool) -> dict[str, Any]:
     found: dict[str, Any] = {}
-    flat = module.files[0].flat
+    flat = module.files[0].values_by_name
     for name, item in module.model.parameter_fields().items():
         value, (low, high) = flat[name], _ends(item)
         width = 0.02 * (high - low)

@@ -8,17 +8,17 @@ import pytest
 from conftest import refused_line
 from jointfmu_tools import cli, fractal
 from jointfmu_tools.surfaces import synthesis
-from jointfmu_tools.surfaces.fit import fit
-from jointfmu_tools.surfaces.form import without_form
-from jointfmu_tools.surfaces.heights import Areal, Profile
+from jointfmu_tools.surfaces.fit import fit_law
+from jointfmu_tools.surfaces.form import remove_form
+from jointfmu_tools.surfaces.heights import ArealMap, Profile
 from jointfmu_tools.surfaces.identify import identify
-from jointfmu_tools.surfaces.joint_parameters import changes, with_surface
+from jointfmu_tools.surfaces.joint_parameters import fractal_parameters, with_surface
 from jointfmu_tools.surfaces.results import RoughnessEstimate
-from jointfmu_tools.surfaces.spectrum import psd, structure
+from jointfmu_tools.surfaces.spectrum import power_spectrum, structure_function
 from scipy.integrate import quad
 
 from jointfmu.joints import KINDS
-from jointfmu.parameters import default, dump, load
+from jointfmu.parameters import format_parameter_file, load_default, load_parameter_file
 
 pytestmark = pytest.mark.slow
 
@@ -51,9 +51,9 @@ def test_structure_constant_is_the_integral_of_the_spectrum(H):
 @pytest.mark.parametrize("H", [0.2, 0.5, 0.8])
 def test_profile_share_is_the_mean_over_directions(H):
     mean = quad(lambda a: np.cos(a) ** (2 * H), 0.0, np.pi / 2)[0] / (np.pi / 2)
-    assert fractal.profile_share(H) == pytest.approx(mean, rel=1e-8)
+    assert fractal.profile_power_ratio(H) == pytest.approx(mean, rel=1e-8)
     G = 1e-9
-    profile = fractal.wave_power(1e5, H, G) * fractal.profile_share(H)
+    profile = fractal.wave_power(1e5, H, G) * fractal.profile_power_ratio(H)
     isotropic = fractal.areal_roughness(1.0, H) ** (2 * (1 - H))
     assert fractal.wave_power(1e5, H, G) == pytest.approx(profile * isotropic, rel=1e-12)
 
@@ -67,7 +67,7 @@ def test_zhao_equation_30():
 
 def test_isotropic_is_hu_equation_1():
     D, G, M, seed = 2.4, 1e-9, 7, 3
-    made = synthesis.isotropic(waves(64), D, G, M, seed)
+    made = synthesis.synthesize_isotropic(waves(64), D, G, M, seed)
     count = int(np.log(32.0) / np.log(GAMMA)) + 1
     phases = np.random.default_rng(seed).uniform(0.0, 2 * np.pi, (M, count))
     x, y = np.meshgrid(np.arange(64) * SIZE / 64, np.arange(64) * SIZE / 64)
@@ -82,11 +82,11 @@ def test_isotropic_is_hu_equation_1():
 
 
 def test_textured_is_the_sum_of_two_profiles():
-    made = synthesis.textured(waves(64), (1.3, 1.6), (1e-9, 1e-10), 5)
+    made = synthesis.synthesize_textured(waves(64), (1.3, 1.6), (1e-9, 1e-10), 5)
     np.testing.assert_allclose(made.z - made.z[:1], (made.z - made.z[:1])[:, :1] + 0 * made.z, atol=1e-18)
     rng = np.random.default_rng(5)
-    first = synthesis.line(waves(64), 1.3, 1e-9, rng)
-    second = synthesis.line(waves(64), 1.6, 1e-10, rng)
+    first = synthesis.profile_heights(waves(64), 1.3, 1e-9, rng)
+    second = synthesis.profile_heights(waves(64), 1.6, 1e-10, rng)
     np.testing.assert_allclose(made.z[3], first + second[3], rtol=1e-12)
 
 
@@ -94,7 +94,7 @@ def test_textured_is_the_sum_of_two_profiles():
 @pytest.mark.parametrize("G", [1e-12, 1e-8])
 def test_round_trip_of_isotropic_surfaces(D, G):
     for seed in (1, 2):
-        one = identify([synthesis.isotropic(waves(512), D + 1, G, 20, seed)]).best()
+        one = identify([synthesis.synthesize_isotropic(waves(512), D + 1, G, 20, seed)]).select_best()
         assert one.areal.D_s.value == pytest.approx(D + 1, abs=0.03)  # the tolerance that is promised
         assert one.areal.G_s.low < G < one.areal.G_s.high
 
@@ -103,31 +103,31 @@ def test_round_trip_of_isotropic_surfaces(D, G):
 @pytest.mark.parametrize("G", [1e-12, 1e-8])
 def test_round_trip_of_profiles(D, G):
     for seed in (1, 2):
-        one = identify([synthesis.profile(waves(4096), D, G, seed)]).best()
+        one = identify([synthesis.synthesize_profile(waves(4096), D, G, seed)]).select_best()
         assert one.profile.D.value == pytest.approx(D, abs=0.03)
         assert one.profile.G.low < G < one.profile.G.high
         assert one.areal.D_s.value == pytest.approx(one.profile.D.value + 1.0, rel=1e-12)
 
 
 def test_textured_surfaces_are_told_by_direction():
-    made = synthesis.textured(waves(1024), (1.3, 1.6), (1e-9, 1e-10), 1)
+    made = synthesis.synthesize_textured(waves(1024), (1.3, 1.6), (1e-9, 1e-10), 1)
     found = identify([made])
-    assert found.textured
+    assert found.is_textured
     assert any("textured" in text for text in found.warnings)
-    x, y = found.best("x"), found.best("y")
+    x, y = found.select_best("x"), found.select_best("y")
     assert x.profile.D.value == pytest.approx(1.3, abs=0.03)
     assert y.profile.D.value == pytest.approx(1.6, abs=0.03)
     assert x.profile.G.low < 1e-9 < x.profile.G.high
     assert y.profile.G.low < 1e-10 < y.profile.G.high
-    assert not identify([synthesis.isotropic(waves(128), 2.5, 1e-9, 20, 1)]).textured
+    assert not identify([synthesis.synthesize_isotropic(waves(128), 2.5, 1e-9, 20, 1)]).is_textured
 
 
-@pytest.mark.parametrize("method", [structure, psd])
+@pytest.mark.parametrize("method", [structure_function, power_spectrum])
 def test_intervals_hold_what_they_promise(method):
     """95 % intervals over 40 Gaussian profiles: fewer than 34 hits have a probability below 1.5 %."""
     H, hits = 0.5, 0
     for seed in range(40):
-        found = fit(method(without_form(gaussian_profile(1024, H, 1e-9, seed)), "profile"), 0.0, 1.0)
+        found = fit_law(method(remove_form(gaussian_profile(1024, H, 1e-9, seed)), "profile"), 0.0, 1.0)
         hits += abs(found.H - H) < 1.96 * np.sqrt(found.covariance[0, 0])
     assert hits >= 34
 
@@ -136,7 +136,7 @@ def test_noise_and_tilt_do_not_pull_the_structure_function():
     clean = gaussian_profile(4096, 0.7, 1e-9, 4)
     noise = 1.0 * np.std(np.diff(clean.z)) * np.random.default_rng(0).standard_normal(4096)
     rough = clean.with_heights(clean.z + noise + 1e3 * np.linspace(0.0, np.ptp(clean.z), 4096))
-    before, after = (fit(structure(one, "profile"), 0.0, 1.0) for one in (clean, rough))
+    before, after = (fit_law(structure_function(one, "profile"), 0.0, 1.0) for one in (clean, rough))
     assert abs(after.H - before.H) < 2.0 * np.sqrt(before.covariance[0, 0])
     assert after.offset > 0.2 > 0.0 > before.offset
 
@@ -148,15 +148,15 @@ def test_range_ends_where_the_surface_rolls_off():
     noise = np.fft.rfft(np.random.default_rng(1).standard_normal(n))
     rolled = Profile(z=np.fft.irfft(noise * f ** (-0.5 - H)), dx=dx, name="rolled")
     z = rolled.with_heights(rolled.z * 1e-7 / rolled.z.std())
-    free = identify([z]).best(method="psd")
+    free = identify([z]).select_best(method="psd")
     assert free.fit.high < 80e-6
     assert free.profile.D.value == pytest.approx(2.0 - H, abs=0.1)
-    forced = identify([z], span=(5e-6, 1e-3))
+    forced = identify([z], scale_range=(5e-6, 1e-3))
     assert any("not self-affine" in text for text in forced.warnings)
 
 
 def test_short_range_warns():
-    found = identify([synthesis.isotropic(waves(64), 2.5, 1e-9, 20, 1)])
+    found = identify([synthesis.synthesize_isotropic(waves(64), 2.5, 1e-9, 20, 1)])
     assert any("less than one" in text for text in found.warnings)
 
 
@@ -171,17 +171,17 @@ def smooth_profile(points):
 @pytest.mark.parametrize("points", [256, 512])
 def test_at_the_bound_of_the_dimension_G_is_not_determined(points):
     found = identify([smooth_profile(points)])
-    best = found.best()
+    best = found.select_best()
     assert best.profile.D.value == pytest.approx(1.02, abs=1e-3)  # 2 less the bound of H in the fit
     for G in (best.profile.G, best.areal.G_s):
-        assert not G.determined
+        assert not G.is_determined
         assert np.isnan([G.value, G.low, G.high]).all()
         assert 200.0 < G.decades < 1000.0  # ln G = .../(2 (D - 1)), 1/(2 * 0.005) = 100 at most
     (text,) = [text for text in found.warnings if text.startswith("G is not determined")]
     assert f"spans {best.profile.G.decades:.1f} decades" in text
-    assert "lies at the end of 1 to 2" in found.doubt()
+    assert "lies at the end of 1 to 2" in found.undetermined_reason()
     for joint in KINDS:
-        before = default(joint)
+        before = load_default(joint)
         after = with_surface(before, found)
         assert after.values == before.values
         assert after.roughness["Rq1"] == found.h
@@ -213,28 +213,28 @@ def test_the_command_says_that_G_is_not_determined(tmp_path, capsys):
     assert not written.exists()
     assert cli.main([str(word) for word in command]) == 0
     assert "surface.D, surface.G stay as they were" in capsys.readouterr().err
-    file = load(written)
-    assert file.values == default("bolted_joint").values
+    file = load_parameter_file(written)
+    assert file.values == load_default("bolted_joint").values
     assert file.roughness == {"Rq1": said["roughness"]["h"]}
 
 
 def test_roughness_leaves_the_floating_point_numbers():
-    inside = RoughnessEstimate.of_logarithms(-300.0, -700.0, 100.0)
-    assert inside.determined
+    inside = RoughnessEstimate.from_logarithms(-300.0, -700.0, 100.0)
+    assert inside.is_determined
     assert (inside.value, inside.low, inside.high) == tuple(np.exp([-300.0, -700.0, 100.0]))
     for value, low, high in ((-300.0, -800.0, 0.0), (-750.0, -760.0, -740.0), (600.0, 500.0, 800.0)):
-        outside = RoughnessEstimate.of_logarithms(value, low, high)
-        assert not outside.determined
+        outside = RoughnessEstimate.from_logarithms(value, low, high)
+        assert not outside.is_determined
         assert outside.decades == pytest.approx((high - low) / np.log(10.0), rel=1e-14)  # round-off
 
 
 def test_pair_adds_the_powers():
     """Two surfaces of equal finish: twice the power, so G^(2(D-1)) doubles; and sampling may differ."""
     one, other = (gaussian_profile(4096, 0.5, 1e-9, seed) for seed in (1, 2))
-    pair = identify([one, other]).best(method="psd")
+    pair = identify([one, other]).select_best(method="psd")
     assert pair.profile.G.low < 2e-9 < pair.profile.G.high  # D = 1.5: G doubles
     coarse = Profile(z=other.z[::2].copy(), dx=2 * other.dx, name="coarse")
-    again = identify([one, coarse]).best(method="structure")
+    again = identify([one, coarse]).select_best(method="structure")
     assert again.profile.D.value == pytest.approx(1.5, abs=0.1)
     far = Profile(z=other.z, dx=1e3 * other.dx, name="far")
     with pytest.raises(ValueError, match="share no scales"):
@@ -243,7 +243,7 @@ def test_pair_adds_the_powers():
 
 def test_what_a_pair_is():
     line = gaussian_profile(512, 0.5, 1e-9, 1)
-    area = synthesis.isotropic(waves(64), 2.5, 1e-9, 20, 1)
+    area = synthesis.synthesize_isotropic(waves(64), 2.5, 1e-9, 20, 1)
     with pytest.raises(ValueError, match="two of the same kind"):
         identify([line, area])
     with pytest.raises(ValueError, match="3 files given"):
@@ -252,44 +252,44 @@ def test_what_a_pair_is():
 
 def test_range_without_values_is_refused():
     with pytest.raises(ValueError, match="range 1e-09 2e-09 m holds 0 values"):
-        identify([gaussian_profile(512, 0.5, 1e-9, 1)], span=(1e-9, 2e-9))
+        identify([gaussian_profile(512, 0.5, 1e-9, 1)], scale_range=(1e-9, 2e-9))
 
 
 @pytest.mark.parametrize("joint", list(KINDS))
 def test_joint_gets_its_own_dimension(joint, tmp_path):
-    found = identify([synthesis.isotropic(waves(256), 2.45, 1e-9, 20, 1)])
-    values = {name: value for name, (value, _) in changes(found, joint).items()}
-    best = found.best()
+    found = identify([synthesis.synthesize_isotropic(waves(256), 2.45, 1e-9, 20, 1)])
+    values = {name: value for name, (value, _) in fractal_parameters(found, joint).items()}
+    best = found.select_best()
     if joint == "harmonic_drive":
         assert values == {"surface.D": best.areal.D_s.value, "surface.G": best.areal.G_s.value}
     else:
         assert set(values.values()) == {best.profile.D.value, best.profile.G.value}
-    file = with_surface(default(joint), found)
+    file = with_surface(load_default(joint), found)
     path = tmp_path / "joint.toml"
-    path.write_text(dump(file))
-    again = load(path, joint)
+    path.write_text(format_parameter_file(file))
+    again = load_parameter_file(path, joint)
     for name in values:
         assert again.origins[name] == "user"
         assert again.sources[name].startswith("identified from synthetic surface by ")
     assert again.roughness["Rq1"] == found.h
     untouched = {name for name in again.origins if not name.startswith("roughness.")} - set(values)
-    kinds = default(joint).origins
+    kinds = load_default(joint).origins
     assert all(again.origins[name] == kinds.get(name, "user") for name in untouched)
 
 
 def test_gear_of_a_texture_takes_both_directions():
-    found = identify([synthesis.textured(waves(512), (1.3, 1.6), (1e-9, 1e-10), 1)])
-    values = changes(found, "gear_contact")
+    found = identify([synthesis.synthesize_textured(waves(512), (1.3, 1.6), (1e-9, 1e-10), 1)])
+    values = fractal_parameters(found, "gear_contact")
     assert values["surface1.D"][1].direction == "x"
     assert values["surface2.D"][1].direction == "y"
 
 
 def test_spacing_may_differ_along_x_and_y():
-    square = synthesis.isotropic(waves(512), 2.5, 1e-9, 20, 1)
-    oblong = Areal(z=square.z[::2].copy(), dx=square.dx, dy=2 * square.dy, name="oblong")
+    square = synthesis.synthesize_isotropic(waves(512), 2.5, 1e-9, 20, 1)
+    oblong = ArealMap(z=square.z[::2].copy(), dx=square.dx, dy=2 * square.dy, name="oblong")
     found = identify([oblong])
     for method in ("structure", "psd"):
-        assert found.best(method=method).areal.D_s.value == pytest.approx(2.5, abs=0.06)
+        assert found.select_best(method=method).areal.D_s.value == pytest.approx(2.5, abs=0.06)
 
 
 def test_a_value_at_its_bound_is_never_chosen_over_a_free_one():
@@ -300,9 +300,9 @@ def test_a_value_at_its_bound_is_never_chosen_over_a_free_one():
         clipped = replace(found.results[0].fit, H=H, covariance=sure)
         results = (replace(found.results[0], fit=clipped), found.results[1])
         changed = replace(found, results=results)
-        assert changed.best() is found.results[1]
-        assert "(structure) lies at the end of 1 to 2" in changed.doubt()
-    assert found.doubt() is None
+        assert changed.select_best() is found.results[1]
+        assert "(structure) lies at the end of 1 to 2" in changed.undetermined_reason()
+    assert found.undetermined_reason() is None
 
 
 def test_intervals_apart_leave_the_dimension_open():
@@ -311,13 +311,13 @@ def test_intervals_apart_leave_the_dimension_open():
     D = replace(second.profile.D, low=first.profile.D.high + 0.01, high=first.profile.D.high + 0.1)
     other = replace(second, profile=replace(second.profile, D=D))
     apart = replace(found, results=(first, other))
-    assert apart.doubt().startswith("the methods disagree, D = ")
-    before = default("bolted_joint")
+    assert apart.undetermined_reason().startswith("the methods disagree, D = ")
+    before = load_default("bolted_joint")
     assert with_surface(before, apart).values == before.values
     forced = with_surface(before, apart, force=True).values.surface
-    assert apart.best().profile.D.value == forced.D
+    assert apart.select_best().profile.D.value == forced.D
     crooked = replace(second, fit=replace(second.fit, deviation=1.0))
-    assert replace(found, results=(first, crooked)).doubt() == "not self-affine (psd)"
+    assert replace(found, results=(first, crooked)).undetermined_reason() == "not self-affine (psd)"
 
 
 def spectral_profile(points, power, seed, dx=1e-6):
@@ -342,13 +342,13 @@ def running(f):
 )
 def test_a_slope_that_runs_through_its_interval_is_not_self_affine(power, seed):
     found = identify([spectral_profile(4096, power, seed)])
-    assert found.doubt() is not None
+    assert found.undetermined_reason() is not None
 
 
 @pytest.mark.parametrize("H", [0.3, 0.5, 0.8])
 def test_a_self_affine_profile_is_determined(H):
     for seed in range(3):
-        assert identify([gaussian_profile(4096, H, 1e-9, seed)]).doubt() is None
+        assert identify([gaussian_profile(4096, H, 1e-9, seed)]).undetermined_reason() is None
 
 
 def test_both_sides_alike_are_a_pair_of_one_power():
@@ -376,11 +376,11 @@ def test_maps_without_any_chance_do_not_crash(shape):
         "sine": np.sin(2.0 * np.pi * x / 16.0) * np.sin(2.0 * np.pi * y / 20.0),
         "steps": np.round(x / 20.0) + np.round(y / 20.0),
     }[shape]
-    found = identify([Areal(z=1e-6 * z, dx=1e-6, dy=1e-6, name=shape)])
-    assert (found.doubt() is None) == (shape == "steps")  # their spectrum is a power law
+    found = identify([ArealMap(z=1e-6 * z, dx=1e-6, dy=1e-6, name=shape)])
+    assert (found.undetermined_reason() is None) == (shape == "steps")  # their spectrum is a power law
     assert 0.0 < found.h < 2e-6
-    assert with_surface(default("gear_contact"), found).roughness == {"Rq1": found.h} | {
-        name: value for name, value in default("gear_contact").roughness.items() if name != "Rq1"
+    assert with_surface(load_default("gear_contact"), found).roughness == {"Rq1": found.h} | {
+        name: value for name, value in load_default("gear_contact").roughness.items() if name != "Rq1"
     }
 
 
@@ -393,6 +393,6 @@ def test_a_million_points_without_a_straight_range_are_identified_with_doubt():
     z *= 1e-6 / z.std()
     z += 3e-7 * np.sin(2.0 * np.pi * np.arange(n) / 37.0)[:, None] + rng.normal(0.0, 2e-8, z.shape)
     z[rng.random(z.shape) < 0.02] = np.nan
-    found = identify([Areal(z=z, dx=1e-6, dy=1e-6, name="scan")])
-    assert found.doubt() is not None
+    found = identify([ArealMap(z=z, dx=1e-6, dy=1e-6, name="scan")])
+    assert found.undetermined_reason() is not None
     assert found.h == pytest.approx(np.nanstd(z), rel=0.05)

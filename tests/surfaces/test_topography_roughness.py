@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 from jointfmu_tools import fractal
 from jointfmu_tools.surfaces import form, synthesis
-from jointfmu_tools.surfaces.form import without_form
-from jointfmu_tools.surfaces.heights import Areal, Profile
+from jointfmu_tools.surfaces.form import remove_form
+from jointfmu_tools.surfaces.heights import ArealMap, Profile
 
 SIZE, POINTS, G = 1e-3, 256, 1e-9
 
@@ -22,7 +22,8 @@ def test_height_and_slope_of_D_and_G_are_those_of_a_made_surface(D):
     longest, shortest = SIZE / 8.0, SIZE / 32.0
     z = band_of_waves.periodic(SIZE, POINTS, D, G, (longest, shortest), 1).z
     h = np.sqrt(
-        fractal.height(D, G, longest, areal=True) ** 2 - fractal.height(D, G, shortest, areal=True) ** 2
+        fractal.rms_height(D, G, longest, is_areal=True) ** 2
+        - fractal.rms_height(D, G, shortest, is_areal=True) ** 2
     )
     assert z.std() == pytest.approx(h, rel=0.02)
     step = 2.0 * np.pi * np.fft.fftfreq(POINTS, SIZE / POINTS)
@@ -38,34 +39,38 @@ def test_height_of_a_function_with_a_wave_of_the_longest_length(D, gamma):
 
     A line has profile_share of the power of the surface that it is cut from.
     """
-    H = fractal.hurst(D)
+    H = fractal.hurst_exponent(D)
     waves = synthesis.Waves(size=SIZE, points=5000, gamma=gamma)
     missing = gamma ** (-2.0 * H * waves.frequencies.size)  # waves shorter than two spacings
-    h = fractal.height(D, G, SIZE, gamma=gamma) * np.sqrt(fractal.profile_share(H) * (1.0 - missing))
-    assert synthesis.profile(waves, D, G, 3).z.std() == pytest.approx(h, rel=1e-9)
+    h = fractal.rms_height(D, G, SIZE, gamma=gamma) * np.sqrt(
+        fractal.profile_power_ratio(H) * (1.0 - missing)
+    )
+    assert synthesis.synthesize_profile(waves, D, G, 3).z.std() == pytest.approx(h, rel=1e-9)
 
 
 def test_one_surface_has_one_height():
     """D and G of its profiles, or D_s and G_s of itself; and gamma near 1 is the spectrum."""
     H = 0.58
-    profile = fractal.height(2.0 - H, G, SIZE)
-    assert fractal.height(3.0 - H, fractal.areal_roughness(G, H), SIZE, areal=True) == pytest.approx(profile)
-    assert fractal.height(2.0 - H, G, SIZE, gamma=1.0001) == pytest.approx(profile, rel=1e-4)
-    assert fractal.hurst(1.42) == pytest.approx(0.58)
-    assert fractal.hurst(2.42, areal=True) == pytest.approx(0.58)
+    profile = fractal.rms_height(2.0 - H, G, SIZE)
+    assert fractal.rms_height(3.0 - H, fractal.areal_roughness(G, H), SIZE, is_areal=True) == pytest.approx(
+        profile
+    )
+    assert fractal.rms_height(2.0 - H, G, SIZE, gamma=1.0001) == pytest.approx(profile, rel=1e-4)
+    assert fractal.hurst_exponent(1.42) == pytest.approx(0.58)
+    assert fractal.hurst_exponent(2.42, is_areal=True) == pytest.approx(0.58)
 
 
 def test_specimen_of_zhao():
     """Waves up to 1 mm of its D and G: 7.2 um, the figure of docs/validity.md."""
-    assert fractal.height(1.42, 1.21e-8, 1e-3) == pytest.approx(7.2e-6, rel=0.01)
+    assert fractal.rms_height(1.42, 1.21e-8, 1e-3) == pytest.approx(7.2e-6, rel=0.01)
 
 
 def test_a_sine_counts_up_to_its_wavelength():
     line = sine(5e-5, 2e-6)
-    over, under = (form.of_scan(line, line, wave) for wave in (5.1e-5, 4.9e-5))
+    over, under = (form.scan_roughness(line, line, wave) for wave in (5.1e-5, 4.9e-5))
     assert over.h == pytest.approx(2e-6 / np.sqrt(2.0), rel=1e-6)
     assert under.h < 1e-9 * over.h
-    assert (over.rms, over.mean) == (
+    assert (over.rms, over.mean_absolute) == (
         pytest.approx(2e-6 / np.sqrt(2.0), rel=1e-6),
         pytest.approx(4e-6 / np.pi, rel=1e-2),
     )
@@ -73,20 +78,20 @@ def test_a_sine_counts_up_to_its_wavelength():
     assert over.slope == pytest.approx(2.0 * np.pi / 5e-5 * 2e-6, rel=1e-6)
     assert under.slope < 1e-9 * over.slope
     with pytest.raises(ValueError, match=r"longest wave = 1e-05 m is outside \[2e-05, 0.001\]"):
-        form.of_scan(line, line, 1e-5)
+        form.scan_roughness(line, line, 1e-5)
     with pytest.raises(ValueError, match=r"longest wave = 0\.002 m is outside"):
-        form.of_scan(line, line, 2e-3)
+        form.scan_roughness(line, line, 2e-3)
 
 
 @pytest.mark.parametrize("D", [2.3, 2.7])
 def test_height_of_a_scan_over_a_longest_wave(D):
     """A scan of a surface with longer waves: what is left below the longest is the spectrum's, within 6 %."""
     made = band_of_waves.periodic(SIZE, POINTS, D, G, (SIZE / 2.0, 2.0 * SIZE / POINTS), 2)
-    cut = Areal(z=made.z[:160, :200].copy(), dx=made.dx, dy=made.dy, name="cut")
-    flat = without_form(cut)
+    cut = ArealMap(z=made.z[:160, :200].copy(), dx=made.dx, dy=made.dy, name="cut")
+    flat = remove_form(cut)
     shortest = 2.0 * SIZE / POINTS
     for longest in (SIZE / 5.0, SIZE / 10.0):
-        found = form.of_scan(flat, flat, longest)
+        found = form.scan_roughness(flat, flat, longest)
         H = 3.0 - D
         assert found.h == pytest.approx(band_of_waves.rms_height(H, G, longest, shortest), rel=0.06)
         slope = band_of_waves.rms_slope(H, G, longest, found.shortest_wave)
@@ -97,6 +102,6 @@ def test_missing_points_count_in_h_as_filled():
     line = sine(5e-5, 1e-6)
     z = line.z.copy()
     z[100:110] = np.nan
-    found = form.of_scan(line.with_heights(z), line, 1e-3)
+    found = form.scan_roughness(line.with_heights(z), line, 1e-3)
     assert found.rms == pytest.approx(1e-6 / np.sqrt(2.0), rel=0.02)
     assert np.isfinite(found.h)

@@ -19,7 +19,7 @@ from jointfmu_tools.interface import drive
 from jointfmu_tools.robots import elastic, pictures, poses
 from jointfmu_tools.robots.transmission import transmission
 
-from jointfmu.parameters import dump
+from jointfmu.parameters import format_parameter_file
 
 ROBOT = Path(__file__).parents[2] / "models/robots/six_axis.xml"
 SIZES = ("CSG-32-100", "CSG-40-100", "CSG-25-100", "CSG-20-100", "CSG-17-100", "CSG-14-100")
@@ -150,10 +150,10 @@ def test_frequencies_are_those_of_the_model_in_mujoco(six, capsys, tmp_path):
     """With its springs about its sagged pose, linearised by MuJoCo's own finite differences; what weight adds
     is < 1 %.
     """
-    spec = elastic.read(ROBOT)
+    spec = elastic.read_robot(ROBOT)
     axes = elastic.axes(spec, {f"joint{i}": transmission(drive(n).file) for i, n in enumerate(SIZES, 1)})
     rigid = spec.compile()
-    pose = elastic.posed(rigid, {"joint2": "0.7", "joint3": "0.8"})
+    pose = elastic.joint_positions(rigid, {"joint2": "0.7", "joint3": "0.8"})
     springs = [SimpleNamespace(joint=axis.joint, stiffness=axis.fitted.stiffness) for axis in axes]
     expected = poses.frequencies(rigid, springs, pose, 3.0, rigid.body("flange").id)
     said, _ = six
@@ -301,7 +301,7 @@ def test_a_tool_frame_of_a_urdf_is_the_tip(tmp_path):
     robot = tmp_path / "one.urdf"
     tool = '<joint name="t" type="fixed"><parent link="l1"/><child link="tool"/></joint><link name="tool"/>'
     robot.write_text(SEVEN.format(LINK.format(1, 0, "0 1 0", 2) + tool))
-    spec = elastic.read(robot)
+    spec = elastic.read_robot(robot)
     axes = elastic.axes(spec, {"j1": transmission(drive("CSG-14-100").file)})
     assert spec.compile().body(elastic.body(spec.compile(), None, axes)).name == "tool"
 
@@ -378,7 +378,7 @@ def test_drives_of_one_name_that_differ_are_refused(tmp_path, capsys, wanted):
     """Each name is one plugin, and one file: the second would be the first."""
     for folder, size in (("one", "CSG-14-100"), ("other", "CSG-17-100")):
         (tmp_path / folder).mkdir()
-        text = dump(drive(size).file).replace(f'name = "{size}"', 'name = "mine"')
+        text = format_parameter_file(drive(size).file).replace(f'name = "{size}"', 'name = "mine"')
         (tmp_path / folder / "mine.toml").write_text(text)
     files = [f"joint{i}={tmp_path / folder / 'mine.toml'}" for i, folder in ((1, "one"), (2, "other"))]
     line = refused_line(capsys, "robot", ROBOT, "--drive", *files, wanted, "--out", tmp_path / "out")

@@ -93,7 +93,7 @@ def beside(fmu: Fmu, steps: int) -> np.ndarray:
         rows.append([angle, speed, *outputs.values()])
         speed += STEP * (push(i * STEP) + outputs["tau2"]) / INERTIA
         angle += STEP * speed
-        fmu.set({"phi2": angle, "w2": speed})
+        fmu.set_values({"phi2": angle, "w2": speed})
         fmu.step(STEP)
     return np.array(rows)
 

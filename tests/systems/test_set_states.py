@@ -72,8 +72,8 @@ def set_vector(fmu: Fmu, states: dict[str, float]) -> None:
     ("set_states", "continuous"),
     [
         pytest.param(set_vector, False, id="vector, event mode"),
-        pytest.param(Fmu.set, False, id="reference, event mode"),
-        pytest.param(Fmu.set, True, id="reference, continuous-time mode"),
+        pytest.param(Fmu.set_values, False, id="reference, event mode"),
+        pytest.param(Fmu.set_values, True, id="reference, continuous-time mode"),
     ],
 )
 @NAMES
@@ -94,7 +94,7 @@ def test_derivatives_and_outputs_follow_states_that_a_host_sets(
     assert fmu.get() == expected.get()
     assert vector(fmu, "getContinuousStates") == list(states.values())
     for one in (expected, fmu):
-        one.free()
+        one.free_instance()
 
 
 @NAMES
@@ -102,8 +102,8 @@ def test_derivatives_and_outputs_follow_states_that_a_host_sets(
 def test_states_are_outputs_between_steps_of_co_simulation(folder: Path, version: str, name: str) -> None:
     fmu = Fmu(file_of(folder, name, version)).start()
     state = next(iter(STATES[name]))
-    assert f"{state} is an output" in fmu.refused(fmu.set, {state: 0.0})
-    fmu.free()
+    assert f"{state} is an output" in fmu.refused(fmu.set_values, {state: 0.0})
+    fmu.free_instance()
 
 
 @MODES
@@ -112,8 +112,8 @@ def test_accelerations_are_not_settable(folder: Path, version: str, continuous: 
     fmu = Fmu(file_of(folder, "RotationalInertia", version), exchange=True).start()
     if continuous:
         fmu.fmu.enterContinuousTimeMode()
-    assert "a is an output" in fmu.refused(fmu.set, {"a": 0.0})
-    fmu.free()
+    assert "a is an output" in fmu.refused(fmu.set_values, {"a": 0.0})
+    fmu.free_instance()
 
 
 CASADI = """
@@ -185,4 +185,4 @@ def test_casadi_integrates_a_system_without_accepting_steps(
         derivative, (0.0, times[-1]), list(states.values()), "DOP853", times, rtol=1e-10, atol=1e-12
     ).y
     np.testing.assert_allclose(found, expected, atol=1e-5 * np.abs(expected).max())
-    fmu.free()
+    fmu.free_instance()

@@ -12,22 +12,22 @@ import pytest
 from conftest import refused_line
 from jointfmu_fmu_src.partners.laws import GRAVITY, TorqueCurve
 from jointfmu_tools import cli
-from jointfmu_tools.modelica.library import system_text
-from jointfmu_tools.modelica.records import environment
-from jointfmu_tools.modelica.systems import system_model
-from jointfmu_tools.report.systems import loads, panels
+from jointfmu_tools.modelica.library import render_system
+from jointfmu_tools.modelica.records import template_environment
+from jointfmu_tools.modelica.systems import render_system_model
+from jointfmu_tools.report.systems import joint_load_outputs, system_panels
 from jointfmu_tools.systems import cosimulation, ssp
 from jointfmu_tools.systems.arm import Arm, Link
 from jointfmu_tools.systems.ssp import fmu_names
 from jointfmu_tools.systems.steps import longest_step
-from jointfmu_tools.systems.system import names, read, system
+from jointfmu_tools.systems.system import names, read_system, system
 from jointfmu_tools.systems.wiring import ends, lags, wires
 from numpy.typing import NDArray
 
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
-from jointfmu.mechanics.steps import stable_steps
-from jointfmu.parameters import default, dump
-from jointfmu.quantity import changed as replaced
+from jointfmu.mechanics.steps import largest_stable_steps
+from jointfmu.parameters import format_parameter_file, load_default
+from jointfmu.quantity import replace_values as replaced
 
 Array = NDArray[np.float64]
 ROOT = Path(__file__).parents[2]
@@ -223,16 +223,19 @@ def test_every_input_is_fed_once_and_lags_stand_where_joints_push(name: str) -> 
 
 
 def test_a_parameter_file_of_its_own_makes_an_fmu_of_its_own(tmp_path: Path) -> None:
-    file = default("harmonic_drive").with_values({"ratio": 50.0, "mu": 0.1}, "user", "test")
-    (tmp_path / "my_drive.toml").write_text(dump(file), encoding="utf-8")
+    file = load_default("harmonic_drive").with_values({"ratio": 50.0, "mu": 0.1}, "user", "test")
+    (tmp_path / "my_drive.toml").write_text(format_parameter_file(file), encoding="utf-8")
     mine = changed(
         tmp_path,
         ('model = "HarmonicDriveSpring"', 'model = "HarmonicDriveSpring"\nparameters = "my_drive.toml"'),
     )
-    drive = read(mine).joints["drive"]
+    drive = read_system(mine).joints["drive"]
     assert drive.file is not None
-    assert (drive.file.flat["ratio"], drive.file.flat["hysteresis_loss"]) == (50.0, 2.9e-4)
-    assert fmu_names(read(mine))["drive"] == "mine_drive"
+    assert (drive.file.values_by_name["ratio"], drive.file.values_by_name["hysteresis_loss"]) == (
+        50.0,
+        2.9e-4,
+    )
+    assert fmu_names(read_system(mine))["drive"] == "mine_drive"
     assert fmu_names(system("robot_joint"))["drive"] == "HarmonicDriveSpring"
     robot = system("six_axis_robot")
     own = {f"six_axis_robot_{one}" for one in robot.joints}
@@ -242,7 +245,7 @@ def test_a_parameter_file_of_its_own_makes_an_fmu_of_its_own(tmp_path: Path) -> 
 def test_joints_with_the_same_baked_values_share_an_fmu(tmp_path: Path) -> None:
     """The same drive at two axes, with another damping: that is set in the archive."""
     path = changed(tmp_path, ('"CSG-40-100"', '"csg 32 100"'), text=ARM)
-    found = fmu_names(read(path))
+    found = fmu_names(read_system(path))
     assert found["base_drive"] == found["shoulder_drive"] == "mine_base_drive"
     assert found["elbow_drive"] == "mine_elbow_drive"
 
@@ -326,8 +329,8 @@ def test_six_drives_differ_and_wind_up_as_their_catalogue_says() -> None:
     for name, (first, second_, k1, k2) in rows.items():
         file = found.joints[f"{name}_drive"].file
         assert file is not None
-        midline = HarmonicDriveSpring.of(replaced(file.values, {"hysteresis_loss": 0.0}))
-        angle = float(midline.windup(float(second_))["phi_rel"])
+        midline = HarmonicDriveSpring.tabulate(replaced(file.values, {"hysteresis_loss": 0.0}))
+        angle = float(midline.evaluate_torque(float(second_))["phi_rel"])
         assert angle == pytest.approx(first / k1 + (second_ - first) / k2, rel=5e-3)
 
 
@@ -352,18 +355,20 @@ def test_the_modelica_model_is_as_warm_and_as_tight_as_the_fmus(tmp_path):
     """What the joint's file states of its inputs, or the system."""
     files = {"harmonic_drive": {"temperature": 318.15}, "bolted_joint": {"preload": 12e3}}
     for joint, inputs in files.items():
-        stated = dataclasses.replace(default(joint), inputs=inputs)
-        (tmp_path / f"{joint}.toml").write_text(dump(stated), encoding="utf-8")
+        stated = dataclasses.replace(load_default(joint), inputs=inputs)
+        (tmp_path / f"{joint}.toml").write_text(format_parameter_file(stated), encoding="utf-8")
     own = f'{DRIVE}\nparameters = "harmonic_drive.toml"'
-    assert "final T=318.15," in system_text(read(changed(tmp_path, (DRIVE, own))))
+    assert "final T=318.15," in render_system(read_system(changed(tmp_path, (DRIVE, own))))
     held = 'temperature = { value = 303.15, unit = "K", kind = "user", source = "a test" }'
-    assert ", T=303.15)" in system_text(read(changed(tmp_path, (DRIVE, f"{own}\n{held}"))))
+    assert ", T=303.15)" in render_system(read_system(changed(tmp_path, (DRIVE, f"{own}\n{held}"))))
     column = (ROOT / "models/systems/bolted_column.toml").read_text(encoding="utf-8")
     bolted = ('model = "BoltedJoint"\npreload', 'model = "BoltedJoint"\nparameters = "bolted_joint.toml"\n#')
     asked = []
     known = SimpleNamespace(name="Known")
-    column = read(changed(tmp_path, bolted, text=column))
-    system_model(column, environment(), lambda kind, file, point: asked.append(point) or known)
+    column = read_system(changed(tmp_path, bolted, text=column))
+    render_system_model(
+        column, template_environment(), lambda kind, file, point: asked.append(point) or known
+    )
     assert asked == [(12e3, 0.0)]
 
 
@@ -371,11 +376,13 @@ def test_an_interval_beyond_the_largest_stable_step_is_said(tmp_path, monkeypatc
     """Of the motor and the link on the drive at rest, and at the largest torque of a run."""
     monkeypatch.setattr(ssp, "build_systems", lambda out, wanted, force: [])
     path, out = changed(tmp_path, ("value = 5.0e-4", "value = 3.0e-3")), tmp_path / "out"
-    drive = HarmonicDriveSpring.of(read(path).joints["drive"].file.values)
+    drive = HarmonicDriveSpring.tabulate(read_system(path).joints["drive"].file.values)
 
     def limit(torque: float) -> float:
-        at_rest = drive.windup(torque)["K_WTS"]
-        return stable_steps(at_rest, drive.joint.d, 1.0 / 0.05 + 1.0 / (1e-5 * drive.joint.ratio**2))[1]
+        at_rest = drive.evaluate_torque(torque)["K_WTS"]
+        return largest_stable_steps(at_rest, drive.joint.d, 1.0 / 0.05 + 1.0 / (1e-5 * drive.joint.ratio**2))[
+            1
+        ]
 
     said = (
         f"experiment.interval = 0.003 s is longer than {limit(0.0):.3g} s, the largest stable step of drive"
@@ -384,9 +391,9 @@ def test_an_interval_beyond_the_largest_stable_step_is_said(tmp_path, monkeypatc
     assert not out.exists()
     assert cli.main(["system", str(path), "--out", str(out)]) == 0
     assert f"warning: {said}" in capsys.readouterr().err
-    angle, still = np.array([0.0, float(drive.windup(5.0)["phi_rel"]), 0.0]), np.zeros(3)
+    angle, still = np.array([0.0, float(drive.evaluate_torque(5.0)["phi_rel"]), 0.0]), np.zeros(3)
     moved = {"motor.phi": still, "motor.w": still, "link.phi": angle, "link.w": still}
-    found = longest_step(read(path), moved | {"drive.tau1": angle, "drive.tau2": -angle})
+    found = longest_step(read_system(path), moved | {"drive.tau1": angle, "drive.tau2": -angle})
     assert found == (pytest.approx(limit(5.0), rel=0.01), "drive")
     assert limit(5.0) < 0.8 * limit(0.0)
 
@@ -403,8 +410,8 @@ def test_a_picture_shows_the_peaks_of_a_run():
     robot, time = system("robot_joint"), np.linspace(0.0, 2.0, 4001)
     torque = np.zeros(4001)
     torque[[1233, 1234]] = -3.0, 77.5
-    ((output, _),) = loads(robot).values()
-    (panel,) = panels(robot, {"time": time, output: torque})
+    ((output, _),) = joint_load_outputs(robot).values()
+    (panel,) = system_panels(robot, {"time": time, output: torque})
     (drawn,) = panel.series
     assert (np.min(drawn.y), np.max(drawn.y)) == (-3.0, 77.5)
     assert len(drawn.x) <= 800

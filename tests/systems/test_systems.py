@@ -39,8 +39,8 @@ from jointfmu_fmu_src.partners.laws import (
 from jointfmu_fmu_src.ssv import NUMBER
 from jointfmu_tools import cli
 from jointfmu_tools.fitting import decay
-from jointfmu_tools.joints.harmonic_drive.job import LOADING
-from jointfmu_tools.report.systems import windup
+from jointfmu_tools.joints.harmonic_drive.job import TORQUE_RATIOS
+from jointfmu_tools.report.systems import wind_up_and_tip_error
 from jointfmu_tools.systems import decays, ringing, ssp
 from jointfmu_tools.systems.cosimulation import simulate as simulate_system
 from jointfmu_tools.systems.master import Slave, motion
@@ -54,19 +54,19 @@ from scipy.interpolate import CubicSpline
 from test_modelica import simulate, top
 
 from jointfmu.joints import MODELS
-from jointfmu.joints.bolted_joint.law import pressures
+from jointfmu.joints.bolted_joint.law import preload_pressure
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
-from jointfmu.parameters import default, dump
-from jointfmu.quantity import changed, flatten
+from jointfmu.parameters import format_parameter_file, load_default
+from jointfmu.quantity import flatten_parameters, replace_values
 
 pytestmark = pytest.mark.slow
 
 Array = NDArray[np.float64]
 Values = dict[str, float]
 
-DRIVE = HarmonicDriveSpring.of(default("harmonic_drive").values)
-ROBOT = HarmonicDriveSpring.of(system("robot_joint").joints["drive"].file.values)
+DRIVE = HarmonicDriveSpring.tabulate(load_default("harmonic_drive").values)
+ROBOT = HarmonicDriveSpring.tabulate(system("robot_joint").joints["drive"].file.values)
 LINK = system("robot_joint").values["link.J"]
 ROBOT_AXES = ("base", "shoulder", "elbow", "forearm", "wrist", "hand")
 SCHEMAS = {
@@ -79,7 +79,7 @@ SCHEMAS = {
 @cache
 def bolted() -> BoltedJointSpring:
     """Not while tests are collected: its patches take a second."""
-    return BoltedJointSpring.of(default("bolted_joint").values)
+    return BoltedJointSpring.of(load_default("bolted_joint").values)
 
 
 @pytest.fixture(scope="session")
@@ -103,7 +103,7 @@ def make(built: Path) -> Any:
 
     yield instance
     for one in made:
-        one.free()
+        one.free_instance()
 
 
 Make = Callable[..., Fmu]
@@ -125,7 +125,7 @@ def test_a_partner_is_a_valid_fmu_for_every_platform(built: Path, name: str, ver
     assert [v.name for v in description.modelVariables if v.causality == "output"] == [
         v.name for v in PARTNERS[name].outputs
     ]
-    assert description.numberOfContinuousStates == PARTNERS[name].states
+    assert description.numberOfContinuousStates == PARTNERS[name].state_count
 
 
 @ALL
@@ -147,7 +147,7 @@ def test_flanges_of_a_partner_fit_those_of_the_joints(built: Path, name: str) ->
         assert any(t.members.keys() == members.keys() for t in terminals(MODELS[joint]))
     motion, rate, load = {"RotationalInertia": ("phi", "w", "tau")}.get(name, ("s", "v", "f"))
     expected = {f"flange_{x}": {motion: motion, rate: rate, load: f"{load}_{x}"} for x in "ab"}
-    assert found == (expected if PARTNERS[name].states else {})
+    assert found == (expected if PARTNERS[name].state_count else {})
 
 
 @BOTH
@@ -157,9 +157,9 @@ def test_a_partner_computes_the_packages_equations(make: Make, name: str, versio
     fmu = make(name, version)
     lags = {"lag_a", "lag_b"} & set(model.parameter_fields())
     given = {n: float(rng.uniform(0.1, 2.0)) for n in model.parameter_fields()} | dict.fromkeys(lags, 0.0)
-    values = {v.name: float(rng.normal()) for v in (*model.inputs, *model.outputs[: model.states])}
+    values = {v.name: float(rng.normal()) for v in (*model.inputs, *model.outputs[: model.state_count])}
     fmu.begin(0.7)
-    fmu.set(given | values)
+    fmu.set_values(given | values)
     expected = model.evaluate(model.parameters(**given), values | {"time": 0.7})
     assert fmu.get() == pytest.approx(dict(expected), rel=1e-14)  # at once, without a step
     assert not fmu.messages or not fmu.warnings
@@ -174,7 +174,7 @@ def test_a_source_follows_time_in_both_interfaces(make: Make, version: str) -> N
         "pulse_start": 1.5,
         "pulse_rise": 0.5,
     }
-    parameters = TorqueProfile(**(flatten(ssp.partner_parameters("TorqueProfile").values) | given))
+    parameters = TorqueProfile(**(flatten_parameters(ssp.partner_parameters("TorqueProfile").values) | given))
 
     def expected(time: float) -> float:
         return float(parameters.outputs({"time": time, "tau_in": 0.25})["tau"])
@@ -205,11 +205,11 @@ def test_loads_have_no_corner() -> None:
 def test_states_are_set_before_they_move_and_not_after(make: Make, version: str) -> None:
     fmu = make("RotationalInertia", version)
     fmu.begin()
-    fmu.set({"phi": 0.3, "w": -2.0, "J": 2.0, "m": 1.0, "l": 0.5, "tau_a": 1.0, "tau_b": 3.0})
+    fmu.set_values({"phi": 0.3, "w": -2.0, "J": 2.0, "m": 1.0, "l": 0.5, "tau_a": 1.0, "tau_b": 3.0})
     expected = (4.0 - GRAVITY * 0.5 * math.sin(0.3)) / 2.0
     assert fmu.get() == pytest.approx({"phi": 0.3, "w": -2.0, "a": expected}, rel=1e-14)
     fmu.fmu.exitInitializationMode()
-    assert "is an output" in fmu.refused(fmu.set, {"phi": 0.0})
+    assert "is an output" in fmu.refused(fmu.set_values, {"phi": 0.0})
 
 
 @BOTH
@@ -238,9 +238,9 @@ def test_a_refused_step_changes_nothing(make: Make, version: str) -> None:
     fmu = make("TranslationalMass", version).start({"m": 1.0, "f_a": 1.0})
     fmu.step(0.1)
     before = fmu.get()
-    fmu.set({"f_a": 1e308, "f_b": 1e308})
+    fmu.set_values({"f_a": 1e308, "f_b": 1e308})
     assert "too large, a is not finite" in fmu.refused(fmu.fmu.doStep, 0.1, 0.1)
-    fmu.set({"f_a": 1.0, "f_b": 0.0})
+    fmu.set_values({"f_a": 1.0, "f_b": 0.0})
     assert fmu.get() == before
     fmu.step(0.1)
     assert fmu.get()["s"] == pytest.approx(0.5 * 0.2**2, rel=1e-13)
@@ -253,7 +253,7 @@ def test_a_saved_state_goes_on_bit_by_bit(make: Make) -> None:
     def run() -> list[Values]:
         found = []
         for size, torque in rest:
-            fmu.set({"tau_b": torque})
+            fmu.set_values({"tau_b": torque})
             fmu.step(size)
             found.append(fmu.get())
         return found
@@ -412,7 +412,7 @@ def test_parameters_come_from_the_files(built: Path, name: str) -> None:
     every = {p.name: stated(p.value) for p in read_ssv(path, f"parameters/{name}.ssv").parameters}
     for joint, component in found.joints.items():
         assert component.file
-        for key, value in component.file.flat.items():
+        for key, value in component.file.values_by_name.items():
             if isinstance(value, bool):
                 assert f"{joint}.{key}" not in every  # a start value of the FMU
             elif key in MODELS[component.model].parameter_fields():
@@ -428,7 +428,7 @@ def test_parameters_come_from_the_files(built: Path, name: str) -> None:
 
 
 def test_another_joint_goes_into_the_archive(built: Path, tmp_path: Path) -> None:
-    changed = default("bolted_joint").with_values({"mu": 0.11}, "user", "test")
+    changed = load_default("bolted_joint").with_values({"mu": 0.11}, "user", "test")
     for fmu in ("ForceProfile", "TranslationalMass", "BoltedJoint"):
         for version in ("fmi2", "fmi3"):
             (tmp_path / version).mkdir(exist_ok=True)
@@ -443,7 +443,7 @@ def test_another_joint_goes_into_the_archive(built: Path, tmp_path: Path) -> Non
 
 def test_a_joint_without_system_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "gear.toml"
-    file.write_text(dump(default("gear_contact")))
+    file.write_text(format_parameter_file(load_default("gear_contact")))
     line = refused_line(capsys, "build", "--systems", "--params", file, "--out", tmp_path)
     assert "no system has a joint 'gear_contact', allowed are bolted_joint, harmonic_drive" in line
 
@@ -604,7 +604,7 @@ def test_drives_of_the_robot_carry_its_inverse_dynamics(built: Path) -> None:
     found, run = system("six_axis_robot"), moved(built / "fmi2")
     q, speed, acceleration = found.arm.motion(run["time"])
     torque = found.arm.torques(q, speed, acceleration)
-    commanded, wound, error = windup(found, run)
+    commanded, wound, error = wind_up_and_tip_error(found, run)
     np.testing.assert_allclose(commanded, q, atol=1e-12)
     largest = np.max(np.abs(torque))
     for k, axis in enumerate(found.arm.names):
@@ -613,8 +613,8 @@ def test_drives_of_the_robot_carry_its_inverse_dynamics(built: Path) -> None:
         assert np.mean(carried[-3000:]) == pytest.approx(torque[-1, k], abs=2e-3 * largest)
         file = found.joints[f"{axis}_drive"].file
         assert file is not None
-        free = HarmonicDriveSpring.of(changed(file.values, {"hysteresis_loss": 0.0}))
-        held = float(free.windup(abs(torque[-1, k]))["phi_rel"])
+        free = HarmonicDriveSpring.tabulate(replace_values(file.values, {"hysteresis_loss": 0.0}))
+        held = float(free.evaluate_torque(abs(torque[-1, k]))["phi_rel"])
         lag = file.values.hysteresis_loss
         assert abs(abs(np.mean(wound[-3000:, k])) - held) < lag
     assert 1e-3 < error[-1] < np.max(error) < 3e-3
@@ -623,7 +623,7 @@ def test_drives_of_the_robot_carry_its_inverse_dynamics(built: Path) -> None:
 def test_the_tips_error_is_what_the_arms_jacobian_makes_of_the_wind_up(built: Path) -> None:
     found = system("six_axis_robot")
     run = until(0.9, moved(built / "fmi2"))
-    commanded, wound, error = windup(found, run)
+    commanded, wound, error = wind_up_and_tip_error(found, run)
     q, dq = commanded[-1], wound[-1]
     step = 1e-6
     slope = [(found.arm.tip(q + step * e)[0] - found.arm.tip(q - step * e)[0]) / (2.0 * step)
@@ -640,8 +640,8 @@ def sliding(force: Array, stiffness: Array, limit: Array, rate: float) -> Array:
 def column_sliders(spring: BoltedJointSpring, preload: float) -> tuple[Array, Array]:
     """Stiffness and friction of the sliders that touch at a preload, of all patches."""
     joint, patches = spring.joint, spring.patches
-    approach = spring.curve.inverse(pressures(joint, patches, preload, 0.0))
-    carried = spring.foundation(approach).carried(approach)
+    approach = spring.curve.inverse(preload_pressure(joint, patches, preload, 0.0))
+    carried = spring.foundation(approach).slider_properties(approach)
     area = joint.A_0 * patches.share[:, None]
     stiffness, limit = ((area * each).ravel() for each in (carried.stiffness, carried.limit))
     some = stiffness > 0.0
@@ -651,7 +651,7 @@ def column_sliders(spring: BoltedJointSpring, preload: float) -> tuple[Array, Ar
 def robot(time: float, x: Array, found: Values, load: TorqueProfile) -> list[float]:
     """Rates of motor, link and the sliders of the drive by the package's midline and sliders alone."""
     ratio, friction = ROBOT.joint.ratio, x[4:]
-    drive = DRIVE.motion(x[0], x[1], x[2], x[3])
+    drive = DRIVE.evaluate_motion(x[0], x[1], x[2], x[3])
     drive = {"tau1": drive["tau1"] + friction.sum() / ratio, "tau2": drive["tau2"] - friction.sum()}
     slid = sliding(friction, ROBOT.hysteresis.stiffness, ROBOT.hysteresis.limit, x[3] - x[1] / ratio)
     tau = float(load.outputs({"time": time, "tau_in": 0.0})["tau"])
@@ -679,7 +679,7 @@ def test_the_robot_joint_converges_to_the_packages_law(built: Path) -> None:
 
 def test_the_bolted_column_converges_to_the_packages_law(built: Path) -> None:
     found, stop = system("bolted_column").values, 1.6e-3
-    defaults = flatten(ssp.partner_parameters("ForceProfile").values)
+    defaults = flatten_parameters(ssp.partner_parameters("ForceProfile").values)
     pulse = {k.removeprefix("load."): v for k, v in found.items() if k.startswith("load.")}
     load, mass = (
         ForceProfile(**(defaults | pulse)),
@@ -756,7 +756,7 @@ def ring(
 
 def released(angle: float, damping: bool, stop: float) -> Array:
     def rates(time: float, x: Array) -> list[float]:
-        return [x[1], float(DRIVE.motion(0.0, 0.0, x[0], x[1] if damping else 0.0)["tau2"]) / LINK]
+        return [x[1], float(DRIVE.evaluate_motion(0.0, 0.0, x[0], x[1] if damping else 0.0)["tau2"]) / LINK]
 
     return solve_ivp(rates, (0.0, stop), [angle, 0.0], "DOP853", rtol=1e-11, atol=1e-15).y[:, -1]
 
@@ -777,15 +777,15 @@ def test_the_order_of_a_step(built: Path, late: bool, lag: float, order: float) 
 
 def energy(x: Array) -> Array:
     angle = np.linspace(0.0, 2e-3, 801)
-    torque = [float(DRIVE.motion(0.0, 0.0, a, 0.0)["tau"]) for a in angle]
+    torque = [float(DRIVE.evaluate_motion(0.0, 0.0, a, 0.0)["tau"]) for a in angle]
     potential = cumulative_simpson(torque, x=angle, initial=0.0)
     return np.asarray(0.5 * LINK * x[:, 1] ** 2 + np.interp(np.abs(x[:, 0]), angle, potential))
 
 
 def test_energy_stays_over_a_thousand_periods(built: Path) -> None:
     angle = 1.3e-3
-    period = 2.0 * math.pi * math.sqrt(LINK / float(DRIVE.windup(3.0)["K_WTS"]))
-    largest = float(DRIVE.motion(0.0, 0.0, angle, 0.0)["K_WTS"])
+    period = 2.0 * math.pi * math.sqrt(LINK / float(DRIVE.evaluate_torque(3.0)["K_WTS"]))
+    largest = float(DRIVE.evaluate_motion(0.0, 0.0, angle, 0.0)["K_WTS"])
     for steps in (20, 40):
         band = 0.5 * largest / LINK * (period / steps) ** 2
         e = energy(ring(built, period / steps, 1000 * steps, angle, 0.0))
@@ -797,7 +797,7 @@ def test_energy_stays_over_a_thousand_periods(built: Path) -> None:
 
 
 def working_point(torque: float) -> tuple[float, float]:
-    found = DRIVE.windup(torque)
+    found = DRIVE.evaluate_torque(torque)
     return float(found["phi_rel"]), float(found["K_WTS"])
 
 
@@ -868,7 +868,7 @@ def exchanged(fmus: dict[str, Fmu], wires: list[tuple[str, str, str, str]], stop
 
     def pass_on(pointer: Any, n: int) -> None:
         for source, output, target, wire in wires:
-            fmus[target].set({wire: fmus[source].get(output)[output]})
+            fmus[target].set_values({wire: fmus[source].get(output)[output]})
         rates(pointer, n)
 
     def put_time(time: float) -> None:
@@ -947,8 +947,8 @@ def test_the_command_builds_a_system_of_ones_own(
     )
     (tmp_path / "drives").mkdir()
     changes = {"ratio": 50.0, "radial_deformation": 2.3e-4}
-    drive = default("harmonic_drive").with_values(changes, "user", "test")
-    (tmp_path / "drives" / "my_drive.toml").write_text(dump(drive), encoding="utf-8")
+    drive = load_default("harmonic_drive").with_values(changes, "user", "test")
+    (tmp_path / "drives" / "my_drive.toml").write_text(format_parameter_file(drive), encoding="utf-8")
     (tmp_path / "my_arm.toml").write_text(own, encoding="utf-8")
     out, table, picture = tmp_path / "dist", tmp_path / "run.csv", tmp_path / "run.png"
     arguments = [tmp_path / "my_arm.toml", "--out", out, "--csv", table, "--plot", picture, "--json"]
@@ -975,7 +975,7 @@ def test_the_command_builds_a_system_of_ones_own(
     arguments = ["ring", tmp_path / "my_arm.toml", "--fmus", out / "fmi2", "--load", 5, "--json"]
     assert cli.main([*map(str, arguments)]) == 0
     (row,) = json.loads(capsys.readouterr().out)["rows"]
-    stiffness = HarmonicDriveSpring.of(drive.values).windup(5.0)["K_WTS"]
+    stiffness = HarmonicDriveSpring.tabulate(drive.values).evaluate_torque(5.0)["K_WTS"]
     expected = math.sqrt(stiffness / LINK) / math.tau  # 2 % from the default drive's
     assert row["expected_frequency"] == pytest.approx(expected, rel=1e-5)
 
@@ -988,7 +988,7 @@ def test_the_robot_in_modelica_winds_up_as_the_fmus_do(built: Path) -> None:
     found = simulate(rumoca, top("extends JointStiffness.Examples.SixAxisRobot;"), stop, 1e-2, rtol=1e-8)
     own = system("six_axis_robot")
     run = until(stop, moved(built / "fmi2"))
-    _, wound, _ = windup(own, run)
+    _, wound, _ = wind_up_and_tip_error(own, run)
     for k, axis in enumerate(ROBOT_AXES):
         expected = np.interp(found.time, run["time"], wound[:, k])
         scale = np.max(np.abs(wound[:, k]))
@@ -1005,7 +1005,7 @@ def test_the_struck_column_rings_down_by_its_friction(built: Path) -> None:
     limit = bolted().joint.mu * 15e3 * bolted().joint.n_bolts
     assert 0.45 * limit < np.max(np.abs(rows["joint.f_x"])) < 0.6 * limit
     free = rows["time"] > 1.3e-3
-    struck = decay.points(rows["time"][free], rows["column.s"][free])
+    struck = decay.analyse_decay(rows["time"][free], rows["column.s"][free])
     column = ringing.vibrating_joints()["bolted_column"]
     (pulled,) = decays.decays(column, built / "fmi2", column.body.pull.deflection, [column.body.pull.load])
     order = np.argsort(pulled.amplitude)
@@ -1083,11 +1083,11 @@ def test_ring_takes_a_joint_and_a_body(built: Path, capsys: pytest.CaptureFixtur
     folder = ["--fmus", str(built / "fmi2"), "--json"]
     assert cli.main(["ring", "robot_joint", *folder, "--inertia", "0.2"]) == 0
     found = json.loads(capsys.readouterr().out)
-    assert [row["load"] for row in found["rows"]] == [x * DRIVE.joint.rated_torque for x in LOADING]
+    assert [row["load"] for row in found["rows"]] == [x * DRIVE.joint.rated_torque for x in TORQUE_RATIOS]
     first = found["rows"][0]
     assert first["expected_frequency"] == pytest.approx(math.sqrt(working_point(0.0)[1] / 0.2) / math.tau)
     assert cli.main(["ring", "bolted_column", *folder, "--load", "20e3", "--inertia", "50"]) == 0
-    stiffness = bolted().motion(20e3, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))["K_xx"]
+    stiffness = bolted().evaluate(20e3, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))["K_xx"]
     (row,) = json.loads(capsys.readouterr().out)["rows"]
     assert row["expected_frequency"] == pytest.approx(math.sqrt(stiffness / 50.0) / math.tau)
 
@@ -1154,7 +1154,7 @@ def test_ring_down_in_shear(built: Path, capsys: pytest.CaptureFixture[str]) -> 
     arguments = ["--amplitude", "1e-8", "--load", "9e3", "--inertia", "50"]
     assert cli.main(["ring", "bolted_column", "--fmus", fmus, *arguments, "--json"]) == 0
     rows = json.loads(capsys.readouterr().out)["rows"]
-    stiffness = bolted().motion(9e3, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))["K_xx"]
+    stiffness = bolted().evaluate(9e3, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))["K_xx"]
     assert rows[-1]["frequency"] == pytest.approx(math.sqrt(stiffness / 50.0) / math.tau, rel=5e-3)
 
 

@@ -10,7 +10,7 @@ from clients import needs
 from jointfmu_tools.uncertainty import journal
 from jointfmu_tools.uncertainty.sweep import bands_csv
 
-from jointfmu.files.text import printable
+from jointfmu.files.text import replace_unprintable
 
 GOOD: dict[str, Any] = {
     "run": 0,
@@ -79,7 +79,7 @@ def refused(folder: Path) -> str:
     with pytest.raises(ValueError, match=r"runs\.jsonl") as said:
         journal.Journal(folder, 8).__enter__()
     text = str(said.value)
-    assert printable(text) == text
+    assert replace_unprintable(text) == text
     assert len(text.removeprefix(str(folder))) < 400
     return text
 
@@ -98,7 +98,7 @@ def test_rows_of_a_sweep_are_read(tmp_path: Path) -> None:
     with journal.Journal(path.parent, 8) as held:
         assert (held.finished, held.failed) == ({0, 1}, 1)
         held.add({**GOOD, "run": 5})
-    assert [one["run"] for one in journal.entries(path.parent)] == [0, 1, 5]
+    assert [one["run"] for one in journal.read_entries(path.parent)] == [0, 1, 5]
     units = {"tau": "N.m", "K_WTS": "N.m/rad"}
     assert bands_csv(path.parent, units).splitlines()[1].startswith("0.0,1.0,")
 
@@ -125,4 +125,4 @@ def test_a_foreign_study_is_named_in_printable_text(held: dict[str, object], tmp
     (tmp_path / journal.STUDY).write_text(json.dumps(held))
     with pytest.raises(ValueError, match="holds another study") as said:
         journal.claim(tmp_path, {"fmu": "a.fmu"})
-    assert printable(str(said.value)) == str(said.value)
+    assert replace_unprintable(str(said.value)) == str(said.value)

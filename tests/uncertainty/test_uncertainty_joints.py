@@ -10,11 +10,11 @@ from conftest import refused_line
 from joint_cases import JOINTS
 from jointfmu_tools import cli
 from jointfmu_tools.uncertainty import propagate
-from jointfmu_tools.uncertainty.problem import pose, reduced
+from jointfmu_tools.uncertainty.problem import reduced_curves, state_problem
 
 from jointfmu.joints import KINDS
-from jointfmu.parameters import default
-from jointfmu.quantity import build, flat_fields, flatten
+from jointfmu.parameters import load_default
+from jointfmu.quantity import build_parameter_set, flat_fields, flatten_parameters
 
 pytestmark = pytest.mark.slow
 
@@ -27,13 +27,13 @@ REDUCED = 1e-4
 )
 def test_reduced_evaluation_against_the_springs(joint, study):
     given, count = JOINTS[joint].studies[study]
-    task = pose(default(joint), given, None, 9)
-    points = propagate.design(task, 256, 5)[0][:count]
-    outcome = propagate.run(task, points, task.loads, "")
-    assert np.all(outcome.good)
+    task = state_problem(load_default(joint), given, None, 9)
+    points = propagate.sample_designs(task, 256, 5)[0][:count]
+    outcome = propagate.evaluate_samples(task, points, task.loads, "")
+    assert np.all(outcome.accepted)
     for i in range(count):
         values, factor, _ = propagate.one_sample(task, points, i)
-        exact = task.reduced.exact(build(KINDS[joint].parameters, values), factor * task.loads)
+        exact = task.curves.exact(build_parameter_set(KINDS[joint].parameters, values), factor * task.loads)
         for output, value in exact.items():
             found = outcome.outputs[output][:, i]
             assert found[1:] == pytest.approx(value[1:], rel=REDUCED), (output, values)
@@ -46,33 +46,33 @@ def test_reduced_evaluation_against_the_springs(joint, study):
 def test_reduced_evaluation_of_the_law_roughness(joint):
     """The same error, over the roughness that people know within a factor of two."""
     given = {"h": "+-30%", "hurst": "0.4..0.9", "longest_wave": "loguniform(2e-4, 5e-3)"}
-    task = pose(default(joint, "roughness"), given, None, 9)
-    found = propagate.bands(task, propagate.design(task, 64, 5)[0])
-    assert found.refused.count == 0
-    assert found.error < REDUCED
+    task = state_problem(load_default(joint, "roughness"), given, None, 9)
+    found = propagate.compute_bands(task, propagate.sample_designs(task, 64, 5)[0])
+    assert found.refusals.count == 0
+    assert found.reduction_error < REDUCED
 
 
 @pytest.mark.parametrize("joint", KINDS)
 def test_one_sample_does_not_see_its_neighbours(joint):
     """Blocks share places of interpolation: the order of the error, not more."""
-    task = pose(default(joint), {JOINTS[joint].varied: "+-2%"}, None, 7)
-    points = propagate.design(task, 64, 0)[0]
-    together = propagate.run(task, points, task.loads, "")
-    alone = propagate.run(task, points[40:41], task.loads, "")
+    task = state_problem(load_default(joint), {JOINTS[joint].varied: "+-2%"}, None, 7)
+    points = propagate.sample_designs(task, 64, 0)[0]
+    together = propagate.evaluate_samples(task, points, task.loads, "")
+    alone = propagate.evaluate_samples(task, points[40:41], task.loads, "")
     for output, value in together.outputs.items():
         assert value[:, 40] == pytest.approx(alone.outputs[output][:, 0], rel=1e-5)
 
 
 def test_pattern_of_the_bolts_may_be_uncertain():
-    task = pose(default("bolted_joint"), {"pattern.decay_length": "+-20%"}, None, 4)
-    found = propagate.bands(task, propagate.design(task, 4, 0)[0])
-    assert found.error < REDUCED
-    assert found.refused.count == 0
+    task = state_problem(load_default("bolted_joint"), {"pattern.decay_length": "+-20%"}, None, 4)
+    found = propagate.compute_bands(task, propagate.sample_designs(task, 4, 0)[0])
+    assert found.reduction_error < REDUCED
+    assert found.refusals.count == 0
 
 
 def test_slip_force_has_the_band_of_friction():
-    task = pose(default("bolted_joint"), {"mu": "0.1..0.3"}, None, 4)
-    found = propagate.bands(task, propagate.design(task, 1024, 0)[0])
+    task = state_problem(load_default("bolted_joint"), {"mu": "0.1..0.3"}, None, 4)
+    found = propagate.compute_bands(task, propagate.sample_designs(task, 1024, 0)[0])
     slip, mu = found.quantiles["slip_force"][:, -1], 0.1 + 0.2 * np.array(propagate.QUANTILES)
     assert slip == pytest.approx(mu / task.values["mu"] * found.nominal["slip_force"][-1], rel=2e-3)
     assert np.ptp(found.quantiles["K_zz"][:, -1]) == 0.0
@@ -83,58 +83,60 @@ def test_slip_force_has_the_band_of_friction():
 
 
 def test_nominal_is_the_parameter_file():
-    task = pose(default("gear_contact"), {"A_0": "+-1%", "surface1.G": 3e-10}, None, 4)
-    changed = default("gear_contact").with_values({"surface1.G": 3e-10}, "user", "")
-    found = propagate.bands(task, propagate.design(task, 4, 0)[0])
-    exact = reduced(KINDS["gear_contact"]).exact(changed.values, task.loads)
+    task = state_problem(load_default("gear_contact"), {"A_0": "+-1%", "surface1.G": 3e-10}, None, 4)
+    changed = load_default("gear_contact").with_values({"surface1.G": 3e-10}, "user", "")
+    found = propagate.compute_bands(task, propagate.sample_designs(task, 4, 0)[0])
+    exact = reduced_curves(KINDS["gear_contact"]).exact(changed.values, task.loads)
     assert found.nominal["K_N"] == pytest.approx(exact["K_N"], rel=REDUCED)
 
 
 def test_refused_samples_are_counted_with_the_reason():
     """Eccentricity of normal(5e-6, 5e-6): 15.87 % lie below zero."""
-    task = pose(default("harmonic_drive"), {"eccentricity": "normal(5e-6, 5e-6)"}, None, 3)
-    found = propagate.bands(task, propagate.design(task, 1024, 0)[0])
-    assert found.refused.count == pytest.approx(0.158655 * 1024, abs=1.5)  # a balanced sequence
-    assert "is outside [0, 0.001): installation eccentricity" in found.refused.reason
-    assert found.refused.example["eccentricity"] < 0.0
+    task = state_problem(load_default("harmonic_drive"), {"eccentricity": "normal(5e-6, 5e-6)"}, None, 3)
+    found = propagate.compute_bands(task, propagate.sample_designs(task, 1024, 0)[0])
+    assert found.refusals.count == pytest.approx(0.158655 * 1024, abs=1.5)  # a balanced sequence
+    assert "is outside [0, 0.001): installation eccentricity" in found.refusals.reason
+    assert found.refusals.example["eccentricity"] < 0.0
     assert np.all(np.isfinite(found.quantiles["K_WTS"]))
 
 
 def test_samples_that_only_the_law_refuses():
     """A dimension so close to 1 that the critical spot overflows: found one by one."""
-    task = pose(default("bolted_joint"), {"surface.D": "1.0001..1.3"}, None, 3)
-    points = propagate.design(task, 256, 0)[0]
-    outcome = propagate.run(task, points, task.loads, "")
-    for i in np.flatnonzero(~outcome.good):
+    task = state_problem(load_default("bolted_joint"), {"surface.D": "1.0001..1.3"}, None, 3)
+    points = propagate.sample_designs(task, 256, 0)[0]
+    outcome = propagate.evaluate_samples(task, points, task.loads, "")
+    for i in np.flatnonzero(~outcome.accepted):
         values, _, _ = propagate.one_sample(task, points, int(i))
         with pytest.raises(ValueError, match=r"representable|no stiffness"):
-            reduced(KINDS["bolted_joint"]).exact(build(KINDS["bolted_joint"].parameters, values), task.loads)
-    refused = propagate.refusals(task, points, outcome.good)
-    assert 0 < refused.count == np.count_nonzero(~outcome.good) < 200
+            reduced_curves(KINDS["bolted_joint"]).exact(
+                build_parameter_set(KINDS["bolted_joint"].parameters, values), task.loads
+            )
+    refused = propagate.summarise_refusals(task, points, outcome.accepted)
+    assert 0 < refused.count == np.count_nonzero(~outcome.accepted) < 200
     assert "D" in refused.reason
 
 
 def test_loads_beyond_the_table_are_refused():
     """normal(29, 1) about the end of the table at 30 N.m: 15.87 % lie above."""
     given = {"surface.D": "+-1%", "tau": "normal(29, 1)"}
-    task = pose(default("harmonic_drive"), given, None, 3)
-    found = propagate.bands(task, propagate.design(task, 1024, 0)[0])
-    assert found.refused.count == pytest.approx(0.158655 * 1024, abs=1.5)
-    assert "is outside (0, 30]: up to the end of the tabulated law" in found.refused.reason
+    task = state_problem(load_default("harmonic_drive"), given, None, 3)
+    found = propagate.compute_bands(task, propagate.sample_designs(task, 1024, 0)[0])
+    assert found.refusals.count == pytest.approx(0.158655 * 1024, abs=1.5)
+    assert "is outside (0, 30]: up to the end of the tabulated law" in found.refusals.reason
 
 
 def test_all_refused():
     given = {"eccentricity": "0.9e-3..0.99e-3"}  # allowed each for itself, but the pair loses contact
-    task = pose(default("harmonic_drive"), given, None, 3)
+    task = state_problem(load_default("harmonic_drive"), given, None, 3)
     with pytest.raises(RuntimeError, match="all 8 samples are refused, the first: eccentricity = "):
-        propagate.bands(task, propagate.design(task, 8, 0)[0])
+        propagate.compute_bands(task, propagate.sample_designs(task, 8, 0)[0])
 
 
 def test_a_study_that_misses_the_spring_is_refused(monkeypatch):
-    monkeypatch.setattr(propagate, "ACCURACY", 1e-12)
-    task = pose(default("harmonic_drive"), {"surface.D": "+-1%"}, None, 3)
+    monkeypatch.setattr(propagate, "MAX_REDUCTION_ERROR", 1e-12)
+    task = state_problem(load_default("harmonic_drive"), {"surface.D": "+-1%"}, None, 3)
     with pytest.raises(RuntimeError, match=r"misses the joint's own by .* at surface\.D = "):
-        propagate.bands(task, propagate.design(task, 8, 0)[0])
+        propagate.compute_bands(task, propagate.sample_designs(task, 8, 0)[0])
 
 
 RUN = ("uncertainty", "harmonic_drive", "--set", "surface.D=2.45..2.6", "surface.G=lognormal(20%)")
@@ -203,7 +205,9 @@ def test_study_file(tmp_path, capsys):
     assert cli.main(["uncertainty", "harmonic_drive", "--study", str(path), "--samples", "16", "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
     assert found["parameters"] == {"surface.D": "2.45..2.6"}
-    base = reduced(KINDS["harmonic_drive"]).exact(default("harmonic_drive").values, np.array([5.0]))
+    base = reduced_curves(KINDS["harmonic_drive"]).exact(
+        load_default("harmonic_drive").values, np.array([5.0])
+    )
     assert found["outputs"]["K_WTS"]["nominal"][-1] < base["K_WTS"][0]
 
 
@@ -255,12 +259,12 @@ def test_refused_study_files(text, words, tmp_path, capsys):
 def test_every_parameter_can_be_uncertain():
     """+-1 % of any number that is not counted or zero, in one study per joint."""
     for joint in KINDS:
-        values = flatten(default(joint).values)
+        values = flatten_parameters(load_default(joint).values)
         declared = dict(flat_fields(KINDS[joint].parameters))
         counted = {name for name, item in declared.items() if item.metadata.get("whole")}
         names = [n for n, v in values.items() if isinstance(v, float) and v and n not in counted]
         names = [n for n in names if not n.startswith("pattern.")]  # one by one, see above
         given = {name: "+-1%" for name in names if name != "traction_ratio"}
-        task = pose(default(joint), given, None, 3)
-        outcome = propagate.run(task, propagate.design(task, 16, 0)[0], task.loads, "")
-        assert np.count_nonzero(outcome.good) > 0, joint
+        task = state_problem(load_default(joint), given, None, 3)
+        outcome = propagate.evaluate_samples(task, propagate.sample_designs(task, 16, 0)[0], task.loads, "")
+        assert np.count_nonzero(outcome.accepted) > 0, joint

@@ -7,11 +7,11 @@ import pytest
 from jointfmu_tools.batch import approach
 from jointfmu_tools.joints.gear_contact import ramp as gear
 from jointfmu_tools.uncertainty import propagate, study
-from jointfmu_tools.uncertainty.problem import pose
-from jointfmu_tools.uncertainty.study import parse
+from jointfmu_tools.uncertainty.problem import state_problem
+from jointfmu_tools.uncertainty.study import parse_distribution
 from scipy import stats
 
-from jointfmu.parameters import default
+from jointfmu.parameters import load_default
 
 P = np.array([0.001, 0.05, 0.3, 0.5, 0.9, 0.999])
 
@@ -35,14 +35,14 @@ P = np.array([0.001, 0.05, 0.3, 0.5, 0.9, 0.999])
     ],
 )
 def test_distribution(text, law):
-    found = parse("x", text, 10.0)
+    found = parse_distribution("x", text, 10.0)
     # the ends of a uniform law written as a percentage are rounded once more
-    assert found.law.ppf(P) == pytest.approx(law.ppf(P), rel=1e-14)
+    assert found.distribution.ppf(P) == pytest.approx(law.ppf(P), rel=1e-14)
 
 
 @pytest.mark.parametrize("text", ["1.42", "true", "yield"])
 def test_no_distribution(text):
-    assert parse("x", text, None) is None
+    assert parse_distribution("x", text, None) is None
 
 
 @pytest.mark.parametrize(
@@ -66,7 +66,7 @@ def test_no_distribution(text):
 )
 def test_refused_distribution(text, words):
     with pytest.raises(ValueError, match=r"^x = ") as raised:
-        parse("x", text, None)
+        parse_distribution("x", text, None)
     assert words in str(raised.value)
     assert "loguniform(LOW, HIGH)" in str(raised.value)
 
@@ -91,10 +91,10 @@ def test_gauss_points_of_a_discrete_measure():
 
 
 def test_powers_of_two():
-    assert [study.power_of_two(n) for n in (2, 3, 64, 100_000)] == [2, 4, 64, 131_072]
+    assert [study.round_up_to_power_of_two(n) for n in (2, 3, 64, 100_000)] == [2, 4, 64, 131_072]
     for n in (1, 2**24 + 1):
         with pytest.raises(ValueError, match=f"samples = {n} is outside"):
-            study.power_of_two(n)
+            study.round_up_to_power_of_two(n)
 
 
 def test_design_is_seeded_and_balanced():
@@ -124,17 +124,17 @@ def linear_gear(monkeypatch):
 def test_bands_of_a_linear_output():
     """2 a + b of two normal parameters is normal."""
     given = {"mu": "normal(5, 0.3)", "traction_ratio": "normal(0.5, 0.05)"}
-    task = pose(default("gear_contact"), given, 100.0, 5)
-    A, B = propagate.design(task, 2**14, 0)
-    found = propagate.bands(task, A)
+    task = state_problem(load_default("gear_contact"), given, 100.0, 5)
+    A, B = propagate.sample_designs(task, 2**14, 0)
+    found = propagate.compute_bands(task, A)
     law = stats.norm(10.5, np.hypot(0.6, 0.05))
     for q, row in zip(propagate.QUANTILES, found.quantiles["K_N"], strict=True):
         # 16384 points of a Sobol' sequence: error of a quantile below 1e-4/density at 1 %
         assert row == pytest.approx(found.loads * law.ppf(q), rel=2e-3)
     assert found.mean["K_N"] == pytest.approx(found.loads * 10.5, rel=1e-4)
     assert found.sd["K_N"] == pytest.approx(found.loads * law.std(), rel=2e-3)
-    assert found.refused.count == 0
-    indices = propagate.sensitivity(task, A[:4096], B[:4096]).outputs["K_N"]
+    assert found.refusals.count == 0
+    indices = propagate.compute_sensitivity(task, A[:4096], B[:4096]).outputs["K_N"]
     exact = np.array([0.36, 0.0025]) / 0.3625
     assert np.all(np.abs(indices.first - exact) < 0.01)  # Sobol' sequence of 4096
     assert np.all(np.abs(indices.total - exact) < 0.01)
@@ -142,14 +142,14 @@ def test_bands_of_a_linear_output():
 
 @pytest.mark.usefixtures("linear_gear")
 def test_an_uncertain_load_scales_the_ramp():
-    task = pose(default("gear_contact"), {"f": "+-20%"}, 100.0, 3)
-    found = propagate.bands(task, propagate.design(task, 4096, 0)[0])
+    task = state_problem(load_default("gear_contact"), {"f": "+-20%"}, 100.0, 3)
+    found = propagate.compute_bands(task, propagate.sample_designs(task, 4096, 0)[0])
     nominal = found.nominal["K_N"]
     assert found.quantiles["K_N"][1] == pytest.approx(nominal * 0.82, rel=1e-3)
     assert found.quantiles["K_N"][-2] == pytest.approx(nominal * 1.18, rel=1e-3)
-    at = pose(default("gear_contact"), {"f": "50..150"}, None, 3)
+    at = state_problem(load_default("gear_contact"), {"f": "50..150"}, None, 3)
     assert at.loads.tolist() == [100.0]
-    found = propagate.bands(at, propagate.design(at, 4096, 0)[0])
+    found = propagate.compute_bands(at, propagate.sample_designs(at, 4096, 0)[0])
     assert found.quantiles["K_N"][:, 0] == pytest.approx(
         found.nominal["K_N"] * (0.5 + np.array(propagate.QUANTILES)), rel=1e-3
     )
@@ -172,7 +172,7 @@ def designs(n, d, seed):
 
 def test_ishigami():
     A, B, mixed = designs(4096, 3, 0)
-    found = propagate.indices(
+    found = propagate.sobol_indices_of(
         ishigami(A)[None], ishigami(B)[None], np.stack([ishigami(m)[None] for m in mixed])
     )
     assert found.first[0] == pytest.approx(ISHIGAMI_FIRST, abs=0.01)  # seen: 0.003
@@ -185,7 +185,7 @@ def test_confidence_intervals_of_independent_samples():
     for _ in range(100):
         A, B = rng.uniform(-np.pi, np.pi, (2, 3, 1024))
         mixed = np.stack([np.where(np.arange(3)[:, None] == i, B, A) for i in range(3)])
-        found = propagate.indices(
+        found = propagate.sobol_indices_of(
             ishigami(A)[None], ishigami(B)[None], np.stack([ishigami(m)[None] for m in mixed])
         )
         hits[0] += np.abs(found.first[0] - ISHIGAMI_FIRST) <= found.first_half[0]
@@ -197,8 +197,8 @@ def test_refused_rows_count_for_nothing():
     A, B, mixed = designs(1024, 3, 1)
     f_A, f_B, f_AB = ishigami(A)[None], ishigami(B)[None], np.stack([ishigami(m)[None] for m in mixed])
     keep = np.arange(1024) < 512  # the first half is a design of its own
-    some = propagate.indices(f_A[:, keep], f_B[:, keep], f_AB[..., keep])
+    some = propagate.sobol_indices_of(f_A[:, keep], f_B[:, keep], f_AB[..., keep])
     f_A[:, ~keep] = np.nan
-    holes = propagate.indices(f_A, f_B, f_AB)
+    holes = propagate.sobol_indices_of(f_A, f_B, f_AB)
     for name in ("first", "total", "first_half", "total_half"):
         assert getattr(holes, name) == pytest.approx(getattr(some, name), rel=1e-10)

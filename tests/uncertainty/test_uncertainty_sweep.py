@@ -20,11 +20,11 @@ from conftest import refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.ramps import ramp
 from jointfmu_tools.uncertainty import journal
-from jointfmu_tools.uncertainty.problem import pose
-from jointfmu_tools.uncertainty.sweep import plan, sweep
+from jointfmu_tools.uncertainty.problem import state_problem
+from jointfmu_tools.uncertainty.sweep import plan_runs, sweep
 from jointfmu_tools.uncertainty.worker import LoadRamp
 
-from jointfmu.parameters import default, dump
+from jointfmu.parameters import format_parameter_file, load_default
 
 pytestmark = pytest.mark.slow
 
@@ -55,7 +55,7 @@ def cluster():
 
 
 def indices(out):
-    return [entry["run"] for entry in journal.entries(out)]
+    return [entry["run"] for entry in journal.read_entries(out)]
 
 
 def processes_of(group):
@@ -193,16 +193,16 @@ def test_a_process_that_dies_as_it_starts_prints_nothing():
 def test_runs_are_the_ramp_of_the_fmu(fmu, cluster, tmp_path):
     """On a scheduler's workers, through its address alone; the same numbers as `jointfmu ramp`."""
     given = {"surface.D": "2.45..2.6", "eccentricity": 5e-6}
-    record, runs = plan(fmu, DRIVE, given, 8, 0)
+    record, runs = plan_runs(fmu, DRIVE, given, 8, 0)
     journal.claim(tmp_path, record)
     done = sweep(fmu, DRIVE, runs, tmp_path, scheduler=cluster)
-    assert (done.runs, done.now, done.failed) == (8, 8, 0)
-    found = {entry["run"]: entry for entry in journal.entries(tmp_path)}
+    assert (done.runs, done.new_runs, done.failed) == (8, 8, 0)
+    found = {entry["run"]: entry for entry in journal.read_entries(tmp_path)}
     for i, settings in enumerate(runs):
         assert (
             found[i]["parameters"] == settings == {"eccentricity": 5e-6, "surface.D": settings["surface.D"]}
         )
-        alone = ramp.run(fmu, "tau", 5.0, 1.0, settings)
+        alone = ramp.run_ramp(fmu, "tau", 5.0, 1.0, settings)
         assert found[i]["columns"] == {name: column.tolist() for name, column in alone.columns.items()}
 
 
@@ -217,14 +217,14 @@ def test_runs_are_the_ramp_of_the_fmu(fmu, cluster, tmp_path):
 def test_fmus_and_reduced_evaluation_agree(flavour, name, load, to, given, native, cluster, tmp_path):
     """The FMUs themselves, sample by sample, with the evaluation that `jointfmu uncertainty` uses."""
     path, drive = native / flavour / f"{name}.fmu", LoadRamp(load, to, to / 6.0)
-    record, runs = plan(path, drive, given, 16, 3)
+    record, runs = plan_runs(path, drive, given, 16, 3)
     journal.claim(tmp_path, record)
     assert sweep(path, drive, runs, tmp_path, scheduler=cluster).failed == 0
     joint = {"preload": "bolted_joint", "f": "gear_contact", "tau": "harmonic_drive"}[load]
-    task = pose(default(joint), given, to, 7)
-    for entry in journal.entries(tmp_path):
+    task = state_problem(load_default(joint), given, to, 7)
+    for entry in journal.read_entries(tmp_path):
         values = {**task.values, **entry["parameters"]}
-        found = task.reduced.evaluate(task.parameters, values, task.loads, np.ones((1, 1)))
+        found = task.curves.evaluate(task.parameters, values, task.loads, np.ones((1, 1)))
         for output in set(found) & set(entry["columns"]):
             fmu_values = np.array(entry["columns"][output])
             patches = name == "BoltedJoint" and output.endswith(
@@ -266,7 +266,7 @@ def test_a_run_that_kills_its_process(where, fmu, request, tmp_path, monkeypatch
         monkeypatch.setattr("jointfmu_tools.uncertainty.plugin.distributed_run", dies_at_five)
         place = {"scheduler": request.getfixturevalue("cluster")}
     done = sweep(fmu, DRIVE, [{"surface.D": 2.5}] * 24, tmp_path, **place)
-    assert (done.runs, done.now, done.failed) == (24, 24, 1)
+    assert (done.runs, done.new_runs, done.failed) == (24, 24, 1)
     assert sorted(indices(tmp_path)) == list(range(24))
     assert done.first_failure == {
         "run": 5,
@@ -276,12 +276,12 @@ def test_a_run_that_kills_its_process(where, fmu, request, tmp_path, monkeypatch
 
 
 def test_bands_of_the_runs(fmu, cluster, tmp_path):
-    record, runs = plan(fmu, DRIVE, GIVEN, 32, 0)
+    record, runs = plan_runs(fmu, DRIVE, GIVEN, 32, 0)
     journal.claim(tmp_path, record)
     sweep(fmu, DRIVE, runs, tmp_path, scheduler=cluster)
     head, *rows = (tmp_path / journal.BANDS).read_text().splitlines()
     column = head.split(",").index("K_WTS 50 % [N.m/rad]")
-    good = [entry["columns"]["K_WTS"] for entry in journal.entries(tmp_path) if "columns" in entry]
+    good = [entry["columns"]["K_WTS"] for entry in journal.read_entries(tmp_path) if "columns" in entry]
     median = [float(row.split(",")[column]) for row in rows]
     assert median == pytest.approx(np.median(good, axis=0), rel=1e-15)
     assert [float(row.split(",")[0]) for row in rows] == [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]
@@ -303,13 +303,13 @@ def test_a_run_is_written_once(tmp_path):
 
 
 def test_an_interval_is_that_of_the_file_that_the_fmu_carries(fmu, tmp_path):
-    known = replace(default("harmonic_drive"), ranges={"surface.D": (2.5, 2.55)})
+    known = replace(load_default("harmonic_drive"), ranges={"surface.D": (2.5, 2.55)})
     own = tmp_path / "own.fmu"
     with zipfile.ZipFile(fmu) as before, zipfile.ZipFile(own, "w") as after:
         for path in before.namelist():
             carried = fnmatch(path, "extra/*/parameters/*.toml") and not path.endswith("study.toml")
-            after.writestr(path, dump(known) if carried else before.read(path))
-    record, runs = plan(own, DRIVE, {"surface.D": "interval"}, 4, 0)
+            after.writestr(path, format_parameter_file(known) if carried else before.read(path))
+    record, runs = plan_runs(own, DRIVE, {"surface.D": "interval"}, 4, 0)
     assert record["parameters"] == {"surface.D": "2.5..2.55"}
     assert all(2.5 <= run["surface.D"] <= 2.55 for run in runs)
 

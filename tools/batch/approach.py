@@ -14,10 +14,10 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
-from jointfmu.contact.interface import SIDE, InterfaceLaw, checked_spots
-from jointfmu.contact.powerlaw import Spots
-from jointfmu.mechanics.curve import CLOSING_RATIO, closing, closing_reach
-from jointfmu.quantity import Array, Limit, assemble, flat_fields, flatten
+from jointfmu.contact.interface import ONE_SIDED_OFFSET, InterfaceLaw, find_checked_spots
+from jointfmu.contact.powerlaw import SpotDistribution
+from jointfmu.mechanics.curve import CLOSING_RATIO, closing_length_ratio, closing_pressure
+from jointfmu.quantity import Array, ParameterLimit, assemble_parameter_set, flat_fields, flatten_parameters
 
 Mask = NDArray[np.bool_]
 T = TypeVar("T")
@@ -29,7 +29,7 @@ def columns(cls: type[T], values: Mapping[str, object], axes: int = 0) -> T:
     Unchecked: `inside` tells the samples apart.
     """
     shaped = {k: v.reshape(-1, *[1] * axes) if isinstance(v, np.ndarray) else v for k, v in values.items()}
-    return assemble(cls, shaped, _unchecked)
+    return assemble_parameter_set(cls, shaped, _unchecked)
 
 
 def _unchecked(cls: type[object], arguments: Mapping[str, object]) -> object:
@@ -43,7 +43,7 @@ def _unchecked(cls: type[object], arguments: Mapping[str, object]) -> object:
 def inside(joint: object, count: int) -> Mask:
     """Which of `count` samples have every parameter in its interval, those that others decide included."""
     good = np.ones(count, dtype=bool)
-    values = flatten(joint)
+    values = flatten_parameters(joint)
     for name, item in flat_fields(type(joint)):
         meta, value = item.metadata, values.get(name)
         if "allowed" in meta or not isinstance(value, np.ndarray):
@@ -58,7 +58,7 @@ def inside(joint: object, count: int) -> Mask:
     return good
 
 
-def within(values: Mapping[str, object], limits: Iterable[Limit], count: int) -> Mask:
+def within(values: Mapping[str, object], limits: Iterable[ParameterLimit], count: int) -> Mask:
     """Which samples lie between the limits that other parameters decide."""
     good = np.ones(count, dtype=bool)
     for limit in limits:
@@ -174,9 +174,9 @@ def tabulate(
 
     Parameters of the law are (n, 1) or scalars. Further totals keep their value inside the closing.
     """
-    spots, area = checked_spots(law), law.A_0
+    spots, area = find_checked_spots(law), law.A_0
     shape = np.shape(highest)
-    first = np.broadcast_to(spots.stiff_onset + np.log(CLOSING_RATIO), shape)
+    first = np.broadcast_to(spots.stiffness_onset + np.log(CLOSING_RATIO), shape)
     load = spots.total("load", first)
     span = np.log(highest * area / load) / spots.m  # ln F grows at least with m u
     last = first + np.maximum(span, 0.1)
@@ -186,8 +186,8 @@ def tabulate(
     start, stiff = np.exp(p[:, :1]), np.exp(k[:, :1])
     bend = stiff**2 / start * relative["normal"][:, :1]
     kept = CLOSING if np.any(lowest < start) else CLOSING[:0]
-    x, *closed = closing(start, stiff, bend, kept / 512.0)
-    length = closing_reach(start, stiff, bend) * start / stiff
+    x, *closed = closing_pressure(start, stiff, bend, kept / 512.0)
+    length = closing_length_ratio(start, stiff, bend) * start / stiff
     s = np.log(np.concatenate([length + x, length + nodes["approach"]], axis=1))
     pressure = np.concatenate([np.log(closed[0]), p], axis=1)
     stiffness = np.concatenate([np.log(closed[1]), k], axis=1)
@@ -203,7 +203,7 @@ def tabulate(
 
 
 def _regimes(
-    spots: Spots, first: Array, last: Array, names: tuple[str, ...]
+    spots: SpotDistribution, first: Array, last: Array, names: tuple[str, ...]
 ) -> tuple[dict[str, Array], dict[str, Array]]:
     """ln of totals and their derivatives in u (n, nodes), and `approach` = integral of dF/K [m].
 
@@ -217,9 +217,9 @@ def _regimes(
     for left, right in _pieces(spots, first, last):
         width = right - left
         u = left + width * _CHEBYSHEV
-        side = np.clip(u, left + SIDE, right - SIDE)
+        side = np.clip(u, left + ONE_SIDED_OFFSET, right - ONE_SIDED_OFFSET)
         decay = m * spots.weight * np.exp(-m * u)
-        rate = {name: decay * sum(term.spot(side) for term in spots.terms[name]) for name in names}
+        rate = {name: decay * sum(term.spot_value(side) for term in spots.terms[name]) for name in names}
         sums = {name: sums[name][:, -1:] + width * (rate[name] @ _INTEGRAL) for name in names}
         growth = {name: m + rate[name] / sums[name] for name in names}
         approach = grown + width * ((growth["load"] * sums["load"] / sums["normal"]) @ _INTEGRAL)
@@ -234,10 +234,10 @@ def _regimes(
     )
 
 
-def _pieces(spots: Spots, first: Array, last: Array) -> list[tuple[Array, Array]]:
+def _pieces(spots: SpotDistribution, first: Array, last: Array) -> list[tuple[Array, Array]]:
     """Ends (n, 1) of the regimes between two log-areas, wide ones in parts; one that no sample reaches is
     left out."""
-    inner = [np.clip(np.broadcast_to(end, first.shape), first, last) for end in spots.ends]
+    inner = [np.clip(np.broadcast_to(end, first.shape), first, last) for end in spots.regime_ends]
     limits = np.sort(np.concatenate([first, *inner, last], axis=1), axis=1)
     pairs = [(limits[:, i : i + 1], limits[:, i + 1 : i + 2]) for i in range(limits.shape[1] - 1)]
     parts = []

@@ -13,12 +13,12 @@ from typing import Any, NoReturn, TypeAlias
 
 from jointfmu.files.outputs import FileKind
 
-from ..judgement import Judgement
-from .examples import BEFORE, EXAMPLES
+from ..judgement import Plausibility
+from .examples import EXAMPLE_PREREQUISITES, EXAMPLES
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Answer:
+class CommandResult:
     """Result of a command, to be printed.
 
     document      : JSON object for `--json`
@@ -32,40 +32,40 @@ class Answer:
     document: Any
     lines: Iterable[str] = ()
     notes: Iterable[str] = ()
-    judgement: Judgement | None = None
-    written: Iterable[object] = ()
-    status: int = 0
+    judgement: Plausibility | None = None
+    written_files: Iterable[object] = ()
+    exit_status: int = 0
 
-    def tell(self, as_json: bool) -> int:
+    def print_result(self, as_json: bool) -> int:
         """Print the result, as one JSON object or as text; returns the exit status."""
         if as_json:
-            validity = {} if self.judgement is None else self.judgement.document()
+            validity = {} if self.judgement is None else self.judgement.to_json()
             print(json.dumps({**self.document, **validity} if validity else self.document))
-            return self.status
-        judgement = self.judgement or Judgement(None, ())
-        for line in (*self.lines, *judgement.lines()):
+            return self.exit_status
+        judgement = self.judgement or Plausibility(None, ())
+        for line in (*self.lines, *judgement.format_lines()):
             print(line)
         for note in (*self.notes, *(f"warning: {text}" for text in judgement.warnings)):
             print(note, file=sys.stderr)
-        for path in filter(None, self.written):
+        for path in filter(None, self.written_files):
             print(f"wrote {path}")
-        return self.status
+        return self.exit_status
 
 
-Run = Callable[[argparse.Namespace], Answer]
-Commands: TypeAlias = "argparse._SubParsersAction[Parser]"
+CommandFunction = Callable[[argparse.Namespace], CommandResult]
+SubParsers: TypeAlias = "argparse._SubParsersAction[Parser]"
 """Group of sub-parsers to which commands are added."""
-IMPLIED = {"surface": ("identify", "synthesize")}
+DEFAULT_SUBCOMMANDS = {"surface": ("identify", "synthesize")}
 """{command: its sub-commands}. If the user names no sub-command, the first one runs."""
 
 
-_CHOICE = re.compile(r"invalid choice: '?([^' ]*)'? \(choose from (.*)\)")
+_INVALID_CHOICE = re.compile(r"invalid choice: '?([^' ]*)'? \(choose from (.*)\)")
 """Error message of argparse for an invalid choice."""
 
 
-def nearest(word: str, known: Iterable[str]) -> str:
+def suggest_word(word: str, known_words: Iterable[str]) -> str:
     """Format a suggestion for an error message: the known word most similar to `word`; empty if none is."""
-    matches = get_close_matches(word, [*known], 1)
+    matches = get_close_matches(word, [*known_words], 1)
     return f"; did you mean {matches[0]}?" if matches else ""
 
 
@@ -90,13 +90,13 @@ class Parser(argparse.ArgumentParser):
         example = self.example or EXAMPLES.get(name)
         if example is None:
             return super().format_help()
-        before = f", {BEFORE[name]}" if name in BEFORE else ""
+        before = f", {EXAMPLE_PREREQUISITES[name]}" if name in EXAMPLE_PREREQUISITES else ""
         return f"{super().format_help()}\nexample{before}:\n  jointfmu {example}\n"
 
     def error(self, message: str) -> NoReturn:
         """Print the error on one line, with a suggestion for an invalid choice, and exit with status 2."""
-        if match := _CHOICE.search(message):
-            message += nearest(match[1], re.findall(r"[\w.-]+", match[2]))
+        if match := _INVALID_CHOICE.search(message):
+            message += suggest_word(match[1], re.findall(r"[\w.-]+", match[2]))
         print(f"{self.prog}: {message}", file=sys.stderr)
         raise SystemExit(2)
 
@@ -104,59 +104,61 @@ class Parser(argparse.ArgumentParser):
 _METAVARS: dict[type, str] = {float: "VALUE", int: "N", Path: "FILE", str: "NAME"}
 
 
-def argument(
-    sub: "argparse._ActionsContainer",
+def declare_argument(
+    parser: "argparse._ActionsContainer",
     name: str,
-    kind: type,
-    text: str,
+    value_type: type,
+    help_text: str,
     metavar: str = "",
-    second: str | None = None,
-    **more: Any,
+    alias: str | None = None,
+    **options: Any,
 ) -> None:
     """Declare an argument that takes values of a type. The help text names its default.
 
     alias : second name of the option
     """
-    if "default" in more:
-        default = more["default"]
-        text += f" (default: {f'{default:g}' if kind is float else default})"
-    names = [name, second] if second else [name]
-    sub.add_argument(*names, type=kind, metavar=metavar or _METAVARS[kind], help=text, **more)
+    if "default" in options:
+        default = options["default"]
+        help_text += f" (default: {f'{default:g}' if value_type is float else default})"
+    names = [name, alias] if alias else [name]
+    parser.add_argument(
+        *names, type=value_type, metavar=metavar or _METAVARS[value_type], help=help_text, **options
+    )
 
 
-def command(commands: Commands, name: str, run: Run, text: str) -> Parser:
+def declare_command(commands: SubParsers, name: str, run: CommandFunction, help_text: str) -> Parser:
     """Declare a command that has the option `--json`."""
-    sub: Parser = commands.add_parser(name, help=text, description=sentence(text))
+    sub: Parser = commands.add_parser(name, help=help_text, description=format_sentence(help_text))
     sub.set_defaults(run=run, outputs=sub.outputs)
     sub.add_argument("--json", action="store_true", help="print one JSON object and nothing else")
     return sub
 
 
-def sentence(text: str) -> str:
+def format_sentence(text: str) -> str:
     """Format a help text as a sentence: first letter capital, full stop at the end."""
     return f"{text[0].upper()}{text[1:]}{'' if text.endswith('.') else '.'}"
 
 
-def flag(name: str) -> str:
+def option_flag(name: str) -> str:
     """Return the option that sets an argument: `--rated-torque` for `rated_torque`."""
     return "--" + name.replace("_", "-")
 
 
-def option(args: argparse.Namespace, setting: str) -> str:
+def option_of_setting(args: argparse.Namespace, setting: str) -> str:
     """Return the command-line option of a setting that an error names.
 
     The command lists in `options` the settings whose option has another name.
     """
-    return flag(getattr(args, "options", {}).get(setting, setting))
+    return option_flag(getattr(args, "options", {}).get(setting, setting))
 
 
-def joint_name(text: str) -> str:
+def parse_joint_name(text: str) -> str:
     """Parse the name of a joint: `bolted-joint` as `jointfmu new` has it, or `bolted_joint`."""
     return text.replace("-", "_")
 
 
 @contextmanager
-def needing(purpose: str, extra: str = "build") -> Iterator[None]:
+def require_package(purpose: str, extra: str = "build") -> Iterator[None]:
     """Context that turns a missing package into a one-line ValueError with the install command.
 
     purpose : what the package is needed for, a verb
@@ -171,19 +173,19 @@ def needing(purpose: str, extra: str = "build") -> Iterator[None]:
         ) from None
 
 
-def settings(sub: argparse.ArgumentParser) -> None:
+def declare_settings(parser: argparse.ArgumentParser) -> None:
     """Declare the option `--set NAME=VALUE ...`, which sets parameters."""
-    sub.add_argument(
+    parser.add_argument(
         "--set",
         dest="settings",
         nargs="+",
         action="extend",
-        type=_setting,
+        type=_parse_setting_argument,
         default=[],
         metavar="NAME=VALUE",
         help="set parameters (SI units)",
     )
-    sub.set_defaults(options={"settings": "set"})
+    parser.set_defaults(options={"settings": "set"})
 
 
 def parse_setting(text: str) -> tuple[str, Any]:
@@ -203,7 +205,7 @@ def parse_setting(text: str) -> tuple[str, Any]:
         return name.strip(), value
 
 
-def _setting(text: str) -> tuple[str, object]:
+def _parse_setting_argument(text: str) -> tuple[str, object]:
     try:
         return parse_setting(text)
     except ValueError as error:

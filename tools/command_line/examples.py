@@ -39,7 +39,7 @@ EXAMPLES = {
 }
 """{command: example}, both without the word `jointfmu`."""
 
-BEFORE = {
+EXAMPLE_PREREQUISITES = {
     "ramp": "after jointfmu build GearContact",
     "prove": "after jointfmu build GearContact",
     "sweep": "after jointfmu build GearContact",

@@ -6,36 +6,36 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .. import plots
-from ..command_line.common import flag
+from ..command_line.common import option_flag
 from ..joint_parts import Option
 
 if TYPE_CHECKING:
     from ..report.figure import Panel
 
 
-def declare(sub: argparse.ArgumentParser, option: Option) -> None:
+def declare_option(parser: argparse.ArgumentParser, option: Option) -> None:
     """Declare on the command line an option that a joint defines."""
-    if option.flag:
-        sub.add_argument(flag(option.name), action="store_true", help=option.text)
+    if option.is_flag:
+        parser.add_argument(option_flag(option.name), action="store_true", help=option.help_text)
         return
-    sub.add_argument(
-        flag(option.name),
-        nargs="+" if option.many else None,
-        type=float if option.number else str,
+    parser.add_argument(
+        option_flag(option.name),
+        nargs="+" if option.is_list else None,
+        type=float if option.is_number else str,
         default=option.default,
         choices=option.choices or None,
-        required=option.required,
+        required=option.is_required,
         metavar=None if option.choices else option.metavar,
-        help=option.text,
+        help=option.help_text,
     )
 
 
-def draw(path: Path, panels: "Sequence[Panel]", size: tuple[float, float]) -> None:
+def save_panels(path: Path, panels: "Sequence[Panel]", size: tuple[float, float]) -> None:
     """Draw panels side by side and save them as a picture.
 
     size : width and height [inch]
     """
-    from ..report.figure import drawn
+    from ..report.figure import draw_panels
 
-    with plots.drawing(path, size) as figure:
-        drawn(figure, panels)
+    with plots.open_figure(path, size) as figure:
+        draw_panels(figure, panels)

@@ -8,21 +8,27 @@ from xml.etree import ElementTree
 from jointfmu.files import archives
 from jointfmu.files.outputs import FOLDER
 from jointfmu.joints import MODELS
-from jointfmu.parameters import default, load
-from jointfmu.progress import processes
+from jointfmu.parameters import load_default, load_parameter_file
+from jointfmu.progress import worker_processes
 
-from ..command_line.common import Answer, Commands, argument, command, needing
-from ..command_line.outputs import output
+from ..command_line.common import (
+    CommandResult,
+    SubParsers,
+    declare_argument,
+    declare_command,
+    require_package,
+)
+from ..command_line.outputs import declare_output
 from ..pressure import judge_file
 
-SHOWN = 3
+MAX_PRINTED_CHANGES = 3
 """Largest number of changed start values that are printed of a replaced FMU; `--json` has all."""
 
 
-def add(commands: Commands) -> None:
+def add(commands: SubParsers) -> None:
     """Declare the command `jointfmu build` with its options."""
-    make = command(commands, "build", _build, "build FMUs from default or user parameters")
-    argument(make, "names", str, f"FMUs to build: {', '.join(MODELS)} (default: all)", nargs="*")
+    make = declare_command(commands, "build", _run_build, "build FMUs from default or user parameters")
+    declare_argument(make, "names", str, f"FMUs to build: {', '.join(MODELS)} (default: all)", nargs="*")
     make.add_argument(
         "--flavour",
         nargs="+",
@@ -31,8 +37,8 @@ def add(commands: Commands) -> None:
         help="flavours to build: fmi2, fmi3 (default: both), python",
     )
     text = "model name, identifier and file name of one FMU, for example ShoulderDrive; FMUs with different "
-    argument(make, "--name", str, text + "names can be used in one model")
-    argument(make, "--params", Path, "parameter file that replaces the default parameters (TOML)")
+    declare_argument(make, "--name", str, text + "names can be used in one model")
+    declare_argument(make, "--params", Path, "parameter file that replaces the default parameters (TOML)")
     make.add_argument(
         "--parameters",
         choices=("tunable", "fixed"),
@@ -43,19 +49,21 @@ def add(commands: Commands) -> None:
     make.add_argument(
         "--systems", action="store_true", help="build the example systems (SSP) with the FMUs that they need"
     )
-    output(make, "--out", FOLDER, "folder to write", default=Path("dist"))
+    declare_output(make, "--out", FOLDER, "folder to write", default=Path("dist"))
 
 
-def _build(args: argparse.Namespace) -> Answer:
+def _run_build(args: argparse.Namespace) -> CommandResult:
     if args.name is not None and args.systems:
         raise ValueError(f"--name {args.name} is for one FMU; expected no --systems beside it")
-    file = load(args.params) if args.params else None
-    with needing("build"):
+    file = load_parameter_file(args.params) if args.params else None
+    with require_package("build"):
         from jointfmu_fmu_src import building
 
-        before = {path: _starts(path) for f in args.flavour for path in (args.out / f).glob("*.fmu")}
+        before = {
+            path: _read_start_values(path) for f in args.flavour for path in (args.out / f).glob("*.fmu")
+        }
         built = []
-        with processes() as pool:
+        with worker_processes() as pool:
             if args.names or not args.systems:
                 built += building.build(
                     args.names, args.flavour, file, args.out, args.parameters, args.name, pool, args.force
@@ -64,33 +72,35 @@ def _build(args: argparse.Namespace) -> Answer:
                 from ..systems import ssp
 
                 built += ssp.build_systems(args.out, None, file, True, args.parameters, pool, args.force)
-    changed = _replaced(built, before)
+    changed = _find_changed_values(built, before)
     joints = dict.fromkeys(MODELS[name].joint for name in args.names or MODELS)
-    judgements = {f.joint: judge_file(f) for f in ([file] if file else map(default, joints))}
-    judged = {joint: judgement.document() for joint, judgement in judgements.items()}
+    judgements = {f.joint: judge_file(f) for f in ([file] if file else map(load_default, joints))}
+    judged = {joint: judgement.to_json() for joint, judgement in judgements.items()}
     notes = []
     for path, values in changed.items():
         texts = [
             f"{name} was {old or 'not there'}, is {new or 'gone'}" for name, (old, new) in values.items()
         ]
-        more = f" and {len(texts) - SHOWN} more" if len(texts) > SHOWN else ""
-        notes.append(f"replaced {path}: {', '.join(texts[:SHOWN])}{more}")
-    levels = [f"{joint}: {line}" for joint, judgement in judgements.items() for line in judgement.lines()]
+        more = f" and {len(texts) - MAX_PRINTED_CHANGES} more" if len(texts) > MAX_PRINTED_CHANGES else ""
+        notes.append(f"replaced {path}: {', '.join(texts[:MAX_PRINTED_CHANGES])}{more}")
+    levels = [
+        f"{joint}: {line}" for joint, judgement in judgements.items() for line in judgement.format_lines()
+    ]
     notes += [
         f"warning: {joint}: {text}" for joint, judgement in judgements.items() for text in judgement.warnings
     ]
-    return Answer(
+    return CommandResult(
         document={"built": [str(path) for path in built], "replaced": changed, "joints": judged},
         lines=[*(f"built {path}" for path in built), *levels],
         notes=notes,
     )
 
 
-def _starts(path: Path) -> dict[str, str]:
+def _read_start_values(path: Path) -> dict[str, str]:
     """Read {parameter: start value as text} of an FMU; empty if the file is no FMU."""
     try:
         with archives.open_archive(path) as archive:
-            description = ElementTree.fromstring(archives.read_member(archive, archives.DESCRIPTION))
+            description = ElementTree.fromstring(archives.read_member(archive, archives.DESCRIPTION_NAME))
     except (ValueError, ElementTree.ParseError):
         return {}
     starts = {}
@@ -101,17 +111,17 @@ def _starts(path: Path) -> dict[str, str]:
     return starts
 
 
-def _replaced(
-    built: Sequence[Path], before: Mapping[Path, Mapping[str, str]]
+def _find_changed_values(
+    fmu_paths: Sequence[Path], old_start_values: Mapping[Path, Mapping[str, str]]
 ) -> dict[str, dict[str, list[str | None]]]:
     """Find the start values that differ from those of replaced FMUs: {file: {parameter: [old, new]}}.
 
     None stands for a parameter that the FMU does not have.
     """
     changed = {}
-    for path in built:
-        if old := before.get(path):
-            new = _starts(path)
+    for path in fmu_paths:
+        if old := old_start_values.get(path):
+            new = _read_start_values(path)
             values = {
                 name: [old.get(name), new.get(name)]
                 for name in {**old, **new}
@@ -122,20 +132,20 @@ def _replaced(
     return changed
 
 
-def add_cache(commands: Commands) -> None:
+def add_cache(commands: SubParsers) -> None:
     """Declare the command `jointfmu cache` with its options."""
-    cache = command(commands, "cache", _cache, "show or clear the cache of compiled FMU code")
+    cache = declare_command(commands, "cache", _run_cache, "show or clear the cache of compiled FMU code")
     cache.add_argument("--clear", action="store_true", help="clear the cache; the next build compiles again")
 
 
-def _cache(args: argparse.Namespace) -> Answer:
-    with needing("build"):
+def _run_cache(args: argparse.Namespace) -> CommandResult:
+    with require_package("build"):
         from jointfmu_fmu_src.native.compiled import cache
     if args.clear:
         cache.clear()
-    files, size = cache.content()
+    files, size = cache.count_files()
     folder = str(cache.cache_folder())
-    return Answer(
+    return CommandResult(
         document={"folder": folder, "files": files, "bytes": size},
         lines=[f"{folder}: {files} files, {size / 1e6:.1f} MB (another folder: {cache.CACHE})"],
     )

@@ -5,38 +5,46 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from jointfmu.files.outputs import TEXT
+from jointfmu.files.outputs import EXCHANGE_TEXT
 from jointfmu.files.writing import write_text
 from jointfmu.joints import KINDS
-from jointfmu.parameters import ParameterFile, default, load
+from jointfmu.parameters import ParameterFile, load_default, load_parameter_file
 
-from ..command_line.common import Answer, Commands, argument, command, flag, joint_name, needing
-from ..command_line.outputs import output
+from ..command_line.common import (
+    CommandResult,
+    SubParsers,
+    declare_argument,
+    declare_command,
+    option_flag,
+    parse_joint_name,
+    require_package,
+)
+from ..command_line.outputs import declare_output
 from ..export import exports
-from ..export.exports import ERROR, FORMS, ROBOTS, WHAT
-from ..export.placing import AXES, SI, UNITS, Placing
-from ..judgement import Judgement, judge, known_height
-from ..pressure import judge_file, nominal_pressure, without_members
+from ..export.exports import CONTENTS, DEFAULT_LOAD_ERROR, FORMAT_CONTENTS, ROBOT_FORMATS
+from ..export.placing import AXIS_ORDER, SI, UNITS, Placement
+from ..judgement import Plausibility, assess_law, find_height
+from ..pressure import judge_file, nominal_pressure, warn_missing_members
 
 if TYPE_CHECKING:
-    from ..export.writing import Written
+    from ..export.writing import ExportedFile
 
-_NUMBERED = {"first": ("ansys", "calculix", "abaqus"), "first_set": ("ansys",)}
+_NUMBERED_FORMATS = {"first": ("ansys", "calculix", "abaqus"), "first_set": ("ansys",)}
 """{argument: formats that need this first number together with --nodes}."""
-_ABOVE = {
+_NUMBER_MEANINGS = {
     "first": "a number above all elements of your model",
     "first_set": "a number above all element types and sets of real constants of your model",
 }
 """Meanings for error messages: {argument for a first free number: meaning}."""
-_SI = {"K_": "N/m", "C_": "N.s/m"}
+_FACT_UNITS = {"K_": "N/m", "C_": "N.s/m"}
 """{first letters of a printed quantity: its SI unit}."""
 
 
-def add(commands: Commands) -> None:
+def add(commands: SubParsers) -> None:
     """Declare the command `jointfmu export` with its options."""
-    export = command(commands, "export", _export, "write a joint for another solver")
-    with_springs = exports.able("springs")
-    forms = [*FORMS, *ROBOTS]
+    export = declare_command(commands, "export", _run_export, "write a joint for another solver")
+    with_springs = exports.joints_with("springs")
+    forms = [*FORMAT_CONTENTS, *ROBOT_FORMATS]
     export.add_argument("form", choices=forms, metavar="FORMAT", help=f"one of {', '.join(forms)}")
     export.add_argument(
         "what",
@@ -44,171 +52,179 @@ def add(commands: Commands) -> None:
         help="springs: springs and dashpots between node pairs "
         f"({', '.join(KINDS[joint].title for joint in with_springs)}); contact: pressure over overclosure; "
         "curve: load over displacement of the whole joint; "
-        f"for {', '.join(ROBOTS)}: parameter file of a drive or its name in the catalogue",
+        f"for {', '.join(ROBOT_FORMATS)}: parameter file of a drive or its name in the catalogue",
     )
     joint = export.add_mutually_exclusive_group()
-    argument(joint, "--params", Path, "parameter file of the joint (TOML)")
+    declare_argument(joint, "--params", Path, "parameter file of the joint (TOML)")
     joint.add_argument(
         "--joint",
-        type=joint_name,
+        type=parse_joint_name,
         choices=list(KINDS),
         default=with_springs[0],
         help=f"joint with its default parameters (default: {with_springs[0]})",
     )
-    for name, texts in _working_points().items():
-        argument(export, flag(name), float, "; ".join(texts))
+    for name, texts in _working_point_meanings().items():
+        declare_argument(export, option_flag(name), float, "; ".join(texts))
     text = "springs: your node pairs, columns node_1 [1], node_2 [1], x [mm], y [mm], area [mm2]; a column "
-    argument(export, "--nodes", Path, text + "pressure [MPa] replaces the working point", "CSV")
-    argument(export, "--first", int, "springs: first free number for elements and nodes (default: 1)")
+    declare_argument(export, "--nodes", Path, text + "pressure [MPa] replaces the working point", "CSV")
+    declare_argument(export, "--first", int, "springs: first free number for elements and nodes (default: 1)")
     text = "ansys: first free number for element types and sets of real constants (default: 1)"
-    argument(export, "--first-set", int, text)
+    declare_argument(export, "--first-set", int, text)
     text = "springs: axis of your model along the joint's normal (default: z)"
-    export.add_argument("--normal", choices=list(AXES), help=text)
+    export.add_argument("--normal", choices=list(AXIS_ORDER), help=text)
     text = f"units of the file (default: {SI.name})"
     export.add_argument("--units", choices=list(UNITS), default=SI.name, help=text)
-    text = f"tables: largest relative error of linear interpolation (default: {ERROR:g})"
-    argument(export, "--error", float, text, "E")
-    text = f"{', '.join(ROBOTS)}: largest torque of the fit [N.m] (default: rated torque)"
-    argument(export, "--torque", float, text, "T")
-    output(export, "--out", TEXT, "file to write", required=True)
+    text = f"tables: largest relative error of linear interpolation (default: {DEFAULT_LOAD_ERROR:g})"
+    declare_argument(export, "--error", float, text, "E")
+    text = f"{', '.join(ROBOT_FORMATS)}: largest torque of the fit [N.m] (default: rated torque)"
+    declare_argument(export, "--torque", float, text, "T")
+    declare_output(export, "--out", EXCHANGE_TEXT, "file to write", required=True)
 
 
-def _working_points() -> dict[str, list[str]]:
+def _working_point_meanings() -> dict[str, list[str]]:
     """Meanings of all working-point quantities: {name: [meaning for each joint that has the quantity]}."""
     texts: dict[str, list[str]] = {}
     for joint, kind in KINDS.items():
-        for i, (name, text) in enumerate(exports.of(joint).working_point.items()):
+        for i, (name, text) in enumerate(exports.exports_of(joint).working_point.items()):
             texts.setdefault(name, []).append(f"{kind.title}: {text}{' (default: 0)' if i else ''}")
     return texts
 
 
-def _export(args: argparse.Namespace) -> Answer:
-    if args.form in ROBOTS:
-        return _robots(args)
-    if args.what not in WHAT:
-        choices = ", ".join(map(repr, WHAT))
+def _run_export(args: argparse.Namespace) -> CommandResult:
+    if args.form in ROBOT_FORMATS:
+        return _export_drive(args)
+    if args.what not in CONTENTS:
+        choices = ", ".join(map(repr, CONTENTS))
         raise ValueError(f"argument WHAT: invalid choice: {args.what!r} (choose from {choices})")
-    _refuse(args, {"torque": f"{args.form}; it is for {', '.join(ROBOTS)}"})
-    if args.what not in FORMS[args.form]:
+    _refuse_options(args, {"torque": f"{args.form}; it is for {', '.join(ROBOT_FORMATS)}"})
+    if args.what not in FORMAT_CONTENTS[args.form]:
         raise ValueError(
-            f"{args.form} {args.what} cannot be written; {args.form} has {', '.join(FORMS[args.form])}"
+            f"{args.form} {args.what} cannot be written; {args.form} has {', '.join(FORMAT_CONTENTS[args.form])}"
         )
-    file = load(args.params) if args.params else default(args.joint)
-    _refuse_idle(args, file)
-    written = _written(args, file)
+    file = load_parameter_file(args.params) if args.params else load_default(args.joint)
+    _check_options(args, file)
+    written = _create_export(args, file)
     write_text(args.out, written.text)
     facts = {"written": str(args.out), "format": args.form, "what": args.what, "units": args.units}
     lines = [f"wrote {args.out}: {args.what} for {args.form}, {args.units}"]
     for name, value in written.facts.items():
         number = f"{value:.6g}" if isinstance(value, float) else value
-        lines.append(f"  {name:<24}  {number} {_SI.get(name[:2], '')}".rstrip())
-    judgement = _judged(args, file).with_warnings([*written.warnings, *without_members(file)])
-    return Answer(document={**facts, **written.facts}, lines=lines, judgement=judgement)
+        lines.append(f"  {name:<24}  {number} {_FACT_UNITS.get(name[:2], '')}".rstrip())
+    judgement = _judge_export(args, file).with_warnings([*written.warnings, *warn_missing_members(file)])
+    return CommandResult(document={**facts, **written.facts}, lines=lines, judgement=judgement)
 
 
-def _robots(args: argparse.Namespace) -> Answer:
+def _export_drive(args: argparse.Namespace) -> CommandResult:
     """Write a drive for a robot simulator; the output lists effects that the format cannot represent."""
-    idle = ("params", "nodes", "first", "first_set", "normal", "error", *_working_points())
-    _refuse(args, dict.fromkeys(idle, args.form))
+    idle = ("params", "nodes", "first", "first_set", "normal", "error", *_working_point_meanings())
+    _refuse_options(args, dict.fromkeys(idle, args.form))
     if args.units != SI.name:
         raise ValueError(f"--units = {args.units}: {args.form} is in {SI.name}")
-    from ..robots.writing import written
+    from ..robots.writing import write_drive
 
-    with needing("measure the file", "mujoco"):
-        text, lines, facts = written(args.form, args.what, args.torque)
+    with require_package("measure the file", "mujoco"):
+        text, lines, facts = write_drive(args.form, args.what, args.torque)
     write_text(args.out, text)
-    return Answer(
+    return CommandResult(
         document={"written": str(args.out), "format": args.form, **facts},
         lines=[f"wrote {args.out}: {facts['drive']} for {args.form}", *(f"  {line}" for line in lines)],
     )
 
 
-def _judged(args: argparse.Namespace, file: ParameterFile) -> Judgement:
+def _judge_export(args: argparse.Namespace, file: ParameterFile) -> Plausibility:
     """Judge the stiffness at the working point, at the pressures of `--nodes`, or else at a default load."""
     nominal = nominal_pressure(KINDS[file.joint])
-    load = getattr(args, nominal.load, None) if nominal else None
+    load = getattr(args, nominal.load_variable, None) if nominal else None
     if load is None and args.nodes:
         from ..export.mesh import read_pairs
 
         mesh = read_pairs(args.nodes)
         if mesh.pressure is not None:
             mean = float(mesh.pressure @ mesh.area / mesh.area.sum())
-            return judge(
-                KINDS[file.joint].law_of(file.values), [mean], known_height(file), float(mesh.pressure.max())
+            return assess_law(
+                KINDS[file.joint].extract_law(file.values),
+                [mean],
+                find_height(file),
+                float(mesh.pressure.max()),
             )
     return judge_file(file, None if load is None else [load])
 
 
-def _written(args: argparse.Namespace, file: ParameterFile) -> "Written":
+def _create_export(args: argparse.Namespace, file: ParameterFile) -> "ExportedFile":
     from ..export import writing
     from ..export.mesh import read_pairs
 
     units = UNITS[args.units]
-    error = ERROR if args.error is None else args.error
+    error = DEFAULT_LOAD_ERROR if args.error is None else args.error
     if args.what == "contact":
-        return writing.contact(args.form, file, units, error)
-    state = _state(args, file.joint)
+        return writing.export_contact(args.form, file, units, error)
+    state = _read_working_point(args, file.joint)
     if args.what == "curve":
-        return writing.curve(args.form, file, state, units, error)
+        return writing.export_curve(args.form, file, state, units, error)
     mesh = read_pairs(args.nodes) if args.nodes else None
-    first, text = next(iter(exports.of(file.joint).working_point.items()), ("", ""))
+    first, text = next(iter(exports.exports_of(file.joint).working_point.items()), ("", ""))
     if mesh is not None and mesh.pressure is not None and state is not None:
         raise ValueError(
-            f"{mesh.path} states the pressures; leave out {flag(first)}, or its column 'pressure'"
+            f"{mesh.path} states the pressures; leave out {option_flag(first)}, or its column 'pressure'"
         )
     if (mesh is None or mesh.pressure is None) and state is None and first:
-        raise ValueError(f"springs need {flag(first)}, {text}, or --nodes with a pressure")
-    placing = Placing(units, args.normal or "z", args.first or 1, args.first_set or 1, own=mesh is None)
-    return writing.springs(args.form, file, state, mesh, placing)
+        raise ValueError(f"springs need {option_flag(first)}, {text}, or --nodes with a pressure")
+    placing = Placement(
+        units, args.normal or "z", args.first or 1, args.first_set or 1, has_own_nodes=mesh is None
+    )
+    return writing.export_springs(args.form, file, state, mesh, placing)
 
 
-def _state(args: argparse.Namespace, joint: str) -> Any:
+def _read_working_point(args: argparse.Namespace, joint: str) -> Any:
     """Working point of the joint from the options; None if no option states one."""
-    available = exports.of(joint)
+    available = exports.exports_of(joint)
     values = {name: getattr(args, name) for name in available.working_point}
-    if available.state is None or all(value is None for value in values.values()):
+    if available.working_point_class is None or all(value is None for value in values.values()):
         return None
-    return available.state(**{name: value or 0.0 for name, value in values.items()})
+    return available.working_point_class(**{name: value or 0.0 for name, value in values.items()})
 
 
-def _refuse(args: argparse.Namespace, idle: Mapping[str, str]) -> None:
+def _refuse_options(args: argparse.Namespace, unused_options: Mapping[str, str]) -> None:
     """Raise ValueError if the user sets an option that has no effect.
 
     unused_options : {option: format or content for which it has no meaning}
     """
-    for name, what in idle.items():
+    for name, what in unused_options.items():
         if getattr(args, name) is not None:
-            raise ValueError(f"{flag(name)} has no meaning for {what}")
+            raise ValueError(f"{option_flag(name)} has no meaning for {what}")
 
 
-def _refuse_working_point(args: argparse.Namespace, joint: str) -> None:
+def _check_working_point(args: argparse.Namespace, joint: str) -> None:
     """Raise ValueError if a working point is set but not used, or if a required one is missing."""
-    used = {} if args.what == "contact" else exports.of(joint).working_point
-    _refuse(args, {name: f"the {args.what} of a {joint}" for name in _working_points() if name not in used})
+    used = {} if args.what == "contact" else exports.exports_of(joint).working_point
+    _refuse_options(
+        args,
+        {name: f"the {args.what} of a {joint}" for name in _working_point_meanings() if name not in used},
+    )
     stated = [name for name in used if getattr(args, name) is not None]
     first, text = next(iter(used.items()), ("", ""))
     if stated and first not in stated:
-        raise ValueError(f"{flag(stated[0])} needs {flag(first)}, {text}")
+        raise ValueError(f"{option_flag(stated[0])} needs {option_flag(first)}, {text}")
     if args.what == "curve" and first and not stated:
-        raise ValueError(f"the curve of a {joint} needs {flag(first)}, {text}")
+        raise ValueError(f"the curve of a {joint} needs {option_flag(first)}, {text}")
 
 
-def _refuse_idle(args: argparse.Namespace, file: ParameterFile) -> None:
+def _check_options(args: argparse.Namespace, file: ParameterFile) -> None:
     """Check the options. Raises ValueError if one has no effect, is missing or is out of range."""
-    exports.required(file.joint, args.what)
-    _refuse_working_point(args, file.joint)
+    exports.require_content(file.joint, args.what)
+    _check_working_point(args, file.joint)
     if args.what == "springs":
         idle = {"error": "springs; it is for tables"}
     else:
         idle = dict.fromkeys(("nodes", "first", "normal"), f"a {args.what}; it is for springs")
     if args.form != "ansys":
         idle["first_set"] = f"{args.form}; it is for ansys"
-    _refuse(args, idle)
+    _refuse_options(args, idle)
     for name, highest in (("first", 10_000_000), ("first_set", 100_000)):
-        value, option = getattr(args, name), flag(name)
+        value, option = getattr(args, name), option_flag(name)
         if value is not None and not 1 <= value <= highest:
             raise ValueError(f"{option} = {value} is outside [1, {highest}]")
-        if value is None and args.nodes is not None and args.form in _NUMBERED[name]:
-            raise ValueError(f"--nodes needs {option}, {_ABOVE[name]}")
+        if value is None and args.nodes is not None and args.form in _NUMBERED_FORMATS[name]:
+            raise ValueError(f"--nodes needs {option}, {_NUMBER_MEANINGS[name]}")
     if args.form == "modelica" and args.units != SI.name:
         raise ValueError(f"--units = {args.units}: a Modelica table is in {SI.name}")

@@ -5,80 +5,92 @@ from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
 
-from jointfmu.files.outputs import PARAMETERS, PICTURE
+from jointfmu.files.outputs import PARAMETER_FILE, PICTURE
 from jointfmu.joints import KINDS
-from jointfmu.parameters import load
-from jointfmu.progress import step
+from jointfmu.parameters import load_parameter_file
+from jointfmu.progress import set_step
 
 from .. import columns, plots
-from ..command_line.common import Answer, Commands, Parser, argument, command, flag, sentence
-from ..command_line.outputs import FORCE, output
-from ..drawing.reading import number
-from ..fitting.outcome import percent
-from ..fitting.procedure import Procedure, procedures
+from ..command_line.common import (
+    CommandResult,
+    Parser,
+    SubParsers,
+    declare_argument,
+    declare_command,
+    format_sentence,
+    option_flag,
+)
+from ..command_line.outputs import FORCE_HELP, declare_output
+from ..drawing.reading import parse_number
+from ..fitting.outcome import format_deviation
+from ..fitting.procedure import Procedure, fit_procedures
 from ..interface.make import Fit
 from ..joint_parts import Option
 from ..pressure import judge_file
-from . import declare
+from . import declare_option
 
 
-def add(commands: Commands) -> None:
+def add(commands: SubParsers) -> None:
     """Declare `jointfmu fit` and its procedures."""
     text = "fit a joint's parameters to a measured curve or to catalogue values"
-    top = commands.add_parser("fit", help=text, description=sentence(text))
+    top = commands.add_parser("fit", help=text, description=format_sentence(text))
     ways = top.add_subparsers(dest="procedure", required=True, metavar="PROCEDURE", parser_class=Parser)
-    for choices in procedures().values():
-        _declare(ways, choices)
+    for choices in fit_procedures().values():
+        _declare_procedure(ways, choices)
 
 
-def _declare(ways: Commands, choices: Mapping[str, Procedure]) -> None:
+def _declare_procedure(procedure_parsers: SubParsers, choices: Mapping[str, Procedure]) -> None:
     """Declare one procedure with the options of all its joints.
 
     choices : {joint: its procedure of this name}
     """
     first = next(iter(choices.values()))
-    text = "; ".join(procedure.text for procedure in choices.values())
-    sub = command(ways, first.name, partial(_fit, choices), f"fit {text}")
-    if first.file:
-        many = "+" if first.many else None
-        argument(sub, "file", Path, "measured data (CSV); the heading names columns and units", nargs=many)
-    argument(sub, "--params", Path, "parameter file to start from (TOML)")
-    argument(sub, "--free", str, "parameters to fit", nargs="+")
-    text = f"{FORCE}; write the parameter file even if the fit does not determine the joint"
+    text = "; ".join(procedure.description for procedure in choices.values())
+    sub = declare_command(procedure_parsers, first.name, partial(_run_fit, choices), f"fit {text}")
+    if first.takes_file:
+        many = "+" if first.takes_several_files else None
+        declare_argument(
+            sub, "file", Path, "measured data (CSV); the heading names columns and units", nargs=many
+        )
+    declare_argument(sub, "--params", Path, "parameter file to start from (TOML)")
+    declare_argument(sub, "--free", str, "parameters to fit", nargs="+")
+    text = f"{FORCE_HELP}; write the parameter file even if the fit does not determine the joint"
     sub.add_argument("--force", action="store_true", help=text)
-    output(sub, "--out", PARAMETERS, "write the parameter file (TOML)", second="--write")
-    output(sub, "--plot", PICTURE, "draw data, law and residuals (.png, .svg)")
+    declare_output(sub, "--out", PARAMETER_FILE, "write the parameter file (TOML)", second="--write")
+    declare_output(sub, "--plot", PICTURE, "draw data, law and residuals (.png, .svg)")
     for option in {option.name: option for p in choices.values() for option in p.options}.values():
-        declare(sub, option)
+        declare_option(sub, option)
 
 
-def _fit(choices: Mapping[str, Procedure], args: argparse.Namespace) -> Answer:
+def _run_fit(choices: Mapping[str, Procedure], args: argparse.Namespace) -> CommandResult:
     """Fit the parameters and write the requested files."""
-    joint = _joint(choices, args)
+    joint = _find_joint(choices, args)
     procedure = choices[joint]
-    start = load(args.params, joint) if args.params else None
-    data = (args.file,) if procedure.file else ()
-    step(f"fit of the {KINDS[joint].title}")
-    return _finish(args, Fit(procedure.run(*data, start, args.free, **_options(procedure, args))))
+    start = load_parameter_file(args.params, joint) if args.params else None
+    data = (args.file,) if procedure.takes_file else ()
+    set_step(f"fit of the {KINDS[joint].title}")
+    return _write_fit(args, Fit(procedure.run(*data, start, args.free, **_read_options(procedure, args))))
 
 
-def _options(procedure: Procedure, args: argparse.Namespace) -> dict[str, object]:
+def _read_options(procedure: Procedure, args: argparse.Namespace) -> dict[str, object]:
     """Read the options of a procedure: {name: value}, numbers in SI units."""
-    units = {option.unit_by for option in procedure.options}
-    return {option.name: _value(option, args) for option in procedure.options if option.name not in units}
+    units = {option.unit_option for option in procedure.options}
+    return {
+        option.name: _read_option(option, args) for option in procedure.options if option.name not in units
+    }
 
 
-def _value(option: Option, args: argparse.Namespace) -> object:
+def _read_option(option: Option, args: argparse.Namespace) -> object:
     value = getattr(args, option.name)
-    if not option.unit or value is None:
+    if not option.default_unit or value is None:
         return value
-    unit = (option.unit_by and getattr(args, option.unit_by)) or option.unit
+    unit = (option.unit_option and getattr(args, option.unit_option)) or option.default_unit
     if value.strip().lower() in ("nan", "inf", "-inf"):
         return float(value)  # the procedure refuses the value with its own message
-    return number(option.name, value, unit, option.unit, None)
+    return parse_number(option.name, value, unit, option.default_unit, None)
 
 
-def _joint(choices: Mapping[str, Procedure], args: argparse.Namespace) -> str:
+def _find_joint(choices: Mapping[str, Procedure], args: argparse.Namespace) -> str:
     """Find the joint to which the columns of the file belong.
 
     Raises ValueError if the file has the columns of no joint or of several, or if an option belongs to
@@ -86,10 +98,14 @@ def _joint(choices: Mapping[str, Procedure], args: argparse.Namespace) -> str:
     """
     if len(choices) == 1:
         return next(iter(choices))
-    from ..fitting.measurement import OTHERS
+    from ..fitting.measurement import COLUMN_SYNONYMS
 
-    names = {*columns.names(args.file)}
-    joints = [j for j, procedure in choices.items() if names & {procedure.column, *OTHERS[procedure.column]}]
+    names = {*columns.read_names(args.file)}
+    joints = [
+        j
+        for j, procedure in choices.items()
+        if names & {procedure.column, *COLUMN_SYNONYMS[procedure.column]}
+    ]
     if len(joints) != 1:
         expected = " or ".join(f"{procedure.column} ({joint})" for joint, procedure in choices.items())
         raise ValueError(
@@ -101,23 +117,23 @@ def _joint(choices: Mapping[str, Procedure], args: argparse.Namespace) -> str:
         for option in procedure.options:
             if option.name not in options and getattr(args, option.name) != option.default:
                 raise ValueError(
-                    f"{args.file}: is of a {joints[0]}; {flag(option.name)} is allowed with a {other} only"
+                    f"{args.file}: is of a {joints[0]}; {option_flag(option.name)} is allowed with a {other} only"
                 )
     return joints[0]
 
 
-def _finish(args: argparse.Namespace, fit: Fit) -> Answer:
+def _write_fit(args: argparse.Namespace, fit: Fit) -> CommandResult:
     """Write the files of a fit and format its result. A doubtful fit is written with `--force` only."""
     outcome = fit.outcome
     if args.plot:
-        plots.save(fit.plot(), args.plot)
-    doubt = None if args.force else outcome.doubt()
+        plots.save_figure(fit.plot(), args.plot)
+    doubt = None if args.force else outcome.rejection_reason()
     if args.out and not doubt:
         fit.joint.save(args.out, force=args.force)
     lines = []
     for row in outcome.rows():
         spread = row["relative_deviation"]
-        shown = "spread unknown" if spread is None else percent(spread)
+        shown = "spread unknown" if spread is None else format_deviation(spread)
         shown = f"+- {shown}" if shown.endswith("%") else shown
         mark = "" if row["determined"] else "   not determined"
         ends = "  (95 %: {:.4g} to {:.4g})".format(*row["interval"]) if "interval" in row else ""
@@ -131,10 +147,10 @@ def _finish(args: argparse.Namespace, fit: Fit) -> Answer:
         unwritten = f"; {args.out} is not written, --force writes it" if args.out else ""
         notes.append(f"the fit does not determine the joint: {doubt}{unwritten}")
     document["warnings"] += judgement.warnings
-    return Answer(
-        document=judgement.document() | document | {"doubt": doubt},
-        lines=[*lines, *judgement.lines()],
+    return CommandResult(
+        document=judgement.to_json() | document | {"doubt": doubt},
+        lines=[*lines, *judgement.format_lines()],
         notes=notes,
-        written=(None if doubt else args.out, args.plot),
-        status=int(doubt is not None),
+        written_files=(None if doubt else args.out, args.plot),
+        exit_status=int(doubt is not None),
     )

@@ -7,66 +7,72 @@ from pathlib import Path
 from typing import Any
 
 from jointfmu.contact.laws import LAWS, ROUGHNESS_LAW
-from jointfmu.contact.roughness import DECLARED
+from jointfmu.contact.roughness import HEIGHT_FIELDS
 from jointfmu.joints import KINDS, MODELS
-from jointfmu.parameters import ParameterFile, default, load
-from jointfmu.quantity import flat_fields, flatten
+from jointfmu.parameters import ParameterFile, load_default, load_parameter_file
+from jointfmu.quantity import flat_fields, flatten_parameters
 
-from ..command_line.common import Answer, Commands, argument, command
-from ..laws import law_file, law_parameters
-from ..shown import aligned
+from ..command_line.common import CommandResult, SubParsers, declare_argument, declare_command
+from ..laws import build_law_parameters, load_law_file
+from ..shown import align_columns
 
-_HEAD = ("name", "default", "unit", "allowed", "meaning")
+_TABLE_HEAD = ("name", "default", "unit", "allowed", "meaning")
 
 
-def add(commands: Commands) -> None:
+def add(commands: SubParsers) -> None:
     """Declare the command `jointfmu parameters` with its options."""
     text = "list the parameters of an FMU, a joint or an interface law"
-    sub = command(commands, "parameters", _parameters, text)
+    sub = declare_command(commands, "parameters", _run_parameters, text)
     text = f"an FMU ({', '.join(MODELS)}), a joint ({', '.join(KINDS)}) or a law ({', '.join(LAWS)})"
-    argument(sub, "name", str, text, choices=[*MODELS, *KINDS, *LAWS])
+    declare_argument(sub, "name", str, text, choices=[*MODELS, *KINDS, *LAWS])
     source = sub.add_mutually_exclusive_group()
     laws = sorted({law for kind in KINDS.values() for law in kind.laws})
-    argument(source, "--law", str, f"law of the FMU or joint ({', '.join(laws)})", "LAW", choices=laws)
-    argument(source, "--params", Path, "parameter file, in place of the default values (TOML)")
+    declare_argument(
+        source, "--law", str, f"law of the FMU or joint ({', '.join(laws)})", "LAW", choices=laws
+    )
+    declare_argument(source, "--params", Path, "parameter file, in place of the default values (TOML)")
 
 
-def _parameters(args: argparse.Namespace) -> Answer:
+def _run_parameters(args: argparse.Namespace) -> CommandResult:
     name = args.name
     if name in LAWS:
         if args.law:
             raise ValueError(f"--law has no meaning for the law {name}; it is for FMUs and joints")
-        values = flatten(law_parameters(name, law_file(args.params, name) if args.params else None, {}))
+        values = flatten_parameters(
+            build_law_parameters(name, load_law_file(args.params, name) if args.params else None, {})
+        )
         fields = dict(flat_fields(LAWS[name], names=values))
         if name == ROUGHNESS_LAW:
-            fields |= {stated: field for stated, field in DECLARED.items() if stated not in fields}
+            fields |= {stated: field for stated, field in HEIGHT_FIELDS.items() if stated not in fields}
         head = {"name": name, "law": name}
     else:
-        file = _joint_file(name, args)
-        values = dict(file.flat)
+        file = _load_joint_file(name, args)
+        values = dict(file.values_by_name)
         if name in MODELS:
-            known = MODELS[name].of(file.joint, file.values).parameter_fields()
+            known = MODELS[name].with_parameters(file.joint, file.values).parameter_fields()
             fields = {stated: field for stated, field in known.items() if stated in values}
         else:
             fields = dict(flat_fields(type(file.values), names=values))
         head = {"name": name, "joint": file.joint, "law": file.law}
-    rows = [_row(stated, field, values.get(stated)) for stated, field in fields.items()]
-    return Answer(document={**head, "parameters": rows}, lines=aligned([_HEAD, *map(_cells, rows)]))
+    rows = [_parameter_document(stated, field, values.get(stated)) for stated, field in fields.items()]
+    return CommandResult(
+        document={**head, "parameters": rows}, lines=align_columns([_TABLE_HEAD, *map(_format_row, rows)])
+    )
 
 
-def _joint_file(name: str, args: argparse.Namespace) -> ParameterFile:
+def _load_joint_file(name: str, args: argparse.Namespace) -> ParameterFile:
     """Load the parameter file of an FMU or joint: that of `--params`, or the default with `--law`."""
     joint = MODELS[name].joint if name in MODELS else name
     if args.params:
-        return load(args.params, joint)
+        return load_parameter_file(args.params, joint)
     if args.law and args.law not in KINDS[joint].laws:
         raise ValueError(
             f"law = {args.law!r} is none of a {joint}, allowed are {', '.join(KINDS[joint].laws)}"
         )
-    return default(joint, args.law)
+    return load_default(joint, args.law)
 
 
-def _row(name: str, field: Field[Any], value: Any) -> dict[str, Any]:
+def _parameter_document(name: str, field: Field[Any], value: Any) -> dict[str, Any]:
     """JSON object of one parameter: name, meaning, default, unit, lower and upper limit, allowed values."""
     meta = field.metadata
     row = {"name": name, "meaning": meta["doc"], "default": value}
@@ -78,16 +84,16 @@ def _row(name: str, field: Field[Any], value: Any) -> dict[str, Any]:
     return row | {"unit": meta["unit"], "low": low, "high": high, "allowed": str(interval)} | whole
 
 
-def _cells(row: dict[str, Any]) -> tuple[str, ...]:
+def _format_row(row: dict[str, Any]) -> tuple[str, ...]:
     allowed = row["allowed"]
     if isinstance(allowed, list):
         allowed = " | ".join(str(option).lower() for option in allowed)
     elif "whole" in row:
         allowed += " whole"
-    return (row["name"], _shown(row["default"]), row["unit"] or "", allowed, row["meaning"])
+    return (row["name"], _format_default(row["default"]), row["unit"] or "", allowed, row["meaning"])
 
 
-def _shown(value: object) -> str:
+def _format_default(value: object) -> str:
     if value is None:
         return "-"
     if isinstance(value, tuple):

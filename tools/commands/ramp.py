@@ -13,83 +13,100 @@ from jointfmu.files.outputs import PICTURE
 from jointfmu.files.writing import write_text
 
 from .. import columns, plots
-from ..command_line.common import Answer, Commands, argument, command, flag, settings
-from ..command_line.outputs import output
+from ..command_line.common import (
+    CommandResult,
+    SubParsers,
+    declare_argument,
+    declare_command,
+    declare_settings,
+    option_flag,
+)
+from ..command_line.outputs import declare_output
 from ..ramps import loops, ramp
-from ..shown import aligned
+from ..shown import align_columns
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-RAMP, LOOP = ("to", "step"), ("about", "shape", "points", "cycles", "output")
+RAMP_OPTIONS, LOOP_OPTIONS = ("to", "step"), ("about", "shape", "points", "cycles", "output")
 """Options of a ramp, and options of load cycles in addition to --loop."""
-ROWS = 24
+MAX_PRINTED_ROWS = 24
 """Largest number of points of a ramp that are printed on a terminal."""
 
 
-def add(commands: Commands) -> None:
+def add(commands: SubParsers) -> None:
     """Declare the command `jointfmu ramp` with its options."""
     text = "run an FMU along a load ramp and print its outputs, or in load cycles and print the energy loss"
-    drive = command(commands, "ramp", _run, text)
-    argument(drive, "fmu", Path, "path of the FMU", "FMU")
-    argument(drive, "--input", str, "input to vary", required=True)
-    argument(drive, "--to", float, "ramp: last value of the input (SI); the first is zero")
-    argument(drive, "--step", float, "ramp: step of the input (SI)")
-    argument(drive, "--loop", float, "amplitudes of load cycles, each started from rest (SI)", nargs="+")
-    argument(drive, "--about", float, "cycles: mean value of the input (default: 0)")
+    drive = declare_command(commands, "ramp", _run_command, text)
+    declare_argument(drive, "fmu", Path, "path of the FMU", "FMU")
+    declare_argument(drive, "--input", str, "input to vary", required=True)
+    declare_argument(drive, "--to", float, "ramp: last value of the input (SI); the first is zero")
+    declare_argument(drive, "--step", float, "ramp: step of the input (SI)")
+    declare_argument(
+        drive, "--loop", float, "amplitudes of load cycles, each started from rest (SI)", nargs="+"
+    )
+    declare_argument(drive, "--about", float, "cycles: mean value of the input (default: 0)")
     drive.add_argument(
         "--shape", choices=loops.SHAPES, help=f"cycles: shape over time (default: {loops.SHAPES[0]})"
     )
-    argument(drive, "--points", int, f"cycles: points per cycle (default: {loops.POINTS})")
-    argument(drive, "--cycles", int, f"cycles: number per amplitude (default: {loops.CYCLES})")
-    argument(drive, "--output", str, "cycles: force or motion conjugate to the input")
-    argument(drive, "--columns", str, "ramp: outputs to print (default: all)", nargs="+")
-    settings(drive)
-    output(drive, "--csv", columns.TABLE, "write every point to a file")
-    output(drive, "--plot", PICTURE, "draw the outputs of a ramp, or loops, loss and stiffness (.png, .svg)")
+    declare_argument(drive, "--points", int, f"cycles: points per cycle (default: {loops.DEFAULT_POINTS})")
+    declare_argument(
+        drive, "--cycles", int, f"cycles: number per amplitude (default: {loops.DEFAULT_CYCLES})"
+    )
+    declare_argument(drive, "--output", str, "cycles: force or motion conjugate to the input")
+    declare_argument(drive, "--columns", str, "ramp: outputs to print (default: all)", nargs="+")
+    declare_settings(drive)
+    declare_output(drive, "--csv", columns.TABLE, "write every point to a file")
+    declare_output(
+        drive, "--plot", PICTURE, "draw the outputs of a ramp, or loops, loss and stiffness (.png, .svg)"
+    )
 
 
-def _run(args: argparse.Namespace) -> Answer:
+def _run_command(args: argparse.Namespace) -> CommandResult:
     """Run a ramp or load cycles. Raises ValueError if the options describe both or neither."""
     ramp_options, loop_options = (
-        [name for name in names if getattr(args, name) is not None] for names in (RAMP, LOOP)
+        [name for name in names if getattr(args, name) is not None] for names in (RAMP_OPTIONS, LOOP_OPTIONS)
     )
     if args.loop and ramp_options:
         raise ValueError(
-            f"--loop and {flag(ramp_options[0])} are both given; allowed is --loop, or --to with --step"
+            f"--loop and {option_flag(ramp_options[0])} are both given; allowed is --loop, or --to with --step"
         )
     if not args.loop and loop_options:
-        raise ValueError(f"{flag(loop_options[0])} is given without --loop; allowed is with --loop only")
-    if not args.loop and len(ramp_options) < len(RAMP):
+        raise ValueError(
+            f"{option_flag(loop_options[0])} is given without --loop; allowed is with --loop only"
+        )
+    if not args.loop and len(ramp_options) < len(RAMP_OPTIONS):
         raise ValueError("the load is not stated; expected --to with --step, or --loop")
     if args.loop and args.columns:
         raise ValueError("--columns is given with --loop; allowed is with a ramp only")
-    return _loops(args) if args.loop else _ramp(args)
+    return _run_loops(args) if args.loop else _run_ramp(args)
 
 
-def _ramp(args: argparse.Namespace) -> Answer:
-    result = ramp.run(args.fmu, args.input, args.to, args.step, dict(args.settings))
+def _run_ramp(args: argparse.Namespace) -> CommandResult:
+    result = ramp.run_ramp(args.fmu, args.input, args.to, args.step, dict(args.settings))
     for message in result.messages:
         print(message, file=sys.stderr)
-    result = _chosen(result, args.input, args.columns)
+    result = _select_columns(result, args.input, args.columns)
     if args.csv:
         write_text(args.csv, result.csv())
     if args.plot:
         count = len(result.columns) - 1
-        with plots.drawing(args.plot, (4.0 * min(count, 3), 2.8 * math.ceil(count / 3))) as figure:
+        with plots.open_figure(args.plot, (4.0 * min(count, 3), 2.8 * math.ceil(count / 3))) as figure:
             _draw_ramp(figure, result)
     columns = {name: column.tolist() for name, column in result.columns.items()}
     lines = [f"wrote {path}: {len(columns[args.input])} points" for path in (args.csv, args.plot) if path]
     if not lines and not args.json:
-        lines = _table(result) if sys.stdout.isatty() else [result.csv()[:-1]]
-    return Answer(document={"fmu": str(args.fmu), "units": result.units, "columns": columns}, lines=lines)
+        lines = _format_points(result) if sys.stdout.isatty() else [result.csv()[:-1]]
+    return CommandResult(
+        document={"fmu": str(args.fmu), "units": result.units, "columns": columns}, lines=lines
+    )
 
 
-def _chosen(result: ramp.RampResult, driven: str, names: list[str] | None) -> ramp.RampResult:
+def _select_columns(result: ramp.RampResult, varied_input: str, names: list[str] | None) -> ramp.RampResult:
     """Select the varied input and the requested outputs. Raises ValueError for an unknown output."""
     if unknown := [name for name in names or () if name not in result.columns]:
         raise ValueError(f"--columns {unknown[0]}: unknown output, allowed are {', '.join(result.columns)}")
-    selected = list(dict.fromkeys([driven, *(names or result.columns)]))
+    selected = list(dict.fromkeys([varied_input, *(names or result.columns)]))
     return replace(
         result,
         columns={name: result.columns[name] for name in selected},
@@ -97,13 +114,13 @@ def _chosen(result: ramp.RampResult, driven: str, names: list[str] | None) -> ra
     )
 
 
-def _table(result: ramp.RampResult) -> list[str]:
+def _format_points(result: ramp.RampResult) -> list[str]:
     """Format up to MAX_PRINTED_ROWS points of a ramp, first and last included, in display units."""
     count = next(iter(result.columns.values())).size
-    indices = np.unique(np.linspace(0, count - 1, min(count, ROWS)).round().astype(int))
+    indices = np.unique(np.linspace(0, count - 1, min(count, MAX_PRINTED_ROWS)).round().astype(int))
     columns = []
     for name, values in result.columns.items():
-        unit, size = plots.shown(result.units[name], values)
+        unit, size = plots.choose_unit(result.units[name], values)
         columns.append(
             [
                 f"{name}{'' if unit == '1' else f' [{unit}]'}",
@@ -111,16 +128,16 @@ def _table(result: ramp.RampResult) -> list[str]:
             ]
         )
     more = [f"{len(indices)} of {count} points; --csv writes all"] if len(indices) < count else []
-    return [*aligned([*zip(*columns, strict=True)], 0), *more]
+    return [*align_columns([*zip(*columns, strict=True)], 0), *more]
 
 
 def _draw_ramp(figure: "Figure", result: ramp.RampResult) -> None:
     """Draw every output over the varied input."""
     (driven, x), *outputs = result.columns.items()
-    x_unit, x_size = plots.shown(result.units[driven], x)
+    x_unit, x_size = plots.choose_unit(result.units[driven], x)
     axes = figure.subplots(math.ceil(len(outputs) / 3), min(len(outputs), 3), squeeze=False).ravel()
     for panel, (name, y) in zip(axes, outputs, strict=False):
-        unit, size = plots.shown(result.units[name], y)
+        unit, size = plots.choose_unit(result.units[name], y)
         panel.plot(x_size * x, size * y, color=plots.BLUE)
         panel.set_ylabel(f"{name} [{unit}]")
         panel.set_xlabel(f"{driven} [{x_unit}]")
@@ -128,58 +145,58 @@ def _draw_ramp(figure: "Figure", result: ramp.RampResult) -> None:
         panel.set_visible(False)
 
 
-def _loops(args: argparse.Namespace) -> Answer:
-    stated = {name: getattr(args, name) for name in LOOP[:4] if getattr(args, name) is not None}
-    swing = loops.Swing(**stated)
-    found = loops.run(args.fmu, args.input, args.loop, swing, args.output, dict(args.settings))
+def _run_loops(args: argparse.Namespace) -> CommandResult:
+    stated = {name: getattr(args, name) for name in LOOP_OPTIONS[:4] if getattr(args, name) is not None}
+    swing = loops.CyclicPath(**stated)
+    found = loops.run_loops(args.fmu, args.input, args.loop, swing, args.output, dict(args.settings))
     for message in found.messages:
         print(message, file=sys.stderr)
     if args.csv:
         write_text(args.csv, found.csv())
     if args.plot:
-        with plots.drawing(args.plot, (11.4, 3.8)) as figure:
-            _draw(figure, found, swing)
+        with plots.open_figure(args.plot, (11.4, 3.8)) as figure:
+            _draw_loops(figure, found, swing)
     lines, written = found.table().splitlines(), (args.csv, args.plot)
-    return Answer(document=_document(args.fmu, found), lines=lines, written=written)
+    return CommandResult(document=_loops_document(args.fmu, found), lines=lines, written_files=written)
 
 
-def _document(fmu: Path, found: loops.HysteresisLoops) -> dict[str, object]:
+def _loops_document(fmu: Path, hysteresis: loops.HysteresisLoops) -> dict[str, object]:
     """JSON object of load cycles. Forces act on the joint and are positive in the direction of motion."""
-    rows = found.rows()
-    for row, loop in zip(rows, found.loops, strict=True):
-        row |= {"motions": loop.motion.tolist(), "forces": loop.force.tolist(), "closed": loop.closed}
-    names = {"motion": found.motion, "force": found.force, "sign": found.sign}
+    rows = hysteresis.rows()
+    for row, loop in zip(rows, hysteresis.loops, strict=True):
+        row |= {"motions": loop.motion.tolist(), "forces": loop.force.tolist(), "closed": loop.cycle_start}
+    names = {"motion": hysteresis.motion, "force": hysteresis.force, "sign": hysteresis.sign}
     return {
         "fmu": str(fmu),
         **names,
-        "units": dict(zip(("motion", "force"), found.units, strict=True)),
+        "units": dict(zip(("motion", "force"), hysteresis.units, strict=True)),
         "rows": rows,
     }
 
 
-def _draw(figure: "Figure", found: loops.HysteresisLoops, swing: loops.Swing) -> None:
+def _draw_loops(figure: "Figure", hysteresis: loops.HysteresisLoops, swing: loops.CyclicPath) -> None:
     """Draw hysteresis loops with first loading and end points; energy loss and stiffness over amplitude."""
     left, middle, right = figure.subplots(1, 3, width_ratios=(1.3, 1.0, 1.0))
-    cycles = sorted(found.loops, key=lambda loop: loop.amplitudes[0])
+    cycles = sorted(hysteresis.loops, key=lambda loop: loop.amplitudes[0])
     (motion, x_size), (force, y_size) = (
-        plots.shown(unit, np.concatenate([getattr(loop, name) for loop in cycles]))
-        for unit, name in zip(found.units, ("motion", "force"), strict=True)
+        plots.choose_unit(unit, np.concatenate([getattr(loop, name) for loop in cycles]))
+        for unit, name in zip(hysteresis.units, ("motion", "force"), strict=True)
     )
     for loop in cycles:
-        x, y = x_size * loop.motion[loop.closed :], y_size * loop.force[loop.closed :]
+        x, y = x_size * loop.motion[loop.cycle_start :], y_size * loop.force[loop.cycle_start :]
         left.plot(x, y, color=plots.BLUE, lw=1.2)
     first = slice(None, swing.points // 4 + 1)
     left.plot(x_size * cycles[-1].motion[first], y_size * cycles[-1].force[first], "--", color=plots.RED)
     ends = np.array([(x_size * loop.motion[-1], y_size * loop.force[-1]) for loop in cycles])
     left.plot(*ends.T, "o", color=plots.RED, ms=4, label="first loading, ends of the loops")
-    left.set_xlabel(f"{found.motion} [{motion}]")
-    left.set_ylabel(f"{'-' if found.sign < 0.0 else ''}{found.force} [{force}]")
+    left.set_xlabel(f"{hysteresis.motion} [{motion}]")
+    left.set_ylabel(f"{'-' if hysteresis.sign < 0.0 else ''}{hysteresis.force} [{force}]")
     left.legend(loc="lower right")
     rows = [loop.row() for loop in cycles]
     amplitude, stiffness, loss = (
         np.array([row[name] for row in rows]) for name in ("motion", "secant_stiffness", "loss")
     )
-    unit, size = plots.shown(found.row_units["secant_stiffness"], stiffness)
+    unit, size = plots.choose_unit(hysteresis.row_units["secant_stiffness"], stiffness)
     for axes, y, label in (
         (middle, loss, "energy loss per cycle [J]"),
         (right, size * stiffness, f"secant stiffness [{unit}]"),

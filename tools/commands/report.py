@@ -3,26 +3,28 @@
 import argparse
 from pathlib import Path
 
-from jointfmu.files.outputs import PAGE
+from jointfmu.files.outputs import HTML_PAGE
 
-from ..command_line.common import Answer, Commands, argument, command
-from ..command_line.outputs import output
+from ..command_line.common import CommandResult, SubParsers, declare_argument, declare_command
+from ..command_line.outputs import declare_output
 from ..interface.make import load
 
 
-def add(commands: Commands) -> None:
+def add(commands: SubParsers) -> None:
     """Declare the command `jointfmu report` with its options."""
     text = "write a page about one joint: curves, loops, friction, sources of the numbers, validity"
-    make = command(commands, "report", _report, text)
-    argument(make, "file", Path, "parameter file (TOML), or name of an FMU, a joint or a catalogue entry")
-    argument(make, "--fmu", str, "FMU of the joint that the page describes (default: the first)")
-    output(make, "--out", PAGE, "page to write (.html; default: FILE.html in this folder)")
+    make = declare_command(commands, "report", _run_report, text)
+    declare_argument(
+        make, "file", Path, "parameter file (TOML), or name of an FMU, a joint or a catalogue entry"
+    )
+    declare_argument(make, "--fmu", str, "FMU of the joint that the page describes (default: the first)")
+    declare_output(make, "--out", HTML_PAGE, "page to write (.html; default: FILE.html in this folder)")
 
 
-def _report(args: argparse.Namespace) -> Answer:
+def _run_report(args: argparse.Namespace) -> CommandResult:
     joint = load(args.file)
     out: Path = args.out or Path(f"{args.file.stem}.html")
     if out.suffix != ".html":
         raise ValueError(f"--out {out} has the ending {out.suffix!r}, allowed is .html")
     joint.report(out, args.fmu, force=args.force)
-    return Answer(document={"report": str(out)}, written=[out])
+    return CommandResult(document={"report": str(out)}, written_files=[out])

@@ -10,72 +10,79 @@ import numpy as np
 
 from jointfmu.files.outputs import PICTURE
 from jointfmu.files.writing import write_text
-from jointfmu.mechanics.steps import stable_steps
+from jointfmu.mechanics.steps import largest_stable_steps
 
 from .. import columns
-from ..command_line.common import Answer, Commands, argument, command, needing, settings
-from ..command_line.outputs import output
+from ..command_line.common import (
+    CommandResult,
+    SubParsers,
+    declare_argument,
+    declare_command,
+    declare_settings,
+    require_package,
+)
+from ..command_line.outputs import declare_output
 from ..systems.system import names, system
-from . import draw
+from . import save_panels
 
 
-def add(commands: Commands) -> None:
+def add(commands: SubParsers) -> None:
     """Declare the command `jointfmu ring` with its options."""
     text = "simulate a joint with a body on it and find resonance and damping over load or amplitude"
-    ring = command(commands, "ring", _ring, text)
-    argument(ring, "system", str, f"{', '.join(names())}, or a system's file (TOML)", "SYSTEM")
-    argument(ring, "--joint", str, "joint to examine, if the system has several")
+    ring = declare_command(commands, "ring", _run_ring, text)
+    declare_argument(ring, "system", str, f"{', '.join(names())}, or a system's file (TOML)", "SYSTEM")
+    declare_argument(ring, "--joint", str, "joint to examine, if the system has several")
     text = "folder with the FMUs of `jointfmu system` or `build --systems`"
-    argument(ring, "--fmus", Path, text, "DIR", default=Path("dist/fmi2"))
+    declare_argument(ring, "--fmus", Path, text, "DIR", default=Path("dist/fmi2"))
     text = "load of the joint: preload of a bolt [N], torque at the output [N.m] (default: a series of loads)"
-    argument(ring, "--load", float, text, nargs="+")
+    declare_argument(ring, "--load", float, text, nargs="+")
     text = "mass or moment of inertia of the body [kg or kg.m2] (default: of the system)"
-    argument(ring, "--inertia", float, text)
+    declare_argument(ring, "--inertia", float, text)
     text = "simulate a free decay from this deflection [m or rad] in the direction in which the joint slips, "
     text += "and print frequency and damping over the amplitude (default load: the largest of the series)"
-    argument(ring, "--amplitude", float, text)
-    settings(ring)
-    output(ring, "--csv", columns.TABLE, "write the table to a file")
-    output(ring, "--plot", PICTURE, "draw resonance and decay (.png, .svg)")
+    declare_argument(ring, "--amplitude", float, text)
+    declare_settings(ring)
+    declare_output(ring, "--csv", columns.TABLE, "write the table to a file")
+    declare_output(ring, "--plot", PICTURE, "draw resonance and decay (.png, .svg)")
 
 
-def _ring(args: argparse.Namespace) -> Answer:
-    with needing("run a system"):
+def _run_ring(args: argparse.Namespace) -> CommandResult:
+    with require_package("run a system"):
         from ..systems import ringing
     example = ringing.vibrating_joint(system(args.system), args.joint)
-    _check(args, example.inertia_unit)
+    _check_arguments(args, example.inertia_unit)
     for name in (example.fmu, example.body.partner):
         if not (args.fmus / f"{name}.fmu").is_file():
             raise ValueError(
                 f"--fmus {args.fmus}: has no {name}.fmu; `jointfmu system {args.system}` writes it"
             )
     if args.amplitude is not None:
-        return _decays(args, example)
+        return _run_decays(args, example)
     if args.settings:
         raise ValueError("--set is given without --amplitude; allowed is with --amplitude only")
     points = ringing.ring(example, args.fmus, args.load, args.inertia)
-    rows = [_row(point) for point in points]
+    rows = [_resonance_row(point) for point in points]
     for message in dict.fromkeys(text for point in points for text in point.messages):
         print(message, file=sys.stderr)
-    table = _table(rows, example.load_unit)
+    table = _format_rows(rows, example.load_unit)
     if args.csv:
         write_text(args.csv, table)
     if args.plot:
-        from ..report.systems import SIZE, resonance_panels
+        from ..report.systems import RESONANCE_SIZE, resonance_panels
 
-        draw(args.plot, resonance_panels(points, example, args.fmus), SIZE)
+        save_panels(args.plot, resonance_panels(points, example, args.fmus), RESONANCE_SIZE)
     misses = [line for point in points for line in point.misses]
     for line in misses:
         print(f"missed: {line}", file=sys.stderr)
-    return Answer(
+    return CommandResult(
         document={"system": args.system, "rows": rows, "missed": len(misses)},
         lines=table.splitlines(),
-        written=(args.csv, args.plot),
-        status=int(bool(misses)),
+        written_files=(args.csv, args.plot),
+        exit_status=int(bool(misses)),
     )
 
 
-def _decays(args: argparse.Namespace, example: Any) -> Answer:
+def _run_decays(args: argparse.Namespace, example: Any) -> CommandResult:
     """Simulate free decays: frequency and damping over the amplitude."""
     from ..systems import decays
 
@@ -91,20 +98,20 @@ def _decays(args: argparse.Namespace, example: Any) -> Answer:
         "damping_ratio": "1",
         "loop_damping_ratio": "1",
     }
-    values = [np.concatenate(column) for column in zip(*map(_falling, points), strict=True)]
-    table = columns.text(list(heads.items()), values, digits=6)
+    values = [np.concatenate(column) for column in zip(*map(_decay_columns, points), strict=True)]
+    table = columns.format_table(list(heads.items()), values, digits=6)
     if args.csv:
         write_text(args.csv, table)
     if args.plot:
-        from ..report.systems import WIDE, decay_panels
+        from ..report.systems import DECAY_SIZE, decay_panels
 
-        draw(args.plot, decay_panels(points, body), WIDE)
+        save_panels(args.plot, decay_panels(points, body), DECAY_SIZE)
     rows = [dict(zip(heads, row, strict=True)) for row in np.stack(values, axis=1).tolist()]
     document, written = {"system": args.system, "rows": rows}, (args.csv, args.plot)
-    return Answer(document=document, lines=table.splitlines(), written=written)
+    return CommandResult(document=document, lines=table.splitlines(), written_files=written)
 
 
-def _falling(point: Any) -> tuple[np.ndarray[Any, Any], ...]:
+def _decay_columns(point: Any) -> tuple[np.ndarray[Any, Any], ...]:
     """Columns of a free decay: load, amplitude, frequency [Hz] and damping ratio [1], each of decay and loop.
 
     The loop is the joint's hysteresis loop of the same amplitude.
@@ -120,7 +127,7 @@ def _falling(point: Any) -> tuple[np.ndarray[Any, Any], ...]:
     )
 
 
-def _check(args: argparse.Namespace, unit: str) -> None:
+def _check_arguments(args: argparse.Namespace, inertia_unit: str) -> None:
     """Raise ValueError before the work starts if load, inertia or amplitude is out of range.
 
     inertia_unit : unit of the inertia in the message
@@ -129,18 +136,18 @@ def _check(args: argparse.Namespace, unit: str) -> None:
         if not math.isfinite(value):
             raise ValueError(f"load = {value:g} is outside (-inf, inf): must be finite")
     if args.inertia is not None and not 0.0 < args.inertia < math.inf:
-        raise ValueError(f"inertia = {args.inertia:g} {unit} is outside (0, inf)")
+        raise ValueError(f"inertia = {args.inertia:g} {inertia_unit} is outside (0, inf)")
     if args.amplitude is not None and not 0.0 < args.amplitude < math.inf:
         raise ValueError(f"amplitude = {args.amplitude:g} is outside (0, inf)")
 
 
-def _row(point: Any) -> dict[str, float]:
+def _resonance_row(point: Any) -> dict[str, float]:
     """Results at one load: frequencies [Hz], damping ratios [1], and the largest stable time steps [s].
 
     `largest_step` holds if the co-simulation master passes the force on at once, `largest_step_late` if it
     passes the force on one step late.
     """
-    at_once, late = stable_steps(point.expected**2, 2.0 * point.stated * point.expected, 1.0)
+    at_once, late = largest_stable_steps(point.expected**2, 2.0 * point.stated * point.expected, 1.0)
     return {
         "load": point.load,
         "frequency": point.frequency / math.tau,
@@ -152,8 +159,8 @@ def _row(point: Any) -> dict[str, float]:
     }
 
 
-def _table(rows: list[dict[str, float]], load: str) -> str:
+def _format_rows(rows: list[dict[str, float]], load_unit: str) -> str:
     """Format the rows as CSV text with six digits; headings with units."""
-    units = (load, "Hz", "Hz", "1", "1", "s", "s")
+    units = (load_unit, "Hz", "Hz", "1", "1", "s", "s")
     values = [np.array([row[name] for row in rows]) for name in rows[0]]
-    return columns.text(list(zip(rows[0], units, strict=True)), values, digits=6)
+    return columns.format_table(list(zip(rows[0], units, strict=True)), values, digits=6)

@@ -6,36 +6,42 @@ from pathlib import Path
 from typing import Any
 
 from jointfmu.files.outputs import (
+    EXCHANGE_TEXT,
     FOLDER,
-    MARK,
-    PARAMETERS,
+    PARAMETER_FILE,
     PICTURE,
-    TEXT,
+    PROGRAM_MARK,
     check_output,
     check_outputs,
     write_parameter_text,
 )
 from jointfmu.files.writing import write_text
-from jointfmu.parameters import dump
+from jointfmu.parameters import format_parameter_file
 
 from .. import plots
-from ..command_line.common import Answer, Commands, argument, command, needing
-from ..command_line.outputs import check_inputs, output
+from ..command_line.common import (
+    CommandResult,
+    SubParsers,
+    declare_argument,
+    declare_command,
+    require_package,
+)
+from ..command_line.outputs import check_input_overwrite, declare_output
 
-MOST = 1e4
+MAX_PAYLOAD = 1e4
 """Largest allowed payload [kg]."""
 
 
-def add(commands: Commands) -> None:
+def add(commands: SubParsers) -> None:
     """Declare the command `jointfmu robot` with its options."""
     text = "add elastic drives to joints of a robot (MJCF, URDF)"
-    sub = command(commands, "robot", run, text)
+    sub = declare_command(commands, "robot", run, text)
     several: dict[str, Any] = {"nargs": "+", "action": "extend"}
-    argument(sub, "robot", Path, "robot file, MJCF or URDF", "ROBOT")
+    declare_argument(sub, "robot", Path, "robot file, MJCF or URDF", "ROBOT")
     text = "joint and its drive: a name of the catalogue or a parameter file"
-    argument(sub, "--drive", str, text, "JOINT=NAME", required=True, **several)
-    argument(sub, "--payload", float, "mass at the tip [kg]", "M", default=1.0)
-    argument(sub, "--tip", str, "body whose origin is the tip (default: the last body)", "BODY")
+    declare_argument(sub, "--drive", str, text, "JOINT=NAME", required=True, **several)
+    declare_argument(sub, "--payload", float, "mass at the tip [kg]", "M", default=1.0)
+    declare_argument(sub, "--tip", str, "body whose origin is the tip (default: the last body)", "BODY")
     sub.add_argument(
         "--pose",
         nargs="+",
@@ -49,22 +55,22 @@ def add(commands: Commands) -> None:
     sub.add_argument("--plugin", action="store_true", help=text)
     text = "also write one FMU of all axes at the pose, and its system file"
     sub.add_argument("--fmu", action="store_true", help=text)
-    output(sub, "--out", FOLDER, "folder to write", required=True)
+    declare_output(sub, "--out", FOLDER, "folder to write", required=True)
 
 
-def run(args: argparse.Namespace) -> Answer:
+def run(args: argparse.Namespace) -> CommandResult:
     """Run the command `jointfmu robot`."""
-    names, angles = _pairs(args.drive, "--drive", "NAME"), _pairs(args.pose, "--pose", "ANGLE")
-    if not 0.0 <= args.payload <= MOST:
-        raise ValueError(f"--payload = {args.payload:g} kg is outside [0, {MOST:g}] kg")
+    names, angles = _parse_pairs(args.drive, "--drive", "NAME"), _parse_pairs(args.pose, "--pose", "ANGLE")
+    if not 0.0 <= args.payload <= MAX_PAYLOAD:
+        raise ValueError(f"--payload = {args.payload:g} kg is outside [0, {MAX_PAYLOAD:g}] kg")
     pictures = args.out / "frequencies.png", args.out / "payload.png"
-    plots.check(pictures[0])
+    plots.check_picture(pictures[0])
     check_outputs(pictures, PICTURE, args.force)
     written = args.out / f"{args.robot.stem}_elastic.xml"
     models = [written, *([args.out / f"{args.robot.stem}_plugin.xml"] if args.plugin else [])]
-    check_inputs(models, args, ("out",))
-    check_outputs(models, TEXT, args.force)
-    with needing("read robots", "mujoco"):
+    check_input_overwrite(models, args, ("out",))
+    check_outputs(models, EXCHANGE_TEXT, args.force)
+    with require_package("read robots", "mujoco"):
         import mujoco  # noqa: F401
     from ..interface import load
     from ..robots import elastic, poses
@@ -72,33 +78,33 @@ def run(args: argparse.Namespace) -> Answer:
     from ..robots.names import check_names, identifier
     from ..robots.transmission import transmission
 
-    spec = elastic.read(args.robot)
+    spec = elastic.read_robot(args.robot)
     files = {joint: load(name).file for joint, name in names.items()}
     if args.plugin or args.fmu:
         check_names(files)
     if args.fmu:
         outputs = [*(identifier(file.name) for file in files.values()), f"{identifier(args.robot.stem)}_axes"]
         for path in (args.out / f"{name}.toml" for name in outputs):
-            check_inputs([path], args, ("out",))
-            check_output(path, PARAMETERS, args.force)
+            check_input_overwrite([path], args, ("out",))
+            check_output(path, PARAMETER_FILE, args.force)
     axes = elastic.axes(spec, {joint: transmission(file) for joint, file in files.items()})
     model = spec.compile()
-    pose, tip = elastic.posed(model, angles), elastic.body(model, args.tip, axes)
+    pose, tip = elastic.joint_positions(model, angles), elastic.body(model, args.tip, axes)
     made = elastic.with_drives(spec, axes)
     elastic.keep_folders(made, args.robot)
     made.compile()
-    write_text(written, f"<!-- {MARK} -->\n{made.to_xml()}")
+    write_text(written, f"<!-- {PROGRAM_MARK} -->\n{made.to_xml()}")
     grid, found = drawn.over_poses(model, axes, pose, args.payload, tip)
     drawn.draw_frequencies(pictures[0], axes, grid, found)
     if not angles:
         pose = drawn.lowest(model, axes, pose, grid, args.payload, tip)
     wound, sunk = drawn.draw_payload(pictures[1], model, axes, pose, args.payload, tip)
     more = []
-    with needing("compile", "mujoco"):
+    with require_package("compile", "mujoco"):
         if args.plugin:
-            more += _plugged(args, spec, axes, files)
+            more += _write_plugin_robot(args, spec, axes, files)
         if args.fmu:
-            more += _system(args, model, axes, files, pose, tip)
+            more += _write_axes_system(args, model, axes, files, pose, tip)
     longest = poses.longest_step(model, axes, pose)
     weight, jacobian = poses.torques(model, axes, pose, args.payload, tip)
     plain, plain_sunk = poses.sag(model, axes, pose, args.payload, tip, [axis.fitted for axis in axes])
@@ -141,20 +147,22 @@ def run(args: argparse.Namespace) -> Answer:
         "longest_step": longest,
         "notes": notes,
     }
-    return Answer(document=facts, lines=_lines(facts, model))
+    return CommandResult(document=facts, lines=_format_results(facts, model))
 
 
-def _plugged(args: argparse.Namespace, spec: Any, axes: Any, files: Any) -> list[Path]:
+def _write_plugin_robot(args: argparse.Namespace, spec: Any, axes: Any, files: Any) -> list[Path]:
     """Write the robot with MuJoCo plugins, and compile the plugins; returns the paths."""
     from ..robots import elastic, plugged
 
     elastic.keep_folders(spec, args.robot)
     written = args.out / f"{args.robot.stem}_plugin.xml"
-    write_text(written, f"<!-- {MARK} -->\n{plugged.text(spec, axes, files)}")
+    write_text(written, f"<!-- {PROGRAM_MARK} -->\n{plugged.text(spec, axes, files)}")
     return [written, *plugged.plugins(files, args.out).values()]
 
 
-def _system(args: argparse.Namespace, model: Any, axes: Any, files: Any, pose: Any, tip: int) -> list[Path]:
+def _write_axes_system(
+    args: argparse.Namespace, model: Any, axes: Any, files: Any, pose: Any, tip: int
+) -> list[Path]:
     """Write the system file of the axes, the parameter files of their drives, and the FMUs.
 
     Returns the paths of the system file and the FMUs.
@@ -163,19 +171,19 @@ def _system(args: argparse.Namespace, model: Any, axes: Any, files: Any, pose: A
     from ..robots.names import identifier
     from ..systems.fmu.assembly import assembly
     from ..systems.fmu.build import build_system
-    from ..systems.system import read
+    from ..systems.system import read_system
 
     written = args.out / f"{identifier(args.robot.stem)}_axes.toml"
-    drives = {identifier(file.name): dump(file) for file in files.values()}
+    drives = {identifier(file.name): format_parameter_file(file) for file in files.values()}
     for name, text in drives.items():
         write_parameter_text(args.out / f"{name}.toml", text)
     write_parameter_text(
         written, axes_system.text(args.robot.stem, model, axes, files, pose, args.payload, tip)
     )
-    return [written, *build_system(assembly(read(written)), args.out, force=args.force)]
+    return [written, *build_system(assembly(read_system(written)), args.out, force=args.force)]
 
 
-def _lines(facts: dict[str, Any], model: Any) -> Sequence[str]:
+def _format_results(facts: dict[str, Any], model: Any) -> Sequence[str]:
     from ..robots.elastic import unit
 
     span, payload, plain = facts["frequencies"], facts["payload"], facts["plain"]
@@ -196,7 +204,7 @@ def _lines(facts: dict[str, Any], model: Any) -> Sequence[str]:
     ]
 
 
-def _pairs(words: Sequence[str], option: str, value: str) -> dict[str, str]:
+def _parse_pairs(words: Sequence[str], option: str, value: str) -> dict[str, str]:
     """Parse JOINT=VALUE words into {joint: text}. Raises ValueError for a wrong word or a repeated joint."""
     pairs: dict[str, str] = {}
     for word in words:

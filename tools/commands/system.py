@@ -3,32 +3,38 @@
 import argparse
 from pathlib import Path
 
-from jointfmu.files.outputs import ARCHIVE, FOLDER, PICTURE, TEXT, check_output, check_outputs
+from jointfmu.files.outputs import ARCHIVE, EXCHANGE_TEXT, FOLDER, PICTURE, check_output, check_outputs
 from jointfmu.files.writing import write_text
 
 from .. import columns
-from ..command_line.common import Answer, Commands, argument, command, needing
-from ..command_line.outputs import output
+from ..command_line.common import (
+    CommandResult,
+    SubParsers,
+    declare_argument,
+    declare_command,
+    require_package,
+)
+from ..command_line.outputs import declare_output
 from ..systems.system import System, names, system
-from . import draw
+from . import save_panels
 
 
-def add(commands: Commands) -> None:
+def add(commands: SubParsers) -> None:
     """Declare the command `jointfmu system` with its options."""
     text = "build a system of joints and bodies: FMUs, SSP archives and a Modelica model"
-    make = command(commands, "system", _system, text)
-    argument(make, "file", str, f"system file (TOML), or {', '.join(names())}", "FILE")
-    output(make, "--out", FOLDER, "folder to write", default=Path("dist"))
+    make = declare_command(commands, "system", _run_system, text)
+    declare_argument(make, "file", str, f"system file (TOML), or {', '.join(names())}", "FILE")
+    declare_output(make, "--out", FOLDER, "folder to write", default=Path("dist"))
     text = "also build one FMU of the whole system: NAME.fmu, FMI 2.0 and 3.0"
     make.add_argument("--fmu", action="store_true", help=text)
-    output(make, "--csv", columns.TABLE, "simulate the system and write all connected outputs")
+    declare_output(make, "--csv", columns.TABLE, "simulate the system and write all connected outputs")
     text = "simulate the system and draw the joint loads; for an arm also wind-up and tip error (.png, .svg)"
-    output(make, "--plot", PICTURE, text)
+    declare_output(make, "--plot", PICTURE, text)
 
 
-def _system(args: argparse.Namespace) -> Answer:
+def _run_system(args: argparse.Namespace) -> CommandResult:
     described = system(args.file)
-    with needing("build a system"):
+    with require_package("build a system"):
         from ..modelica import library
         from ..modelica.systems import model_name
         from ..systems import ssp
@@ -36,12 +42,12 @@ def _system(args: argparse.Namespace) -> Answer:
         from ..systems.steps import longest_step
 
         whole = assembly(described) if args.fmu else None
-        model = library.system_text(described)
+        model = library.render_system(described)
         step = longest_step(described)
-        if (args.csv or args.plot) and (warning := _beyond(described, *step)):
+        if (args.csv or args.plot) and (warning := _warn_long_step(described, *step)):
             raise ValueError(f"{args.file}: {warning}; allowed is a shorter one, or neither --csv nor --plot")
         written = args.out / "modelica" / f"{model_name(described)}.mo"
-        check_output(written, TEXT, args.force)
+        check_output(written, EXCHANGE_TEXT, args.force)
         if whole:
             from ..systems.fmu.build import build_system, fmu_paths
 
@@ -62,25 +68,25 @@ def _system(args: argparse.Namespace) -> Answer:
             raise ValueError(f"{error}; {text}") from None
         step = min(step, longest_step(described, run))
         if args.csv:
-            units = systems.units(described)
+            units = systems.output_units(described)
             heads = [(name, units[name]) for name in run]
-            write_text(args.csv, columns.text(heads, list(run.values()), digits=12))
+            write_text(args.csv, columns.format_table(heads, list(run.values()), digits=12))
         if args.plot:
-            draw(args.plot, systems.panels(described, run), systems.MOTION_SIZE)
+            save_panels(args.plot, systems.system_panels(described, run), systems.MOTION_SIZE)
         paths += [path for path in (args.csv, args.plot) if path]
-    notes = [f"warning: {text}" for text in (_beyond(described, *step),) if text]
+    notes = [f"warning: {text}" for text in (_warn_long_step(described, *step),) if text]
     texts = [str(path) for path in paths]
     document = {"system": described.name, "built": texts, "longest_step": step[0], "notes": notes}
-    return Answer(document=document, lines=[f"built {path}" for path in texts], notes=notes)
+    return CommandResult(document=document, lines=[f"built {path}" for path in texts], notes=notes)
 
 
-def _beyond(system: System, longest: float, joint: str) -> str:
+def _warn_long_step(system: System, largest_step: float, joint: str) -> str:
     """Format a warning if the system's interval is longer than the largest stable step; else empty.
 
     largest_step : largest stable step [s] of a co-simulation
     joint        : joint that limits the step
     """
-    if system.interval <= longest:
+    if system.interval <= largest_step:
         return ""
-    stated = f"experiment.interval = {system.interval:g} s is longer than {longest:.3g} s"
+    stated = f"experiment.interval = {system.interval:g} s is longer than {largest_step:.3g} s"
     return f"{stated}, the largest stable step of {joint} for a parallel (Jacobi) master"

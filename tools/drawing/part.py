@@ -9,12 +9,12 @@ from typing import Any
 
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile
-from jointfmu.quantity import build, flat_fields
+from jointfmu.quantity import build_parameter_set, flat_fields
 
-from ..catalogue import Printed
+from ..catalogue import SourcedNumber
 from ..joint_parts import Option
 
-Given = Mapping[str, Any]
+DrawingOptions = Mapping[str, Any]
 """{option: its text, a list of texts, or a bool for a flag; None if the user does not set the option}."""
 
 
@@ -33,7 +33,7 @@ class NewJoint:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Drawing:
+class NewJointCommand:
     """How `jointfmu new` makes a joint from a drawing: its options and its function.
 
     description : the joint in words
@@ -42,14 +42,14 @@ class Drawing:
     make_joint  : options -> new joint; loads the modules of the joint. Raises ValueError for bad input
     """
 
-    text: str
+    description: str
     example: str
     options: Sequence[Option]
-    run: Callable[[Given], NewJoint]
+    make_joint: Callable[[DrawingOptions], NewJoint]
 
 
 @dataclass(slots=True)
-class Sheet:
+class ParameterSheet:
     """Parameters of a new joint while they are collected, each with its origin and source.
 
     entries   : {structured name: (value, kind, source)}
@@ -60,46 +60,46 @@ class Sheet:
 
     joint: str
     law: str
-    known: dict[str, tuple[object, str, str]] = field(default_factory=dict)
+    entries: dict[str, tuple[object, str, str]] = field(default_factory=dict)
     inputs: dict[str, float] = field(default_factory=dict)
     ranges: dict[str, tuple[float, float]] = field(default_factory=dict)
     roughness: dict[str, tuple[float, str, str]] = field(default_factory=dict)
 
-    def put(self, name: str, value: Any, kind: str, source: str) -> None:
+    def add(self, name: str, value: Any, kind: str, source: str) -> None:
         """Add a parameter; with the prefix `inputs.`, the start value of an input."""
         if name.startswith("inputs."):
             self.inputs[name.removeprefix("inputs.")] = value
-        self.known[name] = (value, kind, source)
+        self.entries[name] = (value, kind, source)
 
-    def between(self, name: str, low: float, high: float) -> None:
+    def set_range(self, name: str, low: float, high: float) -> None:
         """Set the lower and upper limit that the source of a parameter states."""
         self.ranges[name] = (low, high)
 
-    def stated(self, name: str, value: object) -> None:
+    def add_stated(self, name: str, value: object) -> None:
         """Add a parameter that the user states on the drawing."""
-        self.put(name, value, "user", "stated on the drawing")
+        self.add(name, value, "user", "stated on the drawing")
 
-    def take(self, name: str, known: Printed) -> None:
+    def add_sourced(self, name: str, number: SourcedNumber) -> None:
         """Add a parameter with the value and source of a tabulated number."""
-        self.put(name, known.value, known.kind, known.source)
+        self.add(name, number.value, number.kind, number.source)
 
-    def value(self, name: str) -> Any:
-        return self.known[name][0]
+    def value_of(self, name: str) -> Any:
+        return self.entries[name][0]
 
-    def file(self, name: str) -> ParameterFile:
+    def build_file(self, name: str) -> ParameterFile:
         """Build the parameter file of that name. Parameters that the joint's law does not have are left out.
 
         Raises ValueError for a value outside its interval or a missing one, as `quantity.build`.
         """
         cls = KINDS[self.joint].laws[self.law]
         declared = {key for key, _ in flat_fields(cls)}
-        parameters = {key: entry for key, entry in self.known.items() if key in declared}
-        starts = {key: entry for key, entry in self.known.items() if key.startswith("inputs.")}
+        parameters = {key: entry for key, entry in self.entries.items() if key in declared}
+        starts = {key: entry for key, entry in self.entries.items() if key.startswith("inputs.")}
         entries = parameters | starts
         file = ParameterFile(
             self.joint,
             name,
-            build(cls, {key: value for key, (value, _, _) in parameters.items()}),
+            build_parameter_set(cls, {key: value for key, (value, _, _) in parameters.items()}),
             {key: kind for key, (_, kind, _) in entries.items()},
             {key: source for key, (_, _, source) in entries.items()},
             self.inputs,

@@ -4,15 +4,17 @@ import math
 import re
 from collections.abc import Sequence
 
-from jointfmu.quantity.units import KELVIN_AT_ZERO, LUBRICANTS, factor
+from jointfmu.quantity.units import KELVIN_AT_ZERO, LUBRICANT_TEMPERATURES, conversion_factor
 
-from ..command_line.common import flag
+from ..command_line.common import option_flag
 
 _TEMPERATURE = re.compile(r"([+-]?\d+(?:\.\d*)?)\s*(K|degC|°C|C|)")
 _NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?)\s*(.*)", re.IGNORECASE)
 
 
-def number(name: str, text: str, unit: str, to: str, least: float | None = 0.0) -> float:
+def parse_number(
+    option: str, text: str, unit: str, target_unit: str, lower_bound: float | None = 0.0
+) -> float:
     """Parse the number of an option.
 
     option      : name of the option, for the error
@@ -27,52 +29,61 @@ def number(name: str, text: str, unit: str, to: str, least: float | None = 0.0) 
     if unit == "1":
         example = "expected a number without a unit"
     if not match:
-        raise ValueError(f"{flag(name)} = {text!r} is no number; {example}")
+        raise ValueError(f"{option_flag(option)} = {text!r} is no number; {example}")
     try:
-        value = float(match[1]) * factor(match[2] or unit, to)
+        value = float(match[1]) * conversion_factor(match[2] or unit, target_unit)
     except ValueError as error:
-        raise ValueError(f"{flag(name)} = {text!r}: {error}; {example}") from None
-    if not math.isfinite(value) or (least is not None and not value > least):
-        low = "-inf" if least is None else f"{least:g}"
-        raise ValueError(f"{flag(name)} = {text!r} is outside ({low}, inf)")
+        raise ValueError(f"{option_flag(option)} = {text!r}: {error}; {example}") from None
+    if not math.isfinite(value) or (lower_bound is not None and not value > lower_bound):
+        low = "-inf" if lower_bound is None else f"{lower_bound:g}"
+        raise ValueError(f"{option_flag(option)} = {text!r} is outside ({low}, inf)")
     return value
 
 
-def temperature(name: str, text: str) -> float:
+def parse_temperature(option: str, text: str) -> float:
     """Parse the temperature [K] of an option, stated in degC or with the unit K.
 
     Raises ValueError for text that is no temperature, or outside the range LUBRICANTS of lubricants.
     """
     match = _TEMPERATURE.fullmatch(text.strip())
     if not match:
-        raise ValueError(f"{flag(name)} = {text!r} is no temperature; expected 45, 45degC or 318.15K")
-    kelvin = float(match[1]) + (0.0 if match[2] == "K" else KELVIN_AT_ZERO)
-    if not LUBRICANTS[0] <= kelvin <= LUBRICANTS[1]:
-        low, high = (end - KELVIN_AT_ZERO for end in LUBRICANTS)
         raise ValueError(
-            f"{flag(name)} = {text!r} is {kelvin:g} K, outside [{low:g}, {high:g}] degC; kelvin are stated "
+            f"{option_flag(option)} = {text!r} is no temperature; expected 45, 45degC or 318.15K"
+        )
+    kelvin = float(match[1]) + (0.0 if match[2] == "K" else KELVIN_AT_ZERO)
+    if not LUBRICANT_TEMPERATURES[0] <= kelvin <= LUBRICANT_TEMPERATURES[1]:
+        low, high = (end - KELVIN_AT_ZERO for end in LUBRICANT_TEMPERATURES)
+        raise ValueError(
+            f"{option_flag(option)} = {text!r} is {kelvin:g} K, outside [{low:g}, {high:g}] degC; kelvin are stated "
             "as 318.15K"
         )
     return kelvin
 
 
-def numbers(
-    name: str, text: str, unit: str, to: str, *, by: str, count: int, least: float | None = 0.0
+def parse_numbers(
+    option: str,
+    text: str,
+    unit: str,
+    target_unit: str,
+    *,
+    separator: str,
+    count: int,
+    lower_bound: float | None = 0.0,
 ) -> list[float]:
     """Parse `count` numbers with a separator between them: 200x100.
 
     Raises ValueError for another count, and as `parse_number`.
     """
-    words = text.split(by)
+    words = text.split(separator)
     if len(words) != count:
-        example = by.join(["200", "100"][:count])
+        example = separator.join(["200", "100"][:count])
         raise ValueError(
-            f"{flag(name)} = {text!r} has {len(words)} numbers, expected {count}, as in {example}"
+            f"{option_flag(option)} = {text!r} has {len(words)} numbers, expected {count}, as in {example}"
         )
-    return [number(name, word, unit, to, least) for word in words]
+    return [parse_number(option, word, unit, target_unit, lower_bound) for word in words]
 
 
-def both(name: str, texts: Sequence[str] | None) -> tuple[str, str] | None:
+def expand_to_sides(option: str, texts: Sequence[str] | None) -> tuple[str, str] | None:
     """Expand one or two texts to a text for each side; None if there is none.
 
     Raises ValueError for more than two texts.
@@ -80,5 +91,7 @@ def both(name: str, texts: Sequence[str] | None) -> tuple[str, str] | None:
     if not texts:
         return None
     if len(texts) > 2:
-        raise ValueError(f"{flag(name)} has {len(texts)} values, expected one for both sides or one of each")
+        raise ValueError(
+            f"{option_flag(option)} has {len(texts)} values, expected one for both sides or one of each"
+        )
     return texts[0], texts[-1]

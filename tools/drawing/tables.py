@@ -7,24 +7,24 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from jointfmu.parameters import entries, read_document
-from jointfmu.quantity import quantity
-from jointfmu.quantity.units import factor
+from jointfmu.parameters import read_document, read_entries
+from jointfmu.quantity import quantity_field
+from jointfmu.quantity.units import conversion_factor
 
-from ..catalogue import Printed
+from ..catalogue import SourcedNumber
 
-MATERIAL = {
-    "E": quantity("Pa", "Young's modulus"),
-    "nu": quantity("1", "Poisson's ratio"),
-    "density": quantity("kg/m3", "density"),
-    "H": quantity("Pa", "hardness"),
+MATERIAL_COLUMNS = {
+    "E": quantity_field("Pa", "Young's modulus"),
+    "nu": quantity_field("1", "Poisson's ratio"),
+    "density": quantity_field("kg/m3", "density"),
+    "H": quantity_field("Pa", "hardness"),
 }
-FINISH = {
-    "Ra": quantity("m", "usual Ra"),
-    "Ra_low": quantity("m", "least Ra"),
-    "Ra_high": quantity("m", "greatest Ra"),
-    "slope": quantity("1", "rms slope of one surface"),
-    "hurst": quantity("1", "Hurst exponent"),
+FINISH_COLUMNS = {
+    "Ra": quantity_field("m", "usual Ra"),
+    "Ra_low": quantity_field("m", "least Ra"),
+    "Ra_high": quantity_field("m", "greatest Ra"),
+    "slope": quantity_field("1", "rms slope of one surface"),
+    "hurst": quantity_field("1", "Hurst exponent"),
 }
 
 
@@ -33,39 +33,41 @@ class TableRow:
     """A row of a table: name, other names, title, and {column: number}."""
 
     name: str
-    also: tuple[str, ...]
+    aliases: tuple[str, ...]
     title: str
-    numbers: Mapping[str, Printed]
+    numbers: Mapping[str, SourcedNumber]
 
 
 @cache
-def table(name: str) -> dict[str, TableRow]:
+def read_table(name: str) -> dict[str, TableRow]:
     """Read a table, `materials` or `finishes`: {name: row}."""
-    path, document = _document(name)
-    columns = {"materials": MATERIAL, "finishes": FINISH}[name]
+    path, document = _read_document(name)
+    columns = {"materials": MATERIAL_COLUMNS, "finishes": FINISH_COLUMNS}[name]
     rows = {}
     for title, body in document.items():
         plain = {key: body.pop(key) for key in ("also", "title")}
-        values, kinds, sources = entries(path, columns, body)
-        known = {key: Printed(float(value), kinds[key], sources[key]) for key, value in values.items()}
+        values, kinds, sources = read_entries(path, columns, body)
+        known = {key: SourcedNumber(float(value), kinds[key], sources[key]) for key, value in values.items()}
         rows[title] = TableRow(title, tuple(plain["also"]), plain["title"], known)
     return rows
 
 
-def row(name: str, wanted: str) -> TableRow:
+def find_row(table_name: str, row_name: str) -> TableRow:
     """Find a row of a table by one of its names; case and hyphens are ignored.
 
     Raises ValueError if no row has the name.
     """
-    rows = table(name)
+    rows = read_table(table_name)
     for candidate in rows.values():
-        if _key(wanted) in map(_key, (candidate.name, *candidate.also)):
+        if _normalise_name(row_name) in map(_normalise_name, (candidate.name, *candidate.aliases)):
             return candidate
-    noun = {"materials": "material", "finishes": "finish"}[name]
-    raise ValueError(f"{noun} {wanted!r} is unknown, allowed are {', '.join(rows)} (jointfmu new {name})")
+    noun = {"materials": "material", "finishes": "finish"}[table_name]
+    raise ValueError(
+        f"{noun} {row_name!r} is unknown, allowed are {', '.join(rows)} (jointfmu new {table_name})"
+    )
 
 
-def _key(text: str) -> str:
+def _normalise_name(text: str) -> str:
     return text.lower().replace("-", " ").strip()
 
 
@@ -88,12 +90,12 @@ class Thread:
 
 
 @cache
-def threads() -> dict[str, Thread]:
+def read_threads() -> dict[str, Thread]:
     """Read the bolts with coarse pitch: {name: bolt}."""
-    _, document = _document("bolts")
-    columns = [factor(column["unit"], "m") for column in document["columns"].values()]
+    _, document = _read_document("bolts")
+    columns = [conversion_factor(column["unit"], "m") for column in document["columns"].values()]
     names = list(document["columns"])
-    mm = factor("mm", "m")
+    mm = conversion_factor("mm", "m")
     return {
         name: Thread(
             name, d=float(name[1:]) * mm, **{c: v * f for c, v, f in zip(names, values, columns, strict=True)}
@@ -104,26 +106,26 @@ def threads() -> dict[str, Thread]:
 
 def thread_source(column: str) -> str:
     """Source of a column in the table of bolts."""
-    return str(_document("bolts")[1]["columns"][column]["source"])
+    return str(_read_document("bolts")[1]["columns"][column]["source"])
 
 
 @cache
-def embedding() -> list[tuple[float, tuple[float, ...]]]:
+def read_embedding() -> list[tuple[float, tuple[float, ...]]]:
     """Read the table of embedding: (largest Rz [m], embedding [m] of thread, head or nut, and interface).
 
     The rows are in ascending order of Rz.
     """
-    stated = dict(_document("bolts")[1]["embedding"])
-    size = factor(stated.pop("unit"), "m")
+    stated = dict(_read_document("bolts")[1]["embedding"])
+    size = conversion_factor(stated.pop("unit"), "m")
     stated.pop("source")
     return sorted((float(Rz) * size, tuple(v * size for v in row)) for Rz, row in stated.items())
 
 
 @cache
-def classes() -> dict[str, dict[str, tuple[float, float]]]:
+def read_property_classes() -> dict[str, dict[str, tuple[float, float]]]:
     """Read the property classes: {class: {"yield" or "proof": stress [Pa] up to M16, and above}}."""
-    stated = _document("bolts")[1]["classes"]
-    size = factor(stated["unit"], "Pa")
+    stated = _read_document("bolts")[1]["classes"]
+    size = conversion_factor(stated["unit"], "Pa")
     return {
         name: {key: (pair[0] * size, pair[1] * size) for key, pair in body.items()}
         for name, body in stated.items()
@@ -131,16 +133,16 @@ def classes() -> dict[str, dict[str, tuple[float, float]]]:
     }
 
 
-LARGE = 16e-3
+LARGE_DIAMETER = 16e-3
 """Thread diameter [m] above which the second strength of a property class in the table holds."""
 
 
-def strength(name: str, key: str, thread: Thread) -> float:
+def strength(property_class: str, stress_kind: str, thread: Thread) -> float:
     """Strength [Pa] of a property class, "yield" or "proof", for a thread."""
-    return classes()[name][key][int(thread.d > LARGE)]
+    return read_property_classes()[property_class][stress_kind][int(thread.d > LARGE_DIAMETER)]
 
 
-def _document(name: str) -> tuple[Path, dict[str, Any]]:
+def _read_document(name: str) -> tuple[Path, dict[str, Any]]:
     path = Path(str(files("jointfmu_models") / "tables" / f"{name}.toml"))
     document = read_document(path, "a table")
     return path, {key: value for key, value in document.items() if key not in ("schema", "table")}

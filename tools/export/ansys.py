@@ -11,13 +11,13 @@ import numpy as np
 
 from jointfmu.quantity import Array
 
-from .placing import Placing, Springs, header
+from .placing import Placement, Springs, comment_header
 
 MATRIX27, STIFFNESS, DAMPING = 27, 4, 5
-_UPPER = np.triu_indices(12)
+_UPPER_TRIANGLE = np.triu_indices(12)
 
 
-def springs_text(springs: Springs, placing: Placing, about: Sequence[str]) -> str:
+def format_springs(springs: Springs, placement: Placement, comment_lines: Sequence[str]) -> str:
     """Format the springs as an ANSYS archive: for each pair one stiffness and one damping element.
 
     comment_lines : lines for the head of the file
@@ -25,78 +25,85 @@ def springs_text(springs: Springs, placing: Placing, about: Sequence[str]) -> st
     All stiffness elements come first. Pairs that agree to nine digits, the precision of the format, share a
     set of real constants.
     """
-    first, first_set, units, count = placing.first, placing.first_set, placing.units, len(springs.nodes)
-    stiffness = placing.along(units.of(springs.K_t, "N/m"), units.of(springs.K_n, "N/m"))
-    damping = placing.along(units.of(springs.C_t, "N.s/m"), units.of(springs.C_n, "N.s/m"))
+    first, first_set, units, count = (
+        placement.first_number,
+        placement.first_set_number,
+        placement.units,
+        len(springs.nodes),
+    )
+    stiffness = placement.assign_to_axes(units.convert(springs.K_t, "N/m"), units.convert(springs.K_n, "N/m"))
+    damping = placement.assign_to_axes(
+        units.convert(springs.C_t, "N.s/m"), units.convert(springs.C_n, "N.s/m")
+    )
     sets: dict[tuple[str, ...], int] = {}
-    reals = [_real(sets, row, first_set) for row in (*stiffness, *damping)]
+    reals = [_real_constant_set(sets, row, first_set) for row in (*stiffness, *damping)]
     types = np.repeat([first_set, first_set + 1], count)
     pairs = np.vstack([springs.nodes, springs.nodes])
     rows = zip(types, reals, range(first, first + 2 * count), pairs, strict=True)
     lines = [
-        *header(about, "!"),
+        *comment_header(comment_lines, "!"),
         "/PREP7",
-        *(_nodes(springs, placing) if placing.own else []),
-        *_type(first_set, STIFFNESS),
-        *_type(first_set + 1, DAMPING),
-        *_constants(sets),
+        *(_format_nodes(springs, placement) if placement.has_own_nodes else []),
+        *_format_element_type(first_set, STIFFNESS),
+        *_format_element_type(first_set + 1, DAMPING),
+        *_format_real_constants(sets),
         f"EBLOCK,19,SOLID,{first + 2 * count - 1:10d},{2 * count:10d}",
         "(19i10)",
-        *(_integers((1, t, r, 1, 0, 0, 0, 0, 2, 0, e, *nodes)) for t, r, e, nodes in rows),
+        *(_format_integers((1, t, r, 1, 0, 0, 0, 0, 2, 0, e, *nodes)) for t, r, e, nodes in rows),
         "        -1",
     ]
     return "\n".join(lines) + "\n"
 
 
-def triangle(values: Array) -> Array:
+def upper_triangle(values: Array) -> Array:
     """Upper triangle C1 to C78 (78) of the matrix of three springs (3) along x, y, z between two nodes."""
     matrix = np.zeros((12, 12))
     axes = np.arange(3)
     matrix[axes, axes] = matrix[axes + 6, axes + 6] = values
     matrix[axes, axes + 6] = matrix[axes + 6, axes] = -values
-    return np.asarray(matrix[_UPPER])
+    return np.asarray(matrix[_UPPER_TRIANGLE])
 
 
-def _real(sets: dict[tuple[str, ...], int], values: Array, first: int) -> int:
+def _real_constant_set(sets: dict[tuple[str, ...], int], values: Array, first: int) -> int:
     """Return the number of the set of real constants of three springs (3). New values get a new set."""
     return sets.setdefault(tuple(f"{v:.8E}" for v in values), first + len(sets))
 
 
-def _constants(sets: dict[tuple[str, ...], int]) -> Iterable[str]:
-    yield f"RLBLOCK,{len(sets):8d},{max(sets.values()):8d},{_UPPER[0].size:8d},{7:8d}"
+def _format_real_constants(sets: dict[tuple[str, ...], int]) -> Iterable[str]:
+    yield f"RLBLOCK,{len(sets):8d},{max(sets.values()):8d},{_UPPER_TRIANGLE[0].size:8d},{7:8d}"
     yield from ("(2i8,6g16.9)", "(7g16.9)")
     for values, number in sets.items():
-        cells = [f"{v:16.8E}" for v in triangle(np.array(values, dtype=np.float64))]
+        cells = [f"{v:16.8E}" for v in upper_triangle(np.array(values, dtype=np.float64))]
         yield f"{number:8d}{len(cells):8d}" + "".join(cells[:6])
         yield from ("".join(cells[i : i + 7]) for i in range(6, len(cells), 7))
 
 
-def _type(type_number: int, matrix: int) -> Iterable[str]:
+def _format_element_type(type_number: int, matrix: int) -> Iterable[str]:
     yield f"ET,{type_number:9d},{MATRIX27:4d}"
     yield f"KEYOP,{type_number:9d},{2:3d},{0:9d}"
     yield f"KEYOP,{type_number:9d},{3:3d},{matrix:9d}"
 
 
-def _nodes(springs: Springs, placing: Placing) -> Iterable[str]:
-    coordinates = placing.coordinates(springs.position)
+def _format_nodes(springs: Springs, placement: Placement) -> Iterable[str]:
+    coordinates = placement.model_coordinates(springs.position)
     yield f"NBLOCK,6,SOLID,{springs.nodes.max():10d},{springs.nodes.size:10d}"
     yield "(3i9,6e21.13e3)"
     for side in (0, 1):
         for node, xyz in zip(springs.nodes[:, side], coordinates, strict=True):
-            yield f"{node:9d}{0:9d}{0:9d}" + "".join(_exponential(v) for v in xyz)
+            yield f"{node:9d}{0:9d}{0:9d}" + "".join(_format_exponential(v) for v in xyz)
     yield "N,R5.3,LOC,       -1,"
     for side in (0, 1):
         labels = np.sort(springs.nodes[:, side])
         yield f"CMBLOCK,JOINT_SIDE_{side + 1},NODE,{labels.size:8d}"
         yield "(8i10)"
-        yield from (_integers(labels[i : i + 8]) for i in range(0, labels.size, 8))
+        yield from (_format_integers(labels[i : i + 8]) for i in range(0, labels.size, 8))
 
 
-def _integers(values: Iterable[int]) -> str:
+def _format_integers(values: Iterable[int]) -> str:
     return "".join(f"{v:10d}" for v in values)
 
 
-def _exponential(value: float) -> str:
+def _format_exponential(value: float) -> str:
     """Format a number as Fortran does with e21.13e3: three digits of exponent."""
     mantissa, exponent = f"{value:.13E}".split("E")
     return f"{mantissa}E{int(exponent):+04d}".rjust(21)

@@ -12,17 +12,17 @@ from jointfmu.joints import KINDS
 from jointfmu.joints.model import Variable
 from jointfmu.quantity import flat_fields
 
-from ..joint_parts import part
+from ..joint_parts import load_tool_module
 
 if TYPE_CHECKING:
     from jointfmu.mechanics.curve import Curve
 
-    from .mesh import Mesh
-    from .placing import Placing, Springs
+    from .mesh import NodePairs
+    from .placing import Placement, Springs
     from .tables import LoadTable
 
 
-FORMS = {
+FORMAT_CONTENTS = {
     "ansys": ("springs",),
     "calculix": ("springs", "contact"),
     "abaqus": ("springs", "contact"),
@@ -30,11 +30,11 @@ FORMS = {
     "csv": ("springs", "contact", "curve"),
 }
 """{format: contents that a file of this format can have}."""
-ROBOTS = ("mjcf", "urdf")
+ROBOT_FORMATS = ("mjcf", "urdf")
 """Formats of robot simulators; a file has a drive."""
-WHAT = ("springs", "contact", "curve")
+CONTENTS = ("springs", "contact", "curve")
 """Contents that can be exported."""
-ERROR = 1e-3
+DEFAULT_LOAD_ERROR = 1e-3
 """Default for the largest relative error of the load [1] when a table is interpolated linearly."""
 
 
@@ -51,7 +51,7 @@ class LoadCurve:
     meaning: str
     columns: Sequence[Variable]
     name: str
-    table: "Callable[[Any, Any, float], LoadTable]"
+    compute_table: "Callable[[Any, Any, float], LoadTable]"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -67,36 +67,38 @@ class Exports:
     missing_reasons     : {content: why it cannot be written, and which content can}
     """
 
-    state: type[object] | None = None
-    springs: "Callable[[Any, Any, Mesh | None, Placing], tuple[Springs, str]] | None" = None
+    working_point_class: type[object] | None = None
+    springs: "Callable[[Any, Any, NodePairs | None, Placement], tuple[Springs, str]] | None" = None
     contact: "Callable[[Any], tuple[Curve, Sequence[str]]] | None" = None
     curve: LoadCurve | None = None
-    lacks: Mapping[str, str] = field(default_factory=dict)
+    missing_reasons: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def working_point(self) -> dict[str, str]:
         """Quantities of the working point, the required one first: {name: meaning with unit}."""
-        declared = flat_fields(self.state) if self.state else ()
+        declared = flat_fields(self.working_point_class) if self.working_point_class else ()
         return {name: f"{item.metadata['doc']} [{item.metadata['unit']}]" for name, item in declared}
 
 
-def of(joint: str) -> Exports:
+def exports_of(joint: str) -> Exports:
     """Exports that a joint offers."""
-    module = part(KINDS[joint], "export")
+    module = load_tool_module(KINDS[joint], "export")
     exports: Exports = module.EXPORTS if module else Exports()
     return exports
 
 
-def able(what: str) -> list[str]:
+def joints_with(content: str) -> list[str]:
     """Names of the joints that offer a content: springs, contact or curve."""
-    return [joint for joint in KINDS if getattr(of(joint), what)]
+    return [joint for joint in KINDS if getattr(exports_of(joint), content)]
 
 
-def required(joint: str, what: str) -> Any:
+def require_content(joint: str, content: str) -> Any:
     """Return a joint's springs, contact or curve. Raises ValueError if the joint does not offer it."""
-    exports = of(joint)
-    if what in exports.lacks:
-        raise ValueError(f"the {what} of a {joint} cannot be exported: {exports.lacks[what]}")
-    if not getattr(exports, what):
-        raise ValueError(f"{what} of a {joint} cannot be written; allowed is a {', '.join(able(what))}")
-    return getattr(exports, what)
+    exports = exports_of(joint)
+    if content in exports.missing_reasons:
+        raise ValueError(f"the {content} of a {joint} cannot be exported: {exports.missing_reasons[content]}")
+    if not getattr(exports, content):
+        raise ValueError(
+            f"{content} of a {joint} cannot be written; allowed is a {', '.join(joints_with(content))}"
+        )
+    return getattr(exports, content)

@@ -4,18 +4,20 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from jointfmu.quantity.refusal import Refusal
+from jointfmu.quantity.refusal import InputRefusal
 
-from .placing import Placing, Springs, Units, header
+from .placing import Placement, Springs, UnitSet, comment_header
 from .tables import LoadTable
 
-CALCULIX_ROWS = 200
+MAX_CALCULIX_ROWS = 200
 """Largest number of rows of a table in CalculiX (its arrays `xiso(200)`)."""
-FAR = 1.0
+EXTRAPOLATED_OVERCLOSURE = 1.0
 """Overclosure [m] by which the table is extrapolated linearly: no solver leaves the table."""
 
 
-def springs_text(springs: Springs, placing: Placing, about: Sequence[str], dashpots: bool) -> str:
+def format_springs(
+    springs: Springs, placement: Placement, comment_lines: Sequence[str], dashpots: bool
+) -> str:
     """Format the springs as SPRING2 elements along the model's axes, and for Abaqus also DASHPOT2 elements.
 
     comment_lines : lines for the head of the file
@@ -23,13 +25,24 @@ def springs_text(springs: Springs, placing: Placing, about: Sequence[str], dashp
 
     Pairs that agree to nine digits share an element set.
     """
-    units = placing.units
-    lines = [*header(about, "**"), *(_nodes(springs, placing) if placing.own else [])]
-    elements = [("SPRING", "K", placing.along(units.of(springs.K_t, "N/m"), units.of(springs.K_n, "N/m")))]
+    units = placement.units
+    lines = [
+        *comment_header(comment_lines, "**"),
+        *(_format_nodes(springs, placement) if placement.has_own_nodes else []),
+    ]
+    elements = [
+        (
+            "SPRING",
+            "K",
+            placement.assign_to_axes(units.convert(springs.K_t, "N/m"), units.convert(springs.K_n, "N/m")),
+        )
+    ]
     if dashpots:
-        values = placing.along(units.of(springs.C_t, "N.s/m"), units.of(springs.C_n, "N.s/m"))
+        values = placement.assign_to_axes(
+            units.convert(springs.C_t, "N.s/m"), units.convert(springs.C_n, "N.s/m")
+        )
         elements.append(("DASHPOT", "C", values))
-    element = placing.first
+    element = placement.first_number
     for keyword, symbol, columns in elements:
         for axis in range(3):
             groups: dict[str, list[int]] = {}
@@ -45,15 +58,17 @@ def springs_text(springs: Springs, placing: Placing, about: Sequence[str], dashp
     return "\n".join(lines) + "\n"
 
 
-def _nodes(springs: Springs, placing: Placing) -> Iterable[str]:
-    coordinates = placing.coordinates(springs.position)
+def _format_nodes(springs: Springs, placement: Placement) -> Iterable[str]:
+    coordinates = placement.model_coordinates(springs.position)
     for side in (0, 1):
         yield f"*NODE, NSET=JOINT_SIDE_{side + 1}"
         for node, xyz in zip(springs.nodes[:, side], coordinates, strict=True):
             yield f"{node}, " + ", ".join(f"{v:.12E}" for v in xyz)
 
 
-def contact_text(table: LoadTable, units: Units, about: Sequence[str], most: int | None = None) -> str:
+def format_contact(
+    table: LoadTable, units: UnitSet, comment_lines: Sequence[str], max_rows: int | None = None
+) -> str:
     """Format a surface interaction JOINT with the pressure over the overclosure.
 
     comment_lines : lines for the head of the file
@@ -62,13 +77,15 @@ def contact_text(table: LoadTable, units: Units, about: Sequence[str], most: int
     Raises ValueError if the table has more rows.
     """
     x, p, k = table.rows[-1]
-    rows = np.vstack([table.rows[:, :2], [x + FAR, p + k * FAR]])
-    if most is not None and len(rows) > most:
-        raise Refusal(f"the table has {len(rows)} rows, CalculiX holds {most}; allow a larger error", "error")
+    rows = np.vstack([table.rows[:, :2], [x + EXTRAPOLATED_OVERCLOSURE, p + k * EXTRAPOLATED_OVERCLOSURE]])
+    if max_rows is not None and len(rows) > max_rows:
+        raise InputRefusal(
+            f"the table has {len(rows)} rows, CalculiX holds {max_rows}; allow a larger error", "error"
+        )
     lines = [
-        *header(about, "**"),
+        *comment_header(comment_lines, "**"),
         "*SURFACE INTERACTION, NAME=JOINT",
         "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=TABULAR",
-        *(f"{units.of(y, 'Pa'):.10E}, {units.of(s, 'm'):.10E}" for s, y in rows.tolist()),
+        *(f"{units.convert(y, 'Pa'):.10E}, {units.convert(s, 'm'):.10E}" for s, y in rows.tolist()),
     ]
     return "\n".join(lines) + "\n"

@@ -13,24 +13,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointfmu.quantity import Array
-from jointfmu.quantity.units import Sizes, sizes
+from jointfmu.quantity.units import UnitSizes, unit_sizes
 
-from ..columns import Columns, read
+from ..columns import Columns, read_columns
 
-COLUMNS: Mapping[str, Sizes] = {
-    "node_1": sizes("1"),
-    "node_2": sizes("1"),
-    "x": sizes("m", "mm"),
-    "y": sizes("m", "mm"),
-    "area": sizes("m2", "mm2"),
-    "pressure": sizes("Pa", "MPa"),
+COLUMNS: Mapping[str, UnitSizes] = {
+    "node_1": unit_sizes("1"),
+    "node_2": unit_sizes("1"),
+    "x": unit_sizes("m", "mm"),
+    "y": unit_sizes("m", "mm"),
+    "area": unit_sizes("m2", "mm2"),
+    "pressure": unit_sizes("Pa", "MPa"),
 }
-LARGEST_LABEL = 99_999_999
+MAX_NODE_LABEL = 99_999_999
 """Largest label of a node: eight digits fit into the fixed columns of all solvers."""
 
 
 @dataclass(frozen=True, slots=True)
-class Mesh:
+class NodePairs:
     """Node pairs of a mesh.
 
     path     : file that the pairs were read from
@@ -47,42 +47,49 @@ class Mesh:
     pressure: Array | None
 
 
-def read_pairs(path: str | Path) -> Mesh:
+def read_pairs(path: str | Path) -> NodePairs:
     """Read node pairs from a CSV file. The origin of x and y is arbitrary.
 
     Raises ValueError, one line with file and node: a file that `columns.read_columns` cannot read, a missing
     column, a label that is no positive whole number or stands twice, an area that is not positive, a negative
     pressure, or a pressure that is zero everywhere.
     """
-    table = read(path, COLUMNS, 3)
-    nodes = np.stack([_labels(table, name) for name in ("node_1", "node_2")], axis=1)
+    table = read_columns(path, COLUMNS, 3)
+    nodes = np.stack([_read_node_labels(table, name) for name in ("node_1", "node_2")], axis=1)
     labels, counts = np.unique(nodes, return_counts=True)
     if np.any(counts > 1):
         raise ValueError(f"{table.path}: node {labels[counts > 1][0]} stands twice, allowed is once")
-    area = table.require("area", COLUMNS)
-    _refuse(table, nodes, "area", area, area <= 0.0, "it must be positive")
+    area = table.require_column("area", COLUMNS)
+    _check_values(table, nodes, "area", area, area <= 0.0, "it must be positive")
     pressure = table.columns.get("pressure")
     if pressure is not None:
-        _refuse(table, nodes, "pressure", pressure, pressure < 0.0, "a contact does not pull")
+        _check_values(table, nodes, "pressure", pressure, pressure < 0.0, "a contact does not pull")
         if not np.any(pressure > 0.0):
             raise ValueError(f"{table.path}: pressure is zero everywhere; expected a closed contact")
-    position = np.stack([table.require(name, COLUMNS) for name in ("x", "y")], axis=1)
-    return Mesh(table.path, nodes, position - np.average(position, axis=0, weights=area), area, pressure)
+    position = np.stack([table.require_column(name, COLUMNS) for name in ("x", "y")], axis=1)
+    return NodePairs(table.path, nodes, position - np.average(position, axis=0, weights=area), area, pressure)
 
 
-def _labels(table: Columns, name: str) -> NDArray[np.int64]:
-    value = table.require(name, COLUMNS)
-    bad = (value != np.round(value)) | (value < 1.0) | (value > LARGEST_LABEL)
+def _read_node_labels(table: Columns, name: str) -> NDArray[np.int64]:
+    value = table.require_column(name, COLUMNS)
+    bad = (value != np.round(value)) | (value < 1.0) | (value > MAX_NODE_LABEL)
     if np.any(bad):
         raise ValueError(
             f"{table.path}: {name} = {value[bad][0]:.10g} is no node; "
-            f"expected a whole number in [1, {LARGEST_LABEL}]"
+            f"expected a whole number in [1, {MAX_NODE_LABEL}]"
         )
     return value.astype(np.int64)
 
 
-def _refuse(
-    table: Columns, nodes: NDArray[np.int64], name: str, value: Array, bad: NDArray[np.bool_], why: str
+def _check_values(
+    table: Columns,
+    nodes: NDArray[np.int64],
+    name: str,
+    value: Array,
+    is_invalid: NDArray[np.bool_],
+    reason: str,
 ) -> None:
-    if np.any(bad):
-        raise ValueError(f"{table.path}: {name} = {value[bad][0]:g} (SI) at node {nodes[bad][0, 0]}: {why}")
+    if np.any(is_invalid):
+        raise ValueError(
+            f"{table.path}: {name} = {value[is_invalid][0]:g} (SI) at node {nodes[is_invalid][0, 0]}: {reason}"
+        )

@@ -9,13 +9,13 @@ from numpy.typing import NDArray
 
 from jointfmu import __version__
 from jointfmu.quantity import Array
-from jointfmu.quantity.units import factor, rewritten
+from jointfmu.quantity.units import conversion_factor, replace_symbols
 
 T = TypeVar("T", float, NDArray[np.float64])
 
 
 @dataclass(frozen=True, slots=True)
-class Units:
+class UnitSet:
     """A consistent set of units.
 
     name    : units of length, force, pressure and mass, as `mm-N-MPa-t`
@@ -25,17 +25,17 @@ class Units:
     name: str
     symbols: Mapping[str, str]
 
-    def of(self, value: T, unit: str) -> T:
+    def convert(self, value: T, unit: str) -> T:
         """Convert a value from an SI unit to the unit of this set."""
-        return value * factor(unit, self.symbol(unit))
+        return value * conversion_factor(unit, self.symbol(unit))
 
     def symbol(self, unit: str) -> str:
         """Symbol in this set for an SI unit."""
-        return rewritten(unit, self.symbols)
+        return replace_symbols(unit, self.symbols)
 
 
-SI = Units("m-N-Pa-kg", {})
-UNITS = {units.name: units for units in (SI, Units("mm-N-MPa-t", {"m": "mm", "Pa": "MPa", "kg": "t"}))}
+SI = UnitSet("m-N-Pa-kg", {})
+UNITS = {units.name: units for units in (SI, UnitSet("mm-N-MPa-t", {"m": "mm", "Pa": "MPa", "kg": "t"}))}
 """{name: set of units}: SI, and the set that is common in finite-element models."""
 
 
@@ -62,17 +62,17 @@ class Springs:
     K_t: Array
     C_n: Array
     C_t: Array
-    sums: dict[str, float]
+    totals: dict[str, float]
     correction: float
-    opened: int
+    open_pairs: int
 
 
-AXES = {"x": (1, 2, 0), "y": (2, 0, 1), "z": (0, 1, 2)}
+AXIS_ORDER = {"x": (1, 2, 0), "y": (2, 0, 1), "z": (0, 1, 2)}
 """{axis of the model along the joint's normal: indices of the model axes along the joint's x, y, z}."""
 
 
 @dataclass(frozen=True, slots=True)
-class Placing:
+class Placement:
     """Placement of the springs in the user's model.
 
     units            : units of the model
@@ -82,26 +82,29 @@ class Placing:
     has_own_nodes    : whether the written file defines the nodes, in place of nodes of the model
     """
 
-    units: Units = SI
+    units: UnitSet = SI
     normal: str = "z"
-    first: int = 1
-    first_set: int = 1
-    own: bool = True
+    first_number: int = 1
+    first_set_number: int = 1
+    has_own_nodes: bool = True
 
-    def coordinates(self, position: Array) -> Array:
+    def model_coordinates(self, position: Array) -> Array:
         """Coordinates (n, 3) in the model, in its units, of positions (n, 2) [m] in the joint's plane."""
         placed = np.zeros((len(position), 3))
-        placed[:, AXES[self.normal][:2]] = self.units.of(position, "m")
+        placed[:, AXIS_ORDER[self.normal][:2]] = self.units.convert(position, "m")
         return placed
 
-    def along(self, tangential: Array, normal: Array) -> Array:
+    def assign_to_axes(self, tangential: Array, normal: Array) -> Array:
         """Assign tangential (n) and normal (n) values to the model's axes x, y, z; returns (n, 3)."""
         placed = np.stack([tangential] * 3, axis=1)
-        placed[:, AXES[self.normal][2]] = normal
+        placed[:, AXIS_ORDER[self.normal][2]] = normal
         return placed
 
 
-def header(lines: Sequence[str], mark: str) -> list[str]:
+def comment_header(lines: Sequence[str], comment_mark: str) -> list[str]:
     """Format the comment at the head of a file in ASCII; each line starts with the comment mark."""
     plain = (" ".join(line.split()).encode("ascii", "replace").decode() for line in lines)
-    return [f"{mark} written by jointfmu {__version__}", *(f"{mark} {line}" for line in plain)]
+    return [
+        f"{comment_mark} written by jointfmu {__version__}",
+        *(f"{comment_mark} {line}" for line in plain),
+    ]

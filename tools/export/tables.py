@@ -10,19 +10,19 @@ from scipy.interpolate import PchipInterpolator
 from jointfmu.mechanics.curve import Curve
 from jointfmu.quantity import Array
 
-from ..columns import Column, rows, text
-from ..thinning import kept
-from .placing import Placing, Springs, Units, header
+from ..columns import Column, format_rows, format_table
+from ..thinning import decimate
+from .placing import Placement, Springs, UnitSet, comment_header
 
-STIFFNESS = 0.01
+MAX_STIFFNESS_ERROR = 0.01
 """Relative error of the stiffness [1] above which a warning is printed."""
-_DENSE = 64
+_POINTS_PER_SEGMENT = 64
 """Sample points per segment of a curve, at which errors are measured."""
-_LEAST = 10_000
+_MIN_POINTS = 10_000
 """Smallest number of sample points of a whole curve, for curves with few segments."""
-_FINE = 4 * _LEAST
+_MIN_POINTS_WITH_STIFFNESS = 4 * _MIN_POINTS
 """Smallest number of sample points if the stiffness error is limited too: some curves have short corners."""
-_FEWEST = 12
+_MIN_POINTS_PER_LINE = 12
 """Smallest number of sample points on a line: the peak of a parabolic error is then found within 1 %."""
 
 
@@ -36,11 +36,11 @@ class LoadTable:
     """
 
     rows: Array
-    straight: tuple[float, float]
-    monotone: tuple[float, float]
+    linear_errors: tuple[float, float]
+    monotone_cubic_errors: tuple[float, float]
 
 
-def law_table(curve: Curve, error: float) -> LoadTable:
+def tabulate_law(curve: Curve, error: float) -> LoadTable:
     """Tabulate an interface law: approach [m] from first touch, pressure [Pa], stiffness [N/m3].
 
     error : largest relative error [1] of the pressure with linear interpolation
@@ -48,48 +48,50 @@ def law_table(curve: Curve, error: float) -> LoadTable:
     The table ends at the hardness. Below the range of the law one line leads to first touch; the errors are
     those above this line.
     """
-    x, y, k = _dense(curve)
+    x, y, k = _sample_curve(curve)
     in_range = x >= 0.0
-    table = thinned(x[in_range] - curve.displacement[0], y[in_range], k[in_range], error)
+    table = decimate_curve(x[in_range] - curve.displacement[0], y[in_range], k[in_range], error)
     rows = np.vstack([[0.0, 0.0, 0.0], table.rows])
-    return LoadTable(rows, table.straight, table.monotone)
+    return LoadTable(rows, table.linear_errors, table.monotone_cubic_errors)
 
 
-def load_table(curve: Curve, area: float, error: float) -> LoadTable:
+def tabulate_load(curve: Curve, area: float, error: float) -> LoadTable:
     """Tabulate the load [N] and stiffness [N/m] of an interface law on an area [m2].
 
     The first row is open, without load.
     """
-    table = law_table(curve, error)
+    table = tabulate_law(curve, error)
     rows = table.rows * [1.0, area, area]
-    return LoadTable(np.vstack([[-rows[-1, 0], 0.0, 0.0], rows]), table.straight, table.monotone)
+    return LoadTable(
+        np.vstack([[-rows[-1, 0], 0.0, 0.0], rows]), table.linear_errors, table.monotone_cubic_errors
+    )
 
 
-def odd_table(curve: Curve, error: float) -> LoadTable:
+def tabulate_odd_curve(curve: Curve, error: float) -> LoadTable:
     """Tabulate an odd curve through zero, with both signs of the displacement.
 
     error : largest relative error [1] of the load with linear interpolation
 
     The stiffness error is kept below MAX_STIFFNESS_ERROR, unless the curve has a jump of the stiffness.
     """
-    half = _dense(curve, _FINE)
+    half = _sample_curve(curve, _MIN_POINTS_WITH_STIFFNESS)
     try:
-        rows = thinned(*half, error, stiffness=STIFFNESS).rows
+        rows = decimate_curve(*half, error, stiffness_error=MAX_STIFFNESS_ERROR).rows
     except ValueError:
-        rows = thinned(*half, error).rows
+        rows = decimate_curve(*half, error).rows
     rows = np.vstack([rows[:0:-1] * [-1.0, -1.0, 1.0], rows])
     x, y, k = (np.concatenate([sign * v[:0:-1], v]) for sign, v in zip((-1.0, -1.0, 1.0), half, strict=True))
-    return LoadTable(rows, *_errors(rows, x, y, k, (0.0, 0.0)))
+    return LoadTable(rows, *_interpolation_errors(rows, x, y, k, (0.0, 0.0)))
 
 
-def thinned(
+def decimate_curve(
     x: Array,
     y: Array,
     k: Array,
     error: float,
-    floor: tuple[float, float] = (0.0, 0.0),
-    keep: Collection[int] = (),
-    stiffness: float = np.inf,
+    min_reference: tuple[float, float] = (0.0, 0.0),
+    fixed_points: Collection[int] = (),
+    stiffness_error: float = np.inf,
 ) -> LoadTable:
     """Select few of the points (n) of a curve so that linear interpolation stays within an error.
 
@@ -103,62 +105,68 @@ def thinned(
     """
     if not 0.0 < error < 0.5:
         raise ValueError(f"error = {error:g} is outside (0, 0.5)")
-    size = np.maximum(np.abs(y), floor[0])
+    size = np.maximum(np.abs(y), min_reference[0])
     size = np.where(size > 0.0, size, np.inf)
 
-    def off(i: int, j: int) -> float:
+    def error_ratio(i: int, j: int) -> float:
         slope = (y[j] - y[i]) / (x[j] - x[i])
         line = y[i] + slope * (x[i : j + 1] - x[i])
         loads = float(np.max(np.abs(line - y[i : j + 1]) / size[i : j + 1])) / error
-        if not np.isfinite(stiffness):
+        if not np.isfinite(stiffness_error):
             return loads
-        return max(loads, float(np.max(np.abs(slope / k[i : j + 1] - 1.0))) / stiffness)
+        return max(loads, float(np.max(np.abs(slope / k[i : j + 1] - 1.0))) / stiffness_error)
 
-    stops = {*keep, x.size - 1}
-    index = kept(stops, lambda i, j: off(i, j) <= 1.0)
+    stops = {*fixed_points, x.size - 1}
+    index = decimate(stops, lambda i, j: error_ratio(i, j) <= 1.0)
     between = np.diff(index)[~np.isin(index[1:], list(stops))]
-    if np.any(between < _FEWEST):
+    if np.any(between < _MIN_POINTS_PER_LINE):
         raise ValueError(
             f"error = {error:g} is too small for a table; it would have {index.size} rows or more"
         )
     rows = np.stack([x[index], y[index], k[index]], axis=1)
-    return LoadTable(rows, *_errors(rows, x, y, k, floor))
+    return LoadTable(rows, *_interpolation_errors(rows, x, y, k, min_reference))
 
 
-def _errors(
-    rows: Array, x: Array, y: Array, k: Array, floor: tuple[float, float]
+def _interpolation_errors(
+    rows: Array, x: Array, y: Array, k: Array, min_reference: tuple[float, float]
 ) -> tuple[tuple[float, float], tuple[float, float]]:
     """Largest relative errors of load and stiffness: with linear interpolation, with the monotone cubic."""
     which = np.clip(np.searchsorted(rows[:, 0], x, side="right") - 1, 0, len(rows) - 2)
     slope = np.array([(b[1] - a[1]) / (b[0] - a[0]) for a, b in pairwise(rows)])[which]
     cubic = PchipInterpolator(rows[:, 0], rows[:, 1])
 
-    def worst(approximate: Array, exact: Array, least: float) -> float:
-        size = np.maximum(np.abs(exact), least)
+    def largest_error(approximate: Array, exact: Array, min_reference_value: float) -> float:
+        size = np.maximum(np.abs(exact), min_reference_value)
         positive = size > 0.0
         return float(np.max(np.abs(approximate - exact)[positive] / size[positive]))
 
-    straight = worst(np.interp(x, rows[:, 0], rows[:, 1]), y, floor[0]), worst(slope, k, floor[1])
-    return straight, (worst(cubic(x), y, floor[0]), worst(cubic(x, 1), k, floor[1]))
+    straight = (
+        largest_error(np.interp(x, rows[:, 0], rows[:, 1]), y, min_reference[0]),
+        largest_error(slope, k, min_reference[1]),
+    )
+    return straight, (
+        largest_error(cubic(x), y, min_reference[0]),
+        largest_error(cubic(x, 1), k, min_reference[1]),
+    )
 
 
-def _dense(curve: Curve, least: int = _LEAST) -> tuple[Array, Array, Array]:
+def _sample_curve(curve: Curve, min_points: int = _MIN_POINTS) -> tuple[Array, Array, Array]:
     """Sample a curve at many points: displacement, load and stiffness."""
     nodes = curve.displacement
-    count = max(_DENSE, least // (nodes.size - 1))
+    count = max(_POINTS_PER_SEGMENT, min_points // (nodes.size - 1))
     fraction = np.arange(count) / count
     x = np.append((nodes[:-1, None] + np.diff(nodes)[:, None] * fraction).ravel(), nodes[-1])
     load, stiffness = curve.derivatives(x, 1)
     return x, load, stiffness
 
 
-Heads = Sequence[tuple[str, str]]
+ColumnHeads = Sequence[tuple[str, str]]
 """Headings of columns: (name, SI unit) of each."""
 
-DIGITS = 12
+SIGNIFICANT_DIGITS = 12
 """Significant digits of numbers in tables."""
-LABEL_HEADS: Heads = (("node_1", "1"), ("node_2", "1"))
-SPRING_HEADS: Heads = (
+LABEL_HEADS: ColumnHeads = (("node_1", "1"), ("node_2", "1"))
+SPRING_HEADS: ColumnHeads = (
     ("x", "m"),
     ("y", "m"),
     ("area", "m2"),
@@ -172,40 +180,52 @@ SPRING_HEADS: Heads = (
 )
 
 
-def springs_csv(springs: Springs, placing: Placing, about: Sequence[str]) -> str:
+def format_springs_csv(springs: Springs, placement: Placement, comment_lines: Sequence[str]) -> str:
     """Format the springs as CSV, one row per pair.
 
     Columns: labels, position in the joint's plane, area, pressure, stiffness and damping along the model's
     axes.
     """
-    stiffness = placing.along(springs.K_t, springs.K_n)
-    damping = placing.along(springs.C_t, springs.C_n)
+    stiffness = placement.assign_to_axes(springs.K_t, springs.K_n)
+    damping = placement.assign_to_axes(springs.C_t, springs.C_n)
     values = [*springs.position.T, springs.area, springs.pressure, *stiffness.T, *damping.T]
-    return columns_csv([*springs.nodes.T, *values], [*LABEL_HEADS, *SPRING_HEADS], placing.units, about)
+    return format_columns_csv(
+        [*springs.nodes.T, *values], [*LABEL_HEADS, *SPRING_HEADS], placement.units, comment_lines
+    )
 
 
-def contact_csv(table: LoadTable, units: Units, about: Sequence[str]) -> str:
+def format_contact_csv(table: LoadTable, units: UnitSet, comment_lines: Sequence[str]) -> str:
     """Format a contact law as CSV: overclosure, pressure, stiffness per area."""
     heads = (("overclosure", "m"), ("pressure", "Pa"), ("stiffness", "N/m3"))
-    return columns_csv([*table.rows.T], heads, units, about)
+    return format_columns_csv([*table.rows.T], heads, units, comment_lines)
 
 
-def columns_csv(values: Sequence[Column], heads: Heads, units: Units, about: Sequence[str]) -> str:
+def format_columns_csv(
+    values: Sequence[Column], heads: ColumnHeads, units: UnitSet, comment_lines: Sequence[str]
+) -> str:
     """Format columns (n) of SI values as CSV in other units."""
     converted = [
-        column if unit == "1" else units.of(column, unit)
+        column if unit == "1" else units.convert(column, unit)
         for column, (_, unit) in zip(values, heads, strict=True)
     ]
     names = [(name, units.symbol(unit)) for name, unit in heads]
-    return text(names, converted, digits=DIGITS, above=header(about, "#"))
+    return format_table(
+        names, converted, digits=SIGNIFICANT_DIGITS, header_lines=comment_header(comment_lines, "#")
+    )
 
 
-def modelica_text(table: Array, name: str, about: Sequence[str]) -> str:
+def format_modelica_table(table: Array, name: str, comment_lines: Sequence[str]) -> str:
     """Format a table (n, columns) of SI values as the table `name` in a text file of Modelica.
 
     The first column must be ascending.
     """
-    body = rows(table.T, [DIGITS] * table.shape[1], between=" ")
+    body = format_rows(table.T, [SIGNIFICANT_DIGITS] * table.shape[1], delimiter=" ")
     return "\n".join(
-        ["#1", *header(about, "#"), f"double {name}({table.shape[0]},{table.shape[1]})", *body, ""]
+        [
+            "#1",
+            *comment_header(comment_lines, "#"),
+            f"double {name}({table.shape[0]},{table.shape[1]})",
+            *body,
+            "",
+        ]
     )

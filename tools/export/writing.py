@@ -8,13 +8,13 @@ from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile
 
 from . import ansys, keywords, tables
-from .exports import LoadCurve, required
-from .mesh import Mesh
-from .placing import Placing, Springs, Units
+from .exports import LoadCurve, require_content
+from .mesh import NodePairs
+from .placing import Placement, Springs, UnitSet
 
 
 @dataclass(frozen=True, slots=True)
-class Written:
+class ExportedFile:
     """Content of an exported file, facts about it for the user, and warnings."""
 
     text: str
@@ -22,29 +22,34 @@ class Written:
     warnings: tuple[str, ...] = ()
 
 
-_SPRINGS: dict[str, tuple[Callable[[Springs, Placing, list[str]], str], tuple[str, ...]]] = {
-    "ansys": (ansys.springs_text, ("MATRIX27, KEYOPT(3) = 4 stiffness, 5 damping",)),
+_SPRING_WRITERS: dict[str, tuple[Callable[[Springs, Placement, list[str]], str], tuple[str, ...]]] = {
+    "ansys": (ansys.format_springs, ("MATRIX27, KEYOPT(3) = 4 stiffness, 5 damping",)),
     "calculix": (
-        partial(keywords.springs_text, dashpots=False),
+        partial(keywords.format_springs, dashpots=False),
         ("no dashpots: CalculiX has none along an axis between coincident nodes",),
     ),
-    "abaqus": (partial(keywords.springs_text, dashpots=True), ()),
-    "csv": (tables.springs_csv, ()),
+    "abaqus": (partial(keywords.format_springs, dashpots=True), ()),
+    "csv": (tables.format_springs_csv, ()),
 }
 """{format: (function that formats springs, comment lines)}."""
-_FAR = f"the last row extrapolates the last tangent by {keywords.FAR:g} m"
-_CONTACTS: dict[str, tuple[Callable[[tables.LoadTable, Units, list[str]], str], tuple[str, ...]]] = {
+_EXTRAPOLATION_NOTE = f"the last row extrapolates the last tangent by {keywords.EXTRAPOLATED_OVERCLOSURE:g} m"
+_CONTACT_WRITERS: dict[str, tuple[Callable[[tables.LoadTable, UnitSet, list[str]], str], tuple[str, ...]]] = {
     "calculix": (
-        partial(keywords.contact_text, most=keywords.CALCULIX_ROWS),
-        (_FAR, "for TYPE=NODE TO SURFACE: face to face CalculiX 2.20 takes no pressure from a table"),
+        partial(keywords.format_contact, max_rows=keywords.MAX_CALCULIX_ROWS),
+        (
+            _EXTRAPOLATION_NOTE,
+            "for TYPE=NODE TO SURFACE: face to face CalculiX 2.20 takes no pressure from a table",
+        ),
     ),
-    "abaqus": (keywords.contact_text, (_FAR,)),
-    "csv": (tables.contact_csv, ()),
+    "abaqus": (keywords.format_contact, (_EXTRAPOLATION_NOTE,)),
+    "csv": (tables.format_contact_csv, ()),
 }
 """{format: (function that formats a contact, comment lines)}."""
 
 
-def springs(form: str, file: ParameterFile, state: object, mesh: Mesh | None, placing: Placing) -> Written:
+def export_springs(
+    file_format: str, file: ParameterFile, working_point: object, mesh: NodePairs | None, placement: Placement
+) -> ExportedFile:
     """Export springs and dashpots of a joint between node pairs.
 
     working_point : None if the mesh states the pressures
@@ -52,8 +57,8 @@ def springs(form: str, file: ParameterFile, state: object, mesh: Mesh | None, pl
 
     Raises ValueError if the joint offers no springs, or they do not fit the node pairs.
     """
-    field, where = required(file.joint, "springs")(file.values, state, mesh, placing)
-    units = placing.units
+    field, where = require_content(file.joint, "springs")(file.values, working_point, mesh, placement)
+    units = placement.units
     sums = ", ".join(f"{n} {v:.9g} {'N/m' if n[0] == 'K' else 'N.s/m'}" for n, v in field.sums.items())
     about = [
         f"springs of a {KINDS[file.joint].title} between node pairs, linear about a working point",
@@ -63,61 +68,69 @@ def springs(form: str, file: ParameterFile, state: object, mesh: Mesh | None, pl
         f"pairs: {len(field.nodes)}, left out because they are open: {field.opened}",
         f"sums over the pairs, SI: {sums}",
         f"stiffness multiplied by {field.correction:.9g} to add up to the joint's",
-        f"the joint's normal is the model's {placing.normal}",
+        f"the joint's normal is the model's {placement.normal}",
     ]
-    write, notes = _SPRINGS[form]
+    write, notes = _SPRING_WRITERS[file_format]
     facts = {"pairs": len(field.nodes), "open": field.opened, "correction": field.correction, **field.sums}
-    return Written(write(field, placing, [*about, *notes]), facts)
+    return ExportedFile(write(field, placement, [*about, *notes]), facts)
 
 
-def contact(form: str, file: ParameterFile, units: Units, error: float) -> Written:
+def export_contact(file_format: str, file: ParameterFile, units: UnitSet, error: float) -> ExportedFile:
     """Export the interface's pressure over its approach, for a contact of two surfaces.
 
     Raises ValueError if the joint does not offer it.
     """
-    curve, more = required(file.joint, "contact")(file.values)
-    table = tables.law_table(curve, error)
+    curve, more = require_content(file.joint, "contact")(file.values)
+    table = tables.tabulate_law(curve, error)
     about = [
         "normal contact of the rough interface: pressure over overclosure from first touch",
         f"parameters: {file.name} ({file.joint})",
         f"units: {units.name}",
-        f"straight lines keep to the law's pressure within {table.straight[0]:.2g}, to its stiffness within "
-        f"{table.straight[1]:.2g},",
+        f"straight lines keep to the law's pressure within {table.linear_errors[0]:.2g}, to its stiffness within "
+        f"{table.linear_errors[1]:.2g},",
         f"from {curve.closed:.4g} Pa (below, one line leads to first touch) to {curve.end[1]:.4g} Pa",
         *more,
     ]
-    write, notes = _CONTACTS[form]
-    return Written(write(table, units, [*about, *notes]), _facts(table))
+    write, notes = _CONTACT_WRITERS[file_format]
+    return ExportedFile(write(table, units, [*about, *notes]), _table_facts(table))
 
 
-def curve(form: str, file: ParameterFile, state: object, units: Units, error: float) -> Written:
+def export_curve(
+    file_format: str, file: ParameterFile, working_point: object, units: UnitSet, error: float
+) -> ExportedFile:
     """Export the load over the displacement of the whole joint, with its stiffness.
 
     Raises ValueError if the joint does not offer the curve, or if the working point is missing.
     """
-    load: LoadCurve = required(file.joint, "curve")
-    table = load.table(file.values, state, error)
+    load: LoadCurve = require_content(file.joint, "curve")
+    table = load.compute_table(file.values, working_point, error)
     heads = [(v.name, v.unit) for v in load.columns]
     about = [load.meaning, f"parameters: {file.name} ({file.joint})"]
-    if state is not None:
-        about.append(f"working point: {state}")
+    if working_point is not None:
+        about.append(f"working point: {working_point}")
     about += [
         "columns: " + ", ".join(f"{n} [{units.symbol(u)}]" for n, u in heads),
-        f"straight lines keep to the load within {table.straight[0]:.2g}, to the stiffness within "
-        f"{table.straight[1]:.2g};",
-        f"the monotone cubic of Fritsch and Butland within {table.monotone[0]:.2g} and "
-        f"{table.monotone[1]:.2g}",
+        f"straight lines keep to the load within {table.linear_errors[0]:.2g}, to the stiffness within "
+        f"{table.linear_errors[1]:.2g};",
+        f"the monotone cubic of Fritsch and Butland within {table.monotone_cubic_errors[0]:.2g} and "
+        f"{table.monotone_cubic_errors[1]:.2g}",
     ]
-    if form == "modelica":
-        facts = {"table": load.name, **_facts(table)}
-        return Written(tables.modelica_text(table.rows, load.name, about), facts, _warnings(table))
-    return Written(tables.columns_csv([*table.rows.T], heads, units, about), _facts(table), _warnings(table))
+    if file_format == "modelica":
+        facts = {"table": load.name, **_table_facts(table)}
+        return ExportedFile(
+            tables.format_modelica_table(table.rows, load.name, about), facts, _stiffness_warnings(table)
+        )
+    return ExportedFile(
+        tables.format_columns_csv([*table.rows.T], heads, units, about),
+        _table_facts(table),
+        _stiffness_warnings(table),
+    )
 
 
-def _warnings(table: tables.LoadTable) -> tuple[str, ...]:
+def _stiffness_warnings(table: tables.LoadTable) -> tuple[str, ...]:
     """Warn if the slope of the table differs from the stiffness by more than MAX_STIFFNESS_ERROR."""
-    straight, cubic = table.straight[1], table.monotone[1]
-    if straight <= tables.STIFFNESS:
+    straight, cubic = table.linear_errors[1], table.monotone_cubic_errors[1]
+    if straight <= tables.MAX_STIFFNESS_ERROR:
         return ()
     return (
         f"the table's slope is up to {100.0 * straight:.2g} % off the stiffness by straight lines and "
@@ -125,11 +138,11 @@ def _warnings(table: tables.LoadTable) -> tuple[str, ...]:
     )
 
 
-def _facts(table: tables.LoadTable) -> dict[str, object]:
+def _table_facts(table: tables.LoadTable) -> dict[str, object]:
     return {
         "rows": len(table.rows),
-        "error": table.straight[0],
-        "stiffness_error": table.straight[1],
-        "error_monotone": table.monotone[0],
-        "stiffness_error_monotone": table.monotone[1],
+        "error": table.linear_errors[0],
+        "stiffness_error": table.linear_errors[1],
+        "error_monotone": table.monotone_cubic_errors[0],
+        "stiffness_error_monotone": table.monotone_cubic_errors[1],
     }

@@ -5,7 +5,7 @@ from contextlib import contextmanager
 
 
 @contextmanager
-def installed(what: str) -> Iterator[None]:
+def require_fem_packages(feature: str) -> Iterator[None]:
     """Context for finite elements: a missing package or system library of gmsh raises ValueError (one line).
 
     feature : names the calculation in the message
@@ -20,6 +20,6 @@ def installed(what: str) -> Iterator[None]:
             yield
     except (ImportError, OSError) as error:
         raise ValueError(
-            f"{what} needs what is missing here ({error}); install it with: pip install 'jointfmu[fem]', "
+            f"{feature} needs what is missing here ({error}); install it with: pip install 'jointfmu[fem]', "
             "and on Linux libglu1-mesa libgl1 libgomp1 libxcursor1 libxft2 libxinerama1"
         ) from None

@@ -15,17 +15,17 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from jointfmu.parameters import entries, read_document
-from jointfmu.quantity import build, flat_fields
+from jointfmu.parameters import read_document, read_entries
+from jointfmu.quantity import build_parameter_set, flat_fields
 
 from .geometry import Assembly, BoltGrid, BoltList, BoxSection, Plate
 
-BODIES: dict[str, type[object]] = {"plate": Plate, "box": BoxSection}
-LAYOUTS: dict[str, type[object]] = {"grid": BoltGrid, "list": BoltList}
-SECTIONS = {"side1": ("body", BODIES), "side2": ("body", BODIES), "bolts": ("layout", LAYOUTS)}
+BODY_TYPES: dict[str, type[object]] = {"plate": Plate, "box": BoxSection}
+BOLT_LAYOUTS: dict[str, type[object]] = {"grid": BoltGrid, "list": BoltList}
+SECTIONS = {"side1": ("body", BODY_TYPES), "side2": ("body", BODY_TYPES), "bolts": ("layout", BOLT_LAYOUTS)}
 
 
-def load(path: str | Path) -> Assembly:
+def read_assembly(path: str | Path) -> Assembly:
     """Read and check the file of an assembly.
 
     Raises ValueError: one line with file, entry, value and allowed values.
@@ -37,25 +37,27 @@ def load(path: str | Path) -> Assembly:
         raise ValueError(f"{path}: assembly = {document.get('assembly')!r}, allowed is 'bolted'{joint}")
     if unknown := sorted(set(document) - {"schema", "assembly", "name", *SECTIONS}):
         raise ValueError(f"{path}: unknown entry {unknown[0]!r}, allowed are name, {', '.join(SECTIONS)}")
-    sections = {name: _part(path, document, name) for name in SECTIONS}
+    sections = {name: _read_section(path, document, name) for name in SECTIONS}
     try:
         return Assembly(str(document.get("name", path.stem)), **sections)
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from None
 
 
-def _part(path: Path, document: Mapping[str, Any], name: str) -> Any:
+def _read_section(path: Path, document: Mapping[str, Any], section: str) -> Any:
     """Read one section of an assembly file: a body, or the layout of the bolts."""
-    type_key, classes = SECTIONS[name]
-    table = document.get(name)
+    type_key, classes = SECTIONS[section]
+    table = document.get(section)
     if not isinstance(table, Mapping):
-        raise ValueError(f"{path}: the section [{name}] is missing")
+        raise ValueError(f"{path}: the section [{section}] is missing")
     shape = table.get(type_key)
     if not isinstance(shape, str) or shape not in classes:
-        raise ValueError(f"{path}: {name}.{type_key} = {shape!r}, allowed are {', '.join(classes)}")
+        raise ValueError(f"{path}: {section}.{type_key} = {shape!r}, allowed are {', '.join(classes)}")
     dimensions = {k: v for k, v in table.items() if k != type_key}
-    values, _, _ = entries(path, dict(flat_fields(classes[shape])), dimensions)
+    values, _, _ = read_entries(path, dict(flat_fields(classes[shape])), dimensions)
     try:
-        return build(classes[shape], {k: tuple(v) if isinstance(v, list) else v for k, v in values.items()})
+        return build_parameter_set(
+            classes[shape], {k: tuple(v) if isinstance(v, list) else v for k, v in values.items()}
+        )
     except ValueError as error:
-        raise ValueError(f"{path}: [{name}] {error}") from None
+        raise ValueError(f"{path}: [{section}] {error}") from None

@@ -20,13 +20,13 @@ from jointfmu.quantity import Array
 
 from .elasticity import ElasticBody, Index
 
-UNBALANCED = 1e-6
+MAX_RELATIVE_IMBALANCE = 1e-6
 """Largest unbalanced force over the sum of the loads' magnitudes [1].
 
 Newton's method ends at 1e-8 or less, a factorisation leaves 1e-9. Loads without an equilibrium leave a value
 of order 1.
 """
-UNSEEN = 1e-6
+MIN_RELATIVE_MOTION = 1e-6
 """Smallest ratio [1] at which supports or contact restrain a rigid-body motion: rms displacement at the
 supports, or rms approach, over the rms displacement of the body. Round-off gives 1e-15; supports at the
 corners of a body, and its contact, give values of order 1."""
@@ -44,13 +44,13 @@ class RigidBalance:
     """
 
     force: Array
-    closing: Array
-    loose: Array
-    scale: float
+    rigid_approach: Array
+    unsupported_approach: Array
+    total_load: float
     corners: Index
 
     @classmethod
-    def of(
+    def from_loads(
         cls,
         bodies: Sequence[ElasticBody],
         traces: Sequence[sp.csr_matrix],
@@ -58,7 +58,7 @@ class RigidBalance:
         supports: Sequence[Index],
         position: Array,
         *,
-        bearing: bool,
+        supports_carry_load: bool,
     ) -> "RigidBalance":
         """Balance of bodies under loads (n) [N] on each body.
 
@@ -72,9 +72,9 @@ class RigidBalance:
         rigid_approach = np.hstack([trace @ m for m, trace in zip(motions, traces, strict=True)])
         at_supports = [m[rows] for m, rows in zip(motions, supports, strict=True)]
         unsupported = block_diag(
-            *[null_space(rows, rcond=UNSEEN) if rows.size else np.eye(6) for rows in at_supports]
+            *[null_space(rows, rcond=MIN_RELATIVE_MOTION) if rows.size else np.eye(6) for rows in at_supports]
         )
-        balanced = unsupported if bearing else np.eye(force.size)
+        balanced = unsupported if supports_carry_load else np.eye(force.size)
         scale = sum(float(np.abs(load).sum()) for load in loads)
         corners = np.asarray(ConvexHull(position).vertices, dtype=np.int64)
         return cls(
@@ -83,47 +83,49 @@ class RigidBalance:
 
     def check_loads(self) -> None:
         """Raise RuntimeError if the contact cannot balance the loads by pushing, or if no load closes it."""
-        if not _independent(self.loose):
+        if not _is_independent(self.unsupported_approach):
             raise RuntimeError("supports and contact leave a rigid motion of a body free")
         if self.force.size == 0:
             return
-        if not self.scale > 0.0:
+        if not self.total_load > 0.0:
             raise RuntimeError("no load presses the contact closed: all loads are 0 N")
-        contact_force, imbalance = self._pressed()
-        if imbalance > UNBALANCED:
+        contact_force, imbalance = self._best_balance()
+        if imbalance > MAX_RELATIVE_IMBALANCE:
             raise RuntimeError(
                 f"the loads do not balance: a contact that only pushes leaves {imbalance:.2g} of them over, "
-                f"allowed is {UNBALANCED:g}"
+                f"allowed is {MAX_RELATIVE_IMBALANCE:g}"
             )
-        if contact_force <= UNBALANCED:
+        if contact_force <= MAX_RELATIVE_IMBALANCE:
             raise RuntimeError(
                 f"no load presses the contact closed: its force is {contact_force:.2g} of the loads, needed "
-                f"is more than {UNBALANCED:g}"
+                f"is more than {MAX_RELATIVE_IMBALANCE:g}"
             )
 
     def check_contact(self, force: Array) -> None:
         """Raise RuntimeError if contact forces (q) [N] >= 0 do not balance the loads or leave a body free."""
-        if not _independent(self.loose[force > 0.0]):
+        if not _is_independent(self.unsupported_approach[force > 0.0]):
             raise RuntimeError(
                 f"the contact does not hold the bodies: it stays closed at {np.count_nonzero(force)} of "
                 f"{force.size} points"
             )
-        imbalance = float(np.abs(self.force - self.closing.T @ force).sum())
-        if not imbalance <= UNBALANCED * self.scale:
+        imbalance = float(np.abs(self.force - self.rigid_approach.T @ force).sum())
+        if not imbalance <= MAX_RELATIVE_IMBALANCE * self.total_load:
             raise RuntimeError(
-                f"the contact is not in balance: it leaves {imbalance / self.scale:.2g} of the loads over, "
-                f"allowed is {UNBALANCED:g}"
+                f"the contact is not in balance: it leaves {imbalance / self.total_load:.2g} of the loads over, "
+                f"allowed is {MAX_RELATIVE_IMBALANCE:g}"
             )
 
-    def _pressed(self) -> tuple[float, float]:
+    def _best_balance(self) -> tuple[float, float]:
         """Best balance of the loads by forces >= 0 at the corners of the contact (linear programme).
 
         Returns the sum of these forces and the remaining imbalance, both over the total load [1].
         """
-        corner_approach = self.closing[self.corners].T
+        corner_approach = self.rigid_approach[self.corners].T
         slack = np.eye(self.force.size)
         cost = np.concatenate([np.zeros(self.corners.size), np.ones(2 * self.force.size)])
-        best = linprog(cost, A_eq=np.hstack([corner_approach, slack, -slack]), b_eq=self.force / self.scale)
+        best = linprog(
+            cost, A_eq=np.hstack([corner_approach, slack, -slack]), b_eq=self.force / self.total_load
+        )
         if best.status != 0:
             raise RuntimeError(f"the balance of the loads was not found: {best.message}")
         return float(best.x[: self.corners.size].sum()), float(best.fun)
@@ -132,14 +134,14 @@ class RigidBalance:
 def rigid_motions(body: ElasticBody) -> Array:
     """Six orthogonal rigid-body motions (n, 6) of a body, each of rms displacement 1 m at its nodes."""
     motions: Array = qr(body.rigid_motions(), mode="economic")[0]
-    return np.asarray(motions * np.sqrt(body.size / 3.0))
+    return np.asarray(motions * np.sqrt(body.unknown_count / 3.0))
 
 
-def _independent(approach: Array) -> bool:
+def _is_independent(approach: Array) -> bool:
     """Whether every combination of motions (columns) changes the approach of some points (rows)."""
     if approach.shape[1] == 0:
         return True
     if approach.shape[0] < approach.shape[1]:
         return False
     smallest = np.linalg.svd(approach, compute_uv=False)[-1]
-    return bool(smallest > UNSEEN * np.sqrt(approach.shape[0]))
+    return bool(smallest > MIN_RELATIVE_MOTION * np.sqrt(approach.shape[0]))

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from jointfmu.mechanics.footprint.shape import PressureShape
+from jointfmu.mechanics.footprint.shape import PressureDistribution
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
 
@@ -13,7 +13,7 @@ from ..fields.nodal_result import ContactField
 from .contact import ContactModel, ContactSolution, Interface, PressureLaw
 from .elasticity import ElasticBody
 from .geometry import Assembly, Body
-from .mesh import Plan, body_mesh, contact_cells, contact_mesh, plan_of
+from .mesh import PlanMesh, body_mesh, contact_mesh, find_contact_cells, mesh_plan
 
 
 @dataclass(frozen=True)
@@ -25,27 +25,27 @@ class BoltedContact:
     """
 
     assembly: Assembly
-    plan: Plan
+    plan: PlanMesh
     bodies: tuple[ElasticBody, ...]
     interface: Interface
-    heads: tuple[Array, ...]
+    bolt_head_loads: tuple[Array, ...]
 
     @classmethod
-    def of(cls, assembly: Assembly, refinement: float = 1.0) -> "BoltedContact":
+    def from_assembly(cls, assembly: Assembly, refinement: float = 1.0) -> "BoltedContact":
         """Mesh an assembly.
 
         refinement : [1] divides the sizes of all elements
 
         If both bodies are equal, only side 2 is meshed: side 1 is its mirror image.
         """
-        plan = plan_of(assembly, refinement)
+        plan = mesh_plan(assembly, refinement)
         sides = (2,) if assembly.side1 == assembly.side2 else (1, 2)
         bodies, heads = [], []
         for side in sides:
             body = elastic_body(plan, assembly, side, refinement)
             bodies.append(body)
             heads.append(head_loads(body, assembly))
-        interface = Interface.of(contact_mesh(plan, contact_cells(plan, assembly)))
+        interface = Interface.from_mesh(contact_mesh(plan, find_contact_cells(plan, assembly)))
         return cls(assembly, plan, tuple(bodies), interface, tuple(heads))
 
     def solve(self, law: PressureLaw, preload: float, moment: float = 0.0) -> "JointSolution":
@@ -53,17 +53,21 @@ class BoltedContact:
         return self._solve(ContactModel(self.bodies, self.interface, law), preload, moment)
 
     def _solve(
-        self, model: ContactModel, preload: float, moment: float, near: ContactSolution | None = None
+        self,
+        model: ContactModel,
+        preload: float,
+        moment: float,
+        initial_solution: ContactSolution | None = None,
     ) -> "JointSolution":
         """Solve for a preload [N] per bolt and a moment [N.m] about x, optionally from another solution."""
         force = self.assembly.bolt_forces(preload, moment)
         signs = (-1.0,) if len(self.bodies) == 1 else (1.0, -1.0)
-        loads = [sign * head @ force for sign, head in zip(signs, self.heads, strict=True)]
+        loads = [sign * head @ force for sign, head in zip(signs, self.bolt_head_loads, strict=True)]
         mean = float(force.sum() / self.interface.area.sum())
-        return JointSolution(self, force, model.solve(loads, mean, near))
+        return JointSolution(self, force, model.solve(loads, mean, initial_solution))
 
 
-def elastic_body(plan: Plan, assembly: Assembly, side: int, refinement: float = 1.0) -> ElasticBody:
+def elastic_body(plan: PlanMesh, assembly: Assembly, side: int, refinement: float = 1.0) -> ElasticBody:
     """Elastic body on side 1 or 2 of an assembly, extruded from a plan mesh."""
     body: Body = assembly.side1 if side == 1 else assembly.side2
     return ElasticBody(body_mesh(plan, assembly, side, refinement), body.E, body.nu, body.density)
@@ -84,10 +88,10 @@ class JointSolution:
     """
 
     joint: BoltedContact
-    force: Array
+    bolt_force: Array
     contact: ContactSolution
 
-    def under(self, preload: float, moment: float = 0.0) -> "JointSolution":
+    def solve_load_case(self, preload: float, moment: float = 0.0) -> "JointSolution":
         """Equilibrium under another preload [N] per bolt and moment [N.m] about x.
 
         Newton's method starts from this solution.
@@ -101,16 +105,16 @@ class JointSolution:
         return ContactField(area=interface.area, position=interface.position, pressure=self.contact.pressure)
 
     @property
-    def peak(self) -> float:
+    def peak_pressure(self) -> float:
         """Largest nodal pressure [Pa], usually on the edge of a hole."""
         return float(self.contact.node_pressure.max())
 
     @property
-    def between(self) -> tuple[Array, Array]:
+    def pressure_between_bolts(self) -> tuple[Array, Array]:
         """Pressure (k) [Pa] midway between neighbouring bolts, after its positions (k, 2) [m]."""
-        positions = midway(self.joint.assembly.bolts.positions)
+        positions = bolt_midpoints(self.joint.assembly.bolts.positions)
         sides = (self.joint.assembly.side1, self.joint.assembly.side2)
-        solid = [side.layers()[0].solid(*positions.T) for side in sides]
+        solid = [side.layers()[0].is_solid(*positions.T) for side in sides]
         positions = positions[solid[0] & solid[1]]
         return positions, self.contact.pressure_at(positions) if len(positions) else np.zeros(0)
 
@@ -124,7 +128,7 @@ class JointSolution:
         return {"K_N": float(k.sum()), "K_rx": float(k @ y**2), "K_ry": float(k @ x**2)}
 
 
-def midway(bolts: Array) -> Array:
+def bolt_midpoints(bolts: Array) -> Array:
     """Midpoints (k, 2) [m] of neighbouring bolts at (n, 2) [m].
 
     Two bolts are neighbours if no third bolt lies in the circle whose diameter is the line between them.
@@ -139,13 +143,13 @@ def midway(bolts: Array) -> Array:
     return np.array(midpoints).reshape(-1, 2)
 
 
-TILT = 1.0 / 3.0
+DEFAULT_MOMENT_RATIO = 1.0 / 3.0
 """Moment of the second pressure field over the moment that unloads a row of bolts [1], as in Zhao 2018."""
 
 
-def with_solution(
+def with_contact_field(
     file: ParameterFile, solution: JointSolution, preload: float, moment: float = 0.0
-) -> tuple[ParameterFile, PressureShape]:
+) -> tuple[ParameterFile, PressureDistribution]:
     """Parameters of the joint with the computed pressure field, and the field at all nodes.
 
     A second field gives the change of pressure with a moment about x.
@@ -153,11 +157,15 @@ def with_solution(
     solution : equilibrium at this preload [N] per bolt and moment [N.m]; the other field is solved from it
     """
     joint = solution.joint
-    tilting = moment or TILT * joint.assembly.most_moment(preload)
-    equal = solution.under(preload).field if moment else solution.field
-    tilted = solution.field if moment else solution.under(preload, tilting).field if tilting else None
+    tilting = moment or DEFAULT_MOMENT_RATIO * joint.assembly.max_moment(preload)
+    equal = solution.solve_load_case(preload).field if moment else solution.field
+    tilted = (
+        solution.field if moment else solution.solve_load_case(preload, tilting).field if tilting else None
+    )
     source = f"finite elements of the assembly {joint.assembly.name}"
     bolts = joint.assembly.bolts.positions
     second = tilting or None
-    file, reduction = with_field(file, equal, preload, source, tilted=tilted, moment=second, bolts=bolts)
-    return replace(file, name=f"{file.name}, computed field"), reduction.field
+    file, reduction = with_field(
+        file, equal, preload, source, moment_field=tilted, moment=second, bolts=bolts
+    )
+    return replace(file, name=f"{file.name}, computed field"), reduction.full_shape

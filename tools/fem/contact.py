@@ -24,9 +24,9 @@ from jointfmu.quantity import Array
 
 from .balance import RigidBalance
 from .elasticity import ElasticBody, Index
-from .newton import Energy, Minimum
+from .newton import ContactEnergy, EnergyMinimum
 
-QUADRATURE = 4
+QUADRATURE_DEGREE = 4
 """Polynomial degree that the quadrature of the contact integrates exactly: 3 x 3 points in an element."""
 
 
@@ -53,7 +53,7 @@ class Interface:
 
     basis: Basis
     nodes: Array
-    values: sp.csr_matrix
+    interpolation: sp.csr_matrix
     area: Array
     position: Array
 
@@ -63,17 +63,17 @@ class Interface:
         return np.asarray(self.area @ self.position / self.area.sum())
 
     @property
-    def centred(self) -> Array:
+    def centred_position(self) -> Array:
         """Positions (q, 2) [m] of the quadrature points relative to the centroid."""
         return self.position - self.centroid
 
     @classmethod
-    def of(cls, mesh: MeshQuad, element: Element | None = None) -> "Interface":
+    def from_mesh(cls, mesh: MeshQuad, element: Element | None = None) -> "Interface":
         """Interface on a plane mesh.
 
         element : restriction of the bodies' element to the contact plane; None: quadratic, of ElementHexS2
         """
-        basis = Basis(mesh, element or ElementQuadS2(), intorder=QUADRATURE)
+        basis = Basis(mesh, element or ElementQuadS2(), intorder=QUADRATURE_DEGREE)
         count, points = basis.dx.shape
         rows = np.arange(basis.dx.size).reshape(count, points)
         shape = [np.broadcast_to(np.asarray(basis.basis[i][0]), basis.dx.shape) for i in range(basis.Nbfun)]
@@ -100,51 +100,62 @@ class ContactModel:
     interface: Interface
     law: PressureLaw
     gap: Callable[[Array, Array], Array] | None = None
-    held: tuple[Index, ...] | None = None
+    fixed_unknowns: tuple[Index, ...] | None = None
 
     @property
-    def mirrored(self) -> bool:
+    def is_mirrored(self) -> bool:
         """Whether side 1 is the mirror image of side 2."""
         return len(self.bodies) == 1
 
-    def traces(self) -> list[sp.csr_matrix]:
+    def approach_matrices(self) -> list[sp.csr_matrix]:
         """Matrices (contact nodes, n) [1] of each body: approach at the contact nodes per displacement."""
-        signs = (-2.0,) if self.mirrored else (1.0, -1.0)
-        return [s * node_trace(body, self.interface) for s, body in zip(signs, self.bodies, strict=True)]
+        signs = (-2.0,) if self.is_mirrored else (1.0, -1.0)
+        return [
+            s * nodal_displacement_matrix(body, self.interface)
+            for s, body in zip(signs, self.bodies, strict=True)
+        ]
 
-    def opening(self, x: Array, y: Array) -> Array:
+    def unloaded_gap(self, x: Array, y: Array) -> Array:
         """Distance [m] of the unloaded faces at positions x, y (...) [m]."""
         return np.zeros(np.shape(x)) if self.gap is None else self.gap(x, y)
 
-    def supports(self) -> tuple[Index, ...]:
+    def supported_unknowns(self) -> tuple[Index, ...]:
         """Unknowns of each body that stay zero."""
-        if self.held is not None:
-            return self.held
+        if self.fixed_unknowns is not None:
+            return self.fixed_unknowns
         return tuple(
-            _supports(body, fully=i == 0 and not self.mirrored) for i, body in enumerate(self.bodies)
+            _select_supports(body, stop_all_motions=i == 0 and not self.is_mirrored)
+            for i, body in enumerate(self.bodies)
         )
 
     @cached_property
-    def _free(self) -> tuple[Index, ...]:
+    def _free_unknowns(self) -> tuple[Index, ...]:
         """Unknowns of each body that are not fixed."""
-        pairs = zip(self.bodies, self.supports(), strict=True)
-        return tuple(np.setdiff1d(np.arange(body.size), fixed) for body, fixed in pairs)
+        pairs = zip(self.bodies, self.supported_unknowns(), strict=True)
+        return tuple(np.setdiff1d(np.arange(body.unknown_count), fixed) for body, fixed in pairs)
 
     @cached_property
-    def _unloaded(self) -> Energy:
+    def _unloaded_energy(self) -> ContactEnergy:
         """Energy in the free unknowns, without loads."""
-        blocks = [body.stiffness[free][:, free] for body, free in zip(self.bodies, self._free, strict=True)]
-        traces = [trace[:, free] for trace, free in zip(self.traces(), self._free, strict=True)]
-        return Energy(
-            stiffness=blocks[0] if self.mirrored else sp.block_diag(blocks, format="csr"),
-            load=np.zeros(sum(free.size for free in self._free)),
-            trace=(self.interface.values @ sp.hstack(traces)).tocsr(),
-            weight=self.interface.area * (0.5 if self.mirrored else 1.0),
+        blocks = [
+            body.stiffness[free][:, free] for body, free in zip(self.bodies, self._free_unknowns, strict=True)
+        ]
+        traces = [
+            trace[:, free] for trace, free in zip(self.approach_matrices(), self._free_unknowns, strict=True)
+        ]
+        return ContactEnergy(
+            stiffness=blocks[0] if self.is_mirrored else sp.block_diag(blocks, format="csr"),
+            load=np.zeros(sum(free.size for free in self._free_unknowns)),
+            approach_matrix=(self.interface.interpolation @ sp.hstack(traces)).tocsr(),
+            weight=self.interface.area * (0.5 if self.is_mirrored else 1.0),
             law=self.law.derivatives,
         )
 
     def solve(
-        self, loads: Sequence[Array], start: float, near: "ContactSolution | None" = None
+        self,
+        loads: Sequence[Array],
+        initial_pressure: float,
+        initial_solution: "ContactSolution | None" = None,
     ) -> "ContactSolution":
         """Solve for the equilibrium under loads (n) [N] on each body.
 
@@ -155,36 +166,44 @@ class ContactModel:
         ------
         RuntimeError : there is no equilibrium: the contact cannot balance the loads, or a body is not held
         """
-        balance = self.balance(loads)
+        balance = self.rigid_balance(loads)
         balance.check_loads()
-        gap = self.opening(*self.interface.position.T)
+        gap = self.unloaded_gap(*self.interface.position.T)
         offset = (
-            float(self.law.inverse(np.asarray(start))) + float(gap.max()) if near is None else near.offset
+            float(self.law.inverse(np.asarray(initial_pressure))) + float(gap.max())
+            if initial_solution is None
+            else initial_solution.offset
         )
-        free_load = np.concatenate([load[free] for load, free in zip(loads, self._free, strict=True)])
-        energy = replace(self._unloaded, load=free_load)
-        minimum = energy.minimise(offset - gap, None if near is None else near.minimum)
+        free_load = np.concatenate(
+            [load[free] for load, free in zip(loads, self._free_unknowns, strict=True)]
+        )
+        energy = replace(self._unloaded_energy, load=free_load)
+        minimum = energy.minimise(
+            offset - gap, None if initial_solution is None else initial_solution.minimum
+        )
         balance.check_contact(energy.weight * self.law.derivatives(minimum.approach, 1)[0])
-        return ContactSolution(self, tuple(loads), self._whole(minimum.displacement), offset, minimum)
+        return ContactSolution(
+            self, tuple(loads), self._expand_displacement(minimum.displacement), offset, minimum
+        )
 
-    def _whole(self, moving: Array) -> tuple[Array, ...]:
+    def _expand_displacement(self, free_displacement: Array) -> tuple[Array, ...]:
         """Displacement (n) [m] of each body, from the displacement of the free unknowns of all bodies."""
-        pieces = np.split(moving, np.cumsum([free.size for free in self._free])[:-1])
-        displacement = tuple(np.zeros(body.size) for body in self.bodies)
-        for all_unknowns, free, values in zip(displacement, self._free, pieces, strict=True):
+        pieces = np.split(free_displacement, np.cumsum([free.size for free in self._free_unknowns])[:-1])
+        displacement = tuple(np.zeros(body.unknown_count) for body in self.bodies)
+        for all_unknowns, free, values in zip(displacement, self._free_unknowns, pieces, strict=True):
             all_unknowns[free] = values
         return displacement
 
-    def balance(self, loads: Sequence[Array]) -> RigidBalance:
+    def rigid_balance(self, loads: Sequence[Array]) -> RigidBalance:
         """Balance of loads (n) [N] and contact on the rigid-body motions of the bodies."""
         interface = self.interface
-        return RigidBalance.of(
+        return RigidBalance.from_loads(
             self.bodies,
-            [interface.values @ trace for trace in self.traces()],
+            [interface.interpolation @ trace for trace in self.approach_matrices()],
             loads,
-            self.supports(),
+            self.supported_unknowns(),
             interface.position,
-            bearing=self.held is not None,
+            supports_carry_load=self.fixed_unknowns is not None,
         )
 
 
@@ -202,7 +221,7 @@ class ContactSolution:
     loads: tuple[Array, ...]
     displacement: tuple[Array, ...]
     offset: float
-    minimum: Minimum
+    minimum: EnergyMinimum
 
     @property
     def approach(self) -> Array:
@@ -225,30 +244,30 @@ class ContactSolution:
         return self.model.law.derivatives(self.approach, 1)[1]
 
     @cached_property
-    def at_nodes(self) -> Array:
+    def node_approach(self) -> Array:
         """Approach (contact nodes) [m] at the nodes of the contact."""
         nodes = self.model.interface.nodes
-        pairs = zip(self.model.traces(), self.displacement, strict=True)
+        pairs = zip(self.model.approach_matrices(), self.displacement, strict=True)
         elastic_approach = sum((trace @ u for trace, u in pairs), start=np.zeros(nodes.shape[1]))
-        return np.asarray(self.offset - self.model.opening(*nodes) + elastic_approach)
+        return np.asarray(self.offset - self.model.unloaded_gap(*nodes) + elastic_approach)
 
     @property
     def node_pressure(self) -> Array:
         """Pressure [Pa] at the nodes of the contact; some of them lie on its edges."""
-        return self.model.law.derivatives(self.at_nodes, 1)[0]
+        return self.model.law.derivatives(self.node_approach, 1)[0]
 
-    def pressure_at(self, places: Array) -> Array:
+    def pressure_at(self, positions: Array) -> Array:
         """Pressure (k) [Pa] at positions (k, 2) [m] in the contact."""
-        approach = self.model.interface.basis.interpolator(self.at_nodes)(np.asarray(places).T)
+        approach = self.model.interface.basis.interpolator(self.node_approach)(np.asarray(positions).T)
         return self.model.law.derivatives(approach, 1)[0]
 
 
-def trace(body: ElasticBody, interface: Interface, axis: int = 2) -> sp.csr_matrix:
+def displacement_matrix(body: ElasticBody, interface: Interface, axis: int = 2) -> sp.csr_matrix:
     """Matrix (q, n) [1]: displacement along an axis at the quadrature points per unknown of a body."""
-    return (interface.values @ node_trace(body, interface, axis)).tocsr()
+    return (interface.interpolation @ nodal_displacement_matrix(body, interface, axis)).tocsr()
 
 
-def node_trace(body: ElasticBody, interface: Interface, axis: int = 2) -> sp.csr_matrix:
+def nodal_displacement_matrix(body: ElasticBody, interface: Interface, axis: int = 2) -> sp.csr_matrix:
     """Matrix (contact nodes, n) [1]: displacement along an axis at the contact nodes per unknown of a body.
 
     Raises RuntimeError if a node of the contact is no node of the body.
@@ -258,10 +277,12 @@ def node_trace(body: ElasticBody, interface: Interface, axis: int = 2) -> sp.csr
     if distance.max() > 1e-9:
         raise RuntimeError(f"a node of the contact lies {distance.max():g} m beside the body's nodes")
     ones = np.ones(node.size)
-    return sp.csr_matrix((ones, (np.arange(node.size), 3 * node + axis)), shape=(node.size, body.size))
+    return sp.csr_matrix(
+        (ones, (np.arange(node.size), 3 * node + axis)), shape=(node.size, body.unknown_count)
+    )
 
 
-def _supports(body: ElasticBody, fully: bool) -> Index:
+def _select_supports(body: ElasticBody, stop_all_motions: bool) -> Index:
     """Three unknowns of a body that stop its rigid-body motions in the contact plane.
 
     stop_all_motions : add three unknowns that stop the motion along z and the rotations about x and y.
@@ -270,4 +291,6 @@ def _supports(body: ElasticBody, fully: bool) -> Index:
     x, y, z = body.nodes
     first, second, third = (int(np.argmin(a * x + b * y + 1e-3 * z)) for a, b in ((1, 1), (-1, 1), (1, -1)))
     unknowns = [3 * first, 3 * first + 1, 3 * second + 1]
-    return np.array(unknowns + [3 * node + 2 for node in (first, second, third)] if fully else unknowns)
+    return np.array(
+        unknowns + [3 * node + 2 for node in (first, second, third)] if stop_all_motions else unknowns
+    )

@@ -12,7 +12,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from jointfmu.progress import track
+from jointfmu.progress import track_progress
 from jointfmu.quantity import Array
 
 from ..fields.nodal_result import ContactField
@@ -20,9 +20,9 @@ from .bolted_contact import BoltedContact, JointSolution
 from .contact import PressureLaw
 from .geometry import Assembly
 
-RATIO = math.sqrt(2.0)
+REFINEMENT_RATIO = math.sqrt(2.0)
 """Ratio of the element sizes of two successive meshes [1]."""
-COLUMNS = {"peak": "Pa", "between": "Pa", "K_N": "N/m", "K_rx": "N.m/rad", "K_ry": "N.m/rad"}
+RESULT_UNITS = {"peak": "Pa", "between": "Pa", "K_N": "N/m", "K_rx": "N.m/rad", "K_ry": "N.m/rad"}
 """Results that are compared, with their units: peak pressure, mean pressure midway between neighbouring
 bolts, normal stiffness and bending stiffness about x and y."""
 
@@ -43,16 +43,16 @@ class MeshResult:
     values: dict[str, float]
 
 
-def refinements(count: int, middle: float = 1.0) -> list[float]:
+def refinements(count: int, base: float = 1.0) -> list[float]:
     """Refinements [1] of `count` meshes, each REFINEMENT_RATIO times finer than the one before.
 
     base : refinement [1] of the second mesh, or of the only one
     """
-    return [middle * RATIO**k for k in range(-1, count - 1)] if count > 1 else [middle]
+    return [base * REFINEMENT_RATIO**k for k in range(-1, count - 1)] if count > 1 else [base]
 
 
-def study(
-    assembly: Assembly, law: PressureLaw, preload: float, moment: float, levels: Sequence[float]
+def run_mesh_study(
+    assembly: Assembly, law: PressureLaw, preload: float, moment: float, refinement_levels: Sequence[float]
 ) -> tuple[list[MeshResult], JointSolution]:
     """Solve the contact on meshes of increasing refinement [1]; return all results and the last solution.
 
@@ -60,60 +60,63 @@ def study(
     moment  : [N.m] about x
     """
 
-    def solved(refinement: float) -> JointSolution:
-        return BoltedContact.of(assembly, refinement).solve(law, preload, moment)
+    def solve_mesh(refinement: float) -> JointSolution:
+        return BoltedContact.from_assembly(assembly, refinement).solve(law, preload, moment)
 
-    *coarser, finest = levels
-    rows = [result(solved(refinement), refinement) for refinement in track(coarser, "meshes")]
-    solution = solved(finest)
-    return [*rows, result(solution, finest)], solution
+    *coarser, finest = refinement_levels
+    rows = [
+        summarize_solution(solve_mesh(refinement), refinement)
+        for refinement in track_progress(coarser, "meshes")
+    ]
+    solution = solve_mesh(finest)
+    return [*rows, summarize_solution(solution, finest)], solution
 
 
-def result(solution: JointSolution, refinement: float) -> MeshResult:
+def summarize_solution(solution: JointSolution, refinement: float) -> MeshResult:
     """Size of the mesh and compared results of a solution."""
-    between = solution.between[1]
-    values = {"peak": solution.peak, "between": float(between.mean()) if between.size else math.nan}
+    between = solution.pressure_between_bolts[1]
+    values = {"peak": solution.peak_pressure, "between": float(between.mean()) if between.size else math.nan}
     joint = solution.joint
     return MeshResult(
         refinement=refinement,
         elements=int(joint.interface.basis.mesh.nelements),
-        unknowns=sum(body.size for body in joint.bodies),
+        unknowns=sum(body.unknown_count for body in joint.bodies),
         values=values | solution.stiffness,
     )
 
 
-def changes(rows: Sequence[MeshResult]) -> list[dict[str, float]]:
+def relative_changes(rows: Sequence[MeshResult]) -> list[dict[str, float]]:
     """Relative change [1] of each result from each mesh to the next."""
     return [
-        {name: fine.values[name] / coarse.values[name] - 1.0 for name in COLUMNS}
+        {name: fine.values[name] / coarse.values[name] - 1.0 for name in RESULT_UNITS}
         for coarse, fine in pairwise(rows)
     ]
 
 
-def orders(rows: Sequence[MeshResult]) -> dict[str, float]:
+def observed_orders(rows: Sequence[MeshResult]) -> dict[str, float]:
     """Observed order of convergence [1] of each result from the last three meshes.
 
     nan if the changes do not decrease. Fewer than three meshes give an empty dict.
     """
     if len(rows) < 3:
         return {}
-    previous, latest = changes(rows)[-2:]
+    previous, latest = relative_changes(rows)[-2:]
     ratio = math.log(rows[-1].refinement / rows[-2].refinement)
     observed = {}
-    for name in COLUMNS:
+    for name in RESULT_UNITS:
         decreases = 0.0 < abs(latest[name]) < abs(previous[name])
         observed[name] = math.log(abs(previous[name] / latest[name])) / ratio if decreases else math.nan
     return observed
 
 
-UNLIKE = 0.1
+MAX_PEAK_DIFFERENCE = 0.1
 """Largest relative difference of the peak pressures around equivalent bolts [1] on a mesh that is fine
 enough."""
-_SAME = 1e-6
+_POSITION_TOLERANCE = 1e-6
 """Distance [m] below which a mirrored bolt coincides with another bolt."""
 
 
-def alike(bolts: Array, moment: bool) -> NDArray[np.int64]:
+def first_equivalent_bolts(bolts: Array, has_moment: bool) -> NDArray[np.int64]:
     """For each bolt, index (n) of the first bolt that is equivalent to it by mirror symmetry.
 
     Mirror planes are x = 0 and, without a moment about x, y = 0. The bodies are symmetric about both planes.
@@ -122,15 +125,15 @@ def alike(bolts: Array, moment: bool) -> NDArray[np.int64]:
     bolts : (n, 2) [m]
     """
     first = np.arange(len(bolts))
-    for mirror in ((-1.0, 1.0),) if moment else ((-1.0, 1.0), (1.0, -1.0)):
+    for mirror in ((-1.0, 1.0),) if has_moment else ((-1.0, 1.0), (1.0, -1.0)):
         distance = np.hypot(*(bolts[:, None] * mirror - bolts[None]).T).T
         image = distance.argmin(axis=1)
-        if np.all(distance[np.arange(len(bolts)), image] < _SAME):
+        if np.all(distance[np.arange(len(bolts)), image] < _POSITION_TOLERANCE):
             first = np.minimum(first, first[image])
     return first
 
 
-def unlike_holes(field: ContactField, bolts: Array, moment: bool) -> list[str]:
+def check_bolt_symmetry(field: ContactField, bolts: Array, has_moment: bool) -> list[str]:
     """Warning if the peak pressures around equivalent bolts differ by more than MAX_PEAK_DIFFERENCE.
 
     Returns a list of one message, or an empty list.
@@ -139,10 +142,10 @@ def unlike_holes(field: ContactField, bolts: Array, moment: bool) -> list[str]:
         return []
     nearest_bolt = np.hypot(*(field.position[:, None] - bolts[None]).T).argmin(axis=0)
     peak = np.array([np.max(field.pressure[nearest_bolt == i], initial=0.0) for i in range(len(bolts))])
-    group = alike(bolts, moment)
+    group = first_equivalent_bolts(bolts, has_moment)
     ratio = peak / np.array([np.min(peak[group == first]) for first in group]).clip(1e-9)
     worst = int(np.argmax(ratio))
-    if not ratio[worst] > 1.0 + UNLIKE:
+    if not ratio[worst] > 1.0 + MAX_PEAK_DIFFERENCE:
         return []
     x, y = bolts[worst]
     return [

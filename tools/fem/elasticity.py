@@ -29,7 +29,7 @@ class Cholesky:
         from cvxopt import cholmod
 
         cholmod.options["supernodal"] = 2
-        packed = _packed(sp.tril(matrix))
+        packed = _to_cvxopt(sp.tril(matrix))
         self._factor = cholmod.symbolic(packed)
         try:
             cholmod.numeric(packed, self._factor)
@@ -38,7 +38,7 @@ class Cholesky:
                 "a stiffness matrix is not positive definite: a body can move freely"
             ) from None
 
-    def solve(self, right: Array | sp.spmatrix) -> Array:
+    def solve(self, right_side: Array | sp.spmatrix) -> Array:
         """Solve `matrix @ x = right_side` for x (n) or (n, k).
 
         Sparse right-hand sides take half the time of dense ones: CVXOPT solves four sparse columns at once,
@@ -47,21 +47,24 @@ class Cholesky:
         from cvxopt import cholmod
         from cvxopt import matrix as dense
 
-        if sp.issparse(right):
-            blocks = (right[:, first : first + COLUMNS] for first in range(0, right.shape[1], COLUMNS))
-            return np.hstack(
-                [np.array(dense(cholmod.spsolve(self._factor, _packed(block)))) for block in blocks]
+        if sp.issparse(right_side):
+            blocks = (
+                right_side[:, first : first + MAX_SPARSE_COLUMNS]
+                for first in range(0, right_side.shape[1], MAX_SPARSE_COLUMNS)
             )
-        x = dense(np.asfortranarray(right, dtype=np.float64))
+            return np.hstack(
+                [np.array(dense(cholmod.spsolve(self._factor, _to_cvxopt(block)))) for block in blocks]
+            )
+        x = dense(np.asfortranarray(right_side, dtype=np.float64))
         cholmod.solve(self._factor, x)
-        return np.array(x).reshape(right.shape)
+        return np.array(x).reshape(right_side.shape)
 
 
-COLUMNS = 32
+MAX_SPARSE_COLUMNS = 32
 """Largest number of sparse right-hand sides in one call: their solutions are in memory twice."""
 
 
-def _packed(matrix: sp.spmatrix) -> Any:
+def _to_cvxopt(matrix: sp.spmatrix) -> Any:
     """Convert a sparse matrix (n, k) from scipy to CVXOPT."""
     from cvxopt import matrix as dense
     from cvxopt import spmatrix
@@ -73,9 +76,9 @@ def _packed(matrix: sp.spmatrix) -> Any:
 
 Index = NDArray[np.int64]
 
-ORDER = 4
+QUADRATURE_DEGREE = 4
 """Polynomial degree that the quadrature integrates exactly: 3 x 3 x 3 points in an element."""
-BLOCK = 4096
+ELEMENTS_PER_BLOCK = 4096
 """Number of elements whose matrices are computed in one array operation."""
 
 
@@ -99,10 +102,10 @@ class ElasticBody:
     @cached_property
     def basis(self) -> Basis:
         """Scalar finite-element basis. The displacement component k at node i is unknown 3 i + k."""
-        return Basis(self.mesh, self.element, intorder=ORDER)
+        return Basis(self.mesh, self.element, intorder=QUADRATURE_DEGREE)
 
     @property
-    def size(self) -> int:
+    def unknown_count(self) -> int:
         """Number of unknowns (three per node)."""
         return 3 * int(self.basis.N)
 
@@ -120,17 +123,21 @@ class ElasticBody:
         """
         lame, shear = lame_parameters(self.E, self.nu)
         count = self.mesh.nelements
-        return _assembled(
-            self.basis, [self._blocks(slice(i, i + BLOCK), lame, shear) for i in range(0, count, BLOCK)]
+        return _assemble(
+            self.basis,
+            [
+                self._element_matrices(slice(i, i + ELEMENTS_PER_BLOCK), lame, shear)
+                for i in range(0, count, ELEMENTS_PER_BLOCK)
+            ],
         )
 
-    def _blocks(self, part: slice, lame: float, shear: float) -> Array:
+    def _element_matrices(self, elements: slice, lame: float, shear: float) -> Array:
         """Stiffness matrices (m, 20, 20, 3, 3) [N/m] of the selected elements."""
         functions = range(self.basis.Nbfun)
-        gradient = np.stack([self.basis.basis[i][0].grad[:, part] for i in functions])
+        gradient = np.stack([self.basis.basis[i][0].grad[:, elements] for i in functions])
         n, _, m, _ = gradient.shape
         rows = np.ascontiguousarray(gradient.transpose(2, 0, 1, 3)).reshape(m, 3 * n, -1)
-        product = ((rows * self.basis.dx[part, None, :]) @ rows.transpose(0, 2, 1)).reshape(m, n, 3, n, 3)
+        product = ((rows * self.basis.dx[elements, None, :]) @ rows.transpose(0, 2, 1)).reshape(m, n, 3, n, 3)
         product = product.transpose(0, 1, 3, 2, 4)
         matrix = lame * product + shear * product.transpose(0, 1, 2, 4, 3)
         trace = shear * np.trace(product, axis1=3, axis2=4)
@@ -149,13 +156,13 @@ class ElasticBody:
         )
         rows = functions.transpose(1, 0, 2)
         scalar = self.density * (rows * self.basis.dx[:, None, :]) @ rows.transpose(0, 2, 1)
-        return sp.kron(_assembled(self.basis, [scalar[..., None, None]]), np.eye(3), format="csr")
+        return sp.kron(_assemble(self.basis, [scalar[..., None, None]]), np.eye(3), format="csr")
 
     def uniform_load(self, facets: Index) -> Array:
         """Nodal load (n) [N/N] of a unit force along z, distributed uniformly over facets."""
-        basis = FacetBasis(self.mesh, self.element, facets=facets, intorder=ORDER)
+        basis = FacetBasis(self.mesh, self.element, facets=facets, intorder=QUADRATURE_DEGREE)
         share = LinearForm(lambda v, w: v).assemble(basis)
-        load = np.zeros(self.size)
+        load = np.zeros(self.unknown_count)
         load[2::3] = share / share.sum()
         return load
 
@@ -177,7 +184,7 @@ class ElasticBody:
         return np.stack([np.stack(motion, axis=1).ravel() for motion in motions], axis=1)
 
 
-def _assembled(basis: Basis, blocks: list[Array]) -> sp.csr_matrix:
+def _assemble(basis: Basis, blocks: list[Array]) -> sp.csr_matrix:
     """Assemble element matrices (m, n, n, k, k) to a global sparse matrix with k x k blocks."""
     dofs = np.asarray(basis.element_dofs.T, dtype=np.int64)
     key = (dofs[:, :, None] * basis.N + dofs[:, None, :]).ravel()

@@ -10,23 +10,30 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from jointfmu.quantity import Array, Checked, check, choice, quantity, series
+from jointfmu.quantity import (
+    Array,
+    CheckedParameters,
+    check_fields,
+    choice_field,
+    quantity_field,
+    series_field,
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BoltGrid:
     """Bolts in rows along x, centred on the z axis."""
 
-    rows: float = quantity("1", "rows of bolts", ge=1.0, whole=True)
-    columns: float = quantity("1", "bolts in a row", ge=1.0, whole=True)
-    row_spacing: float = quantity("m", "distance of the two outermost rows", ge=0.0)
-    column_spacing: float = quantity("m", "distance of the outermost bolts of a row", ge=0.0)
-    inside: bool = choice(False, True, doc="whether there are bolts inside the outer frame of the grid")
-    hole_diameter: float = quantity("m", "clearance hole", gt=0.0)
-    head_diameter: float = quantity("m", "outer diameter of the bolt head or washer", gt=0.0)
+    rows: float = quantity_field("1", "rows of bolts", ge=1.0, is_integer=True)
+    columns: float = quantity_field("1", "bolts in a row", ge=1.0, is_integer=True)
+    row_spacing: float = quantity_field("m", "distance of the two outermost rows", ge=0.0)
+    column_spacing: float = quantity_field("m", "distance of the outermost bolts of a row", ge=0.0)
+    inside: bool = choice_field(False, True, doc="whether there are bolts inside the outer frame of the grid")
+    hole_diameter: float = quantity_field("m", "clearance hole", gt=0.0)
+    head_diameter: float = quantity_field("m", "outer diameter of the bolt head or washer", gt=0.0)
 
     def __post_init__(self) -> None:
-        check(self)
+        check_fields(self)
         for count, name in ((self.rows, "row_spacing"), (self.columns, "column_spacing")):
             if count > 1.0 and getattr(self, name) == 0.0:
                 raise ValueError(f"{name} = 0 m is outside (0, inf): there is more than one row or column")
@@ -35,8 +42,8 @@ class BoltGrid:
     def positions(self) -> Array:
         """Bolt positions (n, 2) [m], row by row."""
         rows, columns = int(self.rows), int(self.columns)
-        y = 0.5 * self.row_spacing * _spread(rows)
-        x = 0.5 * self.column_spacing * _spread(columns)
+        y = 0.5 * self.row_spacing * _equidistant(rows)
+        x = 0.5 * self.column_spacing * _equidistant(columns)
         edge = np.zeros((rows, columns), dtype=bool)
         edge[[0, -1], :], edge[:, [0, -1]] = True, True
         row, column = np.nonzero(edge | self.inside)
@@ -47,13 +54,13 @@ class BoltGrid:
 class BoltList:
     """Bolts at listed positions."""
 
-    x: tuple[float, ...] = series("m", "positions along x")
-    y: tuple[float, ...] = series("m", "positions along y")
-    hole_diameter: float = quantity("m", "clearance hole", gt=0.0)
-    head_diameter: float = quantity("m", "outer diameter of the bolt head or washer", gt=0.0)
+    x: tuple[float, ...] = series_field("m", "positions along x")
+    y: tuple[float, ...] = series_field("m", "positions along y")
+    hole_diameter: float = quantity_field("m", "clearance hole", gt=0.0)
+    head_diameter: float = quantity_field("m", "outer diameter of the bolt head or washer", gt=0.0)
 
     def __post_init__(self) -> None:
-        check(self)
+        check_fields(self)
         if len(self.x) != len(self.y):
             raise ValueError(f"y has {len(self.y)} values, x has {len(self.x)}; expected one for each bolt")
 
@@ -66,12 +73,12 @@ class BoltList:
 Bolts = BoltGrid | BoltList
 
 
-def _spread(count: int) -> Array:
+def _equidistant(count: int) -> Array:
     """`count` equidistant coordinates from -1 to 1; 0 for a single one."""
     return np.linspace(-1.0, 1.0, count) if count > 1 else np.zeros(1)
 
 
-SAME = 1e-9
+LENGTH_TOLERANCE = 1e-9
 """Difference [m] below which two lengths are equal."""
 
 
@@ -87,45 +94,45 @@ class Layer:
 
     bottom: float
     top: float
-    outer: tuple[float, float]
-    inner: tuple[float, float] = (0.0, 0.0)
-    drilled: bool = False
+    outline: tuple[float, float]
+    opening: tuple[float, float] = (0.0, 0.0)
+    has_bolt_holes: bool = False
 
-    def solid(self, x: Array, y: Array) -> NDArray[np.bool_]:
+    def is_solid(self, x: Array, y: Array) -> NDArray[np.bool_]:
         """Whether points (...) [m] of the plan view lie in the material of the layer; ignores bolt holes."""
-        inside = (np.abs(x) < self.outer[0]) & (np.abs(y) < self.outer[1])
-        return np.asarray(inside & ~((np.abs(x) < self.inner[0]) & (np.abs(y) < self.inner[1])))
+        inside = (np.abs(x) < self.outline[0]) & (np.abs(y) < self.outline[1])
+        return np.asarray(inside & ~((np.abs(x) < self.opening[0]) & (np.abs(y) < self.opening[1])))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Plate(Checked):
+class Plate(CheckedParameters):
     """A rectangular plate. Its whole face, without the bolt holes, is in contact."""
 
-    length: float = quantity("m", "length along x", gt=0.0)
-    width: float = quantity("m", "width along y", gt=0.0)
-    thickness: float = quantity("m", "thickness", gt=0.0)
-    E: float = quantity("Pa", "Young's modulus", gt=0.0)
-    nu: float = quantity("1", "Poisson's ratio", gt=-1.0, lt=0.5)
-    density: float = quantity("kg/m3", "density", gt=0.0)
+    length: float = quantity_field("m", "length along x", gt=0.0)
+    width: float = quantity_field("m", "width along y", gt=0.0)
+    thickness: float = quantity_field("m", "thickness", gt=0.0)
+    E: float = quantity_field("Pa", "Young's modulus", gt=0.0)
+    nu: float = quantity_field("1", "Poisson's ratio", gt=-1.0, lt=0.5)
+    density: float = quantity_field("kg/m3", "density", gt=0.0)
 
     @property
-    def clamped(self) -> float:
+    def clamped_thickness(self) -> float:
         """Thickness [m] under the head of a bolt."""
         return self.thickness
 
     def layers(self) -> tuple[Layer, ...]:
         """The slabs of the body, from the contact outward."""
-        return (Layer(0.0, self.thickness, (0.5 * self.length, 0.5 * self.width), drilled=True),)
+        return (Layer(0.0, self.thickness, (0.5 * self.length, 0.5 * self.width), has_bolt_holes=True),)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TappedPlate(Plate):
     """A plate with blind tapped holes: the bolts are screwed into it."""
 
-    depth: float = quantity("m", "depth of the threads from the contact", gt=0.0)
+    depth: float = quantity_field("m", "depth of the threads from the contact", gt=0.0)
 
     def __post_init__(self) -> None:
-        check(self)
+        check_fields(self)
         if not self.depth < self.thickness:
             raise ValueError(
                 f"thickness = {self.thickness:g} m is outside ({self.depth:g}, inf): deeper than its threads"
@@ -134,29 +141,31 @@ class TappedPlate(Plate):
     def layers(self) -> tuple[Layer, ...]:
         """The slabs of the body, from the contact outward."""
         half = (0.5 * self.length, 0.5 * self.width)
-        return Layer(0.0, self.depth, half, drilled=True), Layer(self.depth, self.thickness, half)
+        return Layer(0.0, self.depth, half, has_bolt_holes=True), Layer(self.depth, self.thickness, half)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BoxSection:
     """A rectangular box, open towards the contact: a flange there, four walls, a floor at the far end."""
 
-    length: float = quantity("m", "outer length of the flange along x", gt=0.0)
-    width: float = quantity("m", "outer width of the flange along y", gt=0.0)
-    height: float = quantity("m", "height from the contact to the far end", gt=0.0)
-    wall: float = quantity("m", "thickness of the walls", gt=0.0)
-    flange_width: float = quantity("m", "width of the contact frame", gt=0.0)
-    flange_thickness: float = quantity("m", "thickness of the flange", gt=0.0)
-    floor: float = quantity("m", "thickness of the floor at the far end; 0: open", ge=0.0)
-    wall_inset: float = quantity("m", "from the outer edge of the flange to the wall's outer face", ge=0.0)
-    E: float = quantity("Pa", "Young's modulus", gt=0.0)
-    nu: float = quantity("1", "Poisson's ratio", gt=-1.0, lt=0.5)
-    density: float = quantity("kg/m3", "density", gt=0.0)
+    length: float = quantity_field("m", "outer length of the flange along x", gt=0.0)
+    width: float = quantity_field("m", "outer width of the flange along y", gt=0.0)
+    height: float = quantity_field("m", "height from the contact to the far end", gt=0.0)
+    wall: float = quantity_field("m", "thickness of the walls", gt=0.0)
+    flange_width: float = quantity_field("m", "width of the contact frame", gt=0.0)
+    flange_thickness: float = quantity_field("m", "thickness of the flange", gt=0.0)
+    floor: float = quantity_field("m", "thickness of the floor at the far end; 0: open", ge=0.0)
+    wall_inset: float = quantity_field(
+        "m", "from the outer edge of the flange to the wall's outer face", ge=0.0
+    )
+    E: float = quantity_field("Pa", "Young's modulus", gt=0.0)
+    nu: float = quantity_field("1", "Poisson's ratio", gt=-1.0, lt=0.5)
+    density: float = quantity_field("kg/m3", "density", gt=0.0)
 
     def __post_init__(self) -> None:
-        check(self)
+        check_fields(self)
         low, high = self.wall_inset + self.wall, 0.5 * min(self.length, self.width)
-        if not low - SAME <= self.flange_width < high:
+        if not low - LENGTH_TOLERANCE <= self.flange_width < high:
             raise ValueError(
                 f"flange_width = {self.flange_width:g} m is outside [{low:g}, {high:g}): "
                 "the walls stand on the flange, and the flange leaves the middle open"
@@ -168,20 +177,20 @@ class BoxSection:
             )
 
     @property
-    def clamped(self) -> float:
+    def clamped_thickness(self) -> float:
         """Thickness [m] under the head of a bolt."""
         return self.flange_thickness
 
     def layers(self) -> tuple[Layer, ...]:
         """The slabs of the body, from the contact outward."""
-        opening = self._half(self.flange_width)
-        outside, inside = self._half(self.wall_inset), self._half(self.wall_inset + self.wall)
+        opening = self._half_lengths(self.flange_width)
+        outside, inside = self._half_lengths(self.wall_inset), self._half_lengths(self.wall_inset + self.wall)
         base, end = self.flange_thickness, self.height - self.floor
-        flange = Layer(0.0, base, self._half(0.0), opening, drilled=True)
+        flange = Layer(0.0, base, self._half_lengths(0.0), opening, has_bolt_holes=True)
         walls = Layer(base, end, outside, inside)
         return (flange, walls, Layer(end, self.height, outside)) if self.floor else (flange, walls)
 
-    def _half(self, inset: float) -> tuple[float, float]:
+    def _half_lengths(self, inset: float) -> tuple[float, float]:
         """Half lengths (2) [m] of a rectangle with this inset from the edge of the flange."""
         return 0.5 * self.length - inset, 0.5 * self.width - inset
 
@@ -212,15 +221,15 @@ class Assembly:
         None if there is only one row, or if the two rows have different numbers of bolts.
         """
         y, size = self.bolts.positions[:, 1], self.row_distance
-        high, low = (np.abs(y - end) < SAME + 1e-6 * size for end in (y.max(), y.min()))
+        high, low = (np.abs(y - end) < LENGTH_TOLERANCE + 1e-6 * size for end in (y.max(), y.min()))
         return (high, low) if size > 0.0 and high.sum() == low.sum() else None
 
     @property
     def contact_area(self) -> float:
         """Nominal contact area [m2] of the two bodies, without the bolt holes."""
         layers = [body.layers()[0] for body in (self.side1, self.side2)]
-        outer = np.min([layer.outer for layer in layers], axis=0)
-        inner1, inner2 = (np.minimum(layer.inner, outer) for layer in layers)
+        outer = np.min([layer.outline for layer in layers], axis=0)
+        inner1, inner2 = (np.minimum(layer.opening, outer) for layer in layers)
         opening = 4.0 * (inner1.prod() + inner2.prod() - np.minimum(inner1, inner2).prod())
         holes = len(self.bolts.positions) * 0.25 * np.pi * self.bolts.hole_diameter**2
         return float(4.0 * outer.prod() - opening - holes)
@@ -239,7 +248,7 @@ class Assembly:
         force = np.full(len(self.bolts.positions), float(preload))
         if moment == 0.0:
             return force
-        rows, limit = self.outer_rows(), self.most_moment(preload)
+        rows, limit = self.outer_rows(), self.max_moment(preload)
         if rows is None:
             raise ValueError(f"moment = {moment:g} N.m needs two outer rows with as many bolts each")
         if not abs(moment) < limit:
@@ -249,7 +258,7 @@ class Assembly:
             force[row] += sign * preload * moment / limit
         return force
 
-    def most_moment(self, preload: float) -> float:
+    def max_moment(self, preload: float) -> float:
         """Moment [N.m] at which an outer row of bolts loses its force; 0 without two matching rows."""
         rows = self.outer_rows()
         return 0.0 if rows is None else preload * self.row_distance * float(rows[0].sum())
@@ -265,7 +274,7 @@ def check_bolts(assembly: Assembly) -> None:
         )
     for i, (x, y) in enumerate(positions):
         for side in ("side1", "side2"):
-            if text := _obstacle(getattr(assembly, side), x, y, head):
+            if text := _find_obstacle(getattr(assembly, side), x, y, head):
                 raise ValueError(
                     f"bolt {i + 1} at ({1e3 * x:.4g}, {1e3 * y:.4g}) mm with a head of {2e3 * head:.4g} mm "
                     f"{text} of {side}"
@@ -282,42 +291,49 @@ def check_thickness(assembly: Assembly) -> None:
     """Raise ValueError if a body under a bolt head is thinner than the bearing ring of the head is wide."""
     min_thickness = 0.5 * (assembly.bolts.head_diameter - assembly.bolts.hole_diameter)
     for name, body in (("side1", assembly.side1), ("side2", assembly.side2)):
-        if not body.clamped >= min_thickness:
+        if not body.clamped_thickness >= min_thickness:
             raise ValueError(
-                f"{name} is {1e3 * body.clamped:.4g} mm thick, expected at least {1e3 * min_thickness:.4g} "
+                f"{name} is {1e3 * body.clamped_thickness:.4g} mm thick, expected at least {1e3 * min_thickness:.4g} "
                 "mm: the width of the ring under a head, which would punch through"
             )
 
 
-def _obstacle(body: Body, x: float, y: float, radius: float) -> str | None:
+def _find_obstacle(body: Body, x: float, y: float, radius: float) -> str | None:
     """Reason why a bolt head (a disc) does not lie flat on a body; None if it does."""
     flange, *rest = body.layers()
     if isinstance(body, TappedPlate):
         return None  # no head lies on a tapped plate
-    if not _within(x, y, radius, flange.outer) or _meets(x, y, radius, flange.inner):
+    if not _contains_disc(x, y, radius, flange.outline) or _overlaps_disc(x, y, radius, flange.opening):
         return f"reaches beyond the {'plate' if isinstance(body, Plate) else 'flange'}"
-    if rest and _meets(x, y, radius, rest[0].outer) and not _within(x, y, radius, rest[0].inner):
+    if (
+        rest
+        and _overlaps_disc(x, y, radius, rest[0].outline)
+        and not _contains_disc(x, y, radius, rest[0].opening)
+    ):
         return "runs into a wall"
     return None
 
 
-def _within(x: float, y: float, radius: float, half: tuple[float, float]) -> bool:
+def _contains_disc(x: float, y: float, radius: float, half_lengths: tuple[float, float]) -> bool:
     """Whether a disc lies inside a rectangle of these half lengths [m]; touching counts as inside."""
-    return abs(x) + radius <= half[0] + SAME and abs(y) + radius <= half[1] + SAME
+    return (
+        abs(x) + radius <= half_lengths[0] + LENGTH_TOLERANCE
+        and abs(y) + radius <= half_lengths[1] + LENGTH_TOLERANCE
+    )
 
 
-def _meets(x: float, y: float, radius: float, half: tuple[float, float]) -> bool:
+def _overlaps_disc(x: float, y: float, radius: float, half_lengths: tuple[float, float]) -> bool:
     """Whether a disc overlaps the interior of a rectangle of these half lengths [m]."""
-    gap = np.hypot(max(abs(x) - half[0], 0.0), max(abs(y) - half[1], 0.0))
-    return min(half) > 0.0 and bool(gap < radius - SAME)
+    gap = np.hypot(max(abs(x) - half_lengths[0], 0.0), max(abs(y) - half_lengths[1], 0.0))
+    return min(half_lengths) > 0.0 and bool(gap < radius - LENGTH_TOLERANCE)
 
 
-def rectangles(assembly: Assembly) -> Iterator[tuple[float, float]]:
+def layer_rectangles(assembly: Assembly) -> Iterator[tuple[float, float]]:
     """Half lengths (2) [m] of all outlines and openings of the layers of both bodies, without duplicates."""
     known_keys: set[tuple[float, float]] = set()
     for body in (assembly.side1, assembly.side2):
         for layer in body.layers():
-            for half in (layer.outer, layer.inner):
+            for half in (layer.outline, layer.opening):
                 key = (round(half[0], 9), round(half[1], 9))
                 if min(half) > 0.0 and key not in known_keys:
                     known_keys.add(key)

@@ -13,20 +13,20 @@ from skfem import MeshHex, MeshQuad
 from jointfmu.quantity import Array
 
 from .elasticity import Index
-from .geometry import Assembly, Body, Layer, TappedPlate, rectangles
+from .geometry import Assembly, Body, Layer, TappedPlate, layer_rectangles
 
-SIZE_AT_HOLES = 1.0 / 10.0
+RELATIVE_SIZE_AT_HOLES = 1.0 / 10.0
 """Edge length of an element at a hole over the circumference of the hole [1], at refinement 1."""
 ELEMENTS_ACROSS = 4
 """Number of elements across the narrowest strip of the contact, at refinement 1."""
-WALL = 1.02
+HOLE_WALL_DIAMETER_RATIO = 1.02
 """Diameter within which a facet counts as wall of a hole, over the diameter of the hole [1]."""
-LAYERS = 2
+ELEMENTS_THROUGH_THICKNESS = 2
 """Number of elements through the thickness of the layer at the contact, at refinement 1."""
 
 
 @dataclass(frozen=True, slots=True)
-class Plan:
+class PlanMesh:
     """Quadrilateral mesh of the plan view of both bodies.
 
     points       : (2, n) [m]
@@ -36,53 +36,53 @@ class Plan:
 
     points: Array
     cells: Index
-    drilled: NDArray[np.bool_]
+    in_bolt_hole: NDArray[np.bool_]
 
-    def solid(self, layer: Layer) -> NDArray[np.bool_]:
+    def is_solid(self, layer: Layer) -> NDArray[np.bool_]:
         """Whether each cell (m) lies in the material of a layer."""
         x, y = self.points[:, self.cells].mean(axis=1)
-        return layer.solid(x, y) & ~(self.drilled & layer.drilled)
+        return layer.is_solid(x, y) & ~(self.in_bolt_hole & layer.has_bolt_holes)
 
 
-def contact_cells(plan: Plan, assembly: Assembly) -> NDArray[np.bool_]:
+def find_contact_cells(plan: PlanMesh, assembly: Assembly) -> NDArray[np.bool_]:
     """Whether the two bodies touch in each cell (m) of the plan."""
-    cells1, cells2 = (plan.solid(body.layers()[0]) for body in (assembly.side1, assembly.side2))
+    cells1, cells2 = (plan.is_solid(body.layers()[0]) for body in (assembly.side1, assembly.side2))
     return cells1 & cells2
 
 
-def contact_mesh(plan: Plan, touching: NDArray[np.bool_]) -> MeshQuad:
+def contact_mesh(plan: PlanMesh, in_contact: NDArray[np.bool_]) -> MeshQuad:
     """Plane mesh of the cells (m) in contact."""
-    used, cells = np.unique(plan.cells[:, touching], return_inverse=True)
+    used, cells = np.unique(plan.cells[:, in_contact], return_inverse=True)
     return MeshQuad(np.ascontiguousarray(plan.points[:, used]), np.ascontiguousarray(cells.reshape(4, -1)))
 
 
-def sizes(assembly: Assembly, refinement: float) -> tuple[float, float]:
+def element_sizes(assembly: Assembly, refinement: float) -> tuple[float, float]:
     """Edge lengths [m] of elements at the holes, and far from them."""
-    strips = [_strip(body) for body in (assembly.side1, assembly.side2)]
-    at_holes = np.pi * assembly.bolts.hole_diameter * SIZE_AT_HOLES
+    strips = [_narrowest_strip(body) for body in (assembly.side1, assembly.side2)]
+    at_holes = np.pi * assembly.bolts.hole_diameter * RELATIVE_SIZE_AT_HOLES
     return at_holes / refinement, max(min(strips) / ELEMENTS_ACROSS, at_holes) / refinement
 
 
-def _strip(body: Body) -> float:
+def _narrowest_strip(body: Body) -> float:
     """Width [m] of the narrowest strip of the contact face of a body."""
     contact = body.layers()[0]
-    widths = [o - i for o, i in zip(contact.outer, contact.inner, strict=True)]
+    widths = [o - i for o, i in zip(contact.outline, contact.opening, strict=True)]
     return float(min(widths))
 
 
-def plan_of(assembly: Assembly, refinement: float = 1.0) -> Plan:
+def mesh_plan(assembly: Assembly, refinement: float = 1.0) -> PlanMesh:
     """Mesh the plan view with quadrilaterals whose edges follow all body edges, holes and bolt heads.
 
     refinement : [1] divides all element sizes
     """
     import gmsh
 
-    size_at_holes, max_size = sizes(assembly, refinement)
+    size_at_holes, max_size = element_sizes(assembly, refinement)
     gmsh.initialize(interruptible=False)
     try:
         gmsh.option.setNumber("General.Terminal", 0)
-        _draw(gmsh.model, assembly)
-        _grade(gmsh.model, assembly, size_at_holes, max_size)
+        _draw_plan(gmsh.model, assembly)
+        _set_element_sizes(gmsh.model, assembly, size_at_holes, max_size)
         for name, value in (
             ("Algorithm", 8),
             ("RecombineAll", 1),
@@ -93,16 +93,16 @@ def plan_of(assembly: Assembly, refinement: float = 1.0) -> Plan:
         ):
             gmsh.option.setNumber(f"Mesh.{name}", value)
         gmsh.model.mesh.generate(2)
-        points, cells = _quadrilaterals(gmsh.model)
+        points, cells = _read_quadrilaterals(gmsh.model)
     finally:
         gmsh.finalize()
-    _round(points, assembly)
+    _match_hole_areas(points, assembly)
     centre = points[:, cells].mean(axis=1)
     distance = np.hypot(*(centre[:, None, :] - assembly.bolts.positions.T[:, :, None]))
-    return Plan(points, cells, distance.min(axis=0) < 0.5 * assembly.bolts.hole_diameter)
+    return PlanMesh(points, cells, distance.min(axis=0) < 0.5 * assembly.bolts.hole_diameter)
 
 
-def _round(points: Array, assembly: Assembly) -> None:
+def _match_hole_areas(points: Array, assembly: Assembly) -> None:
     """Move the corners of the hole polygons outward, in place: each polygon gets the area of its circle."""
     radius = 0.5 * assembly.bolts.hole_diameter
     for centre in assembly.bolts.positions:
@@ -113,10 +113,10 @@ def _round(points: Array, assembly: Assembly) -> None:
         points[:, rim] += (radius * np.sqrt(np.pi / area) - 1.0) * offset[:, rim]
 
 
-def _draw(model: object, assembly: Assembly) -> None:
+def _draw_plan(model: object, assembly: Assembly) -> None:
     """Draw rectangles, holes and heads in gmsh, and split them into faces with common edges."""
     occ = model.occ  # type: ignore[attr-defined]
-    faces = [(2, occ.addRectangle(-x, -y, 0.0, 2 * x, 2 * y)) for x, y in rectangles(assembly)]
+    faces = [(2, occ.addRectangle(-x, -y, 0.0, 2 * x, 2 * y)) for x, y in layer_rectangles(assembly)]
     for x, y in assembly.bolts.positions:
         for diameter in (assembly.bolts.hole_diameter, assembly.bolts.head_diameter):
             faces.append((2, occ.addDisk(x, y, 0.0, 0.5 * diameter, 0.5 * diameter)))
@@ -124,7 +124,7 @@ def _draw(model: object, assembly: Assembly) -> None:
     occ.synchronize()
 
 
-def _grade(model: object, assembly: Assembly, near: float, far: float) -> None:
+def _set_element_sizes(model: object, assembly: Assembly, size_at_holes: float, max_size: float) -> None:
     """Set the element size in gmsh: smallest at the rims of the holes, growing with the distance to them."""
     field = model.mesh.field  # type: ignore[attr-defined]
     # the subdivision of gmsh halves the element size, so twice the size is set
@@ -132,12 +132,12 @@ def _grade(model: object, assembly: Assembly, near: float, far: float) -> None:
     hole = 0.5 * assembly.bolts.hole_diameter
     for x, y in assembly.bolts.positions:
         terms = f"(Sqrt((x-({x:.12g}))^2+(y-({y:.12g}))^2))"
-        size = f"{2 * near:.12g}+0.35*Abs({terms}-{hole:.12g})"
+        size = f"{2 * size_at_holes:.12g}+0.35*Abs({terms}-{hole:.12g})"
         rim = field.add("MathEval")
         field.setString(rim, "F", size)
         circles.append(rim)
     uniform = field.add("MathEval")
-    field.setString(uniform, "F", f"{2 * far:.12g}")
+    field.setString(uniform, "F", f"{2 * max_size:.12g}")
     smallest = field.add("Min")
     field.setNumbers(smallest, "FieldsList", [*circles, uniform])
     field.setAsBackgroundMesh(smallest)
@@ -147,7 +147,7 @@ def _grade(model: object, assembly: Assembly, near: float, far: float) -> None:
         gmsh.option.setNumber(f"Mesh.{name}", 0)
 
 
-def _quadrilaterals(model: object) -> tuple[Array, Index]:
+def _read_quadrilaterals(model: object) -> tuple[Array, Index]:
     """Read points (2, n) [m] and counter-clockwise cells (4, m) of the mesh from gmsh."""
     mesh = model.mesh  # type: ignore[attr-defined]
     tags, coordinates, _ = mesh.getNodes()
@@ -168,18 +168,18 @@ def _quadrilaterals(model: object) -> tuple[Array, Index]:
     return points, cells if area > 0 else cells[::-1]
 
 
-def body_mesh(plan: Plan, assembly: Assembly, side: int, refinement: float = 1.0) -> MeshHex:
+def body_mesh(plan: PlanMesh, assembly: Assembly, side: int, refinement: float = 1.0) -> MeshHex:
     """Extrude the plan mesh to the mesh of one body: side 1 towards -z, side 2 towards +z.
 
     Named boundaries: `contact` is the whole face at z = 0; `head1`, `head2`, ... are the faces under the bolt
     heads or, in a tapped plate, the walls of the threaded holes.
     """
     body = assembly.side1 if side == 1 else assembly.side2
-    heights, owner = levels(body, refinement, 2.0 * sizes(assembly, refinement)[1])
+    heights, owner = extrusion_levels(body, refinement, 2.0 * element_sizes(assembly, refinement)[1])
     count, layers = plan.points.shape[1], body.layers()
     lower, upper = [], []
     for k, layer_index in enumerate(owner):
-        cells = plan.cells[:, plan.solid(layers[layer_index])]
+        cells = plan.cells[:, plan.is_solid(layers[layer_index])]
         lower.append(cells + k * count)
         upper.append(cells + (k + 1) * count)
     if side == 1:
@@ -191,7 +191,7 @@ def body_mesh(plan: Plan, assembly: Assembly, side: int, refinement: float = 1.0
     return mesh.with_boundaries(_boundaries(mesh, assembly, side))
 
 
-def levels(body: Body, refinement: float, tall: float) -> tuple[Array, list[int]]:
+def extrusion_levels(body: Body, refinement: float, max_height: float) -> tuple[Array, list[int]]:
     """Subdivision of a body along z: k rows of elements between k + 1 levels.
 
     Returns the distances (k + 1) [m] of the levels from the contact, and for each row the index of its layer.
@@ -201,8 +201,8 @@ def levels(body: Body, refinement: float, tall: float) -> tuple[Array, list[int]
     heights, owner = [0.0], []
     for layer_index, layer in enumerate(body.layers()):
         thickness = layer.top - layer.bottom
-        min_rows = LAYERS if layer_index == 0 else 1
-        rows = max(round(min_rows * refinement), int(np.ceil(thickness / tall - 1e-9)), 1)
+        min_rows = ELEMENTS_THROUGH_THICKNESS if layer_index == 0 else 1
+        rows = max(round(min_rows * refinement), int(np.ceil(thickness / max_height - 1e-9)), 1)
         heights += list(layer.bottom + thickness * np.arange(1, rows + 1) / rows)
         owner += [layer_index] * rows
     return np.array(heights), owner
@@ -217,7 +217,7 @@ def _hexahedra(lower: Index, upper: Index) -> Index:
 def _boundaries(mesh: MeshHex, assembly: Assembly, side: int) -> dict[str, Index]:
     """Named boundaries of a body mesh (see `body_mesh`), each as indices of facets."""
     bolts, body = assembly.bolts, assembly.side1 if side == 1 else assembly.side2
-    head_level = body.clamped if side == 2 else -body.clamped
+    head_level = body.clamped_thickness if side == 2 else -body.clamped_thickness
     x, y, z = mesh.p[:, mesh.facets].mean(axis=1)
     outer = np.zeros(z.size, dtype=bool)
     outer[mesh.boundary_facets()] = True
@@ -225,7 +225,7 @@ def _boundaries(mesh: MeshHex, assembly: Assembly, side: int) -> dict[str, Index
     boundaries = {"contact": np.flatnonzero(outer & (np.abs(z) < tolerance))}
     if isinstance(body, TappedPlate):
         candidates = outer & (np.ptp(mesh.p[2, mesh.facets], axis=0) > tolerance)
-        diameter = WALL * bolts.hole_diameter
+        diameter = HOLE_WALL_DIAMETER_RATIO * bolts.hole_diameter
     else:
         candidates = outer & (np.abs(mesh.p[2, mesh.facets] - head_level).max(axis=0) < tolerance)
         diameter = bolts.head_diameter

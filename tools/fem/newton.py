@@ -9,22 +9,22 @@ import scipy.sparse as sp
 from scipy.optimize import brentq
 from scipy.sparse.linalg import LinearOperator, cg
 
-from jointfmu.progress import track
+from jointfmu.progress import track_progress
 from jointfmu.quantity import Array
 
 from .elasticity import Cholesky
 
-TOLERANCE = 1e-11
+RELATIVE_TOLERANCE = 1e-11
 """Residual force over applied load [1], both as sums of magnitudes, at which Newton's method converges."""
-MOST_STEPS = 60
-ENOUGH = 0.1
+MAX_NEWTON_STEPS = 60
+LINEAR_TOLERANCE_RATIO = 0.1
 """Tightest tolerance of the linear solver over the tolerance of Newton's method [1]."""
-PATIENCE = 12
+MAX_CG_ITERATIONS = 12
 """Number of conjugate-gradient iterations above which the tangent is factorised anew."""
 
 
 @dataclass(frozen=True)
-class Minimum:
+class EnergyMinimum:
     """Minimum of the energy.
 
     displacement : u (n) [m]
@@ -40,7 +40,7 @@ class Minimum:
 
 
 @dataclass(frozen=True)
-class Energy:
+class ContactEnergy:
     """Energy u K u / 2 - f u + sum over points of weight V(offset + T u), with V' = p; convex in u (n) [m].
 
     stiffness       : K (n, n) [N/m]
@@ -52,11 +52,11 @@ class Energy:
 
     stiffness: sp.csr_matrix
     load: Array
-    trace: sp.csr_matrix
+    approach_matrix: sp.csr_matrix
     weight: Array
     law: Callable[[Array], list[Array]]
 
-    def minimise(self, offset: Array, near: Minimum | None = None) -> Minimum:
+    def minimise(self, offset: Array, initial_minimum: EnergyMinimum | None = None) -> EnergyMinimum:
         """Find the minimum by Newton's method.
 
         offset          : (q) [m] approach at zero displacement
@@ -67,39 +67,45 @@ class Energy:
 
         Raises RuntimeError if there is no equilibrium.
         """
-        K, T = self.stiffness, self.trace
-        u = np.zeros(self.load.size) if near is None else near.displacement
+        K, T = self.stiffness, self.approach_matrix
+        u = np.zeros(self.load.size) if initial_minimum is None else initial_minimum.displacement
         inner, approach = K @ u, offset + T @ u
         total_load = float(np.abs(self.load).sum())
-        factor, slow, last_residual = None if near is None else near.factor, False, np.inf
-        for step in track(range(MOST_STEPS), "contact"):
+        factor, slow, last_residual = (
+            None if initial_minimum is None else initial_minimum.factor,
+            False,
+            np.inf,
+        )
+        for step in track_progress(range(MAX_NEWTON_STEPS), "contact"):
             p, k = self.law(approach)[:2]
             residual = self.load - inner - T.T @ (self.weight * p)
             size = float(np.abs(residual).sum()) / total_load
-            if size <= TOLERANCE or (size <= 1e3 * TOLERANCE and size > 0.5 * last_residual):
-                return Minimum(u, approach, step, factor)
+            if size <= RELATIVE_TOLERANCE or (
+                size <= 1e3 * RELATIVE_TOLERANCE and size > 0.5 * last_residual
+            ):
+                return EnergyMinimum(u, approach, step, factor)
             last_residual = size
             spring = self.weight * k
             if factor is None or slow:
                 factor = Cholesky(K + T.T @ sp.diags_array(spring) @ T)
-            accuracy = min(1e-2, max(size, ENOUGH * TOLERANCE / size))
-            tangent = LinearOperator(K.shape, partial(self._tangent, spring), dtype=np.float64)
-            move, count = _solve(tangent, residual, factor, accuracy)
-            slow = count > PATIENCE
+            accuracy = min(1e-2, max(size, LINEAR_TOLERANCE_RATIO * RELATIVE_TOLERANCE / size))
+            tangent = LinearOperator(K.shape, partial(self._apply_tangent, spring), dtype=np.float64)
+            move, count = _solve_cg(tangent, residual, factor, accuracy)
+            slow = count > MAX_CG_ITERATIONS
             change, load_change = T @ move, K @ move
             linear, quadratic = float(move @ (inner - self.load)), float(move @ load_change)
-            length = self._length(approach, change, linear, quadratic)
+            length = self._step_length(approach, change, linear, quadratic)
             u, inner, approach = u + length * move, inner + length * load_change, approach + length * change
         raise RuntimeError(
-            f"the contact has not settled after {MOST_STEPS} steps (residual {last_residual:.2g} of the "
+            f"the contact has not settled after {MAX_NEWTON_STEPS} steps (residual {last_residual:.2g} of the "
             "load): the loads may not balance"
         )
 
-    def _tangent(self, spring: Array, u: Array) -> Array:
+    def _apply_tangent(self, spring: Array, u: Array) -> Array:
         """Tangent times displacement: (K + T^T diag(spring) T) u, with contact stiffness (q) [N/m]."""
-        return np.asarray(self.stiffness @ u + self.trace.T @ (spring * (self.trace @ u)))
+        return np.asarray(self.stiffness @ u + self.approach_matrix.T @ (spring * (self.approach_matrix @ u)))
 
-    def _length(self, approach: Array, change: Array, linear: float, square: float) -> float:
+    def _step_length(self, approach: Array, change: Array, linear: float, quadratic: float) -> float:
         """Exact line search: step length <= 1 at which the slope of the energy along the step vanishes.
 
         A full step is taken if its final slope is at most a tenth of the initial one.
@@ -109,28 +115,38 @@ class Energy:
         linear, quadratic : [J] slope of elastic energy minus load work is linear + length * quadratic
         """
 
-        def slope(length: float) -> float:
+        def energy_slope(length: float) -> float:
             """Slope of the energy [J] with respect to the step length."""
             p = self.law(approach + length * change)[0]
-            return linear + length * square + float(change @ (self.weight * p))
+            return linear + length * quadratic + float(change @ (self.weight * p))
 
-        start = slope(0.0)
-        if start >= 0.0 or slope(1.0) <= -0.1 * start:
+        start = energy_slope(0.0)
+        if start >= 0.0 or energy_slope(1.0) <= -0.1 * start:
             return 1.0
-        return float(brentq(slope, 0.0, 1.0, xtol=1e-3))
+        return float(brentq(energy_slope, 0.0, 1.0, xtol=1e-3))
 
 
-def _solve(matrix: LinearOperator, right: Array, factor: Cholesky, accuracy: float) -> tuple[Array, int]:
+def _solve_cg(
+    matrix: LinearOperator, right_side: Array, factor: Cholesky, relative_tolerance: float
+) -> tuple[Array, int]:
     """Solve a linear system by preconditioned conjugate gradients to a relative tolerance.
 
     Returns the solution and the number of iterations.
     """
     count = 0
 
-    def counted(_: Array) -> None:
+    def count_iteration(_: Array) -> None:
         nonlocal count
         count += 1
 
     inverse = LinearOperator(matrix.shape, matvec=factor.solve, dtype=np.float64)
-    solution, _ = cg(matrix, right, rtol=accuracy, atol=0.0, maxiter=200, M=inverse, callback=counted)
+    solution, _ = cg(
+        matrix,
+        right_side,
+        rtol=relative_tolerance,
+        atol=0.0,
+        maxiter=200,
+        M=inverse,
+        callback=count_iteration,
+    )
     return solution, count

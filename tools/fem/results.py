@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from jointfmu.files.outputs import MARK
+from jointfmu.files.outputs import PROGRAM_MARK
 from jointfmu.files.writing import write_bytes, write_text
 from jointfmu.quantity import Array
 
@@ -18,7 +18,7 @@ from .elasticity import ElasticBody, Index
 from .modes import NaturalModes
 
 
-def packed(points: Array, cell_type: str, cells: Index, data: Mapping[str, Array]) -> bytes:
+def vtu_content(points: Array, cell_type: str, cells: Index, data: Mapping[str, Array]) -> bytes:
     """Content of a VTU file.
 
     points    : (k, 3) [m]
@@ -32,10 +32,10 @@ def packed(points: Array, cell_type: str, cells: Index, data: Mapping[str, Array
         path = Path(folder) / "mesh.vtu"
         meshio.Mesh(points, [(cell_type, cells)], point_data=dict(data)).write(path)
         content = path.read_bytes()
-    return content.replace(b"?>", f"?>\n<!-- {MARK} -->".encode(), 1)
+    return content.replace(b"?>", f"?>\n<!-- {PROGRAM_MARK} -->".encode(), 1)
 
 
-def check(path: str | Path) -> None:
+def check_field_path(path: str | Path) -> None:
     """Raise ValueError if the suffix of the path is no format of a field. Call before a long calculation."""
     if Path(path).suffix.lower() not in FIELD.endings:
         raise ValueError(
@@ -43,21 +43,21 @@ def check(path: str | Path) -> None:
         )
 
 
-def write(solution: JointSolution, path: str | Path) -> None:
+def write_field(solution: JointSolution, path: str | Path) -> None:
     """Write the pressure field: as .csv the quadrature points with their areas, as .vtu the mesh nodes."""
-    check(path)
+    check_field_path(path)
     if Path(path).suffix.lower() == ".csv":
         write_text(path, nodal_result.csv_text(solution.field))
     else:
-        write_bytes(path, vtu(solution))
+        write_bytes(path, contact_vtu(solution))
 
 
-def quarters(solution: JointSolution) -> tuple[Array, Index, Array]:
+def divide_elements(solution: JointSolution) -> tuple[Array, Index, Array]:
     """Divide each element of the contact into four: points (k, 2) [m], cells (m, 4), approach (k) [m].
 
     The points are the nodes of the contact and the centres of its elements.
     """
-    interface, nodal = solution.joint.interface, solution.contact.at_nodes
+    interface, nodal = solution.joint.interface, solution.contact.node_approach
     dofs = np.asarray(interface.basis.element_dofs)
     weight = np.repeat([-0.25, 0.5], 4)  # shape functions of 4 corner and 4 edge nodes at the centre
     centres = interface.nodes.shape[1] + np.arange(dofs.shape[1])
@@ -69,23 +69,23 @@ def quarters(solution: JointSolution) -> tuple[Array, Index, Array]:
     return points.T, np.concatenate(cells, axis=1).T, np.concatenate([nodal, weight @ nodal[dofs]])
 
 
-def vtu(solution: JointSolution) -> bytes:
+def contact_vtu(solution: JointSolution) -> bytes:
     """Content of a VTU file of the contact: quadrilaterals with nodal pressure [Pa] and approach [m]."""
-    positions, cells, approach = quarters(solution)
+    positions, cells, approach = divide_elements(solution)
     data = {"pressure": solution.contact.model.law.derivatives(approach, 1)[0], "approach": approach}
     points = np.column_stack([positions, np.zeros(len(positions))])
-    return packed(points, "quad", cells, data)
+    return vtu_content(points, "quad", cells, data)
 
 
-def draw(solution: JointSolution, path: str | Path) -> None:
+def draw_pressure(solution: JointSolution, path: str | Path) -> None:
     """Plot the contact pressure, with its peak and the values midway between neighbouring bolts."""
     from matplotlib.tri import Triangulation
 
     contact = solution.contact
-    points, cells, approach = quarters(solution)
+    points, cells, approach = divide_elements(solution)
     width, height = np.ptp(points, axis=0)
     scale = 6.4 / max(width, height)
-    with plots.drawing(path, (scale * width + 2.4, scale * height + 1.2)) as figure:
+    with plots.open_figure(path, (scale * width + 2.4, scale * height + 1.2)) as figure:
         axes = figure.subplots()
         axes.grid(False)
         triangles = np.concatenate([cells[:, [0, 1, 2]], cells[:, [0, 2, 3]]])
@@ -97,12 +97,16 @@ def draw(solution: JointSolution, path: str | Path) -> None:
         x, y = solution.joint.interface.nodes[:, peak]
         axes.plot(x, y, "o", color=plots.RED, fillstyle="none")
         axes.annotate(
-            f"{solution.peak / 1e6:.2f}", (x, y), (8, -12), textcoords="offset points", color=plots.RED
+            f"{solution.peak_pressure / 1e6:.2f}",
+            (x, y),
+            (8, -12),
+            textcoords="offset points",
+            color=plots.RED,
         )
-        for position, value in zip(*solution.between, strict=True):
+        for position, value in zip(*solution.pressure_between_bolts, strict=True):
             axes.annotate(f"{value / 1e6:.2f}", position, ha="center", va="center", color="white", size=8)
         axes.set(xlabel="x in m", ylabel="y in m", aspect="equal")
-        force = solution.force / 1e3
+        force = solution.bolt_force / 1e3
         bolts = f"{force.min():g}" if np.ptp(force) == 0.0 else f"{force.min():g} to {force.max():g}"
         axes.set_title(f"{solution.joint.assembly.name}, {bolts} kN per bolt", size=10)
 
@@ -123,20 +127,20 @@ def modes_vtu(bodies: tuple[ElasticBody, ...], modes: NaturalModes) -> bytes:
     n_points_1 = len(meshes[0][0])
     data = {}
     for i, (frequency, shape) in enumerate(zip(modes.frequency, modes.shape, strict=True), 1):
-        displacement = np.concatenate([u[rows] for u, rows in zip(shape, _corners(bodies), strict=True)])
+        displacement = np.concatenate([u[rows] for u, rows in zip(shape, _corner_nodes(bodies), strict=True)])
         data[f"mode {i}, {frequency:.1f} Hz"] = displacement / np.linalg.norm(displacement, axis=1).max()
     points = np.concatenate([points for points, _ in meshes])
-    cells = _outward(points, np.concatenate([meshes[0][1], meshes[1][1] + n_points_1]))
-    return packed(points, "hexahedron", cells, data)
+    cells = _orient_hexahedra(points, np.concatenate([meshes[0][1], meshes[1][1] + n_points_1]))
+    return vtu_content(points, "hexahedron", cells, data)
 
 
-def _corners(bodies: tuple[ElasticBody, ...]) -> tuple[Index, Index]:
+def _corner_nodes(bodies: tuple[ElasticBody, ...]) -> tuple[Index, Index]:
     """Indices of the element corners among the nodes, for side 1 and side 2."""
     corners = [body.basis.nodal_dofs[0] for body in bodies]
     return corners[0], corners[-1]
 
 
-def _outward(points: Array, cells: Index) -> Index:
+def _orient_hexahedra(points: Array, cells: Index) -> Index:
     """Hexahedra (m, 8) with the node order of VTK: the normal of the first face points to the second face."""
     a, b, d, e = (points[cells[:, k]] for k in (0, 1, 3, 4))
     inverted = np.einsum("ij,ij->i", np.cross(b - a, d - a), e - a) < 0.0

@@ -5,11 +5,11 @@ from importlib.resources import files
 from pathlib import Path
 
 from jointfmu.joints import KINDS
-from jointfmu.parameters import default
+from jointfmu.parameters import load_default
 
-from ..fields.clamped import clamping
-from ..joint_parts import part
-from ..published.reference import guesses, points
+from ..fields.clamped import field_adapter
+from ..joint_parts import load_tool_module
+from ..published.reference import read_points, trivial_guesses
 from ..published.validation import ValidatedPoint, compare
 
 
@@ -22,35 +22,38 @@ class MeasuredFrequencies:
     assembly_file  : file of the assembly in models/assemblies/
     """
 
-    points: str
-    assembly: str
+    reference_file: str
+    assembly_file: str
 
     @property
     def path(self) -> Path:
         """Path of the assembly file."""
-        return Path(str(files("jointfmu_models") / "assemblies" / f"{self.assembly}.toml"))
+        return Path(str(files("jointfmu_models") / "assemblies" / f"{self.assembly_file}.toml"))
 
 
-def natural_frequencies() -> list[ValidatedPoint]:
+def compare_natural_frequencies() -> list[ValidatedPoint]:
     """Compare measured frequencies of all assemblies with finite elements: half a minute for each assembly.
 
     Raises ImportError without the extra `fem`.
     """
-    modules = {name: part(kind, "frequencies") for name, kind in KINDS.items()}
+    modules = {name: load_tool_module(kind, "frequencies") for name, kind in KINDS.items()}
     return [
-        row for name, module in modules.items() if module for row in _frequencies(name, module.FREQUENCIES)
+        row
+        for name, module in modules.items()
+        if module
+        for row in _compare_frequencies(name, module.FREQUENCIES)
     ]
 
 
-def _frequencies(joint: str, measured: MeasuredFrequencies) -> list[ValidatedPoint]:
+def _compare_frequencies(joint: str, measurement: MeasuredFrequencies) -> list[ValidatedPoint]:
     """Compare the measured frequencies of one assembly with finite elements."""
     from . import assembly, modes
 
-    published, values = points(measured.points), default(joint).values
+    published, values = read_points(measurement.reference_file), load_default(joint).values
     states = list(dict.fromkeys((p.where["preload"], p.where["moment"]) for p in published))
-    shear = float(clamping(joint).shear_ratio(values))
-    computed = modes.frequencies(assembly.load(measured.path), values, shear, states)
+    shear = float(field_adapter(joint).shear_ratio(values))
+    computed = modes.compute_frequencies(assembly.read_assembly(measurement.path), values, shear, states)
     by_state = dict(zip(states, computed.tolist(), strict=True))
     matching = [by_state[p.where["preload"], p.where["moment"]][p.where["mode"] - 1] for p in published]
-    guessed = guesses(published)
+    guessed = trivial_guesses(published)
     return [compare(p, value, guessed.get(p.id)) for p, value in zip(published, matching, strict=True)]

@@ -16,30 +16,30 @@ from jointfmu.joints.bolted_joint.compliances import Compliances
 from jointfmu.quantity import Array
 
 from .bolted_contact import elastic_body, head_loads
-from .contact import Interface, trace
+from .contact import Interface, displacement_matrix
 from .elasticity import Cholesky, ElasticBody, Index
 from .geometry import Assembly
-from .mesh import contact_cells, contact_mesh, plan_of
+from .mesh import contact_mesh, find_contact_cells, mesh_plan
 
 AXES = (0, 1, 2)
-MIRROR = np.array([1.0, 1.0, -1.0])
+MIRROR_SIGNS = np.array([1.0, 1.0, -1.0])
 """Factors of x, y, z for the mirror image in the contact plane."""
-SLACK = 1e-6
+FACE_TOLERANCE = 1e-6
 """Distance of a node from a face over the size of the body [1], below which the node lies on the face."""
 
 
-def _faces(body: ElasticBody, side: int) -> NDArray[np.bool_]:
+def _on_outer_face(body: ElasticBody, side: int) -> NDArray[np.bool_]:
     """Whether each node lies on the outer face, opposite to the contact."""
-    return _at(np.abs(body.nodes[2]), float(np.abs(body.nodes[2]).max()))
+    return _is_close(np.abs(body.nodes[2]), float(np.abs(body.nodes[2]).max()))
 
 
-def _edge(body: ElasticBody, side: int) -> NDArray[np.bool_]:
+def _on_end_face(body: ElasticBody, side: int) -> NDArray[np.bool_]:
     """Whether each node lies on the end face of the body: at +x for side 2, at -x for side 1."""
     x = body.nodes[0] if side == 2 else -body.nodes[0]
-    return _at(x, float(x.max()))
+    return _is_close(x, float(x.max()))
 
 
-def _heads(body: ElasticBody, side: int) -> NDArray[np.bool_]:
+def _under_heads(body: ElasticBody, side: int) -> NDArray[np.bool_]:
     """Whether each node lies under a bolt head."""
     under_head = np.zeros(body.nodes.shape[1], dtype=bool)
     for name, facets in body.mesh.boundaries.items():
@@ -48,22 +48,22 @@ def _heads(body: ElasticBody, side: int) -> NDArray[np.bool_]:
     return under_head
 
 
-def _at(place: Array, end: float) -> NDArray[np.bool_]:
+def _is_close(coordinate: Array, value: float) -> NDArray[np.bool_]:
     """Whether each coordinate [m] equals a value [m] within FACE_TOLERANCE."""
-    return np.asarray(np.abs(place - end) < SLACK * abs(end))
+    return np.asarray(np.abs(coordinate - value) < FACE_TOLERANCE * abs(value))
 
 
-ATTACHED: Mapping[str, Callable[[ElasticBody, int], NDArray[np.bool_]]] = {
-    "faces": _faces,
-    "edge": _edge,
-    "heads": _heads,
+ATTACHMENT_NODES: Mapping[str, Callable[[ElasticBody, int], NDArray[np.bool_]]] = {
+    "faces": _on_outer_face,
+    "edge": _on_end_face,
+    "heads": _under_heads,
 }
 """Kinds of attachment, each with a function (body, side) that gives the mask (nodes) of the rigid nodes:
 the outer face, the end face (side 1 at -x, side 2 at +x), or the areas under the bolt heads."""
 
 
 @dataclass(frozen=True)
-class WholeJoint:
+class JointFiniteElements:
     """Finite-element model of both bodies of a joint between their attachments.
 
     bodies              : side 1 and side 2
@@ -75,51 +75,56 @@ class WholeJoint:
     """
 
     bodies: tuple[ElasticBody, ElasticBody]
-    held: tuple[Index, Index]
+    attachment_unknowns: tuple[Index, Index]
     interface: Interface
-    heads: tuple[Array, Array]
+    bolt_head_loads: tuple[Array, Array]
     bolts: Array
 
     @classmethod
-    def of(cls, assembly: Assembly, attached: str, refinement: float = 1.0) -> "WholeJoint":
+    def from_assembly(
+        cls, assembly: Assembly, attachment: str, refinement: float = 1.0
+    ) -> "JointFiniteElements":
         """Mesh an assembly.
 
         attachment : kind of attachment, a key of ATTACHMENT_NODES
         refinement : [1] divides the sizes of all elements
         """
-        plan = plan_of(assembly, refinement)
+        plan = mesh_plan(assembly, refinement)
         first, second = (elastic_body(plan, assembly, side, refinement) for side in (1, 2))
         attachments, heads = [], []
         for side, body in enumerate((first, second), start=1):
-            nodes = np.flatnonzero(ATTACHED[attached](body, side))
+            nodes = np.flatnonzero(ATTACHMENT_NODES[attachment](body, side))
             attachments.append((3 * nodes[:, None] + np.arange(3)).ravel())
             heads.append(head_loads(body, assembly))
-        interface = Interface.of(contact_mesh(plan, contact_cells(plan, assembly)))
+        interface = Interface.from_mesh(contact_mesh(plan, find_contact_cells(plan, assembly)))
         bolts = assembly.bolts.positions
         return cls((first, second), (attachments[0], attachments[1]), interface, (heads[0], heads[1]), bolts)
 
     @property
-    def mirrored(self) -> bool:
+    def is_mirrored(self) -> bool:
         """Whether side 2 is the mirror image of side 1: body, mesh, attachment and bolt bearing areas."""
         first, second = self.bodies
         return (
             (first.E, first.nu) == (second.E, second.nu)
             and first.nodes.shape == second.nodes.shape
-            and np.array_equal(first.nodes, second.nodes * MIRROR[:, None])
-            and np.array_equal(*self.held)
-            and np.allclose(*self.heads, rtol=0.0, atol=SLACK)
+            and np.array_equal(first.nodes, second.nodes * MIRROR_SIGNS[:, None])
+            and np.array_equal(*self.attachment_unknowns)
+            and np.allclose(*self.bolt_head_loads, rtol=0.0, atol=FACE_TOLERANCE)
         )
 
-    def apart(self, axis: int) -> sp.csr_matrix:
+    def relative_displacement_matrix(self, axis: int) -> sp.csr_matrix:
         """Matrix (q, n) [1]: displacement of side 2 relative to side 1 along an axis, per unknown.
 
         The displacement along z (axis 2) is the opening of the contact.
         """
         return sp.hstack(
-            [s * trace(b, self.interface, axis) for s, b in zip((-1.0, 1.0), self.bodies, strict=True)]
+            [
+                s * displacement_matrix(b, self.interface, axis)
+                for s, b in zip((-1.0, 1.0), self.bodies, strict=True)
+            ]
         ).tocsr()
 
-    def compliances(self, springs: Array, bolt: float) -> Compliances:
+    def compliances(self, springs: Array, bolt_stiffness: float) -> Compliances:
         """Compliances of the complete joint.
 
         springs        : stiffness per area (q, 3) [N/m3] of the interface along x, y, z
@@ -127,26 +132,37 @@ class WholeJoint:
 
         Raises RuntimeError if a body can move freely.
         """
-        return self.linear(springs, bolt).compliances()
+        return self.linearize(springs, bolt_stiffness).compliances()
 
     @property
-    def stretch(self) -> Array:
+    def elongation_matrix(self) -> Array:
         """Matrix (n, bolts) [1]: elongation of each bolt per unknown of both bodies."""
-        return np.concatenate([-self.heads[0], self.heads[1]])
+        return np.concatenate([-self.bolt_head_loads[0], self.bolt_head_loads[1]])
 
-    def linear(self, springs: Array, bolt: float) -> "Linear":
+    def linearize(self, springs: Array, bolt_stiffness: float) -> "LinearJoint":
         """Linear joint with springs as interface, solved for unit motions. Parameters as for `compliances`.
 
         Raises RuntimeError if a body can move freely.
         """
         bodies = sp.block_diag([body.stiffness for body in self.bodies], format="csr")
-        opening = [self.apart(axis) for axis in AXES]
+        opening = [self.relative_displacement_matrix(axis) for axis in AXES]
         weights = [sp.diags(self.interface.area * springs[:, axis]) for axis in AXES]
         contact = sum(b.T @ w @ b for b, w in zip(opening, weights, strict=True))
-        shanks = bolt * sp.csr_matrix(self.stretch) @ sp.csr_matrix(self.stretch.T)
-        return Linear(self, bodies, contact, shanks, bolt, *self._solved(bodies + contact + shanks))
+        shanks = (
+            bolt_stiffness * sp.csr_matrix(self.elongation_matrix) @ sp.csr_matrix(self.elongation_matrix.T)
+        )
+        return LinearJoint(
+            self,
+            bodies,
+            contact,
+            shanks,
+            bolt_stiffness,
+            *self._solve_unit_motions(bodies + contact + shanks),
+        )
 
-    def _solved(self, stiffness: sp.csr_matrix) -> tuple[Array, Array, Index, "Cholesky | Halves"]:
+    def _solve_unit_motions(
+        self, stiffness: sp.csr_matrix
+    ) -> tuple[Array, Array, Index, "Cholesky | MirrorFactorisation"]:
         """Solve for unit translations and rotations of side 2's attachment about the centroid of the contact.
 
         Returns the displacement (n, 6) of the elastic bodies, the displacement (n, 6) of rigid bodies, the
@@ -154,21 +170,27 @@ class WholeJoint:
         """
         first, second = self.bodies
         x, y = self.interface.centroid
-        rigid = np.concatenate([np.zeros((first.size, 6)), second.rigid_motions((float(x), float(y)))])
-        prescribed = np.concatenate([self.held[0], first.size + self.held[1]])
+        rigid = np.concatenate(
+            [np.zeros((first.unknown_count, 6)), second.rigid_motions((float(x), float(y)))]
+        )
+        prescribed = np.concatenate(
+            [self.attachment_unknowns[0], first.unknown_count + self.attachment_unknowns[1]]
+        )
         free = np.setdiff1d(np.arange(rigid.shape[0]), prescribed)
         displacement = np.zeros_like(rigid)
         displacement[prescribed] = rigid[prescribed]
         free_stiffness = stiffness[free][:, free]
-        if self.mirrored:
-            factor: Cholesky | Halves = Halves(free_stiffness, MIRROR[free[: len(free) // 2] % 3])
+        if self.is_mirrored:
+            factor: Cholesky | MirrorFactorisation = MirrorFactorisation(
+                free_stiffness, MIRROR_SIGNS[free[: len(free) // 2] % 3]
+            )
         else:
             factor = Cholesky(free_stiffness)
         displacement[free] = -factor.solve(stiffness[free][:, prescribed] @ rigid[prescribed])
         return displacement, rigid, free, factor
 
 
-class Halves:
+class MirrorFactorisation:
     """Factorisation of the stiffness (2 n, 2 n) of two bodies that are mirror images of each other.
 
     Symmetric and antisymmetric displacements decouple: each has its own matrix (n, n).
@@ -182,9 +204,9 @@ class Halves:
         self._mirror = mirror
         self._symmetric, self._antisymmetric = Cholesky(diagonal + coupling), Cholesky(diagonal - coupling)
 
-    def solve(self, right: Array) -> Array:
+    def solve(self, right_side: Array) -> Array:
         """Solve `matrix @ x = right_side` for x (2 n, k)."""
-        first, second = np.split(right, 2)
+        first, second = np.split(right_side, 2)
         first = self._mirror[:, None] * first
         symmetric = self._symmetric.solve(0.5 * (second + first))
         antisymmetric = self._antisymmetric.solve(0.5 * (second - first))
@@ -194,7 +216,7 @@ class Halves:
 
 
 @dataclass(frozen=True)
-class Linear:
+class LinearJoint:
     """Linear model of a joint: the interface is a layer of springs.
 
     body_matrix, contact_matrix, bolt_matrix : stiffness matrices (n, n) [N/m] of bodies, interface, bolts
@@ -205,33 +227,43 @@ class Linear:
     factor             : factorisation of the stiffness matrix of the free unknowns
     """
 
-    joint: WholeJoint
-    bodies: sp.csr_matrix
-    contact: sp.csr_matrix
-    shanks: sp.csr_matrix
-    bolt: float
-    moved: Array
-    rigid: Array
-    free: Index
-    factor: Cholesky | Halves
+    joint: JointFiniteElements
+    body_matrix: sp.csr_matrix
+    contact_matrix: sp.csr_matrix
+    bolt_matrix: sp.csr_matrix
+    bolt_stiffness: float
+    displacement: Array
+    rigid_displacement: Array
+    free_unknowns: Index
+    factor: Cholesky | MirrorFactorisation
 
     def solve(self, loads: Array) -> Array:
         """Solve for displacements (n, s) [m] under loads (n, s) [N], with both attachments fixed."""
         displacement = np.zeros_like(loads)
-        displacement[self.free] = self.factor.solve(loads[self.free])
+        displacement[self.free_unknowns] = self.factor.solve(loads[self.free_unknowns])
         return displacement
 
     @property
     def stiffness(self) -> Array:
         """Stiffness matrix (6, 6) [N/m, N, N.m] of the joint about the centroid of its contact."""
-        return np.asarray(self.moved.T @ ((self.contact + self.bodies + self.shanks) @ self.moved))
+        return np.asarray(
+            self.displacement.T
+            @ ((self.contact_matrix + self.body_matrix + self.bolt_matrix) @ self.displacement)
+        )
 
     def compliances(self) -> Compliances:
         """Compliances of the joint, by their sources, about the centroid of its contact."""
-        sources, total = (self.contact, self.bodies, self.shanks), np.diag(self.stiffness)
-        stored = np.stack([np.sum(self.moved * (matrix @ self.moved), axis=0) for matrix in sources])
-        contact, bolts = (
-            np.diag(self.rigid.T @ (matrix @ self.rigid)) for matrix in (self.contact, self.shanks)
+        sources, total = (self.contact_matrix, self.body_matrix, self.bolt_matrix), np.diag(self.stiffness)
+        stored = np.stack(
+            [np.sum(self.displacement * (matrix @ self.displacement), axis=0) for matrix in sources]
         )
-        bolt_force = self.bolt * (self.joint.stretch.T @ self.moved) @ np.linalg.inv(self.stiffness)
+        contact, bolts = (
+            np.diag(self.rigid_displacement.T @ (matrix @ self.rigid_displacement))
+            for matrix in (self.contact_matrix, self.bolt_matrix)
+        )
+        bolt_force = (
+            self.bolt_stiffness
+            * (self.joint.elongation_matrix.T @ self.displacement)
+            @ np.linalg.inv(self.stiffness)
+        )
         return Compliances(stored / total**2, 1.0 / contact, bolts, bolt_force)

@@ -14,13 +14,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from jointfmu.quantity.refusal import Refusal
+from jointfmu.quantity.refusal import InputRefusal
 
-from .mesh import NODES, FiniteElementMesh
-from .nodal_result import NUMBER, NodalResult, read_lines
+from .mesh import NODE_COUNTS, FiniteElementMesh
+from .nodal_result import NUMBER_PATTERN, NodalResult, read_lines
 
 PRESSURE, AREA = "CPRESS", "CNAREA"
-_PLACE = ("COOR1", "COOR2", "COOR3")
+_COORDINATES = ("COOR1", "COOR2", "COOR3")
 _COLUMN = re.compile(r"[A-Z]+\d*(?:\..*)?")
 _SUMMARIES = ("MINIMUM", "MAXIMUM", "TOTAL")
 
@@ -35,22 +35,22 @@ class ListingRow(NamedTuple):
     values   : {column: value}; a vector has one column for each component
     """
 
-    where: str
+    location: str
     frame: str
-    part: str
+    instance: str
     node: int
     values: dict[str, float]
 
 
-class Values(NamedTuple):
+class NodalValues(NamedTuple):
     """Nodal values of one frame: {(part instance, node): value}, in the units of the file."""
 
     pressure: dict[tuple[str, int], float]
     area: dict[tuple[str, int], float]
-    place: dict[tuple[str, int], tuple[float, ...]]
+    position: dict[tuple[str, int], tuple[float, ...]]
 
 
-def read(paths: Sequence[Path], length: float, pressure: float) -> NodalResult:
+def read_abaqus(paths: Sequence[Path], length_unit: float, pressure_unit: float) -> NodalResult:
     """Read a nodal contact result from Abaqus listings.
 
     Coordinates and nodal areas come from the listings, or from an input deck among the files.
@@ -61,33 +61,38 @@ def read(paths: Sequence[Path], length: float, pressure: float) -> NodalResult:
     columns, a node has two values.
     """
     path, meshes = paths[0], [p for p in paths[1:] if p.suffix.lower() == ".inp"]
-    values, left_out = _values([p for p in paths if p not in meshes])
+    values, left_out = _read_values([p for p in paths if p not in meshes])
     if not values.pressure:
         raise ValueError(f"{path}: has no contact pressure, a column {PRESSURE} for nodes (Unique Nodal)")
     if meshes:
-        return _on_deck(path, meshes[0], values, left_out, length, pressure)
+        return _result_on_deck(path, meshes[0], values, left_out, length_unit, pressure_unit)
     for table, text in (
-        (values.place, "no coordinates, columns COOR1, COOR2 and COOR3 (COORD)"),
+        (values.position, "no coordinates, columns COOR1, COOR2 and COOR3 (COORD)"),
         (values.area, f"no nodal areas, a column {AREA}"),
     ):
         if not any(table.values()):
-            raise Refusal(f"{path}: has {text}; list them too, or give the input deck (.inp)", "beside")
+            raise InputRefusal(f"{path}: has {text}; list them too, or give the input deck (.inp)", "beside")
     nodes = sorted(key for key, area in values.area.items() if area > 0.0)
-    if missing := [key for key in nodes if key not in values.place]:
+    if missing := [key for key in nodes if key not in values.position]:
         raise ValueError(f"{path}: node {missing[0][1]} has an area and no coordinates")
     absent = 0.0 if left_out else np.nan
     return NodalResult(
         path=path,
-        word="node",
-        names=np.array([node for _, node in nodes], dtype=np.int64),
-        place=np.array([values.place[key] for key in nodes]).reshape(-1, 3) * length,
-        pressure=np.array([values.pressure.get(key, absent) for key in nodes]) * pressure,
-        area=np.array([values.area[key] for key in nodes]) * length**2,
+        label="node",
+        numbers=np.array([node for _, node in nodes], dtype=np.int64),
+        position=np.array([values.position[key] for key in nodes]).reshape(-1, 3) * length_unit,
+        pressure=np.array([values.pressure.get(key, absent) for key in nodes]) * pressure_unit,
+        area=np.array([values.area[key] for key in nodes]) * length_unit**2,
     )
 
 
-def _on_deck(
-    path: Path, mesh_path: Path, values: Values, left_out: bool, length: float, pressure: float
+def _result_on_deck(
+    path: Path,
+    mesh_path: Path,
+    values: NodalValues,
+    omits_open_nodes: bool,
+    length_unit: float,
+    pressure_unit: float,
 ) -> NodalResult:
     """Contact result of listed pressures on the mesh of an input deck."""
     instances = sorted({instance for instance, _ in values.pressure})
@@ -96,41 +101,41 @@ def _on_deck(
             f"{path}: lists nodes of {len(instances)} parts ({', '.join(instances)}), "
             "an input deck has one numbering"
         )
-        raise Refusal(text, "beside")
+        raise InputRefusal(text, "beside")
     mesh = read_deck(mesh_path)
     pressures = {node: value for (_, node), value in values.pressure.items()}
-    if stray := mesh.stray(pressures):
+    if stray := mesh.unknown_nodes(pressures):
         raise ValueError(f"{path}: node {min(stray)} has a pressure and is not in {mesh_path}")
-    return mesh.result(path, pressures, length, pressure, left_out)
+    return mesh.nodal_result(path, pressures, length_unit, pressure_unit, omits_open_nodes)
 
 
-def _values(paths: Sequence[Path]) -> tuple[Values, bool]:
+def _read_values(paths: Sequence[Path]) -> tuple[NodalValues, bool]:
     """Read pressures and areas of the last frame with a pressure, and the last coordinates.
 
     The second result tells whether a file leaves out rows of zeros.
     """
-    frames: dict[str, Values] = {}
+    frames: dict[str, NodalValues] = {}
     last, left_out = "", False
     coordinates: dict[tuple[str, int], tuple[float, ...]] = {}
     for path in paths:
         lines = read_lines(path, "an Abaqus listing")
         report = any(line.lstrip().startswith("Field Output") for line in lines)
         left_out |= not report
-        for row in _report(path, lines) if report else _printed(path, lines):
-            frame = frames.setdefault(row.frame, Values({}, {}, {}))
-            key = row.part, row.node
+        for row in _report_rows(path, lines) if report else _data_file_rows(path, lines):
+            frame = frames.setdefault(row.frame, NodalValues({}, {}, {}))
+            key = row.instance, row.node
             for name, table in ((PRESSURE, frame.pressure), (AREA, frame.area)):
                 if name in row.values and table.setdefault(key, row.values[name]) != row.values[name]:
-                    raise ValueError(f"{row.where}: node {row.node} has a second {name}, expected one")
-            if all(name in row.values for name in _PLACE):
-                frame.place[key] = coordinates[key] = tuple(row.values[name] for name in _PLACE)
+                    raise ValueError(f"{row.location}: node {row.node} has a second {name}, expected one")
+            if all(name in row.values for name in _COORDINATES):
+                frame.position[key] = coordinates[key] = tuple(row.values[name] for name in _COORDINATES)
             if PRESSURE in row.values:
                 last = row.frame
-    values = frames.get(last, Values({}, {}, {}))
-    return Values(values.pressure, values.area, coordinates | values.place), left_out
+    values = frames.get(last, NodalValues({}, {}, {}))
+    return NodalValues(values.pressure, values.area, coordinates | values.position), left_out
 
 
-def _report(path: Path, lines: list[str]) -> Iterator[ListingRow]:
+def _report_rows(path: Path, lines: list[str]) -> Iterator[ListingRow]:
     """Rows of the nodal tables of a field report; tables by element are ignored."""
     step = frame = instance = ""
     head: list[str] | None = None  # lines between the name of the part and the rows
@@ -147,20 +152,20 @@ def _report(path: Path, lines: list[str]) -> Iterator[ListingRow]:
             if text.startswith("Field Output reported at nodes for"):
                 head, instance = [], text.split(":", 1)[-1].strip().split(".")[0]
         elif text and set(text) == {"-"} and head:
-            columns, head = [*columns, *_columns(location, head)], []
+            columns, head = [*columns, *_column_names(location, head)], []
         elif not text or text.upper().startswith(_SUMMARIES):
             columns = [] if text else columns
-        elif columns and NUMBER.fullmatch(text.split()[0]):
+        elif columns and NUMBER_PATTERN.fullmatch(text.split()[0]):
             words += text.split()
             head = None
             if len(words) > len(columns):
-                yield _row(location, f"{step} {frame}", instance, columns, words)
+                yield _parse_row(location, f"{step} {frame}", instance, columns, words)
                 words = []
         elif head is not None and (columns or head or text.startswith("Node")):
             head.append(text)
 
 
-def _columns(where: str, head: Sequence[str]) -> list[str]:
+def _column_names(location: str, head: Sequence[str]) -> list[str]:
     """Read the column names in the head of a table: names in the first line, locations (@Loc 1) in the next.
 
     A name may be followed by the name of a contact pair, as in CPRESS  ASSEMBLY_A/ASSEMBLY_B.
@@ -174,31 +179,39 @@ def _columns(where: str, head: Sequence[str]) -> list[str]:
             names.append(word)
     count = sum(line.count("@Loc") for line in head)
     if count not in (0, len(names)):
-        raise ValueError(f"{where}: has {count} columns, their names are not told apart: {' '.join(words)}")
-    columns = [_known(name) for name in names]
+        raise ValueError(
+            f"{location}: has {count} columns, their names are not told apart: {' '.join(words)}"
+        )
+    columns = [_standard_name(name) for name in names]
     if columns.count(PRESSURE) > 1:
         raise ValueError(
-            f"{where}: has {columns.count(PRESSURE)} columns {PRESSURE}, expected one contact pair"
+            f"{location}: has {columns.count(PRESSURE)} columns {PRESSURE}, expected one contact pair"
         )
     return columns
 
 
-def _known(name: str) -> str:
+def _standard_name(name: str) -> str:
     """Standard name of a column: COOR1 for COORD.COOR1, CPRESS for CPRESS with a contact pair."""
     first = name.split()[0]
     return first.removeprefix("COORD.") if first.startswith("COORD.") else first
 
 
-def _row(where: str, frame: str, part: str, columns: Sequence[str], words: Sequence[str]) -> ListingRow:
+def _parse_row(
+    location: str, frame: str, instance: str, columns: Sequence[str], words: Sequence[str]
+) -> ListingRow:
     """Parse one row: a node and a number for each column. Raises ValueError for any other line."""
     numbers = words[-len(columns) :]
-    if not words[0].isdigit() or len(words) != len(columns) + 1 or not all(map(NUMBER.fullmatch, numbers)):
-        raise ValueError(f"{where}: {' '.join(words)!r} is no row with a node and {' '.join(columns)}")
+    if (
+        not words[0].isdigit()
+        or len(words) != len(columns) + 1
+        or not all(map(NUMBER_PATTERN.fullmatch, numbers))
+    ):
+        raise ValueError(f"{location}: {' '.join(words)!r} is no row with a node and {' '.join(columns)}")
     values = [float(word.upper().replace("D", "E")) for word in numbers]
-    return ListingRow(where, frame, part, int(words[0]), dict(zip(columns, values, strict=True)))
+    return ListingRow(location, frame, instance, int(words[0]), dict(zip(columns, values, strict=True)))
 
 
-def _printed(path: Path, lines: list[str]) -> Iterator[ListingRow]:
+def _data_file_rows(path: Path, lines: list[str]) -> Iterator[ListingRow]:
     """Rows of the nodal tables of a data file."""
     step = increment = ""
     columns: list[str] = []
@@ -216,12 +229,12 @@ def _printed(path: Path, lines: list[str]) -> Iterator[ListingRow]:
             columns = []
         elif columns and words[0].isdigit() and len(words) > 1:
             numbers = [word for word in words if not word.isalpha()]  # without the status CL or OP
-            yield _row(f"{path}: line {number}", f"{step} {increment}", "", columns, numbers)
+            yield _parse_row(f"{path}: line {number}", f"{step} {increment}", "", columns, numbers)
 
 
-_SOLID = re.compile(r"(?:AC3D|DC3D|C3D)(\d+)")
-_SHELL = re.compile(r"(?:S|SC|R3D|M3D|SFM3D|STRI|CPS|CPE|CPEG|CAX)(\d+)")
-SOLIDS = {
+_SOLID_NAME = re.compile(r"(?:AC3D|DC3D|C3D)(\d+)")
+_SHELL_NAME = re.compile(r"(?:S|SC|R3D|M3D|SFM3D|STRI|CPS|CPE|CPEG|CAX)(\d+)")
+SOLID_CELLS = {
     4: "tetra",
     5: "pyramid",
     6: "wedge",
@@ -230,9 +243,9 @@ SOLIDS = {
     15: "wedge15",
     20: "hexahedron20",
 }
-SHELLS = {3: "triangle", 4: "quad", 6: "triangle6", 65: "triangle6", 8: "quad8"}
+SHELL_CELLS = {3: "triangle", 4: "quad", 6: "triangle6", 65: "triangle6", 8: "quad8"}
 """Cell types of meshio by the number of nodes in the name of an element; the node order is the same."""
-REFUSED = ("INSTANCE", "INCLUDE", "NGEN", "NCOPY", "NFILL", "ELGEN", "ELCOPY", "SYSTEM", "NMAP")
+UNSUPPORTED_KEYWORDS = ("INSTANCE", "INCLUDE", "NGEN", "NCOPY", "NFILL", "ELGEN", "ELCOPY", "SYSTEM", "NMAP")
 """Keywords that are an error: they create or move nodes or elements outside of *NODE and *ELEMENT."""
 
 
@@ -247,7 +260,7 @@ def read_deck(path: Path) -> FiniteElementMesh:
     coordinates: dict[int, tuple[float, float, float]] = {}
     rows: dict[str, list[list[int]]] = {}
     open_row: list[int] = []  # a row that continues in the next line, after a comma at its end
-    for number, keyword, kind, words in _data(path):
+    for number, keyword, kind, words in _data_lines(path):
         try:
             if keyword == "NODE":
                 x, y, z = (float(word or 0.0) for word in (*words[1:4], "", "")[:3])
@@ -256,7 +269,7 @@ def read_deck(path: Path) -> FiniteElementMesh:
             row = [*open_row, *(int(word) for word in words if word)]
         except ValueError:
             row = []
-        size = 1 + NODES.get(kind, 0)
+        size = 1 + NODE_COUNTS.get(kind, 0)
         open_row = row if words[-1] == "" and 0 < len(row) < size else []
         if not open_row and len(row) != size:
             raise ValueError(
@@ -268,10 +281,10 @@ def read_deck(path: Path) -> FiniteElementMesh:
     if not coordinates or not rows:
         raise ValueError(f"{path}: has no nodes and elements, expected an input deck with *NODE and *ELEMENT")
     names = np.array(list(coordinates), dtype=np.int64)
-    return FiniteElementMesh.of(path, names, np.array(list(coordinates.values())), rows)
+    return FiniteElementMesh.from_elements(path, names, np.array(list(coordinates.values())), rows)
 
 
-def _data(path: Path) -> Iterator[tuple[int, str, str, list[str]]]:
+def _data_lines(path: Path) -> Iterator[tuple[int, str, str, list[str]]]:
     """Data lines of *NODE and *ELEMENT: (line number, keyword, cell type of meshio, words)."""
     keyword = kind = ""
     for number, line in enumerate(read_lines(path, "an input deck"), 1):
@@ -279,8 +292,8 @@ def _data(path: Path) -> Iterator[tuple[int, str, str, list[str]]]:
             continue
         words = [word.strip() for word in line.split(",")]
         if line.startswith("*"):
-            keyword, kind = words[0][1:].upper(), _kind(words[1:])
-            if keyword in REFUSED:
+            keyword, kind = words[0][1:].upper(), _cell_type(words[1:])
+            if keyword in UNSUPPORTED_KEYWORDS:
                 raise ValueError(
                     f"{path}: line {number}: has *{keyword}, expected a deck whose nodes and elements are "
                     "listed once, in one numbering (Abaqus/CAE: do not use parts and assemblies)"
@@ -289,11 +302,11 @@ def _data(path: Path) -> Iterator[tuple[int, str, str, list[str]]]:
             yield number, keyword, kind, words
 
 
-def _kind(parameters: list[str]) -> str:
+def _cell_type(parameters: list[str]) -> str:
     """Cell type of meshio for the parameter TYPE of *ELEMENT; empty if the element is not supported."""
     values = (p.split("=")[1].strip().upper() for p in parameters if p.upper().startswith("TYPE"))
     name = next(values, "")
-    for pattern, kinds in ((_SOLID, SOLIDS), (_SHELL, SHELLS)):
+    for pattern, kinds in ((_SOLID_NAME, SOLID_CELLS), (_SHELL_NAME, SHELL_CELLS)):
         if match := pattern.match(name):
             return kinds.get(int(match[1]), "")
     return ""

@@ -13,17 +13,17 @@ from typing import Any
 import numpy as np
 
 from jointfmu.files.reading import check_regular
-from jointfmu.quantity.refusal import Refusal
+from jointfmu.quantity.refusal import InputRefusal
 
-from .mesh import FiniteElementMesh, no_reader
-from .nodal_result import NUMBER, NodalResult, read_lines
+from .mesh import FiniteElementMesh, missing_reader_error
+from .nodal_result import NUMBER_PATTERN, NodalResult, read_lines
 
-_ELEMENT_HEAD = 6
+_LISTING_ELEMENT_COLUMNS = 6
 """Number of columns before the nodes of an element: number, material, type, constants, system, section."""
 PRESSURE = "PRES"
 
 
-def read(paths: Sequence[Path], length: float, pressure: float) -> NodalResult:
+def read_ansys(paths: Sequence[Path], length_unit: float, pressure_unit: float) -> NodalResult:
     """Read a nodal contact result from ANSYS listings, or from one listing and an archive.
 
     length_unit, pressure_unit : units of the files in SI units
@@ -36,9 +36,9 @@ def read(paths: Sequence[Path], length: float, pressure: float) -> NodalResult:
     elements: list[list[int]] = []
     meshes = [path for path in paths[1:] if path.suffix.lower() == ".cdb"]
     for path in (path for path in paths if path not in meshes):
-        for location, content, row in _rows(path):
+        for location, content, row in _listing_rows(path):
             if content == "element":
-                elements.append([int(x) for x in row[_ELEMENT_HEAD:]])
+                elements.append([int(x) for x in row[_LISTING_ELEMENT_COLUMNS:]])
             elif content == "more":
                 elements[-1] += [int(x) for x in row]
             else:
@@ -49,38 +49,38 @@ def read(paths: Sequence[Path], length: float, pressure: float) -> NodalResult:
                     raise ValueError(f"{location}: node {name} has a second {content}, expected one")
     first = paths[0]
     if meshes and values:
-        return _on_archive(first, meshes[0], values, length, pressure)
+        return _result_on_archive(first, meshes[0], values, length_unit, pressure_unit)
     for entries, text in (
         (values, f"no contact pressure, a table with NODE and {PRESSURE} (PRNSOL,CONT)"),
         (coordinates, "no nodes, a table with NODE, X, Y and Z (NLIST)"),
         (elements, "no contact elements, a table with ELEM and NODES (ESEL,S,ENAME,,174 and ELIST)"),
     ):
         if not entries:
-            raise Refusal(f"{first}: has {text}; give further listings", "beside")
-    return _result(first, values, coordinates, elements, length, pressure)
+            raise InputRefusal(f"{first}: has {text}; give further listings", "beside")
+    return _nodal_result(first, values, coordinates, elements, length_unit, pressure_unit)
 
 
-def _on_archive(
-    path: Path, archive: Path, values: dict[int, float], length: float, pressure: float
+def _result_on_archive(
+    path: Path, archive: Path, values: dict[int, float], length_unit: float, pressure_unit: float
 ) -> NodalResult:
     """Contact result of listed pressures on the mesh of an archive: faces whose corners all have a value."""
     mesh = read_archive(archive)
-    if stray := mesh.stray(node for node, value in values.items() if value):
+    if stray := mesh.unknown_nodes(node for node, value in values.items() if value):
         raise ValueError(f"{path}: node {min(stray)} has a pressure and is not in {archive}")
-    return mesh.result(path, values, length, pressure)
+    return mesh.nodal_result(path, values, length_unit, pressure_unit)
 
 
-def _result(
+def _nodal_result(
     path: Path,
     values: dict[int, float],
-    places: dict[int, tuple[float, ...]],
+    coordinates: dict[int, tuple[float, ...]],
     elements: Sequence[Sequence[int]],
-    length: float,
-    pressure: float,
+    length_unit: float,
+    pressure_unit: float,
 ) -> NodalResult:
     """Contact result of listed pressures, coordinates and contact elements."""
     used = sorted({node for element in elements for node in element if node})
-    if missing := [node for node in used if node not in places]:
+    if missing := [node for node in used if node not in coordinates]:
         raise ValueError(f"{path}: node {missing[0]} of a contact element is not listed (NLIST)")
     if stray := sorted(values.keys() - set(used)):
         loaded = [node for node in stray if values[node] != 0.0]
@@ -88,7 +88,7 @@ def _result(
             raise ValueError(f"{path}: node {loaded[0]} has a pressure and is in no listed element (ELIST)")
     faces: dict[str, list[list[int]]] = {}
     for element in elements:
-        kind, nodes = _face([node for node in element if node])
+        kind, nodes = _convert_face([node for node in element if node])
         if not kind:
             raise ValueError(
                 f"{path}: an element has {len(nodes)} nodes, expected contact elements with 3, 4, 6 or 8: "
@@ -96,18 +96,18 @@ def _result(
             )
         faces.setdefault(kind, []).append(nodes)
     names = np.array(used, dtype=np.int64)
-    mesh = FiniteElementMesh.of(path, names, np.array([places[name] for name in used]), faces)
+    mesh = FiniteElementMesh.from_elements(path, names, np.array([coordinates[name] for name in used]), faces)
     return NodalResult(
         path=path,
-        word="node",
-        names=names,
-        place=mesh.place * length,
-        pressure=mesh.values(values) * pressure,
+        label="node",
+        numbers=names,
+        position=mesh.position * length_unit,
+        pressure=mesh.nodal_values(values) * pressure_unit,
         faces=mesh.faces(),
     )
 
 
-def _rows(path: Path) -> Iterator[tuple[str, str, list[float]]]:
+def _listing_rows(path: Path) -> Iterator[tuple[str, str, list[float]]]:
     """All rows of a listing as (file and line, content, numbers).
 
     The content is "pressure", "place" (coordinates), "element", or "more" (more nodes of an element).
@@ -123,28 +123,30 @@ def _rows(path: Path) -> Iterator[tuple[str, str, list[float]]]:
             continue
         if words[0] in ("MINIMUM", "MAXIMUM"):
             head = []
-        numbers = _numbers(line)
+        numbers = _parse_numbers(line)
         if not head or numbers is None:
             continue
         location = f"{path}: line {number}"
-        content, row = _content(head, numbers, location, previous)
+        content, row = _classify_row(head, numbers, location, previous)
         if content:
             yield location, content, row
             previous = content
 
 
 def _is_number(word: str) -> bool:
-    return NUMBER.fullmatch(word) is not None
+    return NUMBER_PATTERN.fullmatch(word) is not None
 
 
-def _numbers(line: str) -> list[float] | None:
+def _parse_numbers(line: str) -> list[float] | None:
     """Numbers of a line that has only numbers, else None. They may have no blank between: 12-0.5E-003."""
-    if NUMBER.sub("", line).strip():
+    if NUMBER_PATTERN.sub("", line).strip():
         return None
-    return [float(x.replace("D", "E").replace("d", "e")) for x in NUMBER.findall(line)]
+    return [float(x.replace("D", "E").replace("d", "e")) for x in NUMBER_PATTERN.findall(line)]
 
 
-def _content(head: list[str], numbers: list[float], where: str, before: str) -> tuple[str, list[float]]:
+def _classify_row(
+    head: list[str], numbers: list[float], location: str, previous: str
+) -> tuple[str, list[float]]:
     """Content of a row (see `_listing_rows`) and its relevant numbers, from the head of its table.
 
     previous : content of the row before
@@ -152,26 +154,28 @@ def _content(head: list[str], numbers: list[float], where: str, before: str) -> 
     if head[0] == "ELEM":
         if not all(x % 1.0 == 0.0 for x in numbers):
             return "", []
-        if len(numbers) > _ELEMENT_HEAD:
+        if len(numbers) > _LISTING_ELEMENT_COLUMNS:
             return "element", numbers
-        return ("more", numbers) if before in ("element", "more") else ("", [])
+        return ("more", numbers) if previous in ("element", "more") else ("", [])
     if PRESSURE in head and "X" not in head:
         if len(numbers) != len(head):
-            raise ValueError(f"{where}: has {len(numbers)} numbers, its table {len(head)}: {' '.join(head)}")
+            raise ValueError(
+                f"{location}: has {len(numbers)} numbers, its table {len(head)}: {' '.join(head)}"
+            )
         return "pressure", [numbers[0], numbers[head.index(PRESSURE)]]
     if head[1:4] == ["X", "Y", "Z"]:
         if len(numbers) < 4:
-            raise ValueError(f"{where}: has {len(numbers)} numbers, expected NODE, X, Y and Z")
+            raise ValueError(f"{location}: has {len(numbers)} numbers, expected NODE, X, Y and Z")
         return "place", numbers[:4]
     return "", []
 
 
-CONTACT = (173, 174)
-SOLIDS = (45, 62, 64, 65, 72, 73, 90, 92, 95, 185, 186, 187, 285)
+CONTACT_TYPES = (173, 174)
+SOLID_TYPES = (45, 62, 64, 65, 72, 73, 90, 92, 95, 185, 186, 187, 285)
 """Numbers of the ANSYS element types that are read; others are ignored."""
-_HEAD = 10
+_ARCHIVE_ELEMENT_COLUMNS = 10
 """Count of numbers before the nodes of an element in an archive."""
-_REPEATED = {
+_DEGENERATE_CELLS = {
     (8, "tetra"): ("tetra", (0, 1, 2, 4)),
     (8, "pyramid"): ("pyramid", (0, 1, 2, 3, 4)),
     (8, "wedge"): ("wedge", (0, 1, 2, 4, 5, 6)),
@@ -184,7 +188,7 @@ _REPEATED = {
 """{(number of nodes of a brick, shape): (cell type of meshio, indices of its nodes)}.
 
 Repeated nodes of the brick give the other shapes."""
-_TETRAS = {4: "tetra", 10: "tetra10"}
+_TETRA_CELLS = {4: "tetra", 10: "tetra10"}
 
 
 def read_archive(path: Path) -> FiniteElementMesh:
@@ -193,14 +197,16 @@ def read_archive(path: Path) -> FiniteElementMesh:
     Raises ValueError (one line): mapdl-archive is missing or cannot read the file, there are no such
     elements, an element has an undefined node.
     """
-    archive = _archive(path)
+    archive = _open_archive(path)
     types = np.asarray(archive.etype)
-    chosen = np.isin(types, CONTACT)
+    chosen = np.isin(types, CONTACT_TYPES)
     if not np.any(chosen):
-        chosen = np.isin(types, SOLIDS)
+        chosen = np.isin(types, SOLID_TYPES)
     rows: dict[str, list[list[int]]] = {}
     for i in np.flatnonzero(chosen):
-        kind, nodes = _cell(archive.elem[i][_HEAD:].tolist(), int(types[i]) in CONTACT)
+        kind, nodes = _convert_element(
+            archive.elem[i][_ARCHIVE_ELEMENT_COLUMNS:].tolist(), int(types[i]) in CONTACT_TYPES
+        )
         if not kind:
             number = archive.elem[i][8]
             raise ValueError(
@@ -210,15 +216,17 @@ def read_archive(path: Path) -> FiniteElementMesh:
     if not rows:
         raise ValueError(f"{path}: has no contact elements (CONTA173, CONTA174) and no solids")
     names = np.asarray(archive.nnum, dtype=np.int64)
-    return FiniteElementMesh.of(path, names, np.asarray(archive.nodes, dtype=np.float64)[:, :3], rows)
+    return FiniteElementMesh.from_elements(
+        path, names, np.asarray(archive.nodes, dtype=np.float64)[:, :3], rows
+    )
 
 
-def _archive(path: Path) -> Any:
+def _open_archive(path: Path) -> Any:
     """Open an archive with mapdl-archive; ValueError if the package is missing or cannot read the file."""
     try:
         import mapdl_archive
     except ImportError as error:
-        raise no_reader(path, error) from None
+        raise missing_reader_error(path, error) from None
     check_regular(path, "an ANSYS archive (CDWRITE)")
     if not path.is_file():
         raise ValueError(f"{path}: cannot be read (no such file); expected an ANSYS archive (CDWRITE)")
@@ -232,19 +240,19 @@ def _archive(path: Path) -> Any:
     raise ValueError(f"{path}: mapdl-archive cannot read it ({reason}); expected NBLOCK and EBLOCK (CDWRITE)")
 
 
-def _cell(nodes: list[int], contact: bool) -> tuple[str, list[int]]:
+def _convert_element(nodes: list[int], is_contact: bool) -> tuple[str, list[int]]:
     """Cell type of meshio and nodes of an element, without repeated nodes; empty if it is not supported."""
-    if contact:
-        return _face([node for node in nodes if node])
-    if len(nodes) in _TETRAS:
-        return _TETRAS[len(nodes)], nodes
+    if is_contact:
+        return _convert_face([node for node in nodes if node])
+    if len(nodes) in _TETRA_CELLS:
+        return _TETRA_CELLS[len(nodes)], nodes
     if len(nodes) not in (8, 20):
         return "", nodes
-    kind, indices = _REPEATED[len(nodes), _shape(nodes)]
+    kind, indices = _DEGENERATE_CELLS[len(nodes), _brick_shape(nodes)]
     return kind, [nodes[i] for i in indices]
 
 
-def _shape(nodes: list[int]) -> str:
+def _brick_shape(nodes: list[int]) -> str:
     """Shape of a brick with corners I J K L M N O P, some of which may be repeated."""
     triangle = nodes[2] == nodes[3]
     if nodes[4] == nodes[5] == nodes[6] == nodes[7]:
@@ -252,7 +260,7 @@ def _shape(nodes: list[int]) -> str:
     return "wedge" if triangle else "brick"
 
 
-def _face(nodes: list[int]) -> tuple[str, list[int]]:
+def _convert_face(nodes: list[int]) -> tuple[str, list[int]]:
     """Cell type of meshio and nodes of a contact face I J K L (M N O P); a triangle if K equals L."""
     if len(nodes) in (4, 8) and nodes[2] == nodes[3]:
         nodes = [nodes[i] for i in ((0, 1, 2) if len(nodes) == 4 else (0, 1, 2, 4, 5, 7))]

@@ -7,13 +7,13 @@ from typing import Any, ClassVar, Protocol
 from jointfmu.contact.interface import InterfaceLaw
 from jointfmu.joints import KINDS
 from jointfmu.mechanics.footprint.bolts import PressureSource
-from jointfmu.mechanics.footprint.shape import PressureShape
+from jointfmu.mechanics.footprint.shape import PressureDistribution
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array, Number
 
-from ..joint_parts import part
+from ..joint_parts import load_tool_module
 
-Pressures = Callable[[Any, PressureShape, Array, Array], Array]
+PressureFunction = Callable[[Any, PressureDistribution, Array, Array], Array]
 
 
 class BoltedInterface(InterfaceLaw, Protocol):
@@ -59,7 +59,7 @@ class BoltLayout(Protocol):
 
 
 @dataclass(frozen=True, slots=True)
-class Clamping:
+class FieldAdapter:
     """Functions of a kind of joint for pressure fields: the constant `FIELD` in field.py of its folder.
 
     pressures   : nodal pressure (m, n) [Pa] for parameters, a pressure shape (n), preloads (m) [N] per bolt
@@ -71,22 +71,22 @@ class Clamping:
     facts       : {name: (value, unit, meaning)} of the complete joint for such a file and preload
     """
 
-    pressures: Pressures
+    pressures: PressureFunction
     shear_ratio: Callable[[Any], Number]
-    layout: Callable[[Any], BoltLayout]
-    whole: Callable[[ParameterFile, Any, float, str, PressureShape], ParameterFile]
+    bolt_layout: Callable[[Any], BoltLayout]
+    with_elastic_bodies: Callable[[ParameterFile, Any, float, str, PressureDistribution], ParameterFile]
     facts: Callable[[ParameterFile, float], dict[str, tuple[float, str, str]]]
 
 
-def clamped() -> dict[str, Clamping]:
+def field_adapters() -> dict[str, FieldAdapter]:
     """{name of the joint kind: adapter} of all joints whose pressure may be a field."""
-    modules = {name: part(kind, "field") for name, kind in KINDS.items()}
+    modules = {name: load_tool_module(kind, "field") for name, kind in KINDS.items()}
     return {name: module.FIELD for name, module in modules.items() if module is not None}
 
 
-def clamping(joint: str) -> Clamping:
+def field_adapter(joint: str) -> FieldAdapter:
     """Adapter of a kind of joint; ValueError if its pressure cannot be a field."""
-    adapters = clamped()
+    adapters = field_adapters()
     if joint not in adapters:
         allowed = " or ".join(repr(name) for name in adapters)
         raise ValueError(f"joint = {joint!r} has no field of pressure; expected {allowed}")

@@ -8,23 +8,23 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from jointfmu.quantity import Array
-from jointfmu.quantity.refusal import Refusal
+from jointfmu.quantity.refusal import InputRefusal
 
-from .mesh import CORNERS, nodal_areas
-from .nodal_result import ContactField, NodalResult, Nodes
+from .mesh import CORNER_COUNTS, nodal_areas
+from .nodal_result import ContactField, NodalResult, NodeIndices
 
 AXES = "xyz"
-FLAT = 1e-3
+PLANE_TOLERANCE = 1e-3
 """Largest distance of a node from the contact plane over the size of the contact [1]."""
-SAME = 1e-6
+COINCIDENCE_TOLERANCE = 1e-6
 """Distance of two nodes over the size of the contact [1], below which they coincide."""
-SIDES = ("below", "above")
-OPEN = ("refuse", "keep", "drop")
+BODY_SIDES = ("below", "above")
+OPEN_NODE_OPTIONS = ("refuse", "keep", "drop")
 """Treatment of nodes without pressure: raise an error, keep them as just touching, leave their area out."""
 
 
 @dataclass(frozen=True, slots=True)
-class Plane:
+class ContactPlane:
     """Orientation of the contact plane in the coordinate system of a file.
 
     normal : axis x, y or z normal to the contact
@@ -38,7 +38,7 @@ class Plane:
     rows: str | None = None
     side: str | None = None
 
-    def axes(self) -> tuple[int, int, int]:
+    def axis_indices(self) -> tuple[int, int, int]:
         """Indices of the joint's x, y and normal among the file's axes; ValueError if rows equals normal."""
         n = AXES.index(self.normal)
         x = (n + 1) % 3 if self.rows is None else AXES.index(self.rows)
@@ -46,11 +46,11 @@ class Plane:
             raise ValueError(f"rows = {self.rows!r} is the normal too, allowed are the two other axes")
         return x, 3 - n - x, n
 
-    def inside(self, place: Array) -> Array:
+    def project(self, position: Array) -> Array:
         """Project positions (n, 3) of a file to positions (n, 2) in the plane of the joint."""
-        x, y, n = self.axes()
+        x, y, n = self.axis_indices()
         sign = 1.0 if (x - n) % 3 == 1 else -1.0
-        return np.column_stack([place[:, x], sign * place[:, y]])
+        return np.column_stack([position[:, x], sign * position[:, y]])
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,42 +65,42 @@ class ContactSurface:
     """
 
     result: NodalResult
-    index: Nodes
+    index: NodeIndices
     area: Array
-    place: Array
+    position: Array
     pressure: Array
 
-    def at(self, i: int) -> str:
+    def describe_node(self, i: int) -> str:
         """File and number of node i, for messages."""
-        return self.result.at(int(self.index[i]))
+        return self.result.describe_node(int(self.index[i]))
 
-    def field(self, kept: NDArray[np.bool_]) -> ContactField:
+    def select_field(self, selected: NDArray[np.bool_]) -> ContactField:
         """Pressure field of the selected nodes, from a mask (n)."""
-        return ContactField(self.area[kept], self.place[kept], self.pressure[kept])
+        return ContactField(self.area[selected], self.position[selected], self.pressure[selected])
 
 
-def contact_surface(result: NodalResult, plane: Plane) -> ContactSurface:
+def extract_surface(result: NodalResult, plane: ContactPlane) -> ContactSurface:
     """Extract the contact surface from a nodal result.
 
     Raises ValueError with the node: no node has a pressure, a node lies off the plane, two nodes coincide, a
     pressure is negative or not finite, an area is not positive.
     """
-    inside = plane.inside(result.place)
+    inside = plane.project(result.position)
     if result.area is not None:
         index, area = np.arange(len(inside)), result.area
     else:
-        faces = _faces(result, plane)
+        faces = _contact_faces(result, plane)
         area = nodal_areas(inside, faces)
         index = np.unique(np.concatenate([block.ravel() for block in faces]))
     pressure = result.pressure[index]
-    if result.left_out:
+    if result.omits_open_nodes:
         pressure = np.nan_to_num(pressure, nan=0.0)
     contact = ContactSurface(result, index, area[index], inside[index], pressure)
-    _check(contact)
+    _check_surface(contact)
     return contact
 
 
-def _check(contact: ContactSurface) -> None:
+def _check_surface(contact: ContactSurface) -> None:
     """Raise ValueError for a pressure or area out of range, and for nodes that coincide."""
     p = contact.pressure
     for invalid, text in (
@@ -110,71 +110,77 @@ def _check(contact: ContactSurface) -> None:
     ):
         if np.any(invalid):
             i = int(np.argmax(invalid))
-            raise ValueError(f"{contact.at(i)}: {text.format(p=p[i], a=contact.area[i])}")
-    size = float(np.max(np.ptp(contact.place, axis=0)))
-    coincident = cKDTree(contact.place).query_pairs(SAME * size)
+            raise ValueError(f"{contact.describe_node(i)}: {text.format(p=p[i], a=contact.area[i])}")
+    size = float(np.max(np.ptp(contact.position, axis=0)))
+    coincident = cKDTree(contact.position).query_pairs(COINCIDENCE_TOLERANCE * size)
     if coincident:
         first, second = min(coincident)
         raise ValueError(
-            f"{contact.at(second)}: is at the same place as {contact.result.word} "
-            f"{contact.result.names[contact.index[first]]}; expected each place once"
+            f"{contact.describe_node(second)}: is at the same place as {contact.result.label} "
+            f"{contact.result.numbers[contact.index[first]]}; expected each place once"
         )
 
 
-def _faces(result: NodalResult, plane: Plane) -> list[Nodes]:
+def _contact_faces(result: NodalResult, plane: ContactPlane) -> list[NodeIndices]:
     """Contact faces: faces in the plane of the nodes with pressure, of the bodies with pressure."""
     loaded = np.flatnonzero(np.nan_to_num(result.pressure) != 0.0)
     if not loaded.size:
         raise ValueError(f"{result.path}: no node has a pressure")
-    _refuse_line(result, loaded)
-    axis = plane.axes()[2]
-    height, size = result.place[:, axis], float(np.max(np.ptp(result.place, axis=0)))
+    _check_not_line(result, loaded)
+    axis = plane.axis_indices()[2]
+    height, size = result.position[:, axis], float(np.max(np.ptp(result.position, axis=0)))
     level = float(np.median(height[loaded]))
-    off_plane = np.abs(height - level) > FLAT * size
+    off_plane = np.abs(height - level) > PLANE_TOLERANCE * size
     if np.any(off_plane[loaded]):
         i = int(loaded[np.argmax(off_plane[loaded])])
-        raise Refusal(
-            f"{result.at(i)}: lies {abs(height[i] - level):.3g} m off the plane {plane.normal} = "
+        raise InputRefusal(
+            f"{result.describe_node(i)}: lies {abs(height[i] - level):.3g} m off the plane {plane.normal} = "
             f"{level:.6g} m; expected a plane contact and its normal",
             "normal",
         )
-    candidate = ~off_plane & np.isin(_body(result), _bodies(result, loaded, height - level, plane))
+    candidate = ~off_plane & np.isin(
+        _body_of_node(result), _select_bodies(result, loaded, height - level, plane)
+    )
     faces = [block[np.all(candidate[block], axis=1)] for block in result.faces]
-    faces = _with_values(result, [block for block in faces if block.size])
+    faces = _drop_empty_midside_nodes(result, [block for block in faces if block.size])
     used = np.zeros(len(height), dtype=bool)
     for block in faces:
         used[block] = True
     unused = loaded[~used[loaded] & candidate[loaded]]
     if unused.size:
-        raise ValueError(f"{result.at(int(unused[0]))}: has a pressure and is on no face of the contact")
+        raise ValueError(
+            f"{result.describe_node(int(unused[0]))}: has a pressure and is on no face of the contact"
+        )
     return faces
 
 
-def _refuse_line(result: NodalResult, touched: Nodes) -> None:
+def _check_not_line(result: NodalResult, loaded: NodeIndices) -> None:
     """Raise ValueError if the contact is a line, as in a two-dimensional model."""
-    offset = result.place[touched] - result.place[touched[0]]
+    offset = result.position[loaded] - result.position[loaded[0]]
     farthest = offset[np.argmax(np.sum(offset**2, axis=1))]
     size = float(np.linalg.norm(farthest))
     distance = np.linalg.norm(np.cross(offset, farthest), axis=1) if size else np.zeros(1)
-    if np.max(distance) <= FLAT * size**2:
+    if np.max(distance) <= PLANE_TOLERANCE * size**2:
         raise ValueError(
             f"{result.path}: all nodes with pressure lie on one line, as in a two-dimensional or "
             "axisymmetric model; expected a three-dimensional one, whose contact is a surface"
         )
 
 
-def _body(result: NodalResult) -> NDArray[np.int64]:
+def _body_of_node(result: NodalResult) -> NDArray[np.int64]:
     """Number of the body of each node; 0 if the result has no bodies."""
-    return np.zeros(len(result.place), dtype=np.int64) if result.body is None else result.body
+    return (
+        np.zeros(len(result.position), dtype=np.int64) if result.body_of_node is None else result.body_of_node
+    )
 
 
-def _bodies(result: NodalResult, touched: Nodes, height: Array, plane: Plane) -> list[int]:
+def _select_bodies(result: NodalResult, loaded: NodeIndices, height: Array, plane: ContactPlane) -> list[int]:
     """Numbers of the bodies with pressure; only those on `plane.side` if a side is given.
 
     A body lies above the plane if the mean height of its nodes is positive.
     """
-    body = _body(result)
-    with_pressure: list[int] = np.unique(body[touched]).tolist()
+    body = _body_of_node(result)
+    with_pressure: list[int] = np.unique(body[loaded]).tolist()
     if plane.side is None:
         return with_pressure
     sign = 1.0 if plane.side == "above" else -1.0
@@ -184,11 +190,11 @@ def _bodies(result: NodalResult, touched: Nodes, height: Array, plane: Plane) ->
     return selected
 
 
-def _with_values(result: NodalResult, faces: Sequence[Nodes]) -> list[Nodes]:
+def _drop_empty_midside_nodes(result: NodalResult, faces: Sequence[NodeIndices]) -> list[NodeIndices]:
     """Reduce quadratic faces to linear ones if no mid-side node has a value (some programs list corners)."""
     has_value = np.isfinite(result.pressure)
-    midside = [block[:, CORNERS[block.shape[1]] :].ravel() for block in faces]
+    midside = [block[:, CORNER_COUNTS[block.shape[1]] :].ravel() for block in faces]
     nodes = np.concatenate([*midside, np.empty(0, dtype=np.intp)])
     if nodes.size and not np.any(has_value[nodes]):
-        return [block[:, : CORNERS[block.shape[1]]] for block in faces]
+        return [block[:, : CORNER_COUNTS[block.shape[1]]] for block in faces]
     return list(faces)

@@ -14,38 +14,40 @@ from numpy.typing import NDArray
 from jointfmu.files.reading import read_bytes
 from jointfmu.quantity import Array
 
-from .mesh import NODES, FiniteElementMesh
+from .mesh import NODE_COUNTS, FiniteElementMesh
 from .nodal_result import NodalResult
 
-TYPES = {
+CELL_TYPES = {
     **dict(enumerate(("hexahedron", "wedge", "tetra", "hexahedron20", "wedge15", "tetra10"), 1)),
     **dict(enumerate(("triangle", "triangle6", "quad", "quad8", "line", "line3"), 7)),
 }
 """Cell type of meshio for each element type of the format."""
-ORDER = {
+NODE_ORDER = {
     "hexahedron20": [*range(12), *range(16, 20), *range(12, 16)],
     "wedge15": [*range(9), *range(12, 15), *range(9, 12)],
 }
 """Node order of meshio for cells in which the format lists the mid-side nodes in another order."""
-DATASET, COMPONENT = "CONTACT", "CPRESS"
+RESULT_NAME, PRESSURE_COMPONENT = "CONTACT", "CPRESS"
 
 
-def read(path: Path, length: float, pressure: float) -> NodalResult:
+def read_frd(path: Path, length_unit: float, pressure_unit: float) -> NodalResult:
     """Read the last contact result of a file.
 
     length_unit, pressure_unit : units of the file in SI units
 
     Raises ValueError with file and line: no ASCII .frd file, no contact result, a line that cannot be read.
     """
-    lines = _text(path).splitlines()
-    cells = _cells(path, lines)
+    lines = _read_text(path).splitlines()
+    cells = _read_cells(path, lines)
     if not cells:
         raise ValueError(f"{path}: has no elements, expected those of the bodies in contact")
-    mesh = FiniteElementMesh.of(path, *_nodes(path, lines), cells)
-    return mesh.result(path, dict(_pressures(path, lines)), length, pressure, left_out=True)
+    mesh = FiniteElementMesh.from_elements(path, *_read_nodes(path, lines), cells)
+    return mesh.nodal_result(
+        path, dict(_read_pressures(path, lines)), length_unit, pressure_unit, omits_open_nodes=True
+    )
 
 
-def _text(path: Path) -> str:
+def _read_text(path: Path) -> str:
     """Read a file as text; ValueError if it is no ASCII .frd file."""
     data = read_bytes(path, "a CalculiX .frd file")
     if not data.startswith(b"    1"):
@@ -55,7 +57,7 @@ def _text(path: Path) -> str:
     return data.decode("latin-1")
 
 
-def _block(lines: list[str], start: int) -> Iterator[tuple[int, str]]:
+def _block_lines(lines: list[str], start: int) -> Iterator[tuple[int, str]]:
     """Lines of a block as (line number, line): those after `start`, up to the end of the block."""
     for number in range(start + 1, len(lines)):
         if lines[number].startswith(" -3"):
@@ -63,30 +65,30 @@ def _block(lines: list[str], start: int) -> Iterator[tuple[int, str]]:
         yield number, lines[number]
 
 
-def _start(path: Path, lines: list[str], key: str, what: str) -> int:
+def _find_block(path: Path, lines: list[str], key: str, content: str) -> int:
     """Line number of the last block with this key; ValueError if there is none or if it is binary.
 
     content : name of the content in the message
     """
     starts = [i for i, line in enumerate(lines) if line.startswith(key)]
     if not starts:
-        raise ValueError(f"{path}: has no {what}, expected a block {key.strip()}")
+        raise ValueError(f"{path}: has no {content}, expected a block {key.strip()}")
     if lines[starts[-1]].rstrip().endswith(("2", "3")):
         raise ValueError(f"{path}: line {starts[-1] + 1}: is binary, expected an ASCII .frd file")
     return starts[-1]
 
 
-def _nodes(path: Path, lines: list[str]) -> tuple[NDArray[np.int64], Array]:
+def _read_nodes(path: Path, lines: list[str]) -> tuple[NDArray[np.int64], Array]:
     """Read node numbers (n) and coordinates (n, 3) in the unit of the file."""
     names, coordinates = [], []
-    for number, line in _block(lines, _start(path, lines, "    2C", "nodes")):
-        name, values = _row(path, number, line, 3)
+    for number, line in _block_lines(lines, _find_block(path, lines, "    2C", "nodes")):
+        name, values = _parse_row(path, number, line, 3)
         names.append(name)
         coordinates.append(values)
     return np.array(names, dtype=np.int64), np.array(coordinates)
 
 
-def _row(path: Path, number: int, line: str, least: int) -> tuple[int, list[float]]:
+def _parse_row(path: Path, number: int, line: str, min_count: int) -> tuple[int, list[float]]:
     """Node number and values of a line -1: I10 after the key, then E12.5 without blanks between.
 
     Raises ValueError if the line has fewer than `min_count` values.
@@ -96,51 +98,53 @@ def _row(path: Path, number: int, line: str, least: int) -> tuple[int, list[floa
         values = [float(line[i : i + 12]) for i in range(13, len(line.rstrip()), 12)]
     except ValueError:
         values = []
-    if len(values) < least or not line.startswith(" -1") or not all(map(isfinite, values)):
-        raise ValueError(f"{path}: line {number + 1}: {line[:60]!r} is no node with {least} numbers")
+    if len(values) < min_count or not line.startswith(" -1") or not all(map(isfinite, values)):
+        raise ValueError(f"{path}: line {number + 1}: {line[:60]!r} is no node with {min_count} numbers")
     return name, values
 
 
-def _cells(path: Path, lines: list[str]) -> dict[str, list[list[int]]]:
+def _read_cells(path: Path, lines: list[str]) -> dict[str, list[list[int]]]:
     """Read the elements: {cell type of meshio: node numbers of each cell}."""
     cells: dict[str, list[list[int]]] = {}
     kind, nodes = "", list[int]()
-    for number, line in _block(lines, _start(path, lines, "    3C", "elements")):
+    for number, line in _block_lines(lines, _find_block(path, lines, "    3C", "elements")):
         try:
             if line.startswith(" -1"):
-                kind, nodes = TYPES[int(line[13:18])], []
+                kind, nodes = CELL_TYPES[int(line[13:18])], []
                 continue
             nodes += [int(line[i : i + 10]) for i in range(3, len(line.rstrip()), 10)]
         except (ValueError, KeyError):
             raise ValueError(
                 f"{path}: line {number + 1}: {line[:60]!r} is no element of the format"
             ) from None
-        if len(nodes) == NODES.get(kind):
-            cells.setdefault(kind, []).append([nodes[i] for i in ORDER.get(kind, range(len(nodes)))])
+        if len(nodes) == NODE_COUNTS.get(kind):
+            cells.setdefault(kind, []).append([nodes[i] for i in NODE_ORDER.get(kind, range(len(nodes)))])
     return cells
 
 
-def _pressures(path: Path, lines: list[str]) -> Iterator[tuple[int, float]]:
+def _read_pressures(path: Path, lines: list[str]) -> Iterator[tuple[int, float]]:
     """Node numbers and contact pressures of the last contact result.
 
     With surface-to-surface contact, CalculiX lists 0 for all other nodes. With node-to-surface contact, it
     leaves out nodes whose gap is too large for a contact spring.
     """
-    starts = [i for i, line in enumerate(lines) if line.startswith(" -4") and line[5:13].strip() == DATASET]
+    starts = [
+        i for i, line in enumerate(lines) if line.startswith(" -4") and line[5:13].strip() == RESULT_NAME
+    ]
     if not starts:
         available = sorted({line[5:13].strip() for line in lines if line.startswith(" -4")})
         raise ValueError(
-            f"{path}: has no result {DATASET} (*CONTACT FILE with CSTR); "
+            f"{path}: has no result {RESULT_NAME} (*CONTACT FILE with CSTR); "
             f"there are {', '.join(available) or 'none'}"
         )
     names: list[str] = []
-    for number, line in _block(lines, starts[-1]):
+    for number, line in _block_lines(lines, starts[-1]):
         if line.startswith(" -5"):
             names.append(line[5:13].strip())
             continue
-        if COMPONENT not in names:
+        if PRESSURE_COMPONENT not in names:
             raise ValueError(
-                f"{path}: line {number + 1}: {DATASET} has no {COMPONENT}; there are {', '.join(names)}"
+                f"{path}: line {number + 1}: {RESULT_NAME} has no {PRESSURE_COMPONENT}; there are {', '.join(names)}"
             )
-        name, values = _row(path, number, line, len(names))
-        yield name, values[names.index(COMPONENT)]
+        name, values = _parse_row(path, number, line, len(names))
+        yield name, values[names.index(PRESSURE_COMPONENT)]

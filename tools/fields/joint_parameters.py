@@ -5,29 +5,29 @@ from pathlib import Path
 
 import numpy as np
 
-from jointfmu.mechanics.footprint.friction import friction_patches
+from jointfmu.mechanics.footprint.friction import reduce_patches
 from jointfmu.mechanics.footprint.shape import (
-    BOLT_MEANS,
-    PATCHES,
-    PressureShape,
-    as_lists,
-    growing,
-    means,
+    BOLT_MEAN_NAMES,
+    MAX_PATCHES,
+    PressureDistribution,
+    field_entries,
+    moment_pressure,
+    position_means,
 )
 from jointfmu.parameters import ParameterFile
-from jointfmu.quantity import Array, build
-from jointfmu.quantity.refusal import Refusal
+from jointfmu.quantity import Array, build_parameter_set
+from jointfmu.quantity.refusal import InputRefusal
 
 from .. import plots
-from .clamped import BoltedInterface, clamping
+from .clamped import BoltedInterface, field_adapter
 from .nodal_result import ContactField
-from .reduction import MOST, Reduction, reduce
+from .reduction import MAX_KEPT_NODES, Reduction, reduce_field
 
-FORCE_ERROR = 0.01
+FORCE_TOLERANCE = 0.01
 """Largest relative difference of the field's force from the total preload [1]."""
-MOMENT_PART = (0.5, 1.5)
+MOMENT_RATIO_RANGE = (0.5, 1.5)
 """Allowed range of the moment of the pressure over the given moment [1]; bolt forces carry the rest."""
-_REPLACED = ("pattern.", "plate.", "field.", "bodies.", "sides")
+_REPLACED_PREFIXES = ("pattern.", "plate.", "field.", "bodies.", "sides")
 """Prefixes of the entries that a field replaces. Bodies are replaced too: they belong to another contact."""
 
 
@@ -36,10 +36,10 @@ def with_field(
     field: ContactField,
     preload: float,
     source: str,
-    tilted: ContactField | None = None,
+    moment_field: ContactField | None = None,
     moment: float | None = None,
     bolts: Array | None = None,
-    tolerance: float = FORCE_ERROR,
+    tolerance: float = FORCE_TOLERANCE,
 ) -> tuple[ParameterFile, Reduction]:
     """Replace the pressure distribution and the contact area of a bolted joint by a computed field.
 
@@ -62,35 +62,42 @@ def with_field(
     bolt force by more than the tolerance, if the two fields have different nodes, or if the moment of the
     pressure is far from the given moment.
     """
-    pressures = clamping(file.joint).pressures
-    shape = pressure_shape(file.values, field, preload, tilted, moment, tolerance)
-    reduction = reduce(replace(file.values, A_0=float(np.sum(field.area))), shape, preload, pressures)
-    initial = reduction.shape if shape.share.size > MOST else None
-    patches = friction_patches(shape, PATCHES, initial)
-    lists = as_lists(reduction.shape) | as_lists(patches)
+    pressures = field_adapter(file.joint).pressures
+    shape = pressure_shape(file.values, field, preload, moment_field, moment, tolerance)
+    reduction = reduce_field(replace(file.values, A_0=float(np.sum(field.area))), shape, preload, pressures)
+    initial = reduction.shape if shape.share.size > MAX_KEPT_NODES else None
+    patches = reduce_patches(shape, MAX_PATCHES, initial)
+    lists = field_entries(reduction.shape) | field_entries(patches)
     new_values: dict[str, object] = {f"field.{name}": values for name, values in lists.items()}
     new_values["A_0"] = float(np.sum(field.area))
     if bolts is not None:
         positions = bolts - field.centroid
-        bolt_means = means(positions)
-        new_values |= {f"field.{name}": value for name, value in zip(BOLT_MEANS, bolt_means, strict=True)}
+        bolt_means = position_means(positions)
+        new_values |= {
+            f"field.{name}": value for name, value in zip(BOLT_MEAN_NAMES, bolt_means, strict=True)
+        }
         new_values |= {f"field.each_bolt_{a}": tuple(positions[:, i].tolist()) for i, a in enumerate("xy")}
-    old_values = {n: v for n, v in file.flat.items() if not n.startswith(_REPLACED)}
-    text = f"{source}, {preload:g} N per bolt; {reduction.points} points for {reduction.nodes} nodes"
+    old_values = {n: v for n, v in file.values_by_name.items() if not n.startswith(_REPLACED_PREFIXES)}
+    text = (
+        f"{source}, {preload:g} N per bolt; {reduction.point_count} points for {reduction.node_count} nodes"
+    )
     return replace(
         file,
-        values=build(type(file.values), old_values | new_values),
-        origins={n: k for n, k in file.origins.items() if not n.startswith(_REPLACED)}
+        values=build_parameter_set(type(file.values), old_values | new_values),
+        origins={n: k for n, k in file.origins.items() if not n.startswith(_REPLACED_PREFIXES)}
         | dict.fromkeys(new_values, "derived"),
-        sources={n: s for n, s in file.sources.items() if not n.startswith(_REPLACED)}
+        sources={n: s for n, s in file.sources.items() if not n.startswith(_REPLACED_PREFIXES)}
         | dict.fromkeys(new_values, text)
-        | {"A_0": f"{source}, sum of the nodal areas", "field.tilt": f"{text}; {_rule(tilted, moment)}"},
+        | {
+            "A_0": f"{source}, sum of the nodal areas",
+            "field.tilt": f"{text}; {_describe_moment_rule(moment_field, moment)}",
+        },
     ), reduction
 
 
-def _rule(tilted: ContactField | None, moment: float | None) -> str:
+def _describe_moment_rule(moment_field: ContactField | None, moment: float | None) -> str:
     """Text for the source of entry `field.tilt`: how the pressure changes with a moment."""
-    if tilted is None:
+    if moment_field is None:
         return "in proportion to the distance from the centre of pressure"
     return f"from the field at {moment:g} N.m"
 
@@ -99,48 +106,50 @@ def pressure_shape(
     joint: BoltedInterface,
     field: ContactField,
     preload: float,
-    tilted: ContactField | None = None,
+    moment_field: ContactField | None = None,
     moment: float | None = None,
-    tolerance: float = FORCE_ERROR,
-) -> PressureShape:
+    tolerance: float = FORCE_TOLERANCE,
+) -> PressureDistribution:
     """Pressure shape of a joint with all nodes of a field. Parameters as for `with_field`.
 
     With e = `preload_shape` and t = `moment_shape`, the pressure at a node is p_m e + M/(L_a A_0) t: p_m bolt
     force over contact area, M moment, L_a distance of the bolt rows. Equilibrium requires sum(share t y) =
     L_a. Without a second field, t = L_a e (y - y_p)/sum(share e (y - y_p)^2); y_p is the centre of pressure.
     """
-    scale = _force(joint, field, preload, "the field", tolerance)
+    scale = _force_ratio(joint, field, preload, "the field", tolerance)
     area = float(np.sum(field.area))
     share, position = field.area / area, field.position - field.centroid
     mean = preload * joint.n_bolts / area
     equal = scale * field.pressure / mean
-    if tilted is None:
-        tilt = joint.row_distance * growing(share, position[:, 1], equal)
-        return PressureShape(share, position, equal, tilt)
+    if moment_field is None:
+        tilt = joint.row_distance * moment_pressure(share, position[:, 1], equal)
+        return PressureDistribution(share, position, equal, tilt)
     if moment is None or not np.isfinite(moment) or moment == 0.0:
         raise ValueError(f"moment = {moment} N.m is outside (-inf, 0) and (0, inf): of the second field")
-    scale = _force(joint, tilted, preload, "the field with a moment", tolerance)
-    _same_nodes(field, tilted)
-    added = scale * tilted.pressure - mean * equal
+    scale = _force_ratio(joint, moment_field, preload, "the field with a moment", tolerance)
+    _check_same_nodes(field, moment_field)
+    added = scale * moment_field.pressure - mean * equal
     moment_ratio = area * float(share @ (added * position[:, 1])) / moment
-    if not MOMENT_PART[0] <= moment_ratio <= MOMENT_PART[1]:
-        low, high = MOMENT_PART
+    if not MOMENT_RATIO_RANGE[0] <= moment_ratio <= MOMENT_RATIO_RANGE[1]:
+        low, high = MOMENT_RATIO_RANGE
         raise ValueError(
             f"the pressures of the second field balance {moment_ratio:.3g} of the moment of {moment:g} N.m, "
             f"allowed is {low:g} to {high:g}: a positive moment raises the pressure at y > 0"
         )
-    return PressureShape(share, position, equal, added * joint.row_distance * area / moment)
+    return PressureDistribution(share, position, equal, added * joint.row_distance * area / moment)
 
 
-def _force(joint: BoltedInterface, field: ContactField, preload: float, name: str, tolerance: float) -> float:
+def _force_ratio(
+    joint: BoltedInterface, field: ContactField, preload: float, name: str, tolerance: float
+) -> float:
     """Total bolt force over the force of the field [1]. ValueError if it differs from 1 by > tolerance."""
     if not 0.0 < tolerance < 1.0:
-        raise Refusal(f"force_tolerance = {tolerance:g} is outside (0, 1)", "force_tolerance")
+        raise InputRefusal(f"force_tolerance = {tolerance:g} is outside (0, 1)", "force_tolerance")
     if not 0.0 < preload < np.inf:
         raise ValueError(f"preload = {preload:g} N is outside (0, inf)")
     expected = preload * joint.n_bolts
     if not abs(field.force / expected - 1.0) <= tolerance:
-        raise Refusal(
+        raise InputRefusal(
             f"the force of {name} is {field.force:.6g} N, expected {expected:.6g} N within "
             f"{100.0 * tolerance:.3g} %: {joint.n_bolts:g} bolts of {preload:g} N; a larger tolerance scales "
             "it to theirs",
@@ -149,29 +158,29 @@ def _force(joint: BoltedInterface, field: ContactField, preload: float, name: st
     return expected / field.force
 
 
-def _same_nodes(field: ContactField, tilted: ContactField) -> None:
+def _check_same_nodes(field: ContactField, moment_field: ContactField) -> None:
     """Raise ValueError if two fields have different nodes; the message names the first difference."""
-    if field.area.size != tilted.area.size:
+    if field.area.size != moment_field.area.size:
         raise ValueError(
-            f"the field with a moment has {tilted.area.size} nodes, "
+            f"the field with a moment has {moment_field.area.size} nodes, "
             f"expected those of the first: {field.area.size}"
         )
     size = float(np.ptp(field.position, axis=0).max())
-    differs = np.max(np.abs(tilted.position - field.position), axis=1) > 1e-6 * size
-    differs |= np.abs(tilted.area - field.area) > 1e-6 * np.max(field.area)
+    differs = np.max(np.abs(moment_field.position - field.position), axis=1) > 1e-6 * size
+    differs |= np.abs(moment_field.area - field.area) > 1e-6 * np.max(field.area)
     if np.any(differs):
         i = int(np.argmax(differs))
         raise ValueError(
-            f"node {i + 1} of the field with a moment is at {tilted.position[i].tolist()} m with "
-            f"{tilted.area[i]:g} m2, expected {field.position[i].tolist()} m with {field.area[i]:g} m2"
+            f"node {i + 1} of the field with a moment is at {moment_field.position[i].tolist()} m with "
+            f"{moment_field.area[i]:g} m2, expected {field.position[i].tolist()} m with {field.area[i]:g} m2"
         )
 
 
-def draw(field: ContactField, reduction: Reduction, path: str | Path) -> None:
+def draw_field(field: ContactField, reduction: Reduction, path: str | Path) -> None:
     """Plot the pressure at all nodes next to the pressure at the reduced points, as .png or .svg."""
     position = 1e3 * (field.position - field.centroid)
     width, height = np.ptp(position, axis=0)
-    with plots.drawing(path, (10.4, float(np.clip(4.6 * height / width, 3.0, 7.0)))) as figure:
+    with plots.open_figure(path, (10.4, float(np.clip(4.6 * height / width, 3.0, 7.0)))) as figure:
         left, right = figure.subplots(1, 2, sharex=True, sharey=True)
         size = 20.0 * field.area / np.max(field.area) * min(1.0, 3000.0 / field.area.size)
         nodes = left.scatter(*position.T, c=1e-6 * field.pressure, s=size, cmap="viridis", lw=0.0)
@@ -181,13 +190,15 @@ def draw(field: ContactField, reduction: Reduction, path: str | Path) -> None:
         mean = field.force / float(np.sum(field.area))
         points = right.scatter(
             *(1e3 * shape.position.T),
-            c=1e-6 * mean * shape.equal,
+            c=1e-6 * mean * shape.preload_shape,
             s=np.clip(2000.0 * shape.share, 4.0, 400.0),
             cmap="viridis",
             alpha=0.75,
         )
         figure.colorbar(points, ax=right, label="pressure [MPa]", shrink=0.85)
-        right.set_title(f"{reduction.points} points, by their share of the area", loc="left", fontsize=10)
+        right.set_title(
+            f"{reduction.point_count} points, by their share of the area", loc="left", fontsize=10
+        )
         left.set_ylabel("y, across the bolt rows [mm]")
         for axes in (left, right):
             axes.set_xlabel("x, along the bolt rows [mm]")

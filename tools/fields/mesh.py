@@ -18,9 +18,9 @@ from scipy.sparse.csgraph import connected_components
 
 from jointfmu.quantity import Array
 
-from .nodal_result import NodalResult, Nodes
+from .nodal_result import NodalResult, NodeIndices
 
-CUTS: dict[int, tuple[tuple[int, ...], ...]] = {
+LINEAR_FACES: dict[int, tuple[tuple[int, ...], ...]] = {
     3: ((0, 1, 2),),
     4: ((0, 1, 2, 3),),
     6: ((0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5)),
@@ -28,37 +28,41 @@ CUTS: dict[int, tuple[tuple[int, ...], ...]] = {
     9: ((0, 4, 8, 7), (4, 1, 5, 8), (8, 5, 2, 6), (7, 8, 6, 3)),
 }
 """{number of nodes of a face: corners of the linear faces into which it is divided}."""
-CORNERS = {3: 3, 4: 4, 6: 3, 8: 4, 9: 4}
-_GAUSS = 1.0 / np.sqrt(3.0)
+CORNER_COUNTS = {3: 3, 4: 4, 6: 3, 8: 4, 9: 4}
+_GAUSS_POINT = 1.0 / np.sqrt(3.0)
 
 
-def nodal_areas(place: Array, faces: Sequence[Nodes]) -> Array:
+def nodal_areas(position: Array, faces: Sequence[NodeIndices]) -> Array:
     """Area (n) [m2] of each node: the integral of its shape functions over the faces; 0 without a face.
 
     position : (n, 2) [m] in the contact plane
     faces    : blocks (k, nodes of a face) of node indices
     """
-    area = np.zeros(len(place))
+    area = np.zeros(len(position))
     for block in faces:
-        for cut in CUTS[block.shape[1]]:
+        for cut in LINEAR_FACES[block.shape[1]]:
             nodes = block[:, cut]
-            weights = _quadrilaterals(place[nodes]) if len(cut) == 4 else _triangles(place[nodes])
-            area += np.bincount(nodes.ravel(), weights.ravel(), len(place))
+            weights = (
+                _quadrilateral_integrals(position[nodes])
+                if len(cut) == 4
+                else _triangle_integrals(position[nodes])
+            )
+            area += np.bincount(nodes.ravel(), weights.ravel(), len(position))
     return area
 
 
-def _triangles(corners: Array) -> Array:
+def _triangle_integrals(corners: Array) -> Array:
     """Integrals (k, 3) of the shape functions of triangles with corners (k, 3, 2)."""
     a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     area = 0.5 * np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
     return np.repeat(area[:, None] / 3.0, 3, axis=1)
 
 
-def _quadrilaterals(corners: Array) -> Array:
+def _quadrilateral_integrals(corners: Array) -> Array:
     """Integrals (k, 4) of the bilinear shape functions of quadrilaterals with corners (k, 4, 2)."""
     total = np.zeros(corners.shape[:2])
     signs = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
-    for u, v in signs * _GAUSS:
+    for u, v in signs * _GAUSS_POINT:
         along, across = 1.0 + signs[:, 0] * u, 1.0 + signs[:, 1] * v
         slopes = 0.25 * np.stack([signs[:, 0] * across, signs[:, 1] * along])
         jacobian = np.einsum("dn,knc->kdc", slopes, corners)
@@ -78,7 +82,7 @@ _BRICK_EDGES = (
     *((0, 4), (1, 5), (2, 6), (3, 7)),
 )
 _Pairs = tuple[tuple[int, ...], ...]
-VOLUMES: dict[str, tuple[int, _Pairs, _Pairs]] = {
+VOLUME_CELLS: dict[str, tuple[int, _Pairs, _Pairs]] = {
     "tetra": (4, _TETRA, ()),
     "tetra10": (4, _TETRA, _TETRA_EDGES),
     "wedge": (6, _WEDGE, ()),
@@ -89,28 +93,30 @@ VOLUMES: dict[str, tuple[int, _Pairs, _Pairs]] = {
     "hexahedron20": (8, _BRICK, _BRICK_EDGES),
 }
 """{cell type: (number of corners, corners of each face, edges in the order of their mid-side nodes)}."""
-SURFACES = {"triangle": 3, "quad": 4, "triangle6": 6, "quad8": 8, "quad9": 9}
-NODES = SURFACES | {name: corners + len(edges) for name, (corners, _, edges) in VOLUMES.items()}
+SURFACE_CELLS = {"triangle": 3, "quad": 4, "triangle6": 6, "quad8": 8, "quad9": 9}
+NODE_COUNTS = SURFACE_CELLS | {
+    name: corners + len(edges) for name, (corners, _, edges) in VOLUME_CELLS.items()
+}
 """{cell type: number of nodes}."""
-PASSED = ("vertex", "line", "line3")
+IGNORED_CELLS = ("vertex", "line", "line3")
 """Cell types without area; they are ignored."""
 
 
-def boundary(cells: Mapping[str, Nodes]) -> list[Nodes]:
+def boundary_faces(cells: Mapping[str, NodeIndices]) -> list[NodeIndices]:
     """Boundary faces of the volume cells: faces of one cell only. Without volumes: the surface cells."""
-    volumes = {name: block for name, block in cells.items() if name in VOLUMES}
+    volumes = {name: block for name, block in cells.items() if name in VOLUME_CELLS}
     if not volumes:
-        return [block for name, block in cells.items() if name in SURFACES]
-    by_size: dict[int, list[Nodes]] = {}
+        return [block for name, block in cells.items() if name in SURFACE_CELLS]
+    by_size: dict[int, list[NodeIndices]] = {}
     for name, block in volumes.items():
-        for face in _faces(name):
+        for face in _cell_faces(name):
             by_size.setdefault(len(face), []).append(block[:, face])
-    return [_single(np.concatenate(blocks), size) for size, blocks in by_size.items()]
+    return [_unshared_faces(np.concatenate(blocks), size) for size, blocks in by_size.items()]
 
 
-def _faces(name: str) -> list[tuple[int, ...]]:
+def _cell_faces(name: str) -> list[tuple[int, ...]]:
     """Node indices of each face of a cell type: corners, then mid-side nodes."""
-    corners, faces, edges = VOLUMES[name]
+    corners, faces, edges = VOLUME_CELLS[name]
     middle = {tuple(sorted(edge)): corners + i for i, edge in enumerate(edges)}
     if not middle:
         return list(faces)
@@ -119,20 +125,20 @@ def _faces(name: str) -> list[tuple[int, ...]]:
     ]
 
 
-def _single(faces: Nodes, size: int) -> Nodes:
+def _unshared_faces(faces: NodeIndices, size: int) -> NodeIndices:
     """Select the faces, of (k, size), that occur only once."""
-    keys = np.sort(faces[:, : CORNERS[size]], axis=1)
+    keys = np.sort(faces[:, : CORNER_COUNTS[size]], axis=1)
     _, first, count = np.unique(keys, axis=0, return_index=True, return_counts=True)
     return np.asarray(faces[np.sort(first[count == 1])])
 
 
-def bodies(cells: Mapping[str, Nodes], nodes: int) -> NDArray[np.int64]:
+def label_bodies(cells: Mapping[str, NodeIndices], node_count: int) -> NDArray[np.int64]:
     """Number (n) of the body of each node: cells that share a node belong to the same body."""
     rows = []
     for block in cells.values():
         rows.append(np.stack([np.repeat(block[:, :1], block.shape[1] - 1, axis=1), block[:, 1:]], axis=-1))
     pairs = np.concatenate([row.reshape(-1, 2) for row in rows])
-    links = coo_array((np.ones(len(pairs)), tuple(pairs.T)), shape=(nodes, nodes))
+    links = coo_array((np.ones(len(pairs)), tuple(pairs.T)), shape=(node_count, node_count))
     return np.asarray(connected_components(links, directed=False)[1], dtype=np.int64)
 
 
@@ -145,46 +151,55 @@ class FiniteElementMesh:
     cells    : {cell type of meshio: (k, m) indices of nodes in these arrays}, surfaces or volumes
     """
 
-    names: NDArray[np.int64]
-    place: Array
-    cells: Mapping[str, Nodes]
+    numbers: NDArray[np.int64]
+    position: Array
+    cells: Mapping[str, NodeIndices]
 
     @classmethod
-    def of(
-        cls, path: Path, names: NDArray[np.int64], place: Array, rows: Mapping[str, Sequence[Sequence[int]]]
+    def from_elements(
+        cls,
+        path: Path,
+        numbers: NDArray[np.int64],
+        position: Array,
+        elements: Mapping[str, Sequence[Sequence[int]]],
     ) -> "FiniteElementMesh":
         """Mesh from {cell type: node numbers of each cell}; ValueError if a node is not defined."""
-        order = np.argsort(names)
+        order = np.argsort(numbers)
         cells = {}
-        for kind, corners in rows.items():
+        for kind, corners in elements.items():
             wanted = np.array(corners, dtype=np.int64)
-            index = order[np.minimum(np.searchsorted(names, wanted, sorter=order), names.size - 1)]
-            if np.any(missing := names[index] != wanted):
+            index = order[np.minimum(np.searchsorted(numbers, wanted, sorter=order), numbers.size - 1)]
+            if np.any(missing := numbers[index] != wanted):
                 raise ValueError(
                     f"{path}: node {wanted[missing][0]} of an element is not there; expected elements of the "
                     "nodes in the file"
                 )
             cells[kind] = index.astype(np.intp)
-        return cls(names, place, cells)
+        return cls(numbers, position, cells)
 
-    def faces(self) -> list[Nodes]:
+    def faces(self) -> list[NodeIndices]:
         """Surface cells, or the boundary faces of the volume cells."""
-        return boundary(self.cells)
+        return boundary_faces(self.cells)
 
-    def body(self) -> NDArray[np.int64]:
+    def body_of_node(self) -> NDArray[np.int64]:
         """Number (n) of the body of each node."""
-        return bodies(self.cells, self.names.size)
+        return label_bodies(self.cells, self.numbers.size)
 
-    def values(self, listed: Mapping[int, float]) -> Array:
+    def nodal_values(self, listed_values: Mapping[int, float]) -> Array:
         """Nodal values (n) from {node number: value}; NaN for nodes without a value."""
-        return np.array([listed.get(name, np.nan) for name in self.names.tolist()])
+        return np.array([listed_values.get(name, np.nan) for name in self.numbers.tolist()])
 
-    def stray(self, nodes: Iterable[int]) -> set[int]:
+    def unknown_nodes(self, nodes: Iterable[int]) -> set[int]:
         """Node numbers that the mesh does not have."""
-        return set(nodes) - set(self.names.tolist())
+        return set(nodes) - set(self.numbers.tolist())
 
-    def result(
-        self, path: Path, listed: Mapping[int, float], length: float, pressure: float, left_out: bool = False
+    def nodal_result(
+        self,
+        path: Path,
+        listed_values: Mapping[int, float],
+        length_unit: float,
+        pressure_unit: float,
+        omits_open_nodes: bool = False,
     ) -> NodalResult:
         """Nodal result from pressures that the file `path` lists.
 
@@ -193,27 +208,29 @@ class FiniteElementMesh:
         omits_open_nodes : True: the listing leaves out open nodes. False: the contact consists of the faces
                            whose corners are all listed
         """
-        p = self.values(listed)
+        p = self.nodal_values(listed_values)
         return NodalResult(
             path=path,
-            word="node",
-            names=self.names,
-            place=self.place * length,
-            pressure=p * pressure,
-            faces=self.faces() if left_out else listed_faces(self.faces(), p),
-            body=self.body(),
-            left_out=left_out,
+            label="node",
+            numbers=self.numbers,
+            position=self.position * length_unit,
+            pressure=p * pressure_unit,
+            faces=self.faces() if omits_open_nodes else faces_with_values(self.faces(), p),
+            body_of_node=self.body_of_node(),
+            omits_open_nodes=omits_open_nodes,
         )
 
 
-def listed_faces(faces: Sequence[Nodes], values: Array) -> list[Nodes]:
+def faces_with_values(faces: Sequence[NodeIndices], values: Array) -> list[NodeIndices]:
     """Faces whose corners all have a value, from nodal values (n) with NaN for none."""
     has_value = np.isfinite(values)
-    selected = [block[np.all(has_value[block[:, : CORNERS[block.shape[1]]]], axis=1)] for block in faces]
+    selected = [
+        block[np.all(has_value[block[:, : CORNER_COUNTS[block.shape[1]]]], axis=1)] for block in faces
+    ]
     return [block for block in selected if block.size]
 
 
-def no_reader(path: Path, error: ImportError) -> ValueError:
+def missing_reader_error(path: Path, error: ImportError) -> ValueError:
     """Error for a missing package that is needed to read a file."""
     return ValueError(
         f"the package {error.name} is missing, needed to read {path}; "

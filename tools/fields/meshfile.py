@@ -7,13 +7,20 @@ import numpy as np
 
 from jointfmu.files.reading import check_regular
 from jointfmu.quantity import Array
-from jointfmu.quantity.refusal import Refusal
+from jointfmu.quantity.refusal import InputRefusal
 
-from .mesh import PASSED, SURFACES, VOLUMES, bodies, boundary, no_reader
+from .mesh import (
+    IGNORED_CELLS,
+    SURFACE_CELLS,
+    VOLUME_CELLS,
+    boundary_faces,
+    label_bodies,
+    missing_reader_error,
+)
 from .nodal_result import NodalResult
 
 
-def read(path: Path, length: float, pressure: float, data: str | None) -> NodalResult:
+def read_mesh(path: Path, length_unit: float, pressure_unit: float, data: str | None) -> NodalResult:
     """Read a nodal contact result from the point data of a mesh.
 
     length_unit, pressure_unit : units of the file in SI units
@@ -22,16 +29,16 @@ def read(path: Path, length: float, pressure: float, data: str | None) -> NodalR
     Raises ValueError (one line): meshio is missing or cannot read the file, the point data do not exist (the
     message lists the existing ones), a cell type is not supported.
     """
-    mesh = _read(path)
-    values = _values(path, mesh.point_data, data)
+    mesh = _read_meshio(path)
+    values = _select_values(path, mesh.point_data, data)
     position = np.asarray(mesh.points, dtype=np.float64)
     position = np.pad(position, ((0, 0), (0, 3 - position.shape[1])))
     cells: dict[str, Any] = {}
     for block in mesh.cells:
-        if block.type in PASSED:
+        if block.type in IGNORED_CELLS:
             continue
-        if block.type not in VOLUMES and block.type not in SURFACES:
-            allowed = ", ".join([*SURFACES, *VOLUMES])
+        if block.type not in VOLUME_CELLS and block.type not in SURFACE_CELLS:
+            allowed = ", ".join([*SURFACE_CELLS, *VOLUME_CELLS])
             raise ValueError(f"{path}: has cells {block.type!r}, allowed are {allowed}")
         rows = np.asarray(block.data, dtype=np.intp)
         cells[block.type] = np.concatenate([cells[block.type], rows]) if block.type in cells else rows
@@ -39,16 +46,16 @@ def read(path: Path, length: float, pressure: float, data: str | None) -> NodalR
         raise ValueError(f"{path}: has no cells with faces, expected the contact's faces or the bodies")
     return NodalResult(
         path=path,
-        word="node",
-        names=np.arange(len(position), dtype=np.int64),
-        place=position * length,
-        pressure=values * pressure,
-        faces=boundary(cells),
-        body=bodies(cells, len(position)),
+        label="node",
+        numbers=np.arange(len(position), dtype=np.int64),
+        position=position * length_unit,
+        pressure=values * pressure_unit,
+        faces=boundary_faces(cells),
+        body_of_node=label_bodies(cells, len(position)),
     )
 
 
-def known(path: Path) -> bool:
+def is_supported(path: Path) -> bool:
     """Whether meshio can read files with this suffix. True if meshio is missing: the reader then raises."""
     try:
         from meshio import extension_to_filetypes
@@ -57,12 +64,12 @@ def known(path: Path) -> bool:
     return path.suffix.lower() in extension_to_filetypes
 
 
-def _read(path: Path) -> Any:
+def _read_meshio(path: Path) -> Any:
     """Read a mesh with meshio; ValueError if meshio is missing or cannot read the file."""
     try:
         import meshio
     except ImportError as error:
-        raise no_reader(path, error) from None
+        raise missing_reader_error(path, error) from None
     check_regular(path, "a mesh with point data")
     if not path.is_file():
         raise ValueError(f"{path}: cannot be read (no such file); expected a mesh with point data")
@@ -75,13 +82,15 @@ def _read(path: Path) -> Any:
         ) from None
 
 
-def _values(path: Path, point_data: dict[str, Any], data: str | None) -> Array:
+def _select_values(path: Path, point_data: dict[str, Any], data: str | None) -> Array:
     """Nodal values (n) of the selected point data or component."""
     arrays = {name: np.asarray(value) for name, value in point_data.items()}
     listed = [f"{n} ({v.shape[1]} components)" if v.ndim > 1 else n for n, v in arrays.items()]
     available = ", ".join(listed) or "none"
     if data is None:
-        raise Refusal(f"{path}: state the point data that is the pressure; there are {available}", "data")
+        raise InputRefusal(
+            f"{path}: state the point data that is the pressure; there are {available}", "data"
+        )
     name, _, component = data.partition(":")
     name, component = (data, "") if data in arrays else (name, component)
     if name not in arrays:

@@ -14,20 +14,20 @@ from numpy.typing import NDArray
 
 from jointfmu.files.reading import read_bytes
 from jointfmu.quantity import Array
-from jointfmu.quantity.units import Sizes, sizes
+from jointfmu.quantity.units import UnitSizes, unit_sizes
 
 from .. import columns
 
-NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][-+]?\d+)?")
+NUMBER_PATTERN = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][-+]?\d+)?")
 """Pattern of a number in a listing, also with a Fortran exponent (1.5D+03)."""
 
 
-def read_lines(path: Path, what: str) -> list[str]:
+def read_lines(path: Path, content: str) -> list[str]:
     """Read the lines of a listing; ValueError (one line) if the file cannot be read.
 
     content : name of the content in the message
     """
-    return read_bytes(path, what).decode("latin-1").splitlines()
+    return read_bytes(path, content).decode("latin-1").splitlines()
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,10 +54,10 @@ class ContactField:
         return np.asarray(np.average(self.position, axis=0, weights=self.area))
 
 
-Nodes = NDArray[np.intp]
+NodeIndices = NDArray[np.intp]
 
-LENGTHS = sizes("m", "mm", "um")
-PRESSURES = sizes("Pa", "kPa", "MPa", "GPa")
+LENGTH_UNITS = unit_sizes("m", "mm", "um")
+PRESSURE_UNITS = unit_sizes("Pa", "kPa", "MPa", "GPa")
 """Allowed units of length and pressure in files: {unit: size in SI units}."""
 
 
@@ -78,37 +78,37 @@ class NodalResult:
     """
 
     path: Path
-    word: str
-    names: NDArray[np.int64]
-    place: Array
+    label: str
+    numbers: NDArray[np.int64]
+    position: Array
     pressure: Array
     area: Array | None = None
-    faces: Sequence[Nodes] = ()
-    body: NDArray[np.int64] | None = None
-    left_out: bool = False
+    faces: Sequence[NodeIndices] = ()
+    body_of_node: NDArray[np.int64] | None = None
+    omits_open_nodes: bool = False
 
-    def at(self, i: int) -> str:
+    def describe_node(self, i: int) -> str:
         """File and number of node i, for messages."""
-        return f"{self.path}: {self.word} {self.names[i]}"
+        return f"{self.path}: {self.label} {self.numbers[i]}"
 
 
-COLUMNS: Mapping[str, Sizes] = {
-    "x": LENGTHS,
-    "y": LENGTHS,
-    "area": sizes(*(f"{unit}2" for unit in LENGTHS)),
-    "pressure": PRESSURES,
+COLUMN_UNITS: Mapping[str, UnitSizes] = {
+    "x": LENGTH_UNITS,
+    "y": LENGTH_UNITS,
+    "area": unit_sizes(*(f"{unit}2" for unit in LENGTH_UNITS)),
+    "pressure": PRESSURE_UNITS,
 }
 
 
 def read_csv(path: Path) -> NodalResult:
     """Read a nodal result from a CSV file; ValueError with file, line and column if it cannot be read."""
-    table = columns.read(path, COLUMNS, 1)
-    quantities = {name: table.require(name, COLUMNS) for name in COLUMNS}
+    table = columns.read_columns(path, COLUMN_UNITS, 1)
+    quantities = {name: table.require_column(name, COLUMN_UNITS) for name in COLUMN_UNITS}
     return NodalResult(
         path=path,
-        word="line",
-        names=np.array(table.lines, dtype=np.int64),
-        place=np.column_stack([quantities["x"], quantities["y"], np.zeros_like(quantities["x"])]),
+        label="line",
+        numbers=np.array(table.lines, dtype=np.int64),
+        position=np.column_stack([quantities["x"], quantities["y"], np.zeros_like(quantities["x"])]),
         pressure=quantities["pressure"],
         area=quantities["area"],
     )
@@ -116,5 +116,5 @@ def read_csv(path: Path) -> NodalResult:
 
 def csv_text(field: ContactField) -> str:
     """Text of a CSV file with a field in SI units; `read_csv` reads the same numbers to the last bit."""
-    heads = [(name, next(iter(units))) for name, units in COLUMNS.items()]
-    return columns.text(heads, [*field.position.T, field.area, field.pressure])
+    heads = [(name, next(iter(units))) for name, units in COLUMN_UNITS.items()]
+    return columns.format_table(heads, [*field.position.T, field.area, field.pressure])

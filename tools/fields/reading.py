@@ -6,14 +6,14 @@ from pathlib import Path
 
 import numpy as np
 
-from jointfmu.quantity.refusal import Refusal
+from jointfmu.quantity.refusal import InputRefusal
 
 from . import abaqus, ansys, frd, meshfile, nodal_result
-from .contact_surface import OPEN, ContactSurface, Plane, contact_surface
-from .nodal_result import LENGTHS, PRESSURES, ContactField, NodalResult
+from .contact_surface import OPEN_NODE_OPTIONS, ContactPlane, ContactSurface, extract_surface
+from .nodal_result import LENGTH_UNITS, PRESSURE_UNITS, ContactField, NodalResult
 
 FORMATS = ("csv", "mesh", "ansys", "abaqus", "frd")
-SUFFIXES = {
+FORMAT_BY_SUFFIX = {
     ".csv": "csv",
     ".frd": "frd",
     ".lis": "ansys",
@@ -23,12 +23,12 @@ SUFFIXES = {
     ".dat": "abaqus",
 }
 """Format by the suffix of a file; files with other suffixes are meshes."""
-LISTINGS = {"ansys": ansys.read, "abaqus": abaqus.read}
+LISTING_READERS = {"ansys": ansys.read_ansys, "abaqus": abaqus.read_abaqus}
 """Readers of formats that may need several files for one result."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Reading:
+class FieldReader:
     """Options for reading a pressure field.
 
     format   : one of FORMATS; None: chosen by the suffix
@@ -41,15 +41,15 @@ class Reading:
     """
 
     format: str | None = None
-    length: str | None = None
-    pressure: str | None = None
+    length_unit: str | None = None
+    pressure_unit: str | None = None
     data: str | None = None
-    beside: Sequence[Path] = ()
-    plane: Plane = Plane()
-    open: str = OPEN[0]
+    companion_files: Sequence[Path] = ()
+    plane: ContactPlane = ContactPlane()
+    open_nodes: str = OPEN_NODE_OPTIONS[0]
 
-    def field(
-        self, path: Path, tilted: Path | None = None, beside: Sequence[Path] = ()
+    def read_field(
+        self, path: Path, moment_path: Path | None = None, companion_files: Sequence[Path] = ()
     ) -> tuple[ContactField, ContactField | None]:
         """Read the pressure field of a file, and optionally the field with a moment from a second file.
 
@@ -60,77 +60,86 @@ class Reading:
 
         Raises ValueError: one line with file and node.
         """
-        first = self._surface(path, self.beside)
-        second = None if tilted is None else self._surface(tilted, beside or self.beside)
+        first = self._read_surface(path, self.companion_files)
+        second = (
+            None
+            if moment_path is None
+            else self._read_surface(moment_path, companion_files or self.companion_files)
+        )
         selected = np.ones(first.area.size, dtype=bool)
-        if self.open == "drop":
+        if self.open_nodes == "drop":
             selected = first.pressure > 0.0
-        elif self.open == "refuse":
+        elif self.open_nodes == "refuse":
             for surface in filter(None, (first, second)):
-                _refuse_open(surface)
+                _check_no_open_nodes(surface)
         if second is None:
-            return first.field(selected), None
+            return first.select_field(selected), None
         if second.area.size != first.area.size:
             raise ValueError(
-                f"{tilted}: has a contact of {second.area.size} nodes, expected those of {path}: "
+                f"{moment_path}: has a contact of {second.area.size} nodes, expected those of {path}: "
                 f"{first.area.size}"
             )
-        return first.field(selected), second.field(selected)
+        return first.select_field(selected), second.select_field(selected)
 
-    def _surface(self, path: Path, beside: Sequence[Path]) -> ContactSurface:
+    def _read_surface(self, path: Path, companion_files: Sequence[Path]) -> ContactSurface:
         """Read a file and extract the contact surface."""
-        return contact_surface(self._result(path, beside), self.plane)
+        return extract_surface(self._read_result(path, companion_files), self.plane)
 
-    def _result(self, path: Path, beside: Sequence[Path]) -> NodalResult:
+    def _read_result(self, path: Path, companion_files: Sequence[Path]) -> NodalResult:
         """Read a nodal result with the reader of its format; ValueError for options that do not apply."""
-        format = self.format or SUFFIXES.get(path.suffix.lower(), "mesh")
-        if format == "mesh" and not self.format and not meshfile.known(path):
+        format = self.format or FORMAT_BY_SUFFIX.get(path.suffix.lower(), "mesh")
+        if format == "mesh" and not self.format and not meshfile.is_supported(path):
             text = f"suffix {path.suffix!r} is of no format known here"
-            raise Refusal(f"{path}: {text}; state the format, one of {', '.join(FORMATS)}", "format")
+            raise InputRefusal(f"{path}: {text}; state the format, one of {', '.join(FORMATS)}", "format")
         for value, subject, name, formats in (
             (self.data, "point data are", "data", ("mesh",)),
-            (beside, "further listings are", "beside", tuple(LISTINGS)),
+            (companion_files, "further listings are", "beside", tuple(LISTING_READERS)),
         ):
             if value and format not in formats:
                 allowed = " or ".join(formats)
-                raise Refusal(f"{path}: is read as {format}, {subject} for the format {allowed}", name)
+                raise InputRefusal(f"{path}: is read as {format}, {subject} for the format {allowed}", name)
         if format == "csv":
-            self._stated_by_file(path)
+            self._check_csv_options(path)
             return nodal_result.read_csv(path)
-        length, pressure = self._units(path)
-        if format in LISTINGS:
-            return LISTINGS[format]([path, *beside], length, pressure)
+        length, pressure = self._unit_sizes(path)
+        if format in LISTING_READERS:
+            return LISTING_READERS[format]([path, *companion_files], length, pressure)
         if format == "frd":
-            return frd.read(path, length, pressure)
-        return meshfile.read(path, length, pressure, self.data)
+            return frd.read_frd(path, length, pressure)
+        return meshfile.read_mesh(path, length, pressure, self.data)
 
-    def _units(self, path: Path) -> tuple[float, float]:
+    def _unit_sizes(self, path: Path) -> tuple[float, float]:
         """Units of length and pressure in SI units; ValueError if one is missing."""
-        for value, name, units in ((self.length, "length", LENGTHS), (self.pressure, "pressure", PRESSURES)):
+        for value, name, units in (
+            (self.length_unit, "length", LENGTH_UNITS),
+            (self.pressure_unit, "pressure", PRESSURE_UNITS),
+        ):
             if value is None:
-                raise Refusal(f"{path}: states no unit of {name}; expected one of {', '.join(units)}", name)
-        return LENGTHS[str(self.length)], PRESSURES[str(self.pressure)]
+                raise InputRefusal(
+                    f"{path}: states no unit of {name}; expected one of {', '.join(units)}", name
+                )
+        return LENGTH_UNITS[str(self.length_unit)], PRESSURE_UNITS[str(self.pressure_unit)]
 
-    def _stated_by_file(self, path: Path) -> None:
+    def _check_csv_options(self, path: Path) -> None:
         """Raise ValueError for options that the heading of a CSV file defines."""
         for value, name in (
-            (self.length, "length"),
-            (self.pressure, "pressure"),
+            (self.length_unit, "length"),
+            (self.pressure_unit, "pressure"),
             (self.plane.side, "side"),
             (self.plane.rows, "rows"),
             (None if self.plane.normal == "z" else self.plane.normal, "normal"),
         ):
             if value is not None:
                 text = f"{path}: {name} = {value!r}: a CSV file states units and plane in its heading"
-                raise Refusal(text, name)
+                raise InputRefusal(text, name)
 
 
-def _refuse_open(surface: ContactSurface) -> None:
+def _check_no_open_nodes(surface: ContactSurface) -> None:
     """Raise ValueError if a node has no pressure."""
     open_nodes = np.flatnonzero(surface.pressure == 0.0)
     if open_nodes.size:
-        raise Refusal(
-            f"{surface.at(int(open_nodes[0]))}: is open (no pressure), with {open_nodes.size} of "
+        raise InputRefusal(
+            f"{surface.describe_node(int(open_nodes[0]))}: is open (no pressure), with {open_nodes.size} of "
             f"{surface.area.size} nodes; say keep (they just touch) or drop (they never do)",
             "open",
         )

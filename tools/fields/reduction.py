@@ -16,32 +16,32 @@ import numpy as np
 from scipy.linalg import qr, solve_triangular
 from scipy.optimize import nnls
 
-from jointfmu.mechanics.footprint.patches import highest
-from jointfmu.mechanics.footprint.reproducible import rounded, to_digits
-from jointfmu.mechanics.footprint.shape import PressureShape
-from jointfmu.progress import track
+from jointfmu.mechanics.footprint.patches import find_peak_nodes
+from jointfmu.mechanics.footprint.reproducible import round_distribution, round_to_digits
+from jointfmu.mechanics.footprint.shape import PressureDistribution
+from jointfmu.progress import track_progress
 from jointfmu.quantity import Array
 
-from .clamped import BoltedInterface, Pressures
-from .nodal_result import Nodes
+from .clamped import BoltedInterface, PressureFunction
+from .nodal_result import NodeIndices
 from .sums import (
-    PRELOADS,
+    PRELOAD_RANGE,
     SEED,
-    Load,
-    Sums,
-    SumsAtLoads,
-    balance,
-    first_loads,
-    further_loads,
-    grouped,
-    largest_moment,
+    LoadCase,
+    LoadSums,
+    SumFunctions,
+    balance_functions,
+    initial_load_cases,
+    max_moment_ratio,
+    nodes_per_group,
+    random_load_cases,
 )
 
-GROUPS = 2
+GROUPS_PER_SUM = 2
 """Number of groups of nodes over number of independent sums [1]."""
 
 
-def recombined(values: Array, weights: Array, turn: Array) -> tuple[Nodes, Array]:
+def recombine(values: Array, weights: Array, transform: Array) -> tuple[NodeIndices, Array]:
     """Select at most d nodes with new weights that keep the weighted sums of d functions (recombination).
 
     values    : (n, d) of the functions at the nodes
@@ -52,9 +52,9 @@ def recombined(values: Array, weights: Array, turn: Array) -> tuple[Nodes, Array
     """
     selected, count = np.arange(len(values)), values.shape[1]
     while selected.size > count:
-        bounds = np.linspace(0, selected.size, min(GROUPS * count, selected.size) + 1).astype(np.intp)
+        bounds = np.linspace(0, selected.size, min(GROUPS_PER_SUM * count, selected.size) + 1).astype(np.intp)
         sums = [weights[a:b] @ values[a:b] for a, b in pairwise(bounds)]
-        vectors = (np.array(sums) @ turn).T
+        vectors = (np.array(sums) @ transform).T
         factors, _ = nnls(vectors, np.sum(vectors, axis=1), maxiter=20 * count)
         node_factors = np.repeat(factors, np.diff(bounds))
         positive = node_factors > 0.0
@@ -66,33 +66,33 @@ def recombined(values: Array, weights: Array, turn: Array) -> tuple[Nodes, Array
     return selected, weights
 
 
-TOLERANCE = 1e-6
+RELATIVE_TOLERANCE = 1e-6
 """Largest relative deviation of a sum [1] of a reduced field."""
-LARGE = 1e-5
+LARGE_FIELD_TOLERANCE = 1e-5
 """The same limit for a field with more nodes than can all be kept [1]."""
-AIM, LET_PASS, WORTH_ADDING = 0.05, 0.6, 0.15
+GOAL_RATIO, ACCEPTANCE_RATIO, ADDITION_RATIO = 0.05, 0.6, 0.15
 """Deviations over the tolerance [1]: goal in the load cases of the selection; limit in the test load cases
 (the margin is for untested ones); deviation from which a test load case is added to the selection."""
-DIGITS = 25
+ROUNDING_BITS = 25
 """Number of bits to which nodes are rounded for the selection: 3e-8, less than the goal."""
-LEAST = 7e-9
+MIN_PIVOT_RATIO = 7e-9
 """Smallest pivot of an independent sum over the largest pivot [1]; sums below it are dependent."""
-FEWER = 0.93
+COUNT_FACTOR = 0.93
 """Factor [1] on the number of kept sums, and so of points, from one attempt to the next."""
-MORE = 100
+INITIAL_RANDOM_LOADS = 100
 """Number of quasi-random load cases in the selection from the start."""
-SKETCH = 600
+SKETCH_ROWS = 600
 """Number of random combinations of the sample nodes (Halko, Martinsson and Tropp 2011); more than the number
 of kept sums."""
-FEW = 60
+MAX_UNREDUCED_NODES = 60
 """Largest number of nodes of a field that is not reduced."""
-MOST = 3000
+MAX_KEPT_NODES = 3000
 """Largest number of nodes that are all kept if no reduction meets the tolerance."""
-SAMPLE = 3000
+SAMPLE_SIZE = 3000
 """Number of sample nodes for finding the independent sums."""
-TESTS, WORK = (60, 300), 3e6
+TEST_LOAD_RANGE, MAX_TEST_EVALUATIONS = (60, 300), 3e6
 """Smallest and largest number of test load cases per round; largest number of test load cases times nodes."""
-ROUNDS = 8
+MAX_ROUNDS = 8
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,25 +110,27 @@ class Reduction:
     deviation_beyond : [1] largest deviation at moment ratios from `moment_ratio` to 1
     """
 
-    shape: PressureShape
-    field: PressureShape
+    shape: PressureDistribution
+    full_shape: PressureDistribution
     deviation: float = 0.0
-    loads: int = 0
-    moment: float = 1.0
-    beyond: float = 0.0
+    test_count: int = 0
+    moment_ratio: float = 1.0
+    deviation_beyond: float = 0.0
 
     @property
-    def points(self) -> int:
+    def point_count(self) -> int:
         """Number of reduced points."""
         return int(self.shape.share.size)
 
     @property
-    def nodes(self) -> int:
+    def node_count(self) -> int:
         """Number of nodes of the field."""
-        return int(self.field.share.size)
+        return int(self.full_shape.share.size)
 
 
-def reduce(joint: BoltedInterface, shape: PressureShape, preload: float, pressures: Pressures) -> Reduction:
+def reduce_field(
+    joint: BoltedInterface, shape: PressureDistribution, preload: float, pressures: PressureFunction
+) -> Reduction:
     """Reduce a pressure shape to the fewest points that keep its sums within RELATIVE_TOLERANCE.
 
     If no points do, all nodes are kept. A field with more than MAX_KEPT_NODES nodes then takes the points
@@ -141,28 +143,36 @@ def reduce(joint: BoltedInterface, shape: PressureShape, preload: float, pressur
     Raises RuntimeError if the field has too many nodes and no points are within LARGE_FIELD_TOLERANCE.
     """
     nodes = shape.share.size
-    if nodes <= FEW:
+    if nodes <= MAX_UNREDUCED_NODES:
         return Reduction(shape, shape)
-    sums = Sums.of(joint, preload, pressures)
+    sums = SumFunctions.from_joint(joint, preload, pressures)
     # sorted by pressure, neighbouring nodes are close on the pressure curve: its evaluation is faster
-    order = np.argsort(to_digits(shape.equal), kind="stable")
-    unrounded = shape.part(order)
-    shape = rounded(unrounded, DIGITS)
+    order = np.argsort(round_to_digits(shape.preload_shape), kind="stable")
+    unrounded = shape.select_nodes(order)
+    shape = round_distribution(unrounded, ROUNDING_BITS)
     sample = np.random.default_rng(SEED).choice(
-        nodes, min(SAMPLE, nodes), replace=False, p=sums.weights(shape, largest_moment(joint, shape))
+        nodes,
+        min(SAMPLE_SIZE, nodes),
+        replace=False,
+        p=sums.sample_probability(shape, max_moment_ratio(joint, shape)),
     )
-    reduction = _search(sums, shape, shape.part(sample), unrounded)
-    if reduction is not None and (nodes > MOST or reduction.deviation <= TOLERANCE):
+    reduction = _search_points(sums, shape, shape.select_nodes(sample), unrounded)
+    if reduction is not None and (nodes > MAX_KEPT_NODES or reduction.deviation <= RELATIVE_TOLERANCE):
         return reduction
-    if nodes <= MOST:
+    if nodes <= MAX_KEPT_NODES:
         return Reduction(unrounded, unrounded)
     raise RuntimeError(
-        f"the field of {nodes} nodes has no points that keep its sums within {LARGE:g}; of up to {MOST} all "
+        f"the field of {nodes} nodes has no points that keep its sums within {LARGE_FIELD_TOLERANCE:g}; of up to {MAX_KEPT_NODES} all "
         "nodes are kept"
     )
 
 
-def _search(sums: Sums, shape: PressureShape, some: PressureShape, own: PressureShape) -> Reduction | None:
+def _search_points(
+    sums: SumFunctions,
+    shape: PressureDistribution,
+    sample: PressureDistribution,
+    unrounded: PressureDistribution,
+) -> Reduction | None:
     """Search points that keep the sums within LARGE_FIELD_TOLERANCE; None if there are none.
 
     Each round tests the points in new load cases, and adds those to the selection in which the points miss.
@@ -171,39 +181,50 @@ def _search(sums: Sums, shape: PressureShape, some: PressureShape, own: Pressure
     sample    : sample of these nodes, for finding the independent sums
     unrounded : pressure shape of all nodes
     """
-    limit = largest_moment(sums.joint, shape)
-    loads, tests = further_loads(limit), int(np.clip(WORK / shape.share.size, *TESTS))
-    system = _System.of(sums, shape, own, some, sums.at(shape, [*first_loads(limit), *islice(loads, MORE)]))
-    best, best_deviation = None, LARGE
-    for _ in track(range(ROUNDS), "points", ROUNDS):
-        points = system.points()
+    limit = max_moment_ratio(sums.joint, shape)
+    loads, tests = (
+        random_load_cases(limit),
+        int(np.clip(MAX_TEST_EVALUATIONS / shape.share.size, *TEST_LOAD_RANGE)),
+    )
+    system = _SumSystem.from_loads(
+        sums,
+        shape,
+        unrounded,
+        sample,
+        sums.compute_sums(shape, [*initial_load_cases(limit), *islice(loads, INITIAL_RANDOM_LOADS)]),
+    )
+    best, best_deviation = None, LARGE_FIELD_TOLERANCE
+    for _ in track_progress(range(MAX_ROUNDS), "points", MAX_ROUNDS):
+        points = system.find_points()
         if points is None:
             break
-        test_sums = sums.at(shape, list(islice(loads, tests)))
+        test_sums = sums.compute_sums(shape, list(islice(loads, tests)))
         deviations = sums.deviations(points, test_sums)
         worst = float(np.max(deviations))
         if worst <= best_deviation:
             best, best_deviation = points, worst
-        if worst <= LET_PASS * TOLERANCE:
+        if worst <= ACCEPTANCE_RATIO * RELATIVE_TOLERANCE:
             break
-        system.add(test_sums.part(deviations > WORTH_ADDING * TOLERANCE))
+        system.add_loads(test_sums.select(deviations > ADDITION_RATIO * RELATIVE_TOLERANCE))
     if best is None:
         return None
-    deviation_beyond = _beyond(sums, shape, best, limit)
-    return Reduction(best, own, best_deviation, tests, limit, deviation_beyond)
+    deviation_beyond = _deviation_beyond(sums, shape, best, limit)
+    return Reduction(best, unrounded, best_deviation, tests, limit, deviation_beyond)
 
 
-def _beyond(sums: Sums, shape: PressureShape, points: PressureShape, limit: float) -> float:
+def _deviation_beyond(
+    sums: SumFunctions, shape: PressureDistribution, points: PressureDistribution, moment_limit: float
+) -> float:
     """Largest deviation [1] at moment ratios from `moment_limit` to 1 (a row of bolts loses its force)."""
-    if limit >= 1.0:
+    if moment_limit >= 1.0:
         return 0.0
-    moments = np.linspace(limit, 1.0, 6)[1:].tolist()
-    loads = [Load(p, sign * m, 0.0) for p in PRELOADS for m in moments for sign in (-1.0, 1.0)]
-    return float(np.max(sums.deviations(points, sums.at(shape, loads))))
+    moments = np.linspace(moment_limit, 1.0, 6)[1:].tolist()
+    loads = [LoadCase(p, sign * m, 0.0) for p in PRELOAD_RANGE for m in moments for sign in (-1.0, 1.0)]
+    return float(np.max(sums.deviations(points, sums.compute_sums(shape, loads))))
 
 
 @dataclass(slots=True)
-class _System:
+class _SumSystem:
     """The r sums that the reduced points must keep: balance of the field, and sums in load cases.
 
     shape         : pressure shape of all nodes, rounded
@@ -215,80 +236,101 @@ class _System:
     sketch        : (SKETCH_ROWS, r) random combinations of the functions at the sample nodes
     """
 
-    sums: Sums
-    shape: PressureShape
-    own: PressureShape
-    some: PressureShape
+    sums: SumFunctions
+    shape: PressureDistribution
+    unrounded: PressureDistribution
+    sample: PressureDistribution
     mixing: Array
-    rows: SumsAtLoads
-    over: Array
+    load_sums: LoadSums
+    balance_scale: Array
     sketch: Array
 
     @classmethod
-    def of(
-        cls, sums: Sums, shape: PressureShape, own: PressureShape, some: PressureShape, rows: SumsAtLoads
-    ) -> "_System":
+    def from_loads(
+        cls,
+        sums: SumFunctions,
+        shape: PressureDistribution,
+        unrounded: PressureDistribution,
+        sample: PressureDistribution,
+        load_sums: LoadSums,
+    ) -> "_SumSystem":
         """System with the sums in the first load cases."""
-        scale = np.maximum(np.max(np.abs(balance(shape)), axis=0), np.finfo(float).tiny)
-        mixing = np.random.default_rng(SEED).standard_normal((SKETCH, some.share.size))
-        mixing *= np.sqrt(some.share / SKETCH)
-        sketch = mixing @ np.concatenate([balance(some) / scale, sums.columns(some, rows)], axis=1)
-        return cls(sums, shape, own, some, mixing, rows, scale, sketch)
+        scale = np.maximum(np.max(np.abs(balance_functions(shape)), axis=0), np.finfo(float).tiny)
+        mixing = np.random.default_rng(SEED).standard_normal((SKETCH_ROWS, sample.share.size))
+        mixing *= np.sqrt(sample.share / SKETCH_ROWS)
+        sketch = mixing @ np.concatenate(
+            [balance_functions(sample) / scale, sums.function_values(sample, load_sums)], axis=1
+        )
+        return cls(sums, shape, unrounded, sample, mixing, load_sums, scale, sketch)
 
-    def add(self, rows: SumsAtLoads) -> None:
+    def add_loads(self, load_sums: LoadSums) -> None:
         """Add the sums in more load cases."""
-        self.sketch = np.concatenate([self.sketch, self.mixing @ self.sums.columns(self.some, rows)], axis=1)
-        self.rows = self.rows.joined(rows)
+        self.sketch = np.concatenate(
+            [self.sketch, self.mixing @ self.sums.function_values(self.sample, load_sums)], axis=1
+        )
+        self.load_sums = self.load_sums.concatenate(load_sums)
 
-    def values(self, shape: PressureShape) -> Array:
+    def function_values(self, shape: PressureDistribution) -> Array:
         """Values (n, r) of all functions at the nodes of a shape."""
-        return np.concatenate([balance(shape) / self.over, self.sums.columns(shape, self.rows)], axis=1)
+        return np.concatenate(
+            [balance_functions(shape) / self.balance_scale, self.sums.function_values(shape, self.load_sums)],
+            axis=1,
+        )
 
-    def points(self) -> PressureShape | None:
+    def find_points(self) -> PressureDistribution | None:
         """Find the fewest nodes that keep the sums; None if no nodes do.
 
         The nodes with the highest pressure (`highest`) are always kept, with their own share.
         """
-        independent, turn = self._combinations()
-        fixed = highest(self.shape)
+        independent, turn = self._independent_sums()
+        fixed = find_peak_nodes(self.shape)
         try:
-            candidates, share = self._groups(independent, turn, fixed)
-            selected, share = recombined(self._kept(candidates, independent), share, turn)
+            candidates, share = self._select_groups(independent, turn, fixed)
+            selected, share = recombine(self._selected_values(candidates, independent), share, turn)
         except RuntimeError:  # round-off
             return None
         selected = candidates[selected]
-        values = self.values(self.shape.part(selected))
-        target = np.concatenate([self.shape.share @ balance(self.shape) / self.over, self.rows.total.ravel()])
-        target -= self.shape.share[fixed] @ self.values(self.shape.part(fixed))
+        values = self.function_values(self.shape.select_nodes(selected))
+        target = np.concatenate(
+            [
+                self.shape.share @ balance_functions(self.shape) / self.balance_scale,
+                self.load_sums.total.ravel(),
+            ]
+        )
+        target -= self.shape.share[fixed] @ self.function_values(self.shape.select_nodes(fixed))
         best, count = None, independent.size
-        tolerance = LET_PASS * LARGE
+        tolerance = ACCEPTANCE_RATIO * LARGE_FIELD_TOLERANCE
         while count > 1 and np.max(np.abs(share @ values - target)) <= tolerance:
-            best, tolerance = (selected, share), AIM * TOLERANCE
-            count = int(FEWER * count)
+            best, tolerance = (selected, share), GOAL_RATIO * RELATIVE_TOLERANCE
+            count = int(COUNT_FACTOR * count)
             try:
-                fewer, share = recombined(values[:, independent[:count]], share, turn[:count, :count])
+                fewer, share = recombine(values[:, independent[:count]], share, turn[:count, :count])
             except RuntimeError:
                 break
             selected, values = selected[fewer], values[fewer]
         if best is None:
             return None
-        points = self.own.part(np.concatenate([fixed, best[0]]))
-        return _balanced(points, np.concatenate([self.shape.share[fixed], best[1]]))
+        points = self.unrounded.select_nodes(np.concatenate([fixed, best[0]]))
+        return _correct_balance(points, np.concatenate([self.shape.share[fixed], best[1]]))
 
-    def _groups(self, kept: Nodes, turn: Array, held: Nodes) -> tuple[Nodes, Array]:
+    def _select_groups(
+        self, functions: NodeIndices, transform: Array, fixed: NodeIndices
+    ) -> tuple[NodeIndices, Array]:
         """Select few groups of nodes, with shares that keep the sums of all nodes except the fixed ones.
 
         Returns the nodes of these groups and their shares.
         """
         share = self.shape.share.copy()
-        share[held] = 0.0
-        group = np.arange(share.size) // grouped(share.size)
+        share[fixed] = 0.0
+        group = np.arange(share.size) // nodes_per_group(share.size)
         old_share = np.asarray(np.bincount(group, share), dtype=np.float64)
         nonempty = np.flatnonzero(old_share)
-        sums = self._group_sums(kept)
-        np.subtract.at(sums, group[held], self.shape.share[held, None] * self._kept(held, kept))
-        selected, new_share = recombined(
-            sums[nonempty] / old_share[nonempty, None], old_share[nonempty], turn
+        sums = self._group_sums(functions)
+        np.subtract.at(
+            sums, group[fixed], self.shape.share[fixed, None] * self._selected_values(fixed, functions)
+        )
+        selected, new_share = recombine(
+            sums[nonempty] / old_share[nonempty, None], old_share[nonempty], transform
         )
         scale = np.zeros(old_share.size)
         scale[nonempty[selected]] = new_share / old_share[nonempty[selected]]
@@ -296,41 +338,43 @@ class _System:
         nodes = np.flatnonzero(share)
         return nodes, share[nodes]
 
-    def _group_sums(self, kept: Nodes) -> Array:
+    def _group_sums(self, functions: NodeIndices) -> Array:
         """Sums (g, k) of the selected functions over groups of nodes."""
-        share, count = self.shape.share[:, None], self.over.size
-        is_balance = kept < count
-        load, function = np.divmod(kept[~is_balance] - count, 9)
-        values = (balance(self.shape) / self.over)[:, kept[is_balance]]
-        out = np.empty((self.rows.groups.shape[2], kept.size))
-        out[:, is_balance] = np.add.reduceat(share * values, np.arange(0, share.size, grouped(share.size)))
-        out[:, ~is_balance] = self.rows.groups[load, function].T
+        share, count = self.shape.share[:, None], self.balance_scale.size
+        is_balance = functions < count
+        load, function = np.divmod(functions[~is_balance] - count, 9)
+        values = (balance_functions(self.shape) / self.balance_scale)[:, functions[is_balance]]
+        out = np.empty((self.load_sums.groups.shape[2], functions.size))
+        out[:, is_balance] = np.add.reduceat(
+            share * values, np.arange(0, share.size, nodes_per_group(share.size))
+        )
+        out[:, ~is_balance] = self.load_sums.groups[load, function].T
         return out
 
-    def _kept(self, nodes: Nodes, kept: Nodes) -> Array:
+    def _selected_values(self, nodes: NodeIndices, functions: NodeIndices) -> Array:
         """Values (n, k) of the selected functions at nodes."""
-        shape, count = self.shape.part(nodes), self.over.size
-        is_balance = kept < count
-        out = np.empty((nodes.size, kept.size))
-        out[:, is_balance] = (balance(shape) / self.over)[:, kept[is_balance]]
-        out[:, ~is_balance] = self.sums.few_columns(shape, self.rows, kept[~is_balance] - count)
+        shape, count = self.shape.select_nodes(nodes), self.balance_scale.size
+        is_balance = functions < count
+        out = np.empty((nodes.size, functions.size))
+        out[:, is_balance] = (balance_functions(shape) / self.balance_scale)[:, functions[is_balance]]
+        out[:, ~is_balance] = self.sums.selected_values(shape, self.load_sums, functions[~is_balance] - count)
         return out
 
-    def _combinations(self) -> tuple[Nodes, Array]:
+    def _independent_sums(self) -> tuple[NodeIndices, Array]:
         """Indices of independent sums, the largest pivot first, and the matrix that orthogonalises them."""
         triangle, order = qr(self.sketch, mode="r", pivoting=True)
         size = np.abs(np.diag(triangle))
-        count = int(np.sum(size > LEAST * size[0]))
+        count = int(np.sum(size > MIN_PIVOT_RATIO * size[0]))
         return order[:count], solve_triangular(triangle[:count, :count], np.eye(count))
 
 
-def _balanced(some: PressureShape, weights: Array) -> PressureShape:
+def _correct_balance(shape: PressureDistribution, weights: Array) -> PressureDistribution:
     """Select the nodes with a share > 0 and correct the balance of the field to round-off."""
-    points = some.part(np.flatnonzero(weights > 0.0))
+    points = shape.select_nodes(np.flatnonzero(weights > 0.0))
     share = weights[weights > 0.0] / np.sum(weights)
-    return PressureShape(
+    return PressureDistribution(
         share=share,
         position=points.position - share @ points.position,
-        equal=points.equal / (share @ points.equal),
-        tilt=points.tilt - share @ points.tilt,
+        preload_shape=points.preload_shape / (share @ points.preload_shape),
+        moment_shape=points.moment_shape - share @ points.moment_shape,
     )

@@ -10,23 +10,23 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from jointfmu.mechanics.curve import Curve, approach_curve
-from jointfmu.mechanics.footprint.shape import PressureShape
+from jointfmu.mechanics.curve import Curve, tabulate_approach
+from jointfmu.mechanics.footprint.shape import PressureDistribution
 from jointfmu.quantity import Array
 
-from .clamped import BoltedInterface, Pressures
-from .nodal_result import Nodes
+from .clamped import BoltedInterface, PressureFunction
+from .nodal_result import NodeIndices
 
-PRELOADS = (0.05, 3.0)
+PRELOAD_RANGE = (0.05, 3.0)
 """Range of the preload in load cases over the preload of the field [1]."""
-OPENED = 0.001
+MAX_OPENED_SHARE = 0.001
 """Largest share of the preload [1] carried by nodes that the largest moment opens."""
-PRESSED = 0.03
+MAX_COMPRESSION_RATIO = 0.03
 """Largest compression of the joint over the motion that opens it fully [1]."""
 SEED = 1
 
 
-class Load(NamedTuple):
+class LoadCase(NamedTuple):
     """Load case of the joint.
 
     preload_ratio : preload over the preload of the field [1]
@@ -34,68 +34,70 @@ class Load(NamedTuple):
     opening_ratio : normal motion over the motion that opens the joint fully [1]; negative in compression
     """
 
-    preload: float
-    moment: float
-    apart: float
+    preload_ratio: float
+    moment_ratio: float
+    opening_ratio: float
 
 
-def largest_moment(joint: BoltedInterface, shape: PressureShape) -> float:
+def max_moment_ratio(joint: BoltedInterface, shape: PressureDistribution) -> float:
     """Largest moment at which the sums must be kept, over the moment that unloads a row of bolts [1].
 
     It is at most 1. It is smaller if nodes that carry the share MAX_OPENED_SHARE of the preload open earlier.
     """
-    force = shape.share * shape.equal
+    force = shape.share * shape.preload_shape
     loaded = force > 0.0
-    unloading = np.abs(shape.tilt[loaded]) * joint.row_bolts / joint.n_bolts
+    unloading = np.abs(shape.moment_shape[loaded]) * joint.row_bolts / joint.n_bolts
     with np.errstate(divide="ignore"):
-        opening_moment = shape.equal[loaded] / unloading
+        opening_moment = shape.preload_shape[loaded] / unloading
     order = np.argsort(opening_moment)
     opened_force = np.cumsum(force[loaded][order])
-    return float(min(opening_moment[order][np.searchsorted(opened_force, OPENED)], 1.0))
+    return float(min(opening_moment[order][np.searchsorted(opened_force, MAX_OPENED_SHARE)], 1.0))
 
 
-def first_loads(limit: float) -> list[Load]:
+def initial_load_cases(moment_limit: float) -> list[LoadCase]:
     """Initial load cases of the selection.
 
     moment_limit : largest moment over the moment that unloads a row of bolts [1]
     """
-    moments = [limit * m for m in (-1.0, -0.97, -0.9, -0.8, -0.5, 0.0, 0.5, 0.8, 0.9, 0.97, 1.0)]
-    extremes = (-1.0, 1.0) if limit < 1.0 else ()
-    preloaded = [Load(p, m, 0.0) for p in PRELOADS for m in (*moments, *extremes)]
-    openings = (-PRESSED, -0.4 * PRESSED, 0.05, 0.2, 0.4, 0.55, 0.65, 0.75, 0.85)
-    opened = [Load(p, m, s) for p in PRELOADS for m in moments[::2] for s in openings]
-    steep = [limit * m for m in (-0.95, -0.85, -0.7, 0.7, 0.85, 0.95)]  # nodes open row by row there
-    return preloaded + opened + [Load(PRELOADS[0], m, s) for m in steep for s in (0.3, 0.45, 0.6)]
+    moments = [moment_limit * m for m in (-1.0, -0.97, -0.9, -0.8, -0.5, 0.0, 0.5, 0.8, 0.9, 0.97, 1.0)]
+    extremes = (-1.0, 1.0) if moment_limit < 1.0 else ()
+    preloaded = [LoadCase(p, m, 0.0) for p in PRELOAD_RANGE for m in (*moments, *extremes)]
+    openings = (-MAX_COMPRESSION_RATIO, -0.4 * MAX_COMPRESSION_RATIO, 0.05, 0.2, 0.4, 0.55, 0.65, 0.75, 0.85)
+    opened = [LoadCase(p, m, s) for p in PRELOAD_RANGE for m in moments[::2] for s in openings]
+    steep = [moment_limit * m for m in (-0.95, -0.85, -0.7, 0.7, 0.85, 0.95)]  # nodes open row by row there
+    return preloaded + opened + [LoadCase(PRELOAD_RANGE[0], m, s) for m in steep for s in (0.3, 0.45, 0.6)]
 
 
-def further_loads(limit: float) -> Iterator[Load]:
+def random_load_cases(moment_limit: float) -> Iterator[LoadCase]:
     """Endless quasi-random load cases (Halton sequence), every third one without normal motion."""
     from scipy.stats import qmc  # imported here: its import is slow
 
     sequence = qmc.Halton(3, seed=SEED)
-    low, high = np.log(PRELOADS)
-    points = (point for _ in count() for point in sequence.random(TOGETHER))
+    low, high = np.log(PRELOAD_RANGE)
+    points = (point for _ in count() for point in sequence.random(LOADS_PER_DRAW))
     for i, (a, b, c) in enumerate(points):
-        opening = c * (1.0 + PRESSED) - PRESSED if i % 3 else 0.0
-        yield Load(float(np.exp(low + a * (high - low))), float(limit * (2.0 * b - 1.0)), float(opening))
+        opening = c * (1.0 + MAX_COMPRESSION_RATIO) - MAX_COMPRESSION_RATIO if i % 3 else 0.0
+        yield LoadCase(
+            float(np.exp(low + a * (high - low))), float(moment_limit * (2.0 * b - 1.0)), float(opening)
+        )
 
 
-TOGETHER = 64
+LOADS_PER_DRAW = 64
 """Number of load cases drawn in one call; a call for a single one takes as long."""
-COUPLED = 100.0
+COUPLING_FACTOR = 100.0
 """Tolerance of first and mixed moments over the tolerance of the other sums [1]."""
-_FAST = 1e-2
+_CUBIC_PRESSURE_RATIO = 1e-2
 """Pressure over the pressure of complete closure [1], below which the table is interpolated in the cubic root
 of the pressure."""
-_TABLE = np.linspace(0.0, 1.0, 33)[:-1]
-_VALUES = 1 << 15
+_TABLE_FRACTIONS = np.linspace(0.0, 1.0, 33)[:-1]
+_VALUES_PER_BLOCK = 1 << 15
 """Number of function values in one block of the computation."""
-GROUPS = 4096
+MAX_GROUPS = 4096
 """Largest number of groups of neighbouring nodes whose sums are stored."""
 
 
 @dataclass(frozen=True, slots=True)
-class SumsAtLoads:
+class LoadSums:
     """The 9 sums of a field in m load cases, relative to their scale.
 
     loads   : (m) load cases
@@ -106,30 +108,30 @@ class SumsAtLoads:
               moments: force or stiffness times the radius of gyration, times COUPLING_FACTOR
     """
 
-    loads: tuple[Load, ...]
-    apart: Array
+    loads: tuple[LoadCase, ...]
+    opening: Array
     groups: Array
     total: Array
-    size: Array
+    scale: Array
 
-    def part(self, index: NDArray[np.intp] | NDArray[np.bool_]) -> "SumsAtLoads":
+    def select(self, index: NDArray[np.intp] | NDArray[np.bool_]) -> "LoadSums":
         """Sums in the selected load cases."""
         loads = tuple(self.loads[i] for i in np.arange(len(self.loads))[index])
-        return SumsAtLoads(loads, self.apart[index], self.groups[index], self.total[index], self.size[index])
+        return LoadSums(loads, self.opening[index], self.groups[index], self.total[index], self.scale[index])
 
-    def joined(self, other: "SumsAtLoads") -> "SumsAtLoads":
+    def concatenate(self, other: "LoadSums") -> "LoadSums":
         """Sums in the load cases of both objects."""
-        return SumsAtLoads(
+        return LoadSums(
             self.loads + other.loads,
-            np.concatenate([self.apart, other.apart]),
+            np.concatenate([self.opening, other.opening]),
             np.concatenate([self.groups, other.groups]),
             np.concatenate([self.total, other.total]),
-            np.concatenate([self.size, other.size]),
+            np.concatenate([self.scale, other.scale]),
         )
 
 
 @dataclass(frozen=True, slots=True)
-class Sums:
+class SumFunctions:
     """The 9 functions of a node whose sums a joint needs.
 
     These are the pressure p times 1, x, y, and the stiffness k = dp/d(approach) times 1, x, y, y^2, x^2, x y.
@@ -143,35 +145,37 @@ class Sums:
     joint: BoltedInterface
     curve: Curve
     preload: float
-    pressures: Pressures
-    table: tuple[Array, Array, Array]
+    pressures: PressureFunction
+    approach_table: tuple[Array, Array, Array]
 
     @classmethod
-    def of(cls, joint: BoltedInterface, preload: float, pressures: Pressures) -> "Sums":
+    def from_joint(
+        cls, joint: BoltedInterface, preload: float, pressures: PressureFunction
+    ) -> "SumFunctions":
         """Functions of a joint at a preload [N] per bolt."""
-        curve = approach_curve(joint)
+        curve = tabulate_approach(joint)
         x = curve.displacement
-        fine = np.append(x[:-1, None] + np.diff(x)[:, None] * _TABLE, x[-1])
+        fine = np.append(x[:-1, None] + np.diff(x)[:, None] * _TABLE_FRACTIONS, x[-1])
         p = curve.derivatives(fine, 0)[0]
         return cls(joint, curve, preload, pressures, (p, np.cbrt(p), fine))
 
-    def _pressures(self, shape: PressureShape, loads: Sequence[Load]) -> Array:
+    def _preload_pressure(self, shape: PressureDistribution, loads: Sequence[LoadCase]) -> Array:
         """Nodal pressure (m, n) [Pa] in the load cases without normal motion."""
-        force = self.preload * np.array([load.preload for load in loads])
-        moment = np.array([load.moment for load in loads]) * force
+        force = self.preload * np.array([load.preload_ratio for load in loads])
+        moment = np.array([load.moment_ratio for load in loads]) * force
         moment *= self.joint.row_distance * self.joint.row_bolts
         return self.pressures(self.joint, shape, force, moment)
 
-    def _closed_to(self, p: Array) -> tuple[Array, Array]:
+    def _approach_and_stiffness(self, p: Array) -> tuple[Array, Array]:
         """Approach (...) [m] and stiffness per area [Pa/m] at a pressure (...) [Pa].
 
         Both are interpolated in the table and improved by one Newton step. While the contact closes, the
         pressure is proportional to the third power of the approach. Beyond the hardness, the end of the
         curve, it is linear.
         """
-        pressure, root, approach = self.table
+        pressure, root, approach = self.approach_table
         start = np.interp(p, pressure, approach)
-        closing = p < _FAST * self.curve.closed
+        closing = p < _CUBIC_PRESSURE_RATIO * self.curve.closing_end_load
         start[closing] = np.interp(np.cbrt(p[closing]), root, approach)
         value, slope, curvature = self.curve.derivatives(start, 2)
         curvature = np.where(start < self.curve.end[0], curvature, 0.0)
@@ -180,40 +184,43 @@ class Sums:
 
     def _approach(self, p: Array) -> Array:
         """Approach (...) [m] at a pressure (...) [Pa]."""
-        return self._closed_to(p)[0]
+        return self._approach_and_stiffness(p)[0]
 
-    def at(self, shape: PressureShape, loads: Sequence[Load]) -> SumsAtLoads:
+    def compute_sums(self, shape: PressureDistribution, loads: Sequence[LoadCase]) -> LoadSums:
         """Compute the sums over a pressure shape in load cases."""
         pairs, index = np.unique([load[:2] for load in loads], axis=0, return_inverse=True)
         index = index.ravel()
-        preloaded = [Load(p, m, 0.0) for p, m in pairs]
-        group_size, blocks = grouped(shape.share.size), list(_blocks(shape, len(loads), whole=True))
-        peak = np.max([np.max(self._pressures(block, preloaded), axis=1) for block in blocks], axis=0)
+        preloaded = [LoadCase(p, m, 0.0) for p, m in pairs]
+        group_size, blocks = (
+            nodes_per_group(shape.share.size),
+            list(_node_blocks(shape, len(loads), whole_groups=True)),
+        )
+        peak = np.max([np.max(self._preload_pressure(block, preloaded), axis=1) for block in blocks], axis=0)
         max_opening = self._approach(peak) - self.curve.displacement[0]
-        opening = np.array([load.apart for load in loads]) * max_opening[index]
+        opening = np.array([load.opening_ratio for load in loads]) * max_opening[index]
         moved = np.flatnonzero(opening)
 
-        def of_block(part: PressureShape) -> tuple[Array, Array]:
+        def block_sums(block: PressureDistribution) -> tuple[Array, Array]:
             """Group sums of one block of nodes: in the preloaded joint, and after the normal motion."""
-            p = self._pressures(part, preloaded)
-            start, k = self._closed_to(p)
-            preload_sums = _group_sums(part, p, k, group_size)
+            p = self._preload_pressure(block, preloaded)
+            start, k = self._approach_and_stiffness(p)
+            preload_sums = _group_sums(block, p, k, group_size)
             p_moved, k_moved = self.curve.derivatives(start[index[moved]] - opening[moved, None], 1)
-            return preload_sums, _group_sums(part, p_moved, k_moved, group_size)
+            return preload_sums, _group_sums(block, p_moved, k_moved, group_size)
 
         with ThreadPoolExecutor(os.cpu_count()) as pool:  # numpy releases the global interpreter lock
-            preload_blocks, moved_blocks = zip(*pool.map(of_block, blocks), strict=True)
+            preload_blocks, moved_blocks = zip(*pool.map(block_sums, blocks), strict=True)
         preload_groups = np.concatenate(preload_blocks, axis=2)[index]
         groups = preload_groups.copy()
         groups[moved] = np.concatenate(moved_blocks, axis=2)
         total, preload_total = np.sum(groups, axis=2), np.sum(preload_groups, axis=2)
         radii = np.sqrt(shape.share @ shape.position**2)
-        scale = _sizes(total, *radii)
-        scale = np.where(opening[:, None] > 0.0, np.maximum(scale, _sizes(preload_total, *radii)), scale)
+        scale = _sum_scales(total, *radii)
+        scale = np.where(opening[:, None] > 0.0, np.maximum(scale, _sum_scales(preload_total, *radii)), scale)
         groups /= scale[:, :, None]
-        return SumsAtLoads(tuple(loads), opening, groups, total / scale, scale)
+        return LoadSums(tuple(loads), opening, groups, total / scale, scale)
 
-    def weights(self, shape: PressureShape, limit: float) -> Array:
+    def sample_probability(self, shape: PressureDistribution, moment_limit: float) -> Array:
         """Probability (n) of each node to be in the sample: its mean share of the sums over load cases.
 
         When the joint is nearly open, few nodes carry the load: the sample needs more of them than their area
@@ -221,8 +228,8 @@ class Sums:
 
         moment_limit : largest moment over the moment that unloads a row of bolts [1]
         """
-        loads = [Load(p, m * limit, 0.0) for p in PRELOADS for m in (-1.0, 0.0, 1.0)]
-        start = self._approach(self._pressures(shape, loads))
+        loads = [LoadCase(p, m * moment_limit, 0.0) for p in PRELOAD_RANGE for m in (-1.0, 0.0, 1.0)]
+        start = self._approach(self._preload_pressure(shape, loads))
         max_opening = np.max(start, axis=1) - self.curve.displacement[0]
         probability = np.zeros(shape.share.size)
         for ratio in (0.0, 0.3, 0.6, 0.85):
@@ -232,83 +239,93 @@ class Sums:
         probability += np.sum(probability) * shape.share
         return probability / np.sum(probability)
 
-    def columns(self, some: PressureShape, rows: SumsAtLoads) -> Array:
+    def function_values(self, shape: PressureDistribution, load_sums: LoadSums) -> Array:
         """Values (c, m 9) of all functions at nodes, over their scale: 9 functions in m load cases."""
-        return self.few_columns(some, rows, np.arange(rows.size.size))
+        return self.selected_values(shape, load_sums, np.arange(load_sums.scale.size))
 
-    def few_columns(self, some: PressureShape, rows: SumsAtLoads, which: Nodes) -> Array:
+    def selected_values(
+        self, shape: PressureDistribution, load_sums: LoadSums, functions: NodeIndices
+    ) -> Array:
         """Values (c, k) of selected functions at nodes: k columns of `function_values`."""
-        load, function = np.divmod(which, 9)
+        load, function = np.divmod(functions, 9)
         needed, index = np.unique(load, return_inverse=True)
-        loads, opening = [rows.loads[i] for i in needed], rows.apart[needed, None]
-        out = np.empty((some.share.size, which.size))
-        factor, scale = np.array([0, 1, 2, 0, 1, 2, 3, 4, 5])[function], rows.size[load, function]
+        loads, opening = [load_sums.loads[i] for i in needed], load_sums.opening[needed, None]
+        out = np.empty((shape.share.size, functions.size))
+        factor, scale = np.array([0, 1, 2, 0, 1, 2, 3, 4, 5])[function], load_sums.scale[load, function]
         first, columns_of = 0, [np.flatnonzero(function < 3), np.flatnonzero(function >= 3)]
-        for block in _blocks(some, needed.size):
-            approach = self._approach(self._pressures(block, loads)) - opening
-            factors, block_out = _arms(block), out[first : first + block.share.size]
+        for block in _node_blocks(shape, needed.size):
+            approach = self._approach(self._preload_pressure(block, loads)) - opening
+            factors, block_out = _moment_factors(block), out[first : first + block.share.size]
             for columns, value in zip(columns_of, self.curve.derivatives(approach, 1), strict=True):
                 values = value.T[:, index[columns]] * factors[:, factor[columns]]
                 block_out[:, columns] = values / scale[columns]
             first += block.share.size
         return out
 
-    def deviations(self, points: PressureShape, rows: SumsAtLoads) -> Array:
+    def deviations(self, points: PressureDistribution, load_sums: LoadSums) -> Array:
         """Largest deviation (m) [1] of the sums of reduced points in each load case."""
-        approach = self._approach(self._pressures(points, rows.loads)) - rows.apart[:, None]
+        approach = (
+            self._approach(self._preload_pressure(points, load_sums.loads)) - load_sums.opening[:, None]
+        )
         p, k = self.curve.derivatives(approach, 1)
         total = _group_sums(points, p, k, points.share.size)[:, :, 0]
-        return np.asarray(np.max(np.abs(total / rows.size - rows.total), axis=1))
+        return np.asarray(np.max(np.abs(total / load_sums.scale - load_sums.total), axis=1))
 
 
-def grouped(nodes: int) -> int:
+def nodes_per_group(nodes: int) -> int:
     """Number of neighbouring nodes in a group; the last group may have fewer."""
-    return -(-nodes // GROUPS)
+    return -(-nodes // MAX_GROUPS)
 
 
-def _blocks(shape: PressureShape, loads: int, whole: bool = False) -> Iterator[PressureShape]:
+def _node_blocks(
+    shape: PressureDistribution, loads: int, whole_groups: bool = False
+) -> Iterator[PressureDistribution]:
     """Divide the nodes into blocks whose values in all load cases fit into the processor's cache.
 
     loads        : number of load cases
     whole_groups : divide only between groups
     """
-    unit = grouped(shape.share.size) if whole else 1
-    count = unit * max(_VALUES // loads // unit, -(-16 // unit))
+    unit = nodes_per_group(shape.share.size) if whole_groups else 1
+    count = unit * max(_VALUES_PER_BLOCK // loads // unit, -(-16 // unit))
     for first in range(0, shape.share.size, count):
-        yield shape.part(slice(first, first + count))
+        yield shape.select_nodes(slice(first, first + count))
 
 
-def _group_sums(shape: PressureShape, p: Array, k: Array, each: int) -> Array:
+def _group_sums(shape: PressureDistribution, p: Array, k: Array, group_size: int) -> Array:
     """Sums (m, 9, g) of the 9 functions over groups of nodes.
 
     p, k       : pressure [Pa] and stiffness [Pa/m] (m, n) of the nodes
     group_size : number of nodes in a group
     """
-    count = -(-shape.share.size // each)
-    padding = (0, count * each - shape.share.size)  # nodes without share that complete the last group
-    factors = np.pad(shape.share[:, None] * _arms(shape), (padding, (0, 0))).reshape(count, each, 6)
-    p, k = (np.moveaxis(np.pad(value, ((0, 0), padding)).reshape(-1, count, each), 1, 0) for value in (p, k))
+    count = -(-shape.share.size // group_size)
+    padding = (0, count * group_size - shape.share.size)  # nodes without share that complete the last group
+    factors = np.pad(shape.share[:, None] * _moment_factors(shape), (padding, (0, 0))).reshape(
+        count, group_size, 6
+    )
+    p, k = (
+        np.moveaxis(np.pad(value, ((0, 0), padding)).reshape(-1, count, group_size), 1, 0) for value in (p, k)
+    )
     return np.moveaxis(np.concatenate([p @ factors[:, :, :3], k @ factors], axis=2), 0, 2)
 
 
-def _arms(shape: PressureShape) -> Array:
+def _moment_factors(shape: PressureDistribution) -> Array:
     """Factors (n, 6) of the stiffness of a node: 1, x, y, y^2, x^2, x y; the pressure has the first three."""
     x, y = shape.position.T
     return np.stack([np.ones_like(x), x, y, y * y, x * x, x * y], axis=1)
 
 
-def _sizes(sums: Array, x: float, y: float) -> Array:
+def _sum_scales(sums: Array, radius_x: float, radius_y: float) -> Array:
     """Scales (m, 9) of sums (m, 9); radius_x and radius_y [m] are the radii of gyration of the contact."""
-    p, k, x_scale, y_scale = sums[:, 0], sums[:, 3], COUPLED * x, COUPLED * y
+    p, k, x_scale, y_scale = sums[:, 0], sums[:, 3], COUPLING_FACTOR * radius_x, COUPLING_FACTOR * radius_y
     columns = [p, p * x_scale, p * y_scale, k, k * x_scale, k * y_scale]
-    return np.stack([*columns, sums[:, 6], sums[:, 7], k * x_scale * y], axis=1)
+    return np.stack([*columns, sums[:, 6], sums[:, 7], k * x_scale * radius_y], axis=1)
 
 
-def balance(shape: PressureShape) -> Array:
+def balance_functions(shape: PressureDistribution) -> Array:
     """Functions (n, 9) whose sums give the balance of a field.
 
     These are 1, x, y, `preload_shape` and `moment_shape`, and both times x and times y.
     """
-    pressures = np.column_stack([shape.equal, shape.tilt])
+    pressures = np.column_stack([shape.preload_shape, shape.moment_shape])
     moments = [pressures * shape.position[:, i : i + 1] for i in (0, 1)]
     return np.column_stack([np.ones_like(shape.share), shape.position, pressures, *moments])

@@ -18,26 +18,26 @@ from jointfmu.quantity import Array
 
 from .hysteresis import HysteresisLaw
 
-PROMINENCE = 0.02
+MIN_REVERSAL = 0.02
 """Smallest reversal of the motion that counts as a turning point, over the range of the motion [1]."""
-NOISE = 8.0
+MIN_REVERSAL_NOISE = 8.0
 """Smallest reversal that counts as a turning point, over the standard deviation of the noise [1]."""
-AROUND = 5.0
+TURNING_POINT_WIDTH = 5.0
 """Deviation from the motion at a turning point, over the standard deviation of the noise [1], up to which
 samples enter the parabola of the turning point."""
-LEAST = 5
+MIN_BRANCH_SAMPLES = 5
 """Minimum number of samples of a branch."""
-CREATED = 4.0
+MAX_CREATED_ENERGY = 4.0
 """Energy that a loop may create (negative area), over the standard deviation of its area [1]."""
-ROUNDING = 1e-9
+RELATIVE_ROUNDING = 1e-9
 """Relative round-off [1] of data without noise: of areas over range of force times range of motion, of
 motions over their range."""
-CLOSED = 0.9
+MIN_COMMON_RANGE = 0.9
 """Range of motion common to two branches, over the range of the longer branch [1], from which they count as
 a closed loop."""
-_GRID = 200
+_GRID_POINTS = 200
 """Points of the integration grid for the area between two branches."""
-_SEARCH, _WIDTH = 6, 1e-4
+_MAX_REST_ITERATIONS, _REST_DIFFERENCE = 6, 1e-4
 """Gauss-Newton iterations for the rest position, and half the difference step over the motion's range [1]."""
 
 
@@ -57,12 +57,12 @@ class Loops:
     force: Array
     branch: NDArray[np.int64]
     start: Array
-    doubt: Array
+    start_deviation: Array
     run: NDArray[np.int64]
     areas: Sequence[tuple[float, float]]
 
     @property
-    def groups(self) -> NDArray[np.int64]:
+    def noise_groups(self) -> NDArray[np.int64]:
         """Index (n) of the noise group of each sample: its run."""
         return self.run
 
@@ -72,7 +72,7 @@ class Loops:
         return np.array([np.ptp(self.force[self.run == k]) for k in range(self.run[-1] + 1)])[self.run]
 
     @property
-    def nuisances(self) -> int:
+    def nuisance_count(self) -> int:
         """Number of nuisance parameters: force and motion at each turning point, and the rest position."""
         return 2 * self.start.size + 1
 
@@ -88,23 +88,23 @@ class Loops:
             slopes.append(float(np.polyfit(np.abs(distance), np.sign(distance) * force, 2)[1]))
         return max(slopes)
 
-    def fitted(self, law: HysteresisLaw, scale: Array) -> tuple[Array, Array, Array]:
+    def fit_turning_points(self, law: HysteresisLaw, scale: Array) -> tuple[Array, Array, Array]:
         """Fit the turning points to the samples: force and motion (branches) there, and residual force (n).
 
         Linear least squares for each branch. `scale` (n) are the standard deviations of the force; the motion
         at the turning point is measured with the deviation `start_deviation`.
         """
-        residual, derivative = self._shifted(law, 0.0), self._shifted(law, 1.0)
-        derivative = (derivative - residual) / self.doubt[self.branch]
+        residual, derivative = self._force_residuals(law, 0.0), self._force_residuals(law, 1.0)
+        derivative = (derivative - residual) / self.start_deviation[self.branch]
         force, mean_derivative = self._means(residual), self._means(derivative)
         residual, derivative = residual - force[self.branch], derivative - mean_derivative[self.branch]
         weight = scale**-2.0
         shift = -self._sums(weight * residual * derivative) / (
-            self._sums(weight * derivative**2) + self.doubt**-2.0
+            self._sums(weight * derivative**2) + self.start_deviation**-2.0
         )
         return force + mean_derivative * shift, self.start + shift, residual + derivative * shift[self.branch]
 
-    def rest(self, law: HysteresisLaw, scale: Array) -> float:
+    def rest_position(self, law: HysteresisLaw, scale: Array) -> float:
         """Rest position: motion at which the elastic force is zero, by least squares (Gauss-Newton).
 
         The search starts at zero or in the middle of the motion, whichever fits better. If the law is linear
@@ -113,7 +113,7 @@ class Loops:
         if law.elastic is None:
             return 0.0
         force = law.elastic.force
-        without_friction = self._shifted(replace(law, elastic=None), 0.0)
+        without_friction = self._force_residuals(replace(law, elastic=None), 0.0)
         size = float(np.ptp(self.motion))
 
         def misfit(rest: float) -> Array:
@@ -122,24 +122,26 @@ class Loops:
 
         middle = 0.5 * float(np.max(self.motion) + np.min(self.motion))
         position = min((0.0, middle), key=lambda rest: float(np.sum(misfit(rest) ** 2)))
-        for _ in range(_SEARCH):
-            high, low = (misfit(position + sign * _WIDTH * size) for sign in (1.0, -1.0))
-            slope = (high - low) / (2.0 * _WIDTH)
+        for _ in range(_MAX_REST_ITERATIONS):
+            high, low = (misfit(position + sign * _REST_DIFFERENCE * size) for sign in (1.0, -1.0))
+            slope = (high - low) / (2.0 * _REST_DIFFERENCE)
             step = -float(misfit(position) @ slope) / (float(slope @ slope) + 1.0)
             position += size * float(np.clip(step, -0.5, 0.5))
         return position
 
     def residuals(self, law: HysteresisLaw, scale: Array) -> Array:
         """Residual force over `scale` (n), then turning point shifts over `start_deviation` (branches)."""
-        _, start, residual = self.fitted(law.about(self.rest(law, scale)), scale)
-        return np.concatenate([residual / scale, (start - self.start) / self.doubt])
+        _, start, residual = self.fit_turning_points(law.shift_rest(self.rest_position(law, scale)), scale)
+        return np.concatenate([residual / scale, (start - self.start) / self.start_deviation])
 
-    def _shifted(self, law: HysteresisLaw, doubts: float) -> Array:
+    def _force_residuals(self, law: HysteresisLaw, deviations: float) -> Array:
         """Force (n) minus the force change by the law since the turning point.
 
         The turning points are shifted by `doubts` standard deviations [1].
         """
-        return self.force - law.change(self.motion, (self.start + doubts * self.doubt)[self.branch])
+        return self.force - law.force_change(
+            self.motion, (self.start + deviations * self.start_deviation)[self.branch]
+        )
 
     def _sums(self, values: Array) -> Array:
         """Sum (branches) of values (n) over each branch."""
@@ -150,7 +152,7 @@ class Loops:
         return np.asarray(self._sums(values) / np.bincount(self.branch))
 
 
-def cut(runs: Sequence[tuple[str, Array, Array]]) -> Loops:
+def cut_branches(runs: Sequence[tuple[str, Array, Array]]) -> Loops:
     """Cut measured runs into branches at the turning points of the motion.
 
     runs : (prefix of error messages, motion, force) of each run, samples in the order of the measurement
@@ -163,15 +165,17 @@ def cut(runs: Sequence[tuple[str, Array, Array]]) -> Loops:
     branches: list[tuple[Array, Array, float, float, int]] = []
     areas = []
     for number, (name, motion, force) in enumerate(runs):
-        turns = turning_points(motion)
+        turns = find_turning_points(motion)
         if not turns.size:
             raise ValueError(f"{name}the motion does not turn around; expected loops")
         _check_sign(name, motion, force)
         ends = [*turns.tolist(), motion.size - 1]
         areas += _check_energy(name, motion, force, ends)
-        run_branches = [(*branch, number) for branch in _run(motion, force, ends)]
+        run_branches = [(*branch, number) for branch in _branches_of_run(motion, force, ends)]
         if not run_branches:
-            raise ValueError(f"{name}no branch after a turning point has {LEAST} samples; expected loops")
+            raise ValueError(
+                f"{name}no branch after a turning point has {MIN_BRANCH_SAMPLES} samples; expected loops"
+            )
         branches += run_branches
     sizes = [branch[0].size for branch in branches]
     return Loops(
@@ -179,42 +183,46 @@ def cut(runs: Sequence[tuple[str, Array, Array]]) -> Loops:
         force=np.concatenate([branch[1] for branch in branches]),
         branch=np.repeat(np.arange(len(branches)), sizes),
         start=np.array([branch[2] for branch in branches]),
-        doubt=np.array([branch[3] for branch in branches]),
+        start_deviation=np.array([branch[3] for branch in branches]),
         run=np.repeat([branch[4] for branch in branches], sizes),
         areas=areas,
     )
 
 
-def _run(motion: Array, force: Array, ends: Sequence[int]) -> Iterator[tuple[Array, Array, float, float]]:
+def _branches_of_run(
+    motion: Array, force: Array, ends: Sequence[int]
+) -> Iterator[tuple[Array, Array, float, float]]:
     """Yield for each branch of a run: motion, force, motion at the turning point and its standard deviation.
 
     ends : indices of the turning points, and of the last sample
     """
-    deviation = noise(motion)
+    deviation = noise_deviation(motion)
     turns = [turning_value(motion, k, deviation) for k in ends]
     for k, (first, last) in enumerate(pairwise(ends)):
         u, F = motion[first + 1 : last + 1], force[first + 1 : last + 1]
         inside = np.abs(u - turns[k]) <= (abs(turns[k - 1] - turns[k]) if k else np.inf)
-        if np.count_nonzero(inside) >= LEAST:
+        if np.count_nonzero(inside) >= MIN_BRANCH_SAMPLES:
             step = 0.25 * (abs(motion[first + 1] - motion[first]) + abs(motion[first] - motion[first - 1]))
-            turn_deviation = max(float(np.hypot(step, deviation)), ROUNDING * float(np.ptp(motion)))
+            turn_deviation = max(float(np.hypot(step, deviation)), RELATIVE_ROUNDING * float(np.ptp(motion)))
             yield u[inside], F[inside], turns[k], turn_deviation
 
 
-def turning_points(motion: Array) -> NDArray[np.int64]:
+def find_turning_points(motion: Array) -> NDArray[np.int64]:
     """Find the indices of the turning points of a motion; reversals within the noise do not count."""
-    least = max(PROMINENCE * float(np.ptp(motion)), NOISE * noise(motion))
+    least = max(MIN_REVERSAL * float(np.ptp(motion)), MIN_REVERSAL_NOISE * noise_deviation(motion))
     if not least > 0.0:
         return np.array([], dtype=np.int64)
-    return extremes(motion, least)
+    return find_reversals(motion, least)
 
 
-def extremes(signal: Array, least: float) -> NDArray[np.int64]:
+def find_reversals(signal: Array, prominence: float) -> NDArray[np.int64]:
     """Find the indices at which a signal reverses by at least `prominence`."""
-    return np.sort(np.concatenate([find_peaks(sign * signal, prominence=least)[0] for sign in (1.0, -1.0)]))
+    return np.sort(
+        np.concatenate([find_peaks(sign * signal, prominence=prominence)[0] for sign in (1.0, -1.0)])
+    )
 
 
-def turning_value(motion: Array, turn: int, noisy: float) -> float:
+def turning_value(motion: Array, index: int, deviation: float) -> float:
     """Motion at the turning point of index `index`: vertex of a parabola through the nearest samples.
 
     deviation : standard deviation of the noise of the motion
@@ -222,20 +230,20 @@ def turning_value(motion: Array, turn: int, noisy: float) -> float:
     The parabola uses the samples within TURNING_POINT_WIDTH deviations of the turning point.
     The extreme sample itself would overestimate the motion, because of its noise.
     """
-    distinct = np.abs(motion - motion[turn]) > AROUND * noisy
-    before, after = np.flatnonzero(distinct[:turn]), np.flatnonzero(distinct[turn:])
+    distinct = np.abs(motion - motion[index]) > TURNING_POINT_WIDTH * deviation
+    before, after = np.flatnonzero(distinct[:index]), np.flatnonzero(distinct[index:])
     width = min(
-        turn - int(before[-1]) if before.size else turn,
-        int(after[0]) if after.size else motion.size - 1 - turn,
+        index - int(before[-1]) if before.size else index,
+        int(after[0]) if after.size else motion.size - 1 - index,
     )
     if width < 2:
-        return float(motion[turn])
+        return float(motion[index])
     offsets = np.arange(-width, width + 1)
-    c, b, a = np.polyfit(offsets, motion[turn - width : turn + width + 1], 2)
+    c, b, a = np.polyfit(offsets, motion[index - width : index + width + 1], 2)
     return float(a - b**2 / (4.0 * c) if c else a)
 
 
-def noise(signal: Array) -> float:
+def noise_deviation(signal: Array) -> float:
     """Standard deviation of independent noise on a smooth signal, from the second differences of the signal.
 
     The curvature of the signal counts as noise, so the result is an upper bound.
@@ -264,31 +272,33 @@ def _check_energy(name: str, motion: Array, force: Array, ends: Sequence[int]) -
     areas, ranges, _ = np.array(loops).T
     area, size = float(np.mean(areas)), float(np.max(ranges))
     slope = float(np.ptp(force) / np.ptp(motion))
-    deviation = np.hypot(noise(force), slope * noise(motion)) * size / np.sqrt(0.5 * motion.size)
-    if area < -max(CREATED * deviation, ROUNDING * size * float(np.ptp(force))):
+    deviation = (
+        np.hypot(noise_deviation(force), slope * noise_deviation(motion)) * size / np.sqrt(0.5 * motion.size)
+    )
+    if area < -max(MAX_CREATED_ENERGY * deviation, RELATIVE_ROUNDING * size * float(np.ptp(force))):
         raise ValueError(
             f"{name}the loop creates energy, area = {area:.3g} J, expected is 0 or more: the force has to "
             "lead the motion; reverse the order of the rows if they run back in time"
         )
-    closed = [(work, common) for work, common, longer in loops if common >= CLOSED * longer]
+    closed = [(work, common) for work, common, longer in loops if common >= MIN_COMMON_RANGE * longer]
     return [max(closed, key=lambda loop: loop[1])] if closed else []
 
 
-def _area(one: tuple[Array, Array], other: tuple[Array, Array]) -> tuple[float, float, float] | None:
+def _area(first: tuple[Array, Array], second: tuple[Array, Array]) -> tuple[float, float, float] | None:
     """Area [J] between two consecutive branches, their common range of motion, range of the longer branch.
 
     Each branch: motion, force. None if the branches have no common range, or too few samples.
     """
-    (u, F), (v, G) = (one, other) if one[0][-1] > one[0][0] else (other, one)
+    (u, F), (v, G) = (first, second) if first[0][-1] > first[0][0] else (second, first)
     low, high = max(u.min(), v.min()), min(u.max(), v.max())
-    if not high > low or min(u.size, v.size) < LEAST:
+    if not high > low or min(u.size, v.size) < MIN_BRANCH_SAMPLES:
         return None
-    grid = np.linspace(low, high, _GRID)
-    up, down = (np.interp(grid, *ordered(x, y)) for x, y in ((u, F), (v, G)))
+    grid = np.linspace(low, high, _GRID_POINTS)
+    up, down = (np.interp(grid, *sort_points(x, y)) for x, y in ((u, F), (v, G)))
     return float(trapezoid(up - down, grid)), float(high - low), float(max(np.ptp(u), np.ptp(v)))
 
 
-def ordered(x: Array, y: Array) -> tuple[Array, Array]:
+def sort_points(x: Array, y: Array) -> tuple[Array, Array]:
     """Sort points (n) by x, ascending."""
     order = np.argsort(x, kind="stable")
     return x[order], y[order]

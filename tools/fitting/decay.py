@@ -17,28 +17,28 @@ import scipy.optimize
 
 from jointfmu.quantity import Array
 
-PERIODS = (2, 5)
+WINDOW_PERIODS = (2, 5)
 """Minimum and maximum number of periods of a window."""
-DECAY = 0.3
+WINDOW_DECAY = 0.3
 """Logarithmic decrement of the amplitude over a window [1] that is aimed at, within PERIODS."""
-STEEPEST = 1.0
+MAX_WINDOW_DECAY = 1.0
 """Logarithmic decrement over a window [1], from which the window is left out: the two periods of the window
 are too different."""
-LEAST_SAMPLES = 10
+MIN_SAMPLES_PER_PERIOD = 10
 """Minimum number of samples of a period."""
-LEAST_WINDOWS = 4
+MIN_WINDOWS = 4
 """Minimum number of windows of a measurement."""
-SEEN = 4.0
+MIN_SIGNAL_TO_NOISE = 4.0
 """Amplitude over the standard deviation of the residuals [1], below which a window is not used."""
 FREQUENCY_ERROR, DAMPING_ERROR = 8e-3, 1e-1
 """Relative error of frequency and damping of a window without noise, over the square of the logarithmic
 decrement over the window [1]. Source: simulated decays of known laws."""
-GROWING = 0.2
+RECORD_END_FRACTION = 0.2
 """Last fraction of a record [1]: if the motion is largest there, the record is no decay."""
 
 
 @dataclass(frozen=True, slots=True)
-class Points:
+class DecayPoints:
     """Frequency and damping of a free vibration at amplitudes (n) [m or rad].
 
     frequency : undamped natural frequency (n) [Hz]
@@ -54,7 +54,7 @@ class Points:
     damping_spread: Array
 
 
-def points(time: Array, motion: Array, name: str = "") -> Points:
+def analyse_decay(time: Array, motion: Array, name: str = "") -> DecayPoints:
     """Frequency and damping as functions of the amplitude, from time (n) [s] and motion (n) [m or rad].
 
     Raises ValueError, with `name` as the prefix of its message: time does not rise, too few samples or
@@ -65,26 +65,26 @@ def points(time: Array, motion: Array, name: str = "") -> Points:
         raise ValueError(f"{name}time does not rise at its value {row + 1}; expected rising times")
     frequency = _main_frequency(time, motion)
     step = float(np.median(np.diff(time)))
-    if not frequency * step * LEAST_SAMPLES <= 1.0:
+    if not frequency * step * MIN_SAMPLES_PER_PERIOD <= 1.0:
         raise ValueError(
-            f"{name}has {1.0 / (frequency * step):.3g} samples a period, at least {LEAST_SAMPLES} are needed"
+            f"{name}has {1.0 / (frequency * step):.3g} samples a period, at least {MIN_SAMPLES_PER_PERIOD} are needed"
         )
     largest = time[int(np.argmax(np.abs(motion - np.median(motion))))]
-    if largest > time[-1] - GROWING * (time[-1] - time[0]):
+    if largest > time[-1] - RECORD_END_FRACTION * (time[-1] - time[0]):
         raise ValueError(
             f"{name}the motion is largest at {largest:.3g} s, near its end: the joint creates energy, "
             "expected is a decay; reverse the order of the rows if they run back in time"
         )
-    windows = list(_windows(time, motion, 2.0 * np.pi * frequency))
-    if len(windows) < LEAST_WINDOWS:
+    windows = list(_fit_windows(time, motion, 2.0 * np.pi * frequency))
+    if len(windows) < MIN_WINDOWS:
         raise ValueError(
             f"{name}{len(windows)} windows of a few periods of {1.0 / frequency:.3g} s stand out of the "
-            f"noise, at least {LEAST_WINDOWS} are needed"
+            f"noise, at least {MIN_WINDOWS} are needed"
         )
     amplitude, w, s, w_deviation, s_deviation, length = np.array(windows).T
     undamped = np.hypot(w, s)
     damping, decrement = s / undamped, s * length
-    return Points(
+    return DecayPoints(
         amplitude,
         undamped / (2.0 * np.pi),
         damping,
@@ -102,7 +102,7 @@ def _main_frequency(time: Array, motion: Array) -> float:
     return float(np.argmax(spectrum) / (8.0 * (time[-1] - time[0]) * n / (n - 1)))
 
 
-def _windows(time: Array, motion: Array, w: float) -> Iterator[tuple[float, ...]]:
+def _fit_windows(time: Array, motion: Array, w: float) -> Iterator[tuple[float, ...]]:
     """Yield for each window: amplitude, w and s [1/s], their standard deviations [1/s], length [s].
 
     w : angular frequency [rad/s] with which the first window is chosen
@@ -110,43 +110,45 @@ def _windows(time: Array, motion: Array, w: float) -> Iterator[tuple[float, ...]
     size, s = float(np.ptp(motion)), 0.02 * w
     begin = time[int(np.argmax(np.abs(motion - np.median(motion))))]
     while True:
-        periods = int(np.clip(DECAY * w / (2.0 * np.pi * max(s, 1e-9 * w)), *PERIODS))
+        periods = int(np.clip(WINDOW_DECAY * w / (2.0 * np.pi * max(s, 1e-9 * w)), *WINDOW_PERIODS))
         length = 2.0 * np.pi * periods / w
         inside = (time >= begin) & (time < begin + length)
         t, u = (time[inside] - begin) / length - 0.5, motion[inside] / size
         begin += length
-        if begin > time[-1] or t.size < LEAST_SAMPLES:
+        if begin > time[-1] or t.size < MIN_SAMPLES_PER_PERIOD:
             return
-        shape = _fitted(np.array([w * length, s * length]), t, u)
-        residual = _left(shape, t, u)
-        *_, A, B = np.linalg.lstsq(_shapes(shape, t), u)[0]
+        shape = _fit_window(np.array([w * length, s * length]), t, u)
+        residual = _window_residual(shape, t, u)
+        *_, A, B = np.linalg.lstsq(_design_matrix(shape, t), u)[0]
         amplitude, noise = float(np.hypot(A, B)), float(np.sqrt(residual @ residual / max(t.size - 8, 1)))
-        if not amplitude > SEEN * noise:
+        if not amplitude > MIN_SIGNAL_TO_NOISE * noise:
             return
         w, s = float(shape[0]) / length, float(shape[1]) / length
-        deviations = (x / length for x in _spreads(shape, A, B, t, noise))
-        if s * length < STEEPEST:
+        deviations = (x / length for x in _standard_deviations(shape, A, B, t, noise))
+        if s * length < MAX_WINDOW_DECAY:
             yield size * amplitude, w, s, *deviations, length
 
 
-def _fitted(first: Array, t: Array, u: Array) -> Array:
+def _fit_window(first: Array, t: Array, u: Array) -> Array:
     """Fit w, s and their rates (4) in one window; `first` (2) are the start values of w and s.
 
     Times t (n) and all results are made dimensionless with the length of the window. w and s are first fitted
     with zero rates, then all four together.
     """
-    constant = scipy.optimize.least_squares(lambda x: _left(np.append(x, [0.0, 0.0]), t, u), first).x
+    constant = scipy.optimize.least_squares(
+        lambda x: _window_residual(np.append(x, [0.0, 0.0]), t, u), first
+    ).x
     start = np.append(constant, [0.0, 0.0])
-    return np.asarray(scipy.optimize.least_squares(lambda x: _left(x, t, u), start).x)
+    return np.asarray(scipy.optimize.least_squares(lambda x: _window_residual(x, t, u), start).x)
 
 
-def _left(shape: Array, t: Array, u: Array) -> Array:
+def _window_residual(shape: Array, t: Array, u: Array) -> Array:
     """Residuals (n) of the linear fit of c, d, A, B to a signal u (n); shape (4): w, s and their rates."""
-    matrix = _shapes(shape, t)
+    matrix = _design_matrix(shape, t)
     return np.asarray(u - matrix @ np.linalg.lstsq(matrix, u)[0])
 
 
-def _shapes(shape: Array, t: Array) -> Array:
+def _design_matrix(shape: Array, t: Array) -> Array:
     """Design matrix (n, 4) of c, d, A, B: ones, time, decaying cosine, decaying sine.
 
     shape : w, s and their rates (4)
@@ -156,13 +158,13 @@ def _shapes(shape: Array, t: Array) -> Array:
     return np.stack([np.ones_like(t), t, decay * np.cos(angle), decay * np.sin(angle)], axis=1)
 
 
-def _spreads(shape: Array, A: float, B: float, t: Array, noise: float) -> tuple[float, float]:
+def _standard_deviations(shape: Array, A: float, B: float, t: Array, noise: float) -> tuple[float, float]:
     """Standard deviations of w and s, dimensionless with the length of the window.
 
     A, B  : amplitudes of cosine and sine
     noise : standard deviation of the residuals
     """
-    ones, _, cos, sin = _shapes(shape, t).T
+    ones, _, cos, sin = _design_matrix(shape, t).T
     d_angle, d_decay = B * cos - A * sin, -(A * cos + B * sin)  # derivatives of u in angle and decay
     columns = [ones, t, cos, sin, t * d_angle, t * d_decay, t**2 * d_angle, t**2 * d_decay]
     jacobian = np.stack(columns, axis=1)

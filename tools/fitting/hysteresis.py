@@ -27,13 +27,13 @@ from scipy.interpolate import CubicSpline
 
 from jointfmu.quantity import Array
 
-from .decay import Points
+from .decay import DecayPoints
 
 Force = Callable[[Array], Array]
 _ANGLE, _WEIGHT = np.polynomial.legendre.leggauss(64)
 _ANGLE, _WEIGHT = 0.5 * np.pi * (1.0 + _ANGLE), 0.5 * np.pi * _WEIGHT
 """Gauss-Legendre angles (64) [rad] from 0 to pi, and their weights: half an oscillation u = a cos(angle)."""
-_SECANTS, _STEEPEST = 12, 3.0
+_MAX_SECANT_STEPS, _MAX_DECREMENT = 12, 3.0
 """Secant iterations for the logarithmic decrement of half a period, and its upper limit [1]."""
 
 
@@ -56,11 +56,11 @@ class HysteresisLaw:
     """
 
     friction: Force
-    work: Force
+    friction_work: Force
     elastic: NonlinearSpring | None = None
     viscous: float = 0.0
 
-    def change(self, motion: Array, start: Array) -> Array:
+    def force_change(self, motion: Array, start: Array) -> Array:
         """Change (...) of the force from turning points `start` (...) to motions (...), by Masing's rule."""
         distance = motion - start
         change = np.copysign(2.0 * self.friction(0.5 * np.abs(distance)), distance)
@@ -68,14 +68,14 @@ class HysteresisLaw:
             return change
         return np.asarray(change + self.elastic.force(motion) - self.elastic.force(start))
 
-    def about(self, rest: float) -> "HysteresisLaw":
+    def shift_rest(self, rest: float) -> "HysteresisLaw":
         """Copy of the law whose elastic force is zero at the motion `rest`."""
         if self.elastic is None:
             return self
         force, energy = self.elastic.force, self.elastic.energy
         return replace(self, elastic=NonlinearSpring(lambda u: force(u - rest), lambda u: energy(u - rest)))
 
-    def equivalent(self, amplitude: Array) -> tuple[Array, Array]:
+    def equivalent_spring(self, amplitude: Array) -> tuple[Array, Array]:
         """Equivalent stiffness (n) and loss factor (n) [1] of closed loops about rest with amplitudes (n).
 
         First harmonic of the force under u = a cos(angle): K = 1/(pi a) times the integral of F cos(angle)
@@ -84,18 +84,18 @@ class HysteresisLaw:
         """
         a = amplitude[:, None]
         motion = a * np.cos(_ANGLE)
-        force = self.change(motion, np.broadcast_to(a, motion.shape))
+        force = self.force_change(motion, np.broadcast_to(a, motion.shape))
         stiffness = 2.0 / (np.pi * amplitude) * ((force * np.cos(_ANGLE)) @ _WEIGHT)
-        return stiffness, self.area(amplitude) / (np.pi * stiffness * amplitude**2)
+        return stiffness, self.loop_area(amplitude) / (np.pi * stiffness * amplitude**2)
 
-    def area(self, amplitude: Array) -> Array:
+    def loop_area(self, amplitude: Array) -> Array:
         """Dissipated energy (n) [J] of closed loops about rest with amplitudes a (n): 8 (w(a) - B(a) a/2).
 
         w : `friction_work`
         """
-        return np.asarray(8.0 * (self.work(amplitude) - 0.5 * amplitude * self.friction(amplitude)))
+        return np.asarray(8.0 * (self.friction_work(amplitude) - 0.5 * amplitude * self.friction(amplitude)))
 
-    def decay(self, half: Array, inertia: float) -> tuple[Array, Array]:
+    def decay(self, half_distance: Array, inertia: float) -> tuple[Array, Array]:
         """Free decay: angular frequency (n) [rad/s], logarithmic decrement of half a period (n) [1].
 
         half_distance : h (n), half the distance between two consecutive turning points
@@ -113,56 +113,60 @@ class HysteresisLaw:
 
         Half a period is the integral of du over the speed; viscous damping is neglected in the speed.
         """
-        omega = self._frequency(half, self._decrement(half, 0.0 * half)) / np.sqrt(inertia)
-        return omega, self._decrement(half, 0.25 * np.pi * self.viscous * omega)
+        omega = self._frequency(half_distance, self._decrement(half_distance, 0.0 * half_distance)) / np.sqrt(
+            inertia
+        )
+        return omega, self._decrement(half_distance, 0.25 * np.pi * self.viscous * omega)
 
-    def _decrement(self, half: Array, viscous: Array) -> Array:
+    def _decrement(self, half_distance: Array, viscous: Array) -> Array:
         """Logarithmic decrement b (n) [1] of half a period, by the secant method.
 
         viscous : viscous part (n) of G over h, pi d omega/4
         """
 
-        def held(way: Array) -> Array:
-            return np.asarray(2.0 * self.work(way) / way + viscous * way)
+        def dissipated_force(distance: Array) -> Array:
+            return np.asarray(2.0 * self.friction_work(distance) / distance + viscous * distance)
 
-        def left(b: Array) -> Array:
-            first, second = half * np.exp(0.5 * b), half * np.exp(-0.5 * b)
-            dissipated = held(first) + held(second) - 2.0 * self.friction(first)
-            return np.asarray(dissipated - self._released(first, b) - self._released(second, b))
+        def energy_residual(b: Array) -> Array:
+            first, second = half_distance * np.exp(0.5 * b), half_distance * np.exp(-0.5 * b)
+            dissipated = dissipated_force(first) + dissipated_force(second) - 2.0 * self.friction(first)
+            return np.asarray(dissipated - self._released_energy(first, b) - self._released_energy(second, b))
 
-        low, high = np.zeros_like(half), np.full_like(half, 1e-3)
-        at_low, at_high = left(low), left(high)
-        for _ in range(_SECANTS):
+        low, high = np.zeros_like(half_distance), np.full_like(half_distance, 1e-3)
+        at_low, at_high = energy_residual(low), energy_residual(high)
+        for _ in range(_MAX_SECANT_STEPS):
             slope = np.where(at_high == at_low, np.inf, at_high - at_low)
-            low, high = high, np.clip(high - at_high * (high - low) / slope, 0.0, _STEEPEST)
-            at_low, at_high = at_high, left(high)
+            low, high = high, np.clip(high - at_high * (high - low) / slope, 0.0, _MAX_DECREMENT)
+            at_low, at_high = at_high, energy_residual(high)
         return high
 
-    def _frequency(self, half: Array, b: Array) -> Array:
+    def _frequency(self, half_distance: Array, b: Array) -> Array:
         """Angular frequency (n) [rad/s] of free vibration with a unit inertia, at the decrement b (n) [1]."""
-        start = 2.0 * half / (1.0 + np.exp(-b))
-        distance = half[:, None] * (1.0 - np.cos(_ANGLE))
-        force = 2.0 * self.work(half) / half - self._released(half, b)
-        speed_squared = 2.0 * (force[:, None] * distance - 4.0 * self.work(0.5 * distance))
+        start = 2.0 * half_distance / (1.0 + np.exp(-b))
+        distance = half_distance[:, None] * (1.0 - np.cos(_ANGLE))
+        force = 2.0 * self.friction_work(half_distance) / half_distance - self._released_energy(
+            half_distance, b
+        )
+        speed_squared = 2.0 * (force[:, None] * distance - 4.0 * self.friction_work(0.5 * distance))
         if self.elastic is not None:
             V = self.elastic.energy
             speed_squared += 2.0 * (V(start)[:, None] - V(start[:, None] - distance))
         speed = np.sqrt(np.maximum(speed_squared, 1e-300))
-        return np.asarray(np.pi / ((half[:, None] * np.sin(_ANGLE) / speed) @ _WEIGHT))
+        return np.asarray(np.pi / ((half_distance[:, None] * np.sin(_ANGLE) / speed) @ _WEIGHT))
 
-    def _released(self, half: Array, b: Array) -> Array:
+    def _released_energy(self, half_distance: Array, b: Array) -> Array:
         """Elastic energy released between two turning points over their distance 2 h: D (n) [N or N.m]."""
         if self.elastic is None:
-            return np.zeros_like(half)
-        start = 2.0 * half / (1.0 + np.exp(-b))
+            return np.zeros_like(half_distance)
+        start = 2.0 * half_distance / (1.0 + np.exp(-b))
         V = self.elastic.energy
-        return np.asarray((V(start) - V(start * np.exp(-b))) / (2.0 * half))
+        return np.asarray((V(start) - V(start * np.exp(-b))) / (2.0 * half_distance))
 
 
-REACH = 30.0
+AMPLITUDE_SEARCH_FACTOR = 30.0
 """Factor [1] below the smallest and above the largest measured amplitude: range in which amplitudes of forced
 vibration are searched."""
-_TABLE, _HALVINGS = 80, 50
+_TABLE_POINTS, _MAX_BISECTIONS = 80, 50
 """Amplitudes at which the equivalent spring is tabulated, and bisections for the amplitude."""
 
 
@@ -174,23 +178,26 @@ class Oscillator:
     inertia: float
     damping: float = 0.0
 
-    def free(self, amplitude: Array) -> tuple[Array, Array]:
+    def free_vibration(self, amplitude: Array) -> tuple[Array, Array]:
         """Frequency (n) [Hz] and damping ratio (n) [1] of free vibration at amplitudes (n)."""
         omega, decrement = self.law.decay(amplitude, self.inertia)
         return omega / (2.0 * np.pi), decrement / np.hypot(np.pi, decrement) + self.damping
 
-    def response(self, frequency: Array, force: Array, near: Array) -> Array:
+    def response_amplitude(self, frequency: Array, force: Array, measured_amplitude: Array) -> Array:
         """Amplitude (n) of forced vibration under force amplitudes (n) at frequencies (n) [Hz].
 
         measured_amplitude : amplitudes; the result is searched within a factor of AMPLITUDE_SEARCH_FACTOR
         """
-        ends = float(np.log(near.min() / REACH)), float(np.log(near.max() * REACH))
-        grid = np.linspace(ends[0], ends[1], _TABLE)
-        stiffness, loss = self.law.equivalent(np.exp(grid))
+        ends = (
+            float(np.log(measured_amplitude.min() / AMPLITUDE_SEARCH_FACTOR)),
+            float(np.log(measured_amplitude.max() * AMPLITUDE_SEARCH_FACTOR)),
+        )
+        grid = np.linspace(ends[0], ends[1], _TABLE_POINTS)
+        stiffness, loss = self.law.equivalent_spring(np.exp(grid))
         table = CubicSpline(grid, np.stack([stiffness, loss], axis=1))
         w = 2.0 * np.pi * frequency
         low, high = np.full(w.shape, ends[0]), np.full(w.shape, ends[1])
-        for _ in range(_HALVINGS):
+        for _ in range(_MAX_BISECTIONS):
             middle = 0.5 * (low + high)
             K, eta = table(middle).T
             linear = self.law.viscous * w + 2.0 * self.damping * w * np.sqrt(
@@ -202,15 +209,15 @@ class Oscillator:
 
 
 @dataclass(frozen=True, slots=True)
-class Free:
+class FreeVibration:
     """Measured frequency and damping ratio of free vibration as functions of the amplitude."""
 
-    points: Points
+    points: DecayPoints
 
-    nuisances = 0
+    nuisance_count = 0
 
     @property
-    def groups(self) -> NDArray[np.int64]:
+    def noise_groups(self) -> NDArray[np.int64]:
         """Index (2 n) of the noise group of each residual: 0 for frequencies, 1 for damping ratios."""
         return np.repeat([0, 1], self.points.amplitude.size)
 
@@ -223,7 +230,7 @@ class Free:
         """Relative errors of the frequencies (data over model minus 1), then data minus model of the damping
         ratios; (2 n) [1].
         """
-        frequency, damping = model.free(self.points.amplitude)
+        frequency, damping = model.free_vibration(self.points.amplitude)
         data = self.points
         return np.concatenate([data.frequency / frequency - 1.0, data.damping - damping])
 
@@ -233,17 +240,17 @@ class Free:
 
 
 @dataclass(frozen=True, slots=True)
-class Response:
+class ForcedResponse:
     """Measured amplitudes (n) of forced vibration at force amplitudes (n) and frequencies (n) [Hz]."""
 
     frequency: Array
     force: Array
     amplitude: Array
 
-    nuisances = 0
+    nuisance_count = 0
 
     @property
-    def groups(self) -> NDArray[np.int64]:
+    def noise_groups(self) -> NDArray[np.int64]:
         """Index (n) of the noise group of each amplitude: 0, all have the same noise."""
         return np.zeros(self.amplitude.size, dtype=np.int64)
 
@@ -254,7 +261,7 @@ class Response:
 
     def misfit(self, model: Oscillator) -> Array:
         """Logarithm (n) [1] of the ratio of measured to modelled amplitude."""
-        return np.log(self.amplitude / model.response(self.frequency, self.force, self.amplitude))
+        return np.log(self.amplitude / model.response_amplitude(self.frequency, self.force, self.amplitude))
 
     def residuals(self, model: Oscillator, scale: Array) -> Array:
         """`misfit` over its standard deviations `scale`, both of the same shape."""

@@ -21,19 +21,19 @@ from jointfmu.quantity import Array
 Residuals = Callable[[Mapping[str, float]], Array]
 """Function {name: value} -> residuals (n) [1]; ValueError or RuntimeError if the model refuses values."""
 
-STEP = 1e-4
+DIFFERENCE_STEP = 1e-4
 """Step of the central differences, in the logarithm of a parameter [1].
 
 Tabulated laws have errors of 1e-8; with this step they cause errors of 1e-4 of the derivatives.
 """
 TOLERANCE = 1e-8
 """Relative change of cost or parameters at which a fit ends [1]."""
-MOST_STEPS = 300
+MAX_EVALUATIONS = 300
 """Maximum number of function evaluations of one fit, without those for the Jacobian."""
 RIDGE = 0.01
 """Weight of the regularisation towards the start: standard deviations of a residual per unit of a logarithm
 [1]. Too weak to move determined parameters, strong enough to hold undetermined parameters."""
-EDGE = 1e-6
+BOUND_DISTANCE = 1e-6
 """Distance to a bound, in the logarithm [1], below which a parameter counts as being on the bound."""
 
 
@@ -77,7 +77,7 @@ class Solution:
     jacobian: Array
     covariance: Array
     at_bound: tuple[str, ...]
-    limit: str | None
+    refusal: str | None
 
     @property
     def deviations(self) -> dict[str, float]:
@@ -92,7 +92,7 @@ class Solution:
         return np.asarray(self.covariance / np.outer(root, root))
 
 
-NOTHING = Solution((), {}, np.zeros(0), 1.0, np.zeros((0, 0)), np.zeros((0, 0)), (), None)
+EMPTY_SOLUTION = Solution((), {}, np.zeros(0), 1.0, np.zeros((0, 0)), np.zeros((0, 0)), (), None)
 """Solution of a fit without unknowns."""
 
 
@@ -101,7 +101,7 @@ def solve(
     residuals: Residuals,
     *,
     noise: float | None = None,
-    nuisances: int = 0,
+    nuisance_count: int = 0,
     tolerance: float = TOLERANCE,
 ) -> Solution:
     """Minimise the sum of squared residuals over the unknowns.
@@ -121,18 +121,18 @@ def solve(
     """
     from scipy.optimize import least_squares
 
-    model = _Model(tuple(unknowns), residuals)
+    model = _LogarithmicModel(tuple(unknowns), residuals)
     logs = model.start
-    first = residuals(model.named(logs))
-    degrees_of_freedom = first.size - logs.size - nuisances
+    first = residuals(model.values_by_name(logs))
+    degrees_of_freedom = first.size - logs.size - nuisance_count
     if degrees_of_freedom < 1 and noise is None:
         raise ValueError(
-            f"{first.size} data points are too few for {logs.size + nuisances} unknowns "
-            f"({', '.join(model.names)}): at least {logs.size + nuisances + 1} are needed"
+            f"{first.size} data points are too few for {logs.size + nuisance_count} unknowns "
+            f"({', '.join(model.names)}): at least {logs.size + nuisance_count + 1} are needed"
         )
     current = first
     for _ in range(2 if noise is None else 1):  # the first fit estimates the noise
-        model.ridge = RIDGE * (_spread(current) if noise is None else noise)
+        model.ridge = RIDGE * (_root_mean_square(current) if noise is None else noise)
         result = least_squares(
             model,
             logs,
@@ -142,31 +142,33 @@ def solve(
             xtol=tolerance,
             ftol=tolerance,
             gtol=1e-15,
-            max_nfev=MOST_STEPS,
+            max_nfev=MAX_EVALUATIONS,
         )
         if result.status == 0:
-            raise RuntimeError(f"the fit of {', '.join(model.names)} found no end within {MOST_STEPS} steps")
+            raise RuntimeError(
+                f"the fit of {', '.join(model.names)} found no end within {MAX_EVALUATIONS} steps"
+            )
         logs, current = result.x, result.fun[: first.size]
     jacobian = result.jac[: first.size]
     if noise is None:
         noise = float(np.sqrt(current @ current / degrees_of_freedom))
-    at_bound = np.minimum(logs - model.low, model.high - logs) < EDGE
+    at_bound = np.minimum(logs - model.low, model.high - logs) < BOUND_DISTANCE
     return Solution(
         unknowns=tuple(unknowns),
-        values=model.named(logs),
+        values=model.values_by_name(logs),
         residuals=current,
         noise=noise,
         jacobian=jacobian,
         covariance=covariance(jacobian, noise),
         at_bound=tuple(name for name, on_bound in zip(model.names, at_bound, strict=True) if on_bound),
-        limit=model.refusal if model.retreated else None,
+        refusal=model.refusal if model.retreated else None,
     )
 
 
-def best_start(
+def select_start(
     unknowns: Sequence[Unknown],
     starts: Mapping[str, Sequence[float]],
-    tried: Callable[[dict[str, float]], tuple[Mapping[str, float], float]],
+    evaluate_start: Callable[[dict[str, float]], tuple[Mapping[str, float], float]],
 ) -> Sequence[Unknown]:
     """Select the starting point with the lowest cost: the unknowns, with their start values there.
 
@@ -178,7 +180,7 @@ def best_start(
     best, least = unknowns, np.inf
     for point in product(*((u.start, *starts.get(u.name, ())) for u in unknowns)):
         try:
-            values, cost = tried(dict(zip((u.name for u in unknowns), point, strict=True)))
+            values, cost = evaluate_start(dict(zip((u.name for u in unknowns), point, strict=True)))
         except (ValueError, RuntimeError):
             continue
         if cost < least and all(u.low < values[u.name] < u.high for u in unknowns):
@@ -186,12 +188,12 @@ def best_start(
     return best
 
 
-def _spread(residuals: Array) -> float:
+def _root_mean_square(residuals: Array) -> float:
     """Root mean square [1] of residuals (n)."""
     return float(np.sqrt(np.mean(residuals**2)))
 
 
-class _Model:
+class _LogarithmicModel:
     """Residuals and regularisation as function of the logarithms (k); infinite if the model refuses them."""
 
     def __init__(self, unknowns: tuple[Unknown, ...], residuals: Residuals) -> None:
@@ -206,14 +208,14 @@ class _Model:
         self.refusal: str | None = None
         self.retreated = False
 
-    def named(self, logs: Array) -> dict[str, float]:
+    def values_by_name(self, logs: Array) -> dict[str, float]:
         """{name: value} of logarithms (k)."""
         with np.errstate(over="ignore"):
             return dict(zip(self.names, np.exp(logs).tolist(), strict=True))
 
     def __call__(self, logs: Array) -> Array:
         try:
-            value = self.residuals(self.named(logs))
+            value = self.residuals(self.values_by_name(logs))
         except (ValueError, RuntimeError) as error:
             if not self.size:
                 raise
@@ -229,7 +231,7 @@ class _Model:
         self.retreated = False
         columns = []
         for k in range(logs.size):
-            ends = np.clip(logs[k] + np.array([-STEP, STEP]), self.low[k], self.high[k])
+            ends = np.clip(logs[k] + np.array([-DIFFERENCE_STEP, DIFFERENCE_STEP]), self.low[k], self.high[k])
             sides = []
             for end in ends:
                 shifted = logs.copy()
@@ -252,7 +254,7 @@ def covariance(jacobian: Array, noise: float) -> Array:
     return np.asarray(noise**2 * (half @ half.T))
 
 
-EXACT, SECANTS = 1e-10, 40
+EXCHANGE_TOLERANCE, MAX_SECANT_STEPS = 1e-10, 40
 """Relative tolerance [1] of the quantity of an `Exchange`, and maximum number of secant steps to meet it."""
 
 
@@ -276,36 +278,36 @@ class Exchange:
         start = self.quantity({name: u.start for name, u in unknowns.items()})
         return Unknown(self.label, self.unit, start, 0.0, np.inf)
 
-    def values(self, found: Mapping[str, float], near: float) -> dict[str, float]:
+    def restore_unknowns(self, values: Mapping[str, float], start: float) -> dict[str, float]:
         """Values of the original unknowns from values with the derived quantity; secant method from `start`.
 
         Raises ValueError if no value of the replaced unknown gives the quantity.
         """
-        rest = {name: value for name, value in found.items() if name != self.label}
-        target = float(np.log(found[self.label]))
+        rest = {name: value for name, value in values.items() if name != self.label}
+        target = float(np.log(values[self.label]))
 
-        def miss(log: float) -> float:
+        def logarithmic_error(log: float) -> float:
             return float(np.log(self.quantity({**rest, self.name: float(np.exp(log))}))) - target
 
-        low, high = float(np.log(near)), float(np.log(near)) + STEP
-        at_low, at_high = miss(low), miss(high)
-        for _ in range(SECANTS):
-            if abs(at_high) <= EXACT or at_high == at_low:
+        low, high = float(np.log(start)), float(np.log(start)) + DIFFERENCE_STEP
+        at_low, at_high = logarithmic_error(low), logarithmic_error(high)
+        for _ in range(MAX_SECANT_STEPS):
+            if abs(at_high) <= EXCHANGE_TOLERANCE or at_high == at_low:
                 break
             step = -at_high * (high - low) / (at_high - at_low)
             low, high = high, high + float(np.clip(step, -5.0, 5.0))
-            at_low, at_high = at_high, miss(high)
-        if abs(at_high) > 1e3 * EXACT:
-            raise ValueError(f"no {self.name} gives {self.label} = {found[self.label]:g} {self.unit}")
+            at_low, at_high = at_high, logarithmic_error(high)
+        if abs(at_high) > 1e3 * EXCHANGE_TOLERANCE:
+            raise ValueError(f"no {self.name} gives {self.label} = {values[self.label]:g} {self.unit}")
         return {**rest, self.name: float(np.exp(high))}
 
-    def back(self, solution: Solution, unknowns: Mapping[str, Unknown]) -> Solution:
+    def restore_solution(self, solution: Solution, unknowns: Mapping[str, Unknown]) -> Solution:
         """Transform a solution with the derived quantity into a solution with the original unknowns."""
-        restored = self.values(solution.values, unknowns[self.name].start)
+        restored = self.restore_unknowns(solution.values, unknowns[self.name].start)
         values = {name: restored[name] for name in unknowns}
         transformation = np.eye(len(values))
         index = [u.name for u in solution.unknowns].index(self.label)
-        transformation[index] = self._slopes(values)
+        transformation[index] = self._logarithmic_derivatives(values)
         jacobian = solution.jacobian @ transformation
         return replace(
             solution,
@@ -315,10 +317,16 @@ class Exchange:
             covariance=covariance(jacobian, solution.noise),
         )
 
-    def _slopes(self, values: Mapping[str, float]) -> Array:
+    def _logarithmic_derivatives(self, values: Mapping[str, float]) -> Array:
         """Derivatives (k) [1] of the quantity with respect to the values, all in logarithms."""
 
-        def moved(name: str, by: float) -> float:
+        def perturbed_quantity(name: str, by: float) -> float:
             return float(np.log(self.quantity({**values, name: values[name] * float(np.exp(by))})))
 
-        return np.array([(moved(n, STEP) - moved(n, -STEP)) / (2.0 * STEP) for n in values])
+        return np.array(
+            [
+                (perturbed_quantity(n, DIFFERENCE_STEP) - perturbed_quantity(n, -DIFFERENCE_STEP))
+                / (2.0 * DIFFERENCE_STEP)
+                for n in values
+            ]
+        )

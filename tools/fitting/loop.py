@@ -26,22 +26,22 @@ from scipy.interpolate import BSpline
 
 from jointfmu.quantity import Array
 
-from .branches import extremes
+from .branches import find_reversals
 
-PROMINENCE = 0.1
+MIN_REVERSAL = 0.1
 """Smallest reversal of the torque that counts as a turning point, over the range of the torque [1]."""
-CENTRAL = 0.25
+CENTRAL_FRACTION = 0.25
 """Central fraction of the torque range [1], in which friction is fully reversed on both branches."""
-FULL = 0.9
+MIN_BRANCH_SPAN = 0.9
 """Fraction of the torque range [1], from which a branch counts as covering the full range."""
-MOST_KNOTS, POINTS_PER_KNOT = 41, 20
+MAX_KNOTS, POINTS_PER_KNOT = 41, 20
 """Maximum number of knots of the piecewise linear curves, and samples for each knot."""
-MOST_POINTS = 400
+MAX_POINTS = 400
 """Maximum number of points of the backbone; more samples are averaged in groups of neighbouring torque."""
-SEEN = 0.05
+MIN_DRIFT_FRACTION = 0.05
 """Fraction of the drift column of the design matrix [1] that is linearly independent of the other columns,
 above which the drift counts as determined."""
-TENTHS = 10
+MONOTONE_INTERVALS = 10
 """Number of equal torque intervals in which the backbone is checked to be monotonic."""
 
 
@@ -72,13 +72,13 @@ class Backbone:
 class _Branch:
     """Samples between two turning points: their indices, and lowest and highest torque [N.m]."""
 
-    places: NDArray[np.int64]
+    indices: NDArray[np.int64]
     rising: bool
     low: float
     high: float
 
 
-def backbone(torque: Array, angle: Array) -> Backbone:
+def find_backbone(torque: Array, angle: Array) -> Backbone:
     """Backbone curve of a record: torque (n) [N.m] and angle (n) [rad], in the order of the measurement.
 
     Raises ValueError: constant torque, branches without a common range, or an angle that falls with rising
@@ -86,11 +86,11 @@ def backbone(torque: Array, angle: Array) -> Backbone:
     """
     if not np.ptp(torque) > 0.0:
         raise ValueError(f"torque is {torque[0]:g} N.m throughout; expected a range of torques")
-    branches = _whole(_branches(torque))
+    branches = _full_range_branches(_branches(torque))
     if len({b.rising for b in branches}) == 1:
-        indices = np.concatenate([b.places for b in branches])
-        line = _grouped(torque[indices], angle[indices])
-        return _monotone(Backbone(*line, len(branches), None, None, None))
+        indices = np.concatenate([b.indices for b in branches])
+        line = _average_groups(torque[indices], angle[indices])
+        return _check_monotone(Backbone(*line, len(branches), None, None, None))
     low, high = (
         inner(outer(getattr(b, name) for b in branches if b.rising is rising) for rising in (True, False))
         for inner, outer, name in ((max, min, "low"), (min, max, "high"))
@@ -100,12 +100,12 @@ def backbone(torque: Array, angle: Array) -> Backbone:
             f"rising and falling branch share {low:g} to {high:g} N.m of {np.min(torque):g} to "
             f"{np.max(torque):g} N.m; expected loops over the whole range"
         )
-    return _monotone(_separated(torque, angle, branches, float(low), float(high)))
+    return _check_monotone(_separate_hysteresis(torque, angle, branches, float(low), float(high)))
 
 
 def _branches(torque: Array) -> list[_Branch]:
     """All branches between the turning points of the torque, in the order of the measurement."""
-    turns = extremes(torque, PROMINENCE * float(np.ptp(torque)))
+    turns = find_reversals(torque, MIN_REVERSAL * float(np.ptp(torque)))
     ends = np.concatenate([[0], turns, [torque.size - 1]])
     branches = []
     for first, last in pairwise(ends):
@@ -115,37 +115,42 @@ def _branches(torque: Array) -> list[_Branch]:
     return branches
 
 
-def _whole(branches: list[_Branch]) -> list[_Branch]:
+def _full_range_branches(branches: list[_Branch]) -> list[_Branch]:
     """Select the branches that cover the full torque range; if a direction has none, all its branches."""
     span = max(b.high for b in branches) - min(b.low for b in branches)
     selected = []
     for rising in (True, False):
         same = [b for b in branches if b.rising is rising]
-        selected += [b for b in same if b.high - b.low >= FULL * span] or same
-    return sorted(selected, key=lambda b: int(b.places[0]))
+        selected += [b for b in same if b.high - b.low >= MIN_BRANCH_SPAN * span] or same
+    return sorted(selected, key=lambda b: int(b.indices[0]))
 
 
-def _separated(torque: Array, angle: Array, used: list[_Branch], low: float, high: float) -> Backbone:
+def _separate_hysteresis(
+    torque: Array, angle: Array, branches: list[_Branch], low: float, high: float
+) -> Backbone:
     """Separate backbone, hysteresis and drift by one linear least-squares problem.
 
     low, high : torque range [N.m] common to rising and falling branches
     """
-    indices = np.concatenate([b.places for b in used])
-    direction = np.concatenate([np.where(b.rising, 1.0, -1.0) * np.ones(b.places.size) for b in used])
+    indices = np.concatenate([b.indices for b in branches])
+    direction = np.concatenate([np.where(b.rising, 1.0, -1.0) * np.ones(b.indices.size) for b in branches])
     inside = (torque[indices] >= low) & (torque[indices] <= high)
     indices, direction = indices[inside], direction[inside]
     T, phi, time = torque[indices], angle[indices], indices / (torque.size - 1.0) - 0.5
-    knots = int(np.clip(indices.size // POINTS_PER_KNOT, 5, MOST_KNOTS))
+    knots = int(np.clip(indices.size // POINTS_PER_KNOT, 5, MAX_KNOTS))
     grid = np.linspace(low, high, knots)
-    hats = _hats(T, grid)
+    hats = _hat_functions(T, grid)
     open_gap = np.ones(knots, dtype=bool)  # knots whose gap is unknown; at turning points it is zero
-    open_gap[[0, -1]] = [not _turns(used, low, span := high - low, 0), not _turns(used, high, span, -1)]
+    open_gap[[0, -1]] = [
+        not _has_turning_point(branches, low, span := high - low, 0),
+        not _has_turning_point(branches, high, span, -1),
+    ]
     gap = scipy.sparse.diags(direction) @ hats
     design = scipy.sparse.hstack(
         [hats, gap[:, np.flatnonzero(open_gap)], scipy.sparse.csr_matrix(time[:, None])]
     )
     design = design.tocsr()
-    has_drift = _seen(design)
+    has_drift = _is_drift_determined(design)
     if not has_drift:
         design = design[:, :-1]
     normal = np.linalg.pinv((design.T @ design).toarray(), hermitian=True)
@@ -161,18 +166,20 @@ def _separated(torque: Array, angle: Array, used: list[_Branch], low: float, hig
 
     lengths = np.gradient(grid)
     lengths[[0, -1]] = 0.5 * (grid[1] - grid[0])
-    backlash = weighted_gap(-2.0 * _hats(np.zeros(1), grid).toarray()[0]) if low <= 0.0 <= high else None
+    backlash = (
+        weighted_gap(-2.0 * _hat_functions(np.zeros(1), grid).toarray()[0]) if low <= 0.0 <= high else None
+    )
     drift = (float(values[-1]), float(np.sqrt(covariance[-1, -1]))) if has_drift else None
     driftless = phi - (drift[0] * time if drift else 0.0)
     position = (T - 0.5 * (low + high)) / (0.5 * (high - low))  # in the range of the torque, from -1 to 1
-    central = np.abs(position) <= CENTRAL
+    central = np.abs(position) <= CENTRAL_FRACTION
     friction = _friction(T[central], driftless[central], direction[central])
     loading = direction * position >= 0.0
-    line = _grouped((T - friction * direction)[loading], driftless[loading])
-    return Backbone(*line, len(used), weighted_gap(-2.0 * lengths), backlash, drift)
+    line = _average_groups((T - friction * direction)[loading], driftless[loading])
+    return Backbone(*line, len(branches), weighted_gap(-2.0 * lengths), backlash, drift)
 
 
-def _friction(torque: Array, angle: Array, way: Array) -> float:
+def _friction(torque: Array, angle: Array, direction: Array) -> float:
     """Friction torque [N.m]: half the torque difference of rising and falling branches at equal angles.
 
     direction : +1 (rising) or -1 (falling) for each sample (n)
@@ -180,54 +187,54 @@ def _friction(torque: Array, angle: Array, way: Array) -> float:
     The friction torque is assumed constant over the samples.
     """
     grid = np.linspace(np.min(angle), np.max(angle), max(angle.size // POINTS_PER_KNOT, 2))
-    design = np.column_stack([_hats(angle, grid).toarray(), way])
+    design = np.column_stack([_hat_functions(angle, grid).toarray(), direction])
     return float(np.linalg.lstsq(design, torque)[0][-1])
 
 
-def _hats(T: Array, grid: Array) -> scipy.sparse.csr_matrix:
+def _hat_functions(T: Array, grid: Array) -> scipy.sparse.csr_matrix:
     """Piecewise linear basis functions (n, k) at torques (n), for knots `grid` (k)."""
     return scipy.sparse.csr_matrix(BSpline.design_matrix(T, np.pad(grid, 1, mode="edge"), 1))
 
 
-def _turns(used: list[_Branch], end: float, span: float, side: int) -> bool:
+def _has_turning_point(branches: list[_Branch], end: float, span: float, side: int) -> bool:
     """Whether a rising and a falling branch meet at an end of the torque range.
 
     end, span : torque of that end, and length of the range [N.m]
     side      : 0: lower end, -1: upper end
     """
-    pairs = pairwise(used)
+    pairs = pairwise(branches)
     return any(
         branch.rising is not next_branch.rising
-        and branch.places[-1] == next_branch.places[0]
+        and branch.indices[-1] == next_branch.indices[0]
         and branch.rising is (side == -1)
-        and abs((branch.high if branch.rising else branch.low) - end) < (1.0 - FULL) * span
+        and abs((branch.high if branch.rising else branch.low) - end) < (1.0 - MIN_BRANCH_SPAN) * span
         for branch, next_branch in pairs
     )
 
 
-def _seen(design: scipy.sparse.csr_matrix) -> bool:
+def _is_drift_determined(design: scipy.sparse.csr_matrix) -> bool:
     """Whether the last column (drift) of a design matrix is linearly independent of the other columns."""
     columns, last = design[:, :-1], design[:, -1].toarray()[:, 0]
     normal = np.linalg.pinv((columns.T @ columns).toarray(), hermitian=True)
     independent = last - columns @ (normal @ (columns.T @ last))
-    return bool(np.linalg.norm(independent) > SEEN * np.linalg.norm(last))
+    return bool(np.linalg.norm(independent) > MIN_DRIFT_FRACTION * np.linalg.norm(last))
 
 
-def _grouped(torque: Array, angle: Array) -> tuple[Array, Array, Array]:
+def _average_groups(torque: Array, angle: Array) -> tuple[Array, Array, Array]:
     """Average samples in at most MAX_POINTS groups of neighbouring torque: torque, angle, group size."""
     order = np.argsort(torque, kind="stable")
-    starts = np.linspace(0, order.size, min(order.size, MOST_POINTS) + 1).astype(int)[:-1]
+    starts = np.linspace(0, order.size, min(order.size, MAX_POINTS) + 1).astype(int)[:-1]
     count = np.diff(np.append(starts, order.size)).astype(float)
     sums = (np.add.reduceat(column[order], starts) for column in (torque, angle))
     T, phi = (total / count for total in sums)
     return T, phi, count
 
 
-def _monotone(line: Backbone) -> Backbone:
+def _check_monotone(line: Backbone) -> Backbone:
     """Return the backbone; ValueError if its angle falls between neighbouring tenths of the torque range."""
-    edges = np.linspace(line.torque[0], line.torque[-1], TENTHS + 1)
-    tenth = np.clip(np.searchsorted(edges, line.torque, side="right") - 1, 0, TENTHS - 1)
-    nonempty = [k for k in range(TENTHS) if np.any(tenth == k)]
+    edges = np.linspace(line.torque[0], line.torque[-1], MONOTONE_INTERVALS + 1)
+    tenth = np.clip(np.searchsorted(edges, line.torque, side="right") - 1, 0, MONOTONE_INTERVALS - 1)
+    nonempty = [k for k in range(MONOTONE_INTERVALS) if np.any(tenth == k)]
     means = np.array([np.average(line.angle[tenth == k], weights=line.count[tenth == k]) for k in nonempty])
     if np.all(np.diff(means) < 0.0):
         raise ValueError("the angle falls as the torque rises; reverse the sign of one column")
@@ -235,6 +242,6 @@ def _monotone(line: Backbone) -> Backbone:
         k = nonempty[int(np.argmax(falling))]
         raise ValueError(
             f"the mid-line of the angle does not rise with the torque between {edges[k]:.4g} and "
-            f"{edges[min(k + 2, TENTHS)]:.4g} N.m; expected one loop or curve of a spring"
+            f"{edges[min(k + 2, MONOTONE_INTERVALS)]:.4g} N.m; expected one loop or curve of a spring"
         )
     return line

@@ -8,20 +8,20 @@ import numpy as np
 
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
-from jointfmu.quantity.refusal import Refusal
-from jointfmu.quantity.units import Sizes, sizes
-from jointfmu.quantity.units import measured as measured_in
+from jointfmu.quantity.refusal import InputRefusal
+from jointfmu.quantity.units import UnitSizes, unit_sizes
+from jointfmu.quantity.units import unit_size_in as measured_in
 
 from .. import columns
-from .branches import Loops, cut
-from .decay import Points, points
-from .hysteresis import Free, Response
+from .branches import Loops, cut_branches
+from .decay import DecayPoints, analyse_decay
+from .hysteresis import ForcedResponse, FreeVibration
 
-LEAST = 8
+MIN_ROWS = 8
 """Minimum number of rows of a file."""
-RUN = "run"
+RUN_COLUMN = "run"
 """Column with the number of the run, if a file holds several runs."""
-OTHERS = {
+COLUMN_SYNONYMS = {
     "displacement": ("x", "s", "u", "weg", "verschiebung"),
     "force": ("kraft", "load", "f"),
     "angle": ("phi", "theta", "winkel", "drehwinkel", "rotation"),
@@ -31,16 +31,16 @@ OTHERS = {
     "damping": ("zeta", "dämpfung", "dämpfungsgrad"),
 }
 """{column: accepted synonyms, in lower case}."""
-FAR = 50.0
+WRONG_UNIT_RATIO = 50.0
 """Ratio [1] of measured stiffness to stiffness of the start values, or its inverse, from which a wrong unit
 is assumed. Degrees read as radians give 57."""
-NEAR = 5.0
+EXPLAINED_RATIO = 5.0
 """Ratio [1] of measured stiffness to stiffness of the start values, or its inverse, up to which another unit
 counts as the explanation of a wrong ratio."""
 
 
 @dataclass(frozen=True, slots=True)
-class Heads:
+class ColumnNames:
     """Names and units of the columns for force (or torque) and motion (displacement or angle) of a joint.
 
     force, motion   : names of the columns
@@ -49,23 +49,23 @@ class Heads:
 
     force: str
     motion: str
-    forces: Sizes
-    motions: Sizes
+    forces: UnitSizes
+    motions: UnitSizes
 
     @property
-    def columns(self) -> Mapping[str, Sizes]:
+    def columns(self) -> Mapping[str, UnitSizes]:
         """{column: {unit: size in SI units}} of all columns that a measurement file may have."""
         return {
             self.motion: self.motions,
             self.force: self.forces,
-            "time": sizes("s", "ms"),
-            "frequency": sizes("Hz", "kHz"),
-            "damping": sizes("1"),
-            RUN: sizes("1"),
+            "time": unit_sizes("s", "ms"),
+            "frequency": unit_sizes("Hz", "kHz"),
+            "damping": unit_sizes("1"),
+            RUN_COLUMN: unit_sizes("1"),
         }
 
     @property
-    def unit(self) -> tuple[str, str]:
+    def si_units(self) -> tuple[str, str]:
         """SI unit of the force and SI unit of the motion."""
         return next(iter(self.forces)), next(iter(self.motions))
 
@@ -78,11 +78,11 @@ class Heads:
 
         Raises Refusal, with a likely unit error, if the ratio or its inverse reaches WRONG_UNIT_RATIO.
         """
-        if 1.0 / FAR < ratio < FAR:
+        if 1.0 / WRONG_UNIT_RATIO < ratio < WRONG_UNIT_RATIO:
             return
-        raise Refusal(
+        raise InputRefusal(
             f"{path}: the stiffness is {ratio:.3g} times that of {start.name}, "
-            f"allowed are {1.0 / FAR:g} to {FAR:g}: "
+            f"allowed are {1.0 / WRONG_UNIT_RATIO:g} to {WRONG_UNIT_RATIO:g}: "
             f"{self.likely_unit(ratio, units)}; if both are right, start from a joint of its size",
             "params",
         )
@@ -101,12 +101,12 @@ class Heads:
             unit = min(errors, key=errors.__getitem__)
             explanations.append((float(errors[unit]), f"the {column} is in {unit}, {text}"))
         smallest = min(explanations)[0]
-        if not smallest < np.log(NEAR):
+        if not smallest < np.log(EXPLAINED_RATIO):
             return "check the units of both columns, no usual one explains it"
         return "likely " + ", or ".join(text for error, text in explanations if error < smallest + 1e-6)
 
 
-def read(path: str | Path, heads: Heads) -> tuple[str, columns.Columns]:
+def read_columns(path: str | Path, heads: ColumnNames) -> tuple[str, columns.Columns]:
     """Read a measurement file: its kind, recognised by its columns, and the columns.
 
     kind "loops"    : columns motion, force
@@ -116,13 +116,13 @@ def read(path: str | Path, heads: Heads) -> tuple[str, columns.Columns]:
 
     Raises ValueError, one line, for any other set of columns.
     """
-    table = columns.read(path, heads.columns, LEAST, OTHERS)
-    table.require(heads.motion, heads.columns)
+    table = columns.read_columns(path, heads.columns, MIN_ROWS, COLUMN_SYNONYMS)
+    table.require_column(heads.motion, heads.columns)
     present = set(table.columns)
     if {"frequency", heads.force} <= present:
-        return "response", table.positive((heads.motion, "frequency", heads.force), heads.columns)
+        return "response", table.check_positive((heads.motion, "frequency", heads.force), heads.columns)
     if {"frequency", "damping"} <= present:
-        return "backbone", table.positive((heads.motion, "frequency", "damping"), heads.columns)
+        return "backbone", table.check_positive((heads.motion, "frequency", "damping"), heads.columns)
     if "frequency" not in present and heads.force in present:
         return "loops", table
     if "frequency" not in present and "time" in present:
@@ -134,11 +134,11 @@ def read(path: str | Path, heads: Heads) -> tuple[str, columns.Columns]:
     )
 
 
-def runs(table: columns.Columns) -> list[tuple[str, dict[str, Array]]]:
+def split_runs(table: columns.Columns) -> list[tuple[str, dict[str, Array]]]:
     """Split a table by the column `run`: (prefix of error messages, {name: column}) of each run."""
-    if RUN not in table.columns:
+    if RUN_COLUMN not in table.columns:
         return [("", dict(table.columns))]
-    run_numbers = table.columns[RUN]
+    run_numbers = table.columns[RUN_COLUMN]
     result = []
     for number in dict.fromkeys(run_numbers.tolist()):
         rows = run_numbers == number
@@ -157,8 +157,8 @@ class Measurement:
 
     path: Path
     kind: str
-    heads: Heads
-    data: Loops | Free | Response
+    heads: ColumnNames
+    data: Loops | FreeVibration | ForcedResponse
     units: Mapping[str, str]
 
     @property
@@ -167,9 +167,9 @@ class Measurement:
         match self.data:
             case Loops():
                 return self.data.motion
-            case Free():
+            case FreeVibration():
                 return self.data.points.amplitude
-            case Response():
+            case ForcedResponse():
                 return self.data.amplitude
 
     @property
@@ -184,7 +184,7 @@ class Measurement:
         """
         if isinstance(self.data, Loops):
             return self.data.rest_stiffness
-        if isinstance(self.data, Free):
+        if isinstance(self.data, FreeVibration):
             frequency = self.data.points.frequency[np.argmin(self.data.points.amplitude)]
         else:
             amplitude = np.where(self.data.force == self.data.force.min(), self.data.amplitude, 0.0)
@@ -193,36 +193,43 @@ class Measurement:
         return float(inertia * (2.0 * np.pi * frequency) ** 2)
 
     @property
-    def span(self) -> str:
+    def range_text(self) -> str:
         """Kind of the measurement and largest amplitude, as text."""
-        return f"{self.kind} up to {self.heads.motion} {self.amplitude:.4g} {self.heads.unit[1]}"
+        return f"{self.kind} up to {self.heads.motion} {self.amplitude:.4g} {self.heads.si_units[1]}"
 
 
-def measured(path: str | Path, columns: Heads) -> Measurement:
+def read_measurement(path: str | Path, columns: ColumnNames) -> Measurement:
     """Read a measurement file and evaluate it; see `read_columns` for its columns.
 
     Raises ValueError, one line that begins with the path.
     """
-    kind, table = read(path, columns)
-    records = runs(table)
-    data: Loops | Free | Response
+    kind, table = read_columns(path, columns)
+    records = split_runs(table)
+    data: Loops | FreeVibration | ForcedResponse
     try:
         if kind == "loops":
-            data = cut([(name, run[columns.motion], run[columns.force]) for name, run in records])
+            data = cut_branches([(name, run[columns.motion], run[columns.force]) for name, run in records])
         elif kind == "decay":
-            data = Free(_joined([points(run["time"], run[columns.motion], name) for name, run in records]))
+            data = FreeVibration(
+                _join_points([analyse_decay(run["time"], run[columns.motion], name) for name, run in records])
+            )
         elif kind == "backbone":
             a, f, damping = (table.columns[name] for name in (columns.motion, "frequency", "damping"))
-            data = Free(Points(a, f, damping, np.ones_like(f), damping))
+            data = FreeVibration(DecayPoints(a, f, damping, np.ones_like(f), damping))
         else:
-            data = Response(*(table.columns[name] for name in ("frequency", columns.force, columns.motion)))
+            data = ForcedResponse(
+                *(table.columns[name] for name in ("frequency", columns.force, columns.motion))
+            )
     except ValueError as error:
         raise ValueError(f"{table.path}: {error}") from None
     return Measurement(table.path, kind, columns, data, table.units)
 
 
-def _joined(parts: Sequence[Points]) -> Points:
+def _join_points(records: Sequence[DecayPoints]) -> DecayPoints:
     """Concatenate the decay points of several records."""
-    return Points(
-        *(np.concatenate([getattr(record, name) for record in parts]) for name in Points.__dataclass_fields__)
+    return DecayPoints(
+        *(
+            np.concatenate([getattr(record, name) for record in records])
+            for name in DecayPoints.__dataclass_fields__
+        )
     )

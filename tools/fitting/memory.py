@@ -9,25 +9,25 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from jointfmu.quantity import Array
-from jointfmu.quantity.refusal import Refusal
+from jointfmu.quantity.refusal import InputRefusal
 
-from ..plots import shown
-from .branches import Loops, ordered
-from .hysteresis import Free, HysteresisLaw, Oscillator, Response
-from .least_squares import Exchange, Residuals, Solution, Unknown, best_start, solve
+from ..plots import choose_unit
+from .branches import Loops, sort_points
+from .hysteresis import ForcedResponse, FreeVibration, HysteresisLaw, Oscillator
+from .least_squares import Exchange, Residuals, Solution, Unknown, select_start, solve
 from .measurement import Measurement
-from .outcome import Facts, Picture, systematic
+from .outcome import Facts, Picture, correlation_note
 
 DAMPING = "damping_ratio"
 """Name of an unknown that is no parameter of the joint: the damping ratio of the structure [1]."""
-MOST_DAMPING = 0.3
+MAX_DAMPING = 0.3
 """Upper limit of the damping ratio of the structure [1]."""
-DAMPING_UNKNOWN = Unknown(DAMPING, "1", 1e-3, 1e-9, MOST_DAMPING)
-ROUGH, TOLERANCE = 1e-3, 1e-6
+DAMPING_UNKNOWN = Unknown(DAMPING, "1", 1e-3, 1e-9, MAX_DAMPING)
+FIRST_TOLERANCE, TOLERANCE = 1e-3, 1e-6
 """Relative change of cost or parameters at which the first and the second fit end [1]."""
-ROUGH_NOISE = 0.01
+FIRST_NOISE = 0.01
 """Noise assumed in the first fit, over the size of the data [1]; it only sets the regularisation."""
-QUIET = 1e-9
+MIN_NOISE_RATIO = 1e-9
 """Lower limit of the noise of a group, over the largest noise of all groups [1]; for data without noise."""
 
 Law = Callable[[Mapping[str, float]], HysteresisLaw]
@@ -46,13 +46,15 @@ class MeasurementModel:
     inertia: float | None
     damping: float
 
-    def of(self, values: Mapping[str, float]) -> HysteresisLaw:
+    def hysteresis_law(self, values: Mapping[str, float]) -> HysteresisLaw:
         """Hysteresis law at values of the unknowns."""
         return self.law({name: value for name, value in values.items() if name != DAMPING})
 
-    def residuals(self, data: Loops | Free | Response, values: Mapping[str, float], scale: Array) -> Array:
+    def residuals(
+        self, data: Loops | FreeVibration | ForcedResponse, values: Mapping[str, float], scale: Array
+    ) -> Array:
         """Residuals of the data at values of the unknowns, over the standard deviations `scale` (n)."""
-        law = self.of(values)
+        law = self.hysteresis_law(values)
         if isinstance(data, Loops):
             return data.residuals(law, scale)
         return data.residuals(self.oscillator(law, values), scale)
@@ -63,8 +65,8 @@ class MeasurementModel:
         return Oscillator(law, self.inertia, values.get(DAMPING, self.damping))
 
 
-def model(
-    measurement: Measurement, law: Law, setting: str, inertia: float | None, damping: float
+def build_model(
+    measurement: Measurement, law: Law, inertia_option: str, inertia: float | None, damping: float
 ) -> MeasurementModel:
     """Build the model of a measurement.
 
@@ -73,27 +75,29 @@ def model(
     Raises ValueError if the inertia is stated for loops, is missing for a vibration, or if inertia or damping
     ratio are out of range.
     """
-    name = setting.replace("_", " ")
+    name = inertia_option.replace("_", " ")
     if measurement.kind == "loops":
         if inertia is not None:
             raise ValueError(f"{measurement.path}: has loops, nothing vibrates; allowed is no {name}")
     elif inertia is None:
-        raise Refusal(f"{measurement.path}: has a vibration ({measurement.kind}); state the {name}", setting)
+        raise InputRefusal(
+            f"{measurement.path}: has a vibration ({measurement.kind}); state the {name}", inertia_option
+        )
     elif not 0.0 < inertia < np.inf:
         raise ValueError(f"{name} = {inertia:g} is outside (0, inf)")
-    if not 0.0 <= damping < MOST_DAMPING:
-        raise ValueError(f"damping ratio = {damping:g} is outside [0, {MOST_DAMPING:g})")
+    if not 0.0 <= damping < MAX_DAMPING:
+        raise ValueError(f"damping ratio = {damping:g} is outside [0, {MAX_DAMPING:g})")
     return MeasurementModel(law, inertia, damping)
 
 
-def search(
+def fit_measurement(
     measurement: Measurement,
     unknowns: Sequence[Unknown],
     model: MeasurementModel,
     starts: Mapping[str, Sequence[float]],
     level: Exchange | None = None,
-    moved: bool = False,
-    corrected: Callable[[Mapping[str, float]], Measurement] | None = None,
+    exchanges_level: bool = False,
+    correct_measurement: Callable[[Mapping[str, float]], Measurement] | None = None,
 ) -> tuple[Solution, Array, Measurement]:
     """Fit the unknowns twice: the first fit estimates the noise of each group of data, the second uses it.
 
@@ -111,43 +115,47 @@ def search(
     def residuals(scale: Array) -> Residuals:
         return lambda values: model.residuals(data, values, scale)
 
-    def exchanged(of: Residuals) -> Residuals:
+    def apply_exchange(function: Residuals) -> Residuals:
         if exchange is None:
-            return of
+            return function
         current, start = exchange, original[exchange.name].start
-        return lambda values: of(current.values(values, start))
+        return lambda values: function(current.restore_unknowns(values, start))
 
     first_scale = data.scale
     measured_stiffness = None if level is None else measurement.rest_stiffness(model.inertia)
 
-    def tried(values: dict[str, float]) -> tuple[Mapping[str, float], float]:
+    def evaluate_start(values: dict[str, float]) -> tuple[Mapping[str, float], float]:
         """Values of a starting point and their cost; the level is adjusted to the measured stiffness."""
         if level is not None and measured_stiffness is not None:
             others = {name: value for name, value in values.items() if name != level.name}
-            values |= level.values(others | {level.label: measured_stiffness}, values[level.name])
+            values |= level.restore_unknowns(others | {level.label: measured_stiffness}, values[level.name])
         if any(not u.low < values[u.name] < u.high for u in unknowns):
             return values, np.inf
         return values, float(np.sum(residuals(first_scale)(values) ** 2))
 
-    original = {u.name: u for u in best_start(unknowns, starts, tried)}
-    exchange = level if moved else None
+    original = {u.name: u for u in select_start(unknowns, starts, evaluate_start)}
+    exchange = level if exchanges_level else None
     free = [
         exchange.unknown(original) if exchange and u.name == exchange.name else u for u in original.values()
     ]
-    first = solve(free, exchanged(residuals(first_scale)), noise=ROUGH_NOISE, tolerance=ROUGH)
+    first = solve(free, apply_exchange(residuals(first_scale)), noise=FIRST_NOISE, tolerance=FIRST_TOLERANCE)
     first_residuals = first.residuals
-    if corrected is not None:
-        measurement = corrected(first.values)
+    if correct_measurement is not None:
+        measurement = correct_measurement(first.values)
         data = measurement.data
         first_residuals = residuals(first_scale)(first.values)
-    square = np.bincount(data.groups, first_residuals[: first_scale.size] ** 2) / np.bincount(data.groups)
-    scale = first_scale * np.sqrt(np.maximum(square, QUIET**2 * np.max(square)))[data.groups]
-    free = [replace(u, start=_inside(u, first.values[u.name])) for u in free]
-    solution = solve(free, exchanged(residuals(scale)), nuisances=data.nuisances, tolerance=TOLERANCE)
-    return (exchange.back(solution, original) if exchange else solution), scale, measurement
+    square = np.bincount(data.noise_groups, first_residuals[: first_scale.size] ** 2) / np.bincount(
+        data.noise_groups
+    )
+    scale = first_scale * np.sqrt(np.maximum(square, MIN_NOISE_RATIO**2 * np.max(square)))[data.noise_groups]
+    free = [replace(u, start=_clip_to_bounds(u, first.values[u.name])) for u in free]
+    solution = solve(
+        free, apply_exchange(residuals(scale)), nuisance_count=data.nuisance_count, tolerance=TOLERANCE
+    )
+    return (exchange.restore_solution(solution, original) if exchange else solution), scale, measurement
 
 
-def _inside(unknown: Unknown, value: float) -> float:
+def _clip_to_bounds(unknown: Unknown, value: float) -> float:
     """Clip a value to slightly inside of the bounds of an unknown."""
     low = max(unknown.low * (1.0 + 1e-6), 1e-300)
     return float(min(max(value, low), unknown.high * (1.0 - 1e-6)))
@@ -158,18 +166,26 @@ def facts(measurement: Measurement, solution: Solution, law: HysteresisLaw, scal
 
     scale : noise (n) of the data
     """
-    data, (_, unit) = measurement.data, measurement.heads.unit
+    data, (_, unit) = measurement.data, measurement.heads.si_units
     result = {
         "points": (float(data.scale.size), "1", "data points used"),
         "amplitude": (measurement.amplitude, unit, f"largest {measurement.heads.motion}"),
     }
     if isinstance(data, Loops) and law.elastic:
-        result["offset"] = (data.rest(law, scale), unit, f"{measurement.heads.motion} at rest, taken off")
+        result["offset"] = (
+            data.rest_position(law, scale),
+            unit,
+            f"{measurement.heads.motion} at rest, taken off",
+        )
     if isinstance(data, Loops) and data.areas:
         area, size = max(data.areas, key=lambda loop: loop[1])
         result["loop_area"] = (area, "J", "measured, of the widest loop")
-        result["loop_area_law"] = (float(law.area(np.array([0.5 * size]))[0]), "J", "of the fitted law there")
-    _, loss = law.equivalent(np.array([measurement.amplitude]))
+        result["loop_area_law"] = (
+            float(law.loop_area(np.array([0.5 * size]))[0]),
+            "J",
+            "of the fitted law there",
+        )
+    _, loss = law.equivalent_spring(np.array([measurement.amplitude]))
     result["loss_factor"] = (float(loss[0]), "1", "of the fitted law at the largest amplitude")
     result["noise"] = (solution.noise, "1", "of a residual over what its group has")
     return result
@@ -179,12 +195,12 @@ def notes(measurement: Measurement, solution: Solution) -> list[str]:
     """Note for the user if the residuals show that the law misses the data systematically; else empty."""
     if measurement.kind == "response":
         return []
-    residuals = solution.residuals[: measurement.data.groups.size]
-    same_group = np.diff(measurement.data.groups) == 0
-    return systematic(residuals, "data", same_group)
+    residuals = solution.residuals[: measurement.data.noise_groups.size]
+    same_group = np.diff(measurement.data.noise_groups) == 0
+    return correlation_note(residuals, "data", same_group)
 
 
-_LINE = 120
+_CURVE_POINTS = 120
 """Points of a plotted curve of the law."""
 
 
@@ -196,28 +212,30 @@ def pictures(
     Loops: force over motion. Forced vibration: amplitude over frequency. Free vibration: frequency over
     amplitude, and damping ratio over amplitude.
     """
-    law = model.of(values)
+    law = model.hysteresis_law(values)
     match measurement.data:
         case Loops() as loops:
-            return [_loops(measurement, loops, law, scale)]
-        case Response() as response:
-            return [_response(measurement, response, model.oscillator(law, values))]
-        case Free() as free:
-            return _free(measurement, free, model.oscillator(law, values))
+            return [_loops_picture(measurement, loops, law, scale)]
+        case ForcedResponse() as response:
+            return [_response_picture(measurement, response, model.oscillator(law, values))]
+        case FreeVibration() as free:
+            return _decay_pictures(measurement, free, model.oscillator(law, values))
 
 
-def _loops(measurement: Measurement, loops: Loops, law: HysteresisLaw, scale: Array) -> Picture:
+def _loops_picture(measurement: Measurement, loops: Loops, law: HysteresisLaw, scale: Array) -> Picture:
     """Plot of measured loops: force over motion."""
     (force_unit, force_scale), (motion_unit, motion_scale) = (
-        shown(unit, values)
-        for unit, values in zip(measurement.heads.unit, (loops.force, loops.motion), strict=True)
+        choose_unit(unit, values)
+        for unit, values in zip(measurement.heads.si_units, (loops.force, loops.motion), strict=True)
     )
     lines = []
-    law = law.about(loops.rest(law, scale))
-    forces, starts, misfit = loops.fitted(law, scale)
+    law = law.shift_rest(loops.rest_position(law, scale))
+    forces, starts, misfit = loops.fit_turning_points(law, scale)
     for k, (force, start) in enumerate(zip(forces, starts, strict=True)):
-        motion = np.linspace(start, loops.motion[loops.branch == k][-1], _LINE)  # NaN separates the branches
-        branch = force + law.change(motion, np.full(_LINE, start))
+        motion = np.linspace(
+            start, loops.motion[loops.branch == k][-1], _CURVE_POINTS
+        )  # NaN separates the branches
+        branch = force + law.force_change(motion, np.full(_CURVE_POINTS, start))
         lines.append(np.append(np.stack([motion, branch]), [[np.nan], [np.nan]], axis=1))
     line = np.concatenate(lines, axis=1)
     names = measurement.heads
@@ -234,15 +252,15 @@ def _loops(measurement: Measurement, loops: Loops, law: HysteresisLaw, scale: Ar
     )
 
 
-def _response(measurement: Measurement, data: Response, oscillator: Oscillator) -> Picture:
+def _response_picture(measurement: Measurement, data: ForcedResponse, oscillator: Oscillator) -> Picture:
     """Plot of a forced vibration: amplitude over frequency, one curve for each force amplitude."""
-    unit, size = shown(measurement.heads.unit[1], data.amplitude)
+    unit, size = choose_unit(measurement.heads.si_units[1], data.amplitude)
     lines = []
     for force in np.unique(data.force):
         inside = data.force == force
-        f = np.linspace(data.frequency[inside].min(), data.frequency[inside].max(), 4 * _LINE)
-        measured = np.interp(f, *ordered(data.frequency[inside], data.amplitude[inside]))
-        amplitude = oscillator.response(f, np.full_like(f, force), measured)
+        f = np.linspace(data.frequency[inside].min(), data.frequency[inside].max(), 4 * _CURVE_POINTS)
+        measured = np.interp(f, *sort_points(data.frequency[inside], data.amplitude[inside]))
+        amplitude = oscillator.response_amplitude(f, np.full_like(f, force), measured)
         lines.append(np.append(np.stack([f, amplitude]), [[np.nan], [np.nan]], axis=1))
     line = np.concatenate(lines, axis=1)
     return Picture(
@@ -254,12 +272,14 @@ def _response(measurement: Measurement, data: Response, oscillator: Oscillator) 
     )
 
 
-def _free(measurement: Measurement, data: Free, oscillator: Oscillator) -> tuple[Picture, Picture]:
+def _decay_pictures(
+    measurement: Measurement, data: FreeVibration, oscillator: Oscillator
+) -> tuple[Picture, Picture]:
     """Plots of a free vibration: frequency and damping ratio over amplitude."""
-    unit, size = shown(measurement.heads.unit[1], data.points.amplitude)
+    unit, size = choose_unit(measurement.heads.si_units[1], data.points.amplitude)
     a = data.points.amplitude
-    grid = np.linspace(a.min(), a.max(), _LINE)
-    lines, (frequency, damping) = oscillator.free(grid), np.split(data.misfit(oscillator), 2)
+    grid = np.linspace(a.min(), a.max(), _CURVE_POINTS)
+    lines, (frequency, damping) = oscillator.free_vibration(grid), np.split(data.misfit(oscillator), 2)
     x = f"amplitude of the {measurement.heads.motion} [{unit}]"
     return (
         Picture(

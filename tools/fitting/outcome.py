@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from jointfmu.contact.roughness import ROUGHEST
+from jointfmu.contact.roughness import MAX_HEIGHT
 from jointfmu.files.timestamp import build_time
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array, Interval, flat_fields
@@ -25,14 +25,14 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-LOOSEST = 0.2
+MAX_DEVIATION = 0.2
 """Standard deviation of the logarithm of a parameter [1], up to which it counts as determined: about 20 %."""
-PART_OF_INTERVAL = 0.1
+INTERVAL_FRACTION = 0.1
 """Standard deviation over the length of the parameter's interval, both in logarithms [1], up to which a
 parameter counts as determined."""
-SIGNIFICANT = 0.01
+MIN_EXPONENT_RATIO = 0.01
 """Exponent over the largest exponent of a combination [1], below which the parameter is not named in it."""
-NUMERICAL = 1e-5
+MIN_SINGULAR_VALUE_RATIO = 1e-5
 """Singular value over the largest [1], below which it counts as zero: accuracy of the finite differences."""
 
 
@@ -55,34 +55,34 @@ class Combination:
         )
 
 
-def limit(unknown: Unknown) -> float:
+def max_deviation(unknown: Unknown) -> float:
     """Standard deviation of the logarithm [1], up to which a parameter counts as determined."""
     if unknown.low <= 0.0 or not np.isfinite(unknown.high):
-        return LOOSEST
-    return min(LOOSEST, PART_OF_INTERVAL * float(np.log(unknown.high / unknown.low)))
+        return MAX_DEVIATION
+    return min(MAX_DEVIATION, INTERVAL_FRACTION * float(np.log(unknown.high / unknown.low)))
 
 
 def combinations(solution: Solution) -> list[Combination]:
     """Statistically independent combinations of the parameters of a solution, best determined first."""
-    limits = np.array([limit(u) for u in solution.unknowns])
+    limits = np.array([max_deviation(u) for u in solution.unknowns])
     _, s, rows = np.linalg.svd(solution.jacobian * limits, full_matrices=False)
     independent = []
     for value, row in zip(s, rows, strict=True):
         powers = row / limits  # ln of the combination is row . (ln x / limits)
         largest = powers[np.argmax(np.abs(row))]
-        significant = np.abs(row) >= SIGNIFICANT * np.max(np.abs(row))
+        significant = np.abs(row) >= MIN_EXPONENT_RATIO * np.max(np.abs(row))
         exponents = {
             u.name: float(p / largest)
             for u, p, is_named in zip(solution.unknowns, powers, significant, strict=True)
             if is_named
         }
-        has_no_effect = value <= NUMERICAL * s[0]
+        has_no_effect = value <= MIN_SINGULAR_VALUE_RATIO * s[0]
         deviation = np.inf if has_no_effect else solution.noise / value
         independent.append(Combination(exponents, float(deviation / abs(largest)), bool(deviation <= 1.0)))
     return independent
 
 
-def undetermined(solution: Solution) -> list[str]:
+def undetermined_names(solution: Solution) -> list[str]:
     """Names of the parameters that the data do not determine, or that are on a bound."""
     without_effect = {
         name for c in combinations(solution) if not np.isfinite(c.deviation) for name in c.exponents
@@ -90,20 +90,22 @@ def undetermined(solution: Solution) -> list[str]:
     return [
         u.name
         for u in solution.unknowns
-        if solution.deviations[u.name] > limit(u) or u.name in solution.at_bound or u.name in without_effect
+        if solution.deviations[u.name] > max_deviation(u)
+        or u.name in solution.at_bound
+        or u.name in without_effect
     ]
 
 
-ALIKE = 0.5
+MAX_RESIDUAL_CORRELATION = 0.5
 """Correlation of neighbouring residuals [1], above which the misfit is systematic and not noise."""
 
-WORST_AREA = 2.0
+MAX_AREA_RATIO = 2.0
 """Ratio of measured to fitted area of the widest loop [1], or its inverse, above which a fit is rejected."""
 
-HEIGHT = "h"
+HEIGHT_PARAMETER = "h"
 """Name of the parameter rms roughness height [m], in laws that have it."""
 
-LEAST_GAIN = 0.95
+MAX_RESIDUAL_RATIO = 0.95
 """Residual of the law over residual of a constant, for held-out data [1], above which a fit is rejected."""
 
 
@@ -124,8 +126,8 @@ class Picture:
     misfit: Array
     line: tuple[Array, Array]
     labels: tuple[str, str, str]
-    marks: NDArray[np.bool_] | None = None
-    also: Mapping[str, tuple[Array, Array]] = field(default_factory=dict)
+    highlighted: NDArray[np.bool_] | None = None
+    other_laws: Mapping[str, tuple[Array, Array]] = field(default_factory=dict)
 
 
 Facts = dict[str, tuple[float, str, str]]
@@ -151,52 +153,52 @@ class FitResult:
 
     def rows(self) -> list[dict[str, Any]]:
         """Table of the unknowns: name, value, unit, relative standard deviation, whether it is determined."""
-        undetermined_names, deviations = undetermined(self.solution), self.solution.deviations
+        undetermined_names, deviations = undetermined_names(self.solution), self.solution.deviations
         return [
             {
                 "name": u.name,
                 "value": self.solution.values[u.name],
                 "unit": u.unit,
-                "relative_deviation": _finite(deviations[u.name]),
+                "relative_deviation": _finite_or_none(deviations[u.name]),
                 "determined": u.name not in undetermined_names,
                 **({"interval": list(self.intervals[u.name])} if u.name in self.intervals else {}),
             }
             for u in self.solution.unknowns
         ]
 
-    def doubt(self) -> str | None:
+    def rejection_reason(self) -> str | None:
         """Reason to reject the fit, as text; None if the fit is accepted."""
         names = [u.name for u in self.solution.unknowns]
         if names and {*names} == {*self.solution.at_bound}:
             return f"{', '.join(names)} ended on a bound, nothing else was fitted"
-        if (height := self.solution.values.get(HEIGHT, 0.0)) > ROUGHEST:
+        if (height := self.solution.values.get(HEIGHT_PARAMETER, 0.0)) > MAX_HEIGHT:
             return (
-                f"{HEIGHT} = {1e6 * height:.3g} um is outside (0, {1e6 * ROUGHEST:g}] um: no roughness is as "
+                f"{HEIGHT_PARAMETER} = {1e6 * height:.3g} um is outside (0, {1e6 * MAX_HEIGHT:g}] um: no roughness is as "
                 "high; what lies in series with the joint may be missing (--series-stiffness)"
             )
-        count = len(undetermined(self.solution))
+        count = len(undetermined_names(self.solution))
         if names and count == len(names) and not any(c.determined for c in combinations(self.solution)):
             return f"the data determine none of {', '.join(names)}, nor a combination of them"
         if "loop_area_law" in self.facts:
             measured, law = self.facts["loop_area"][0], self.facts["loop_area_law"][0]
-            if not measured / WORST_AREA <= law <= measured * WORST_AREA:
+            if not measured / MAX_AREA_RATIO <= law <= measured * MAX_AREA_RATIO:
                 return (
                     f"the area of the widest loop is {measured:.3g} J, of the fitted law {law:.3g} J; "
-                    f"allowed is a factor of {WORST_AREA:g}"
+                    f"allowed is a factor of {MAX_AREA_RATIO:g}"
                 )
         if "held_out" in self.facts:
             law, constant = self.facts["held_out"][0], self.facts["held_out_constant"][0]
-            if law > LEAST_GAIN * constant:
+            if law > MAX_RESIDUAL_RATIO * constant:
                 return (
                     f"it misses the held-out part by {law:.3g} N.m, a constant by {constant:.3g} N.m; "
-                    f"allowed is {LEAST_GAIN:g} of that"
+                    f"allowed is {MAX_RESIDUAL_RATIO:g} of that"
                 )
         return None
 
     def warnings(self) -> list[str]:
         """Warnings, one line each: undetermined parameters, parameters on bounds, model limits, notes."""
         lines = []
-        if undetermined_names := undetermined(self.solution):
+        if undetermined_names := undetermined_names(self.solution):
             lines.append(
                 f"the data do not determine {', '.join(undetermined_names)}: other values fit as well"
             )
@@ -204,15 +206,15 @@ class FitResult:
             for combination in ranked:
                 if combination.determined:
                     lines.append(
-                        f"the combination {combination} is determined within {percent(combination.deviation)}"
+                        f"the combination {combination} is determined within {format_deviation(combination.deviation)}"
                     )
                 elif len(combination.exponents) > 1:
                     lines.append(
-                        f"the combination {combination} stays open: {percent(combination.deviation)}"
+                        f"the combination {combination} stays open: {format_deviation(combination.deviation)}"
                     )
         lines += [f"{name} ended on its bound" for name in self.solution.at_bound]
-        if self.solution.limit:
-            lines.append(f"the fit ended where the model refuses: {self.solution.limit}")
+        if self.solution.refusal:
+            lines.append(f"the fit ended where the model refuses: {self.solution.refusal}")
         return lines + list(self.notes)
 
     def document(self) -> dict[str, Any]:
@@ -220,22 +222,26 @@ class FitResult:
         return {
             "joint": self.parameters.joint,
             "unknowns": self.rows(),
-            "correlation": [[_finite(x) for x in row] for row in self.solution.correlation.tolist()],
+            "correlation": [[_finite_or_none(x) for x in row] for row in self.solution.correlation.tolist()],
             "combinations": [
                 {
                     "exponents": dict(combination.exponents),
-                    "relative_deviation": _finite(combination.deviation),
+                    "relative_deviation": _finite_or_none(combination.deviation),
                     "determined": combination.determined,
                 }
                 for combination in combinations(self.solution)
             ],
-            "facts": {name: {"value": _finite(v), "unit": unit} for name, (v, unit, _) in self.facts.items()},
+            "facts": {
+                name: {"value": _finite_or_none(v), "unit": unit} for name, (v, unit, _) in self.facts.items()
+            },
             "warnings": self.warnings(),
-            "parameters": dict(self.parameters.flat),
+            "parameters": dict(self.parameters.values_by_name),
         }
 
 
-def systematic(rest: Array, what: str, same: NDArray[np.bool_] | slice = slice(None)) -> list[str]:
+def correlation_note(
+    residuals: Array, quantity: str, neighbours: NDArray[np.bool_] | slice = slice(None)
+) -> list[str]:
     """Note for the user if neighbouring residuals are correlated: the law misses the data systematically.
 
     residuals  : (n), in the order of the measurement
@@ -244,23 +250,27 @@ def systematic(rest: Array, what: str, same: NDArray[np.bool_] | slice = slice(N
 
     Returns a list of one line, or an empty list.
     """
-    correlation = float(np.sum((rest[1:] * rest[:-1])[same]) / np.sum(rest**2)) if np.any(rest) else 0.0
-    if correlation <= ALIKE:
+    correlation = (
+        float(np.sum((residuals[1:] * residuals[:-1])[neighbours]) / np.sum(residuals**2))
+        if np.any(residuals)
+        else 0.0
+    )
+    if correlation <= MAX_RESIDUAL_CORRELATION:
         return []
     return [
-        f"neighbouring residuals are alike (correlation {correlation:.2f}): the law misses the {what} "
+        f"neighbouring residuals are alike (correlation {correlation:.2f}): the law misses the {quantity} "
         "systematically, the standard deviations are too small"
     ]
 
 
-def percent(part: float) -> str:
+def format_deviation(deviation: float) -> str:
     """Format a relative standard deviation [1]: in percent, as a factor, or as "orders of magnitude"."""
-    if part < 1.0:
-        return f"{100.0 * part:.2g} %"
-    return f"{np.exp(part):.2g} times more or less" if part < 5.0 else "orders of magnitude"
+    if deviation < 1.0:
+        return f"{100.0 * deviation:.2g} %"
+    return f"{np.exp(deviation):.2g} times more or less" if deviation < 5.0 else "orders of magnitude"
 
 
-def _finite(value: float) -> float | None:
+def _finite_or_none(value: float) -> float | None:
     """The value, or None (JSON null) if it is not finite."""
     return float(value) if np.isfinite(value) else None
 
@@ -274,7 +284,7 @@ def unknowns(
 
     Raises ValueError for a name that the joint lacks, that is no number, or that is given twice.
     """
-    values, result = start.flat, []
+    values, result = start.values_by_name, []
     declared = {n: f for n, f in flat_fields(type(start.values)) if isinstance(values.get(n), float)}
     for name in names:
         if name not in declared:
@@ -287,7 +297,9 @@ def unknowns(
     return result
 
 
-def model(start: ParameterFile, predict: Callable[[Any], Array]) -> Callable[[Mapping[str, float]], Array]:
+def predictor(
+    start: ParameterFile, predict: Callable[[Any], Array]
+) -> Callable[[Mapping[str, float]], Array]:
     """Function {name: value} of the unknowns -> predictions; all other parameters as in `start`.
 
     predict : function of the parameter set
@@ -295,7 +307,7 @@ def model(start: ParameterFile, predict: Callable[[Any], Array]) -> Callable[[Ma
     return lambda values: predict(start.with_values(values, "calibration", "fit").values)
 
 
-def fitted(
+def fitted_parameters(
     start: ParameterFile, values: Mapping[str, float], origin: str, data: str, span: str
 ) -> ParameterFile:
     """Copy of a parameter file with fitted values; their source states data, range and date.
@@ -312,26 +324,26 @@ def fitted(
     return replace(file, name=f"fitted to {data}")
 
 
-def size(outcome: FitResult) -> tuple[float, float]:
+def figure_size(outcome: FitResult) -> tuple[float, float]:
     """Width and height of the figure [inch]."""
     return 3.6 * (1 + len(outcome.pictures)), 5.6
 
 
-def draw(figure: "Figure", outcome: FitResult) -> None:
+def draw_fit(figure: "Figure", outcome: FitResult) -> None:
     """Draw the plots of a fit side by side: data and law above, misfit below."""
     pictures = outcome.pictures
     all_axes = figure.subplots(2, len(pictures), sharex="col", height_ratios=(2.4, 1.0), squeeze=False)
     for (above, below), picture in zip(all_axes.T, pictures, strict=True):
         x, y = picture.x, picture.y
         above.plot(*picture.line, color=plots.BLUE, label="fitted law")
-        for (name, line), color in zip(picture.also.items(), (plots.GREEN, plots.GREY), strict=False):
+        for (name, line), color in zip(picture.other_laws.items(), (plots.GREEN, plots.GREY), strict=False):
             above.plot(*line, "--", color=color, lw=1.0, label=name)
         above.plot(x, y, ".", color=plots.RED, ms=4, label="data")
         below.axhline(0.0, color=plots.BLUE, lw=1.0)
         below.plot(x, picture.misfit, ".", color=plots.RED, ms=4)
-        if picture.marks is not None:
+        if picture.highlighted is not None:
             for axes, values in ((above, y), (below, picture.misfit)):
-                axes.plot(x[picture.marks], values[picture.marks], "o", color=plots.RED, ms=7)
+                axes.plot(x[picture.highlighted], values[picture.highlighted], "o", color=plots.RED, ms=7)
         above.set_ylabel(picture.labels[1])
         below.set_xlabel(picture.labels[0])
         below.set_ylabel(picture.labels[2])

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from jointfmu.joints import KINDS
 
-from ..joint_parts import Option, part
+from ..joint_parts import Option, load_tool_module
 
 if TYPE_CHECKING:
     from .outcome import FitResult
@@ -30,15 +30,15 @@ class Procedure:
     """
 
     name: str
-    text: str
-    file: bool
-    many: bool = False
+    description: str
+    takes_file: bool
+    takes_several_files: bool = False
     column: str = ""
     options: Sequence[Option] = ()
     run: "Callable[..., FitResult]"
 
 
-def fit_of(module: str) -> "Callable[..., FitResult]":
+def lazy_fit(module: str) -> "Callable[..., FitResult]":
     """Function that loads a module when called, and calls the function `fit` of this module."""
 
     def run(*arguments: object, **options: object) -> "FitResult":
@@ -48,11 +48,11 @@ def fit_of(module: str) -> "Callable[..., FitResult]":
     return run
 
 
-def procedures() -> dict[str, dict[str, Procedure]]:
+def fit_procedures() -> dict[str, dict[str, Procedure]]:
     """Fit procedures of all joints: {name: {joint: procedure}}; several joints may share a name."""
     result: dict[str, dict[str, Procedure]] = {}
     for kind in KINDS.values():
-        module = part(kind, "fit")
+        module = load_tool_module(kind, "fit")
         for procedure in module.FITS if module else ():
             result.setdefault(procedure.name, {})[kind.name] = procedure
     return result
@@ -62,6 +62,6 @@ DAMPING_RATIO = Option(
     "damping_ratio",
     "of the structure, beside the joint [1]; to fit it, free damping_ratio",
     default=0.0,
-    number=True,
+    is_number=True,
 )
 """Option of fit procedures for vibrations: damping ratio of the structure [1]."""

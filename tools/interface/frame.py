@@ -16,13 +16,13 @@ from jointfmu.quantity import Array
 
 from .. import columns, plots
 from ..ramps import ramp
-from ..shown import aligned
+from ..shown import align_columns
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-LONGEST = 60
+MAX_CELL_LENGTH = 60
 """Largest number of characters of a cell in printed text; a notebook shows all."""
 
 
@@ -48,10 +48,10 @@ class Table:
 
     def __str__(self) -> str:
         cells = [
-            [cell if len(cell) <= LONGEST else f"{cell[: LONGEST - 3]}..." for cell in row]
+            [cell if len(cell) <= MAX_CELL_LENGTH else f"{cell[: MAX_CELL_LENGTH - 3]}..." for cell in row]
             for row in (self.heads, *self.rows)
         ]
-        return "\n".join([self.title, *self.lines, *aligned(cells)])
+        return "\n".join([self.title, *self.lines, *align_columns(cells)])
 
     __repr__ = __str__
 
@@ -66,11 +66,11 @@ class Table:
         )
 
 
-ENDS = 5
+MAX_END_ROWS = 5
 """Number of rows that are printed at the start and at the end of long columns."""
 
 
-class Tabled(ABC):
+class TableDisplay(ABC):
     """Base class of objects that are displayed as a table."""
 
     @abstractmethod
@@ -84,7 +84,7 @@ class Tabled(ABC):
         return self._table()._repr_html_()
 
 
-class Frame(Tabled, Mapping[str, Array]):
+class Frame(TableDisplay, Mapping[str, Array]):
     """Mapping of names to columns (n) of numbers in SI units.
 
     units    : {name: unit}
@@ -119,14 +119,18 @@ class Frame(Tabled, Mapping[str, Array]):
 
     def _table(self) -> Table:
         count = next(iter(self._columns.values())).size
-        shown = [*range(count)] if count <= 2 * ENDS else [*range(ENDS), *range(count - ENDS, count)]
+        shown = (
+            [*range(count)]
+            if count <= 2 * MAX_END_ROWS
+            else [*range(MAX_END_ROWS), *range(count - MAX_END_ROWS, count)]
+        )
         rows = [[f"{column[i] + 0.0:.6g}" for column in self._columns.values()] for i in shown]
-        if count > 2 * ENDS:
-            rows.insert(ENDS, ["..."] * len(self))
+        if count > 2 * MAX_END_ROWS:
+            rows.insert(MAX_END_ROWS, ["..."] * len(self))
         heads = [f"{name} [{self.units[name]}]" for name in self._columns]
         return Table(f"{count} points", heads, rows, self.messages)
 
-    @plots.style()
+    @plots.apply_style()
     def plot(self, x: str | None = None, y: str | None = None) -> "Figure":
         """Draw one column over another, by default the last over the first; returns a matplotlib figure.
 
@@ -134,8 +138,8 @@ class Frame(Tabled, Mapping[str, Array]):
         """
         names = list(self)
         x, y = x or names[0], y or names[-1]
-        (x_unit, a), (y_unit, b) = (plots.shown(self.units[name], self[name]) for name in (x, y))
-        figure = plots.figure((6.4, 4.0))
+        (x_unit, a), (y_unit, b) = (plots.choose_unit(self.units[name], self[name]) for name in (x, y))
+        figure = plots.create_figure((6.4, 4.0))
         axes = figure.subplots()
         axes.plot(a * self[x], b * self[y], color=plots.BLUE)
         axes.set(xlabel=f"{x} [{x_unit}]", ylabel=f"{y} [{y_unit}]")
@@ -150,7 +154,7 @@ class Frame(Tabled, Mapping[str, Array]):
         """
         check_output(path, columns.TABLE, force)
         heads = [(name, self.units[name]) for name in self]
-        write_text(Path(path), columns.text(heads, list(self.values())))
+        write_text(Path(path), columns.format_table(heads, list(self.values())))
         return Path(path)
 
     def to_pandas(self) -> Any:

@@ -9,18 +9,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from jointfmu.files.outputs import PAGE, PARAMETERS, check_output, write_parameter_text
+from jointfmu.files.outputs import HTML_PAGE, PARAMETER_FILE, check_output, write_parameter_text
 from jointfmu.joints import KINDS
-from jointfmu.joints.model import Memory, Model, Spring
-from jointfmu.parameters import ParameterFile, dump
+from jointfmu.joints.model import History, Model, TabulatedJoint
+from jointfmu.parameters import ParameterFile, format_parameter_file
 
 from .. import plots
-from ..command_line.common import needing
-from ..judgement import known_height
+from ..command_line.common import require_package
+from ..judgement import find_height
 from ..pressure import judge_file
 from ..ramps.ramp import broadcast
-from ..shown import quantity, stated
-from .frame import Frame, Table, Tabled
+from ..shown import format_quantity, list_entries
+from .frame import Frame, Table, TableDisplay
 from .law import Law
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ Facts = Mapping[str, tuple[float, str, str]]
 
 
 @dataclass(frozen=True, repr=False)
-class Joint(Tabled):
+class Joint(TableDisplay):
     """A joint with its parameters. The object is immutable: `with_values` returns a new one.
 
     file  : parameter file, with the source of each number
@@ -56,7 +56,10 @@ class Joint(Tabled):
     @property
     def values(self) -> dict[str, Any]:
         """Parameters and start values of inputs: {structured name: value [SI]}."""
-        return {**self.file.flat, **{f"inputs.{name}": value for name, value in self.file.inputs.items()}}
+        return {
+            **self.file.values_by_name,
+            **{f"inputs.{name}": value for name, value in self.file.inputs.items()},
+        }
 
     @property
     def fmus(self) -> dict[str, Model]:
@@ -69,10 +72,10 @@ class Joint(Tabled):
 
         Raises ValueError if the joint has none, for example a drive given by a table or by catalogue lines.
         """
-        parameters = KINDS[self.file.joint].law_of(self.file.values)
+        parameters = KINDS[self.file.joint].extract_law(self.file.values)
         if parameters is None:
             raise ValueError(f"{self.name}: law = {self.file.law!r} is of no interface")
-        return Law(self.file.law, parameters, known_height(self.file))
+        return Law(self.file.law, parameters, find_height(self.file))
 
     @property
     def warnings(self) -> list[str]:
@@ -83,8 +86,8 @@ class Joint(Tabled):
     def parameters(self) -> Table:
         """Table of all parameters with value, unit, meaning, kind and source."""
         rows = [
-            (entry.name, *quantity(entry.value, entry.unit), entry.doc, entry.kind, entry.source)
-            for entry in stated(self.file)
+            (entry.name, *format_quantity(entry.value, entry.unit), entry.doc, entry.kind, entry.source)
+            for entry in list_entries(self.file)
         ]
         return Table(self._title, ("name", "value", "unit", "meaning", "kind", "source"), rows)
 
@@ -94,7 +97,9 @@ class Joint(Tabled):
 
     def _table(self) -> Table:
         """Printed table: facts and warnings, then the parameters without their meaning."""
-        texts = ((name, " ".join(quantity(v, u, 4)), text) for name, (v, u, text) in self.facts.items())
+        texts = (
+            (name, " ".join(format_quantity(v, u, 4)), text) for name, (v, u, text) in self.facts.items()
+        )
         facts = [f"{name} = {value.strip()}: {text}" for name, value, text in texts]
         table = self.parameters
         rows = [(name, value, unit, kind, source) for name, value, unit, _, kind, source in table.rows]
@@ -127,12 +132,12 @@ class Joint(Tabled):
 
     def model(self, fmu: str | None = None) -> Model:
         """Model of one of the joint's FMUs: inputs, outputs, units. Raises ValueError for an unknown name."""
-        return KINDS[self.file.joint].model(fmu).of(self.file.joint, self.file.values)
+        return KINDS[self.file.joint].find_model(fmu).with_parameters(self.file.joint, self.file.values)
 
     @cached_property
-    def spring(self) -> Spring:
+    def spring(self) -> TabulatedJoint:
         """Tabulated load-displacement curves of the joint, from which all outputs are computed."""
-        return KINDS[self.file.joint].models[0].spring(self.file.values)
+        return KINDS[self.file.joint].models[0].tabulate(self.file.values)
 
     def evaluate(self, fmu: str | None = None, /, **inputs: ArrayLike) -> Frame:
         """Compute every output for given inputs. Each point is loaded on a straight path from rest.
@@ -150,10 +155,10 @@ class Joint(Tabled):
         """
         model = self.model(fmu)
 
-        def step(point: Mapping[str, float], memory: Memory) -> tuple[Any, Memory]:
-            return model.evaluate(self.spring, point), memory
+        def step(point: Mapping[str, float], history: History) -> tuple[Any, History]:
+            return model.evaluate(self.spring, point), history
 
-        return self._points(model, inputs, step, np.zeros(0))
+        return self._evaluate_points(model, inputs, step, np.zeros(0))
 
     def follow(self, fmu: str | None = None, /, **inputs: ArrayLike) -> Frame:
         """Compute every output along a path of inputs from rest. Friction keeps its history along the path.
@@ -170,21 +175,23 @@ class Joint(Tabled):
         True
         """
         model = self.model(fmu)
-        if model.evolve is None or model.rest is None:
+        if model.advance is None or model.initial_history is None:
             return self.evaluate(fmu, **inputs)
-        evolve = model.evolve
+        evolve = model.advance
 
-        def step(point: Mapping[str, float], memory: Memory) -> tuple[Any, Memory]:
-            return evolve(self.spring, point, memory)
+        def step(point: Mapping[str, float], history: History) -> tuple[Any, History]:
+            return evolve(self.spring, point, history)
 
-        return self._points(model, inputs, step, model.rest(self.spring))
+        return self._evaluate_points(model, inputs, step, model.initial_history(self.spring))
 
-    def _points(self, model: Model, inputs: Mapping[str, ArrayLike], step: Any, memory: Memory) -> Frame:
+    def _evaluate_points(
+        self, model: Model, inputs: Mapping[str, ArrayLike], step: Any, history: History
+    ) -> Frame:
         """Evaluate the steps one after the other, with inputs broadcast to the same length."""
         names = [v.name for v in model.inputs]
         if unknown := [name for name in inputs if name not in names]:
             raise ValueError(f"{model.name}: unknown input {unknown[0]!r}, allowed are {', '.join(names)}")
-        rest = {name: self.file.start(name) for name in names}
+        rest = {name: self.file.start_value(name) for name in names}
         columns = {name: np.ravel(np.asarray(value, dtype=np.float64)) for name, value in inputs.items()}
         columns, count = broadcast(columns, model.name)
         for variable in model.inputs:
@@ -195,27 +202,29 @@ class Joint(Tabled):
         rows: list[dict[str, float]] = []
         for i in range(count):
             point = rest | {name: float(column[i]) for name, column in columns.items()}
-            outputs, memory = step(point, memory)
+            outputs, history = step(point, history)
             rows.append(point | {name: float(value) for name, value in outputs.items()})
         units = {v.name: v.unit for v in (*model.inputs, *model.outputs)}
-        warnings = dict.fromkeys(text for row in rows for text in model.warnings(self.spring, row).values())
+        warnings = dict.fromkeys(
+            text for row in rows for text in model.find_warnings(self.spring, row).values()
+        )
         names = [name for name in rows[0] if name in columns or name not in rest]
         return Frame({name: [row[name] for row in rows] for name in names}, units, tuple(warnings))
 
-    @plots.style()
+    @plots.apply_style()
     def plot(self, fmu: str | None = None) -> "Figure":
         """Draw the curves over the load, and hysteresis loops if the joint has any: a matplotlib figure."""
-        with needing("draw"):
-            from ..report.course import Course
-            from ..report.figure import drawn
-            from ..report.joint import curves, looped
-        course = Course(self.model(fmu), self.file)
-        panels = list(curves(course).panels)
-        loops = course.loops() if course.model.loop else None
+        with require_package("draw"):
+            from ..report.course import LoadHistory
+            from ..report.figure import draw_panels
+            from ..report.joint import loop_figure, ramp_figure
+        course = LoadHistory(self.model(fmu), self.file)
+        panels = list(ramp_figure(course).panels)
+        loops = course.compute_loops() if course.model.loop else None
         if loops and any(loop.loss for loop in loops.loops):
-            panels += looped(course, loops).panels
-        figure = plots.figure((4.4 * len(panels), 3.8))
-        drawn(figure, panels)
+            panels += loop_figure(course, loops).panels
+        figure = plots.create_figure((4.4 * len(panels), 3.8))
+        draw_panels(figure, panels)
         return figure
 
     def save(self, path: str | Path, *, force: bool = False) -> Path:
@@ -225,12 +234,12 @@ class Joint(Tabled):
 
         Raises ValueError if the file may not or cannot be written.
         """
-        check_output(path, PARAMETERS, force)
+        check_output(path, PARAMETER_FILE, force)
         facts = [
             f"# {name} = {value:.6g} {unit}: {text}\n" for name, (value, unit, text) in self.facts.items()
         ]
         head = "# Computed beside the parameters:\n" if facts else ""
-        write_parameter_text(path, head + "".join(facts) + dump(self.file))
+        write_parameter_text(path, head + "".join(facts) + format_parameter_file(self.file))
         return Path(path)
 
     def build(
@@ -253,7 +262,7 @@ class Joint(Tabled):
         """
         flavours = [flavour] if isinstance(flavour, str) else [*flavour]
         names = [*self.fmus] if fmu is None else [self.model(fmu).name]
-        with needing("build"):
+        with require_package("build"):
             from jointfmu_fmu_src import building
 
             return building.build(names, flavours, self.file, Path(out), alias=name, force=force)
@@ -266,8 +275,8 @@ class Joint(Tabled):
 
         Raises ValueError if the file may not or cannot be written.
         """
-        check_output(path, PAGE, force)
-        with needing("write a report"):
+        check_output(path, HTML_PAGE, force)
+        with require_package("write a report"):
             from ..report.joint import write_joint_report
         write_joint_report(Path(path), self.file, fmu)
         return Path(path)

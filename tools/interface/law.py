@@ -9,21 +9,21 @@ from numpy.typing import ArrayLike
 
 from jointfmu.contact.interface import at_largest_spot, at_pressure
 from jointfmu.contact.laws import LAWS
-from jointfmu.quantity import Array, flat_fields, flatten
+from jointfmu.quantity import Array, flat_fields, flatten_parameters
 
 from .. import plots
-from ..judgement import judge
-from ..laws import ROW, UNITS, law_parameters, surfaces_height
+from ..judgement import assess_law
+from ..laws import LAW_COLUMN_UNITS, LAW_COLUMNS, build_law_parameters, known_surface_height
 from ..ramps.ramp import broadcast
-from ..shown import quantity
-from .frame import Frame, Table, Tabled
+from ..shown import format_quantity
+from .frame import Frame, Table, TableDisplay
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True, repr=False)
-class Law(Tabled):
+class Law(TableDisplay):
     """An interface law: load, stiffness, real area and dissipation of two rough surfaces in contact.
 
     parameters : parameter set of the law, see `values`; numbers or arrays (n)
@@ -43,12 +43,12 @@ class Law(Tabled):
     @property
     def values(self) -> dict[str, object]:
         """Parameters of the law: {structured name: value [SI]}."""
-        return flatten(self.parameters)
+        return flatten_parameters(self.parameters)
 
     def _table(self) -> Table:
         fields = {name: item.metadata for name, item in flat_fields(type(self.parameters))}
         rows = [
-            (name, *quantity(value, fields[name].get("unit")), fields[name]["doc"])
+            (name, *format_quantity(value, fields[name].get("unit")), fields[name]["doc"])
             for name, value in self.values.items()
         ]
         return Table(f"law {self.name}", ("name", "value", "unit", "meaning"), rows)
@@ -62,31 +62,35 @@ class Law(Tabled):
         Raises ValueError for a pressure that is negative, NaN, infinite or not representable, or arrays of
         different lengths.
         """
-        state = at_pressure(self.parameters, self._column("pressure", pressure))
-        if many := ", ".join(self._arrays):
-            return self._frame(state, (f"level and range are not judged for arrays of {many}",))
-        return self._frame(state, judge(self.parameters, state["pressure"].tolist(), self.h).warnings)
+        state = at_pressure(self.parameters, self._to_column("pressure", pressure))
+        if many := ", ".join(self._array_parameters):
+            return self._build_frame(state, (f"level and range are not judged for arrays of {many}",))
+        return self._build_frame(
+            state, assess_law(self.parameters, state["pressure"].tolist(), self.h).warnings
+        )
 
     def at_largest_spot(self, area: ArrayLike) -> Frame:
         """Evaluate the law for areas (n) [m2] of the largest contact spot."""
-        return self._frame(at_largest_spot(self.parameters, self._column("largest_spot", area)), ())
+        return self._build_frame(at_largest_spot(self.parameters, self._to_column("largest_spot", area)), ())
 
     @property
-    def _arrays(self) -> dict[str, Array]:
+    def _array_parameters(self) -> dict[str, Array]:
         return {name: value for name, value in self.values.items() if isinstance(value, np.ndarray)}
 
-    def _column(self, name: str, values: ArrayLike) -> Array:
+    def _to_column(self, name: str, values: ArrayLike) -> Array:
         """Convert values to an array (n) or (1). Raises ValueError if parameters have another length."""
         column = np.ravel(np.asarray(values, dtype=np.float64))
-        broadcast({name: column, **self._arrays}, f"law {self.name}")
+        broadcast({name: column, **self._array_parameters}, f"law {self.name}")
         return column
 
-    def _frame(self, state: Mapping[str, Any], messages: tuple[str, ...]) -> Frame:
-        names = [name for name in (*ROW, *(n for n in state if n not in ROW)) if name in state]
+    def _build_frame(self, state: Mapping[str, Any], messages: tuple[str, ...]) -> Frame:
+        names = [
+            name for name in (*LAW_COLUMNS, *(n for n in state if n not in LAW_COLUMNS)) if name in state
+        ]
         defined = {name: state[name] for name in names if not np.all(np.isnan(state[name]))}
-        return Frame(defined, UNITS, messages)
+        return Frame(defined, LAW_COLUMN_UNITS, messages)
 
-    @plots.style()
+    @plots.apply_style()
     def plot(self, pressure: ArrayLike | None = None) -> "Figure":
         """Draw normal and tangential stiffness per area over the pressure [Pa]: a matplotlib figure."""
         p = (
@@ -95,7 +99,7 @@ class Law(Tabled):
             else np.ravel(np.asarray(pressure, dtype=np.float64))
         )
         frame = self.at_pressure(p)
-        figure = plots.figure((6.4, 4.0))
+        figure = plots.create_figure((6.4, 4.0))
         axes = figure.subplots()
         for name, color in (("K_N", plots.BLUE), ("K_T", plots.RED)):
             if name in frame and np.all(np.isfinite(frame[name])):
@@ -121,5 +125,5 @@ def law(name: str, **parameters: Any) -> Law:
     if name not in LAWS:
         raise ValueError(f"law = {name!r}, allowed are {', '.join(LAWS)}")
     settings = {n: np.ravel(v) if np.ndim(v) else v for n, v in parameters.items()}
-    values = law_parameters(name, None, settings)
-    return Law(name, values, surfaces_height(name, values, None, settings))
+    values = build_law_parameters(name, None, settings)
+    return Law(name, values, known_surface_height(name, values, None, settings))

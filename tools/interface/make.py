@@ -11,23 +11,23 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from jointfmu.joints import KINDS, MODELS
-from jointfmu.joints.kind import Kind
-from jointfmu.parameters import ParameterFile, default
-from jointfmu.parameters import load as load_file
+from jointfmu.joints.kind import JointKind
+from jointfmu.parameters import ParameterFile, load_default
+from jointfmu.parameters import load_parameter_file as load_file
 
 from .. import plots
-from ..drawing.part import Drawing, NewJoint
-from ..drawing.reading import number
-from ..fitting.outcome import FitResult, draw, percent, size
-from ..fitting.procedure import procedures
-from ..joint_parts import Option, part
-from .frame import Table, Tabled
+from ..drawing.part import NewJoint, NewJointCommand
+from ..drawing.reading import parse_number
+from ..fitting.outcome import FitResult, draw_fit, figure_size, format_deviation
+from ..fitting.procedure import fit_procedures
+from ..joint_parts import Option, load_tool_module
+from .frame import Table, TableDisplay
 from .joint import Facts, Joint
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_HELP = """Make {}.
+_MAKER_DOCSTRING = """Make {}.
 
     Numbers have the unit stated below; a text may have its own unit: '0.8 um'. Write a size as (200, 100),
     and different values for each side or bolt as [0.8, 1.6]. Lists, tuples and arrays are equivalent.
@@ -39,12 +39,12 @@ _HELP = """Make {}.
     >>> import jointfmu
     >>> {}
 """
-_FLAG = re.compile(r"--([A-Za-z][\w-]*)")
+_FLAG_PATTERN = re.compile(r"--([A-Za-z][\w-]*)")
 
 
-def joint_of(file: ParameterFile, facts: Facts | None = None, notes: Sequence[str] = ()) -> Joint:
+def create_joint(file: ParameterFile, facts: Facts | None = None, notes: Sequence[str] = ()) -> Joint:
     """Make the joint object of a parameter file; some joints have a subclass of Joint."""
-    module = part(KINDS[file.joint], "interface")
+    module = load_tool_module(KINDS[file.joint], "interface")
     return (module.CLASS if module else Joint)(file, facts or {}, tuple(notes))
 
 
@@ -62,21 +62,21 @@ def load(source: str | Path) -> Joint:
     """
     name = str(source)
     if name in MODELS or name in KINDS:
-        return joint_of(default(MODELS[name].joint if name in MODELS else name))
+        return create_joint(load_default(MODELS[name].joint if name in MODELS else name))
     if Path(source).suffix == ".toml" or Path(source).is_file():
-        return joint_of(load_file(source))
+        return create_joint(load_file(source))
     for kind in KINDS.values():
-        module = part(kind, "catalogue")
+        module = load_tool_module(kind, "catalogue")
         if module and any(item.name.lower() == name.lower() for item in module.CATALOGUE.items()):
-            with _named_as_in_python():
-                return made(part(kind, "new").NEW, {"catalogue": name})  # type: ignore[union-attr]
+            with _use_python_names():
+                return make_from_drawing(load_tool_module(kind, "new").NEW, {"catalogue": name})  # type: ignore[union-attr]
     raise ValueError(
         f"{name!r} is no parameter file (.toml) and no known name; allowed are "
         f"{', '.join((*MODELS, *KINDS))} and names of the catalogue (jointfmu catalogue)"
     )
 
 
-def made(drawing: Drawing, stated: Mapping[str, object]) -> Joint:
+def make_from_drawing(drawing: NewJointCommand, option_values: Mapping[str, object]) -> Joint:
     """Make the joint of a drawing.
 
     option_values : {option: value}, in the forms that `_to_command_line_value` accepts
@@ -85,53 +85,57 @@ def made(drawing: Drawing, stated: Mapping[str, object]) -> Joint:
     on the command line.
     """
     options = {option.name: option for option in drawing.options}
-    if unknown := [name for name in stated if name not in options]:
+    if unknown := [name for name in option_values if name not in options]:
         raise ValueError(f"unknown name {unknown[0]!r}, allowed are {', '.join(options)}")
-    if missing := [o.name for o in drawing.options if o.required and stated.get(o.name) is None]:
-        raise ValueError(f"{', '.join(missing)} missing: {options[missing[0]].text}")
-    new: NewJoint = drawing.run({name: _given(o, stated.get(name)) for name, o in options.items()})
-    return joint_of(new.file, new.facts, new.warnings)
+    if missing := [o.name for o in drawing.options if o.is_required and option_values.get(o.name) is None]:
+        raise ValueError(f"{', '.join(missing)} missing: {options[missing[0]].help_text}")
+    new: NewJoint = drawing.make_joint(
+        {name: _to_command_line_value(o, option_values.get(name)) for name, o in options.items()}
+    )
+    return create_joint(new.file, new.facts, new.warnings)
 
 
 @contextmanager
-def _named_as_in_python() -> Iterator[None]:
+def _use_python_names() -> Iterator[None]:
     """Context that replaces option names of the command line in errors by argument names of Python."""
     try:
         yield
     except ValueError as error:
-        raise ValueError(_FLAG.sub(lambda m: m[1].replace("-", "_"), str(error))) from None
+        raise ValueError(_FLAG_PATTERN.sub(lambda m: m[1].replace("-", "_"), str(error))) from None
 
 
-def _given(option: Option, value: Any) -> object:
+def _to_command_line_value(option: Option, value: Any) -> object:
     """Convert a value to its form on the command line: text, a list of texts, or a bool for a flag.
 
     A size becomes one text such as 200x100. Raises ValueError for too many values, or an unknown choice.
     """
-    if option.flag:
+    if option.is_flag:
         return bool(value)
     if value is None:
         return None
     values = value.tolist() if isinstance(value, np.ndarray) else value
-    texts = [_text(v) for v in (values if isinstance(values, list | tuple) else [values])]
-    if option.by and not (option.many and any(sign in text for text in texts for sign in (",", option.by))):
-        texts = [option.by.join(texts)]
-    if not texts or (len(texts) > 1 and not option.many):
+    texts = [_format_value(v) for v in (values if isinstance(values, list | tuple) else [values])]
+    if option.separator and not (
+        option.is_list and any(sign in text for text in texts for sign in (",", option.separator))
+    ):
+        texts = [option.separator.join(texts)]
+    if not texts or (len(texts) > 1 and not option.is_list):
         raise ValueError(f"{option.name} = {value!r} are {len(texts)} values, expected one")
-    if option.many:
+    if option.is_list:
         return texts
     if option.choices and texts[0] not in option.choices:
         raise ValueError(f"{option.name} = {texts[0]!r}, allowed are {', '.join(option.choices)}")
     return texts[0]
 
 
-def _text(value: Any) -> str:
+def _format_value(value: Any) -> str:
     """Format a number or a text; two numbers become a position X,Y."""
     if isinstance(value, list | tuple | np.ndarray):
-        return ",".join(map(_text, value))
+        return ",".join(map(_format_value, value))
     return repr(float(value)) if isinstance(value, float) else str(value)
 
 
-def maker(name: str, kind: Kind, example: str, first: str | None = None) -> Callable[..., Joint]:
+def create_maker(name: str, kind: JointKind, example: str, first: str | None = None) -> Callable[..., Joint]:
     """Create the public function that makes a joint from its drawing.
 
     The signature and the docstring of the function list the options of the drawing.
@@ -140,20 +144,20 @@ def maker(name: str, kind: Kind, example: str, first: str | None = None) -> Call
     example : call of the function and its result, as in a doctest
     first   : option that may be passed as the first positional argument
     """
-    drawing: Drawing = part(kind, "new").NEW  # type: ignore[union-attr]
+    drawing: NewJointCommand = load_tool_module(kind, "new").NEW  # type: ignore[union-attr]
     positional, keyword = inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY
 
     def make(*args: object, **options: object) -> Joint:
         arguments = signature.bind(*args, **options).arguments
-        with _named_as_in_python():
-            return made(drawing, arguments)
+        with _use_python_names():
+            return make_from_drawing(drawing, arguments)
 
     ordered = sorted(drawing.options, key=lambda option: option.name != first)
     parameters = [
         inspect.Parameter(
             option.name,
             positional if option.name == first else keyword,
-            default=inspect.Parameter.empty if option.required else False if option.flag else None,
+            default=inspect.Parameter.empty if option.is_required else False if option.is_flag else None,
         )
         for option in ordered
     ]
@@ -161,17 +165,17 @@ def maker(name: str, kind: Kind, example: str, first: str | None = None) -> Call
     make.__name__ = make.__qualname__ = name
     make.__module__ = "jointfmu"
     make.__signature__ = signature  # type: ignore[attr-defined]
-    meanings = "\n".join(f"    {option.name} : {_meaning(option)}" for option in ordered)
-    make.__doc__ = _HELP.format(drawing.text, meanings, example.replace("\n", "\n    "))
+    meanings = "\n".join(f"    {option.name} : {_option_help(option)}" for option in ordered)
+    make.__doc__ = _MAKER_DOCSTRING.format(drawing.description, meanings, example.replace("\n", "\n    "))
     return make
 
 
-def _meaning(option: Option) -> str:
-    return f"{option.text}{': ' + ', '.join(option.choices) if option.choices else ''}"
+def _option_help(option: Option) -> str:
+    return f"{option.help_text}{': ' + ', '.join(option.choices) if option.choices else ''}"
 
 
 @dataclass(frozen=True, repr=False)
-class Fit(Tabled):
+class Fit(TableDisplay):
     """Result of a fit. `joint` has the fitted parameters; the printed table has each with its uncertainty.
 
     outcome : fitted parameters, their uncertainty, and facts about the fit
@@ -187,7 +191,7 @@ class Fit(Tabled):
     @property
     def joint(self) -> Joint:
         """The joint with the fitted parameters."""
-        return joint_of(self.outcome.parameters, self.outcome.facts, self.outcome.warnings())
+        return create_joint(self.outcome.parameters, self.outcome.facts, self.outcome.warnings())
 
     def _table(self) -> Table:
         rows = [
@@ -195,41 +199,45 @@ class Fit(Tabled):
                 row["name"],
                 f"{row['value']:.6g}",
                 row["unit"],
-                "unknown" if row["relative_deviation"] is None else percent(row["relative_deviation"]),
+                "unknown"
+                if row["relative_deviation"] is None
+                else format_deviation(row["relative_deviation"]),
                 "yes" if row["determined"] else "no",
             )
             for row in self.outcome.rows()
         ]
-        doubt = self.outcome.doubt()
+        doubt = self.outcome.rejection_reason()
         lines = [f"warning: the fit does not determine the joint: {doubt}"] if doubt else []
         lines += [f"note: {line}" for line in self.outcome.warnings()]
         return Table("fit", ("name", "value", "unit", "spread", "determined"), rows, lines)
 
-    @plots.style()
+    @plots.apply_style()
     def plot(self) -> "Figure":
         """Draw data, fitted law and residuals; returns a matplotlib figure."""
-        figure = plots.figure(size(self.outcome))
-        draw(figure, self.outcome)
+        figure = plots.create_figure(figure_size(self.outcome))
+        draw_fit(figure, self.outcome)
         return figure
 
 
-def _paths(procedure: str, many: bool, file: str | Path | Sequence[str | Path]) -> Path | list[Path]:
+def _procedure_paths(
+    procedure: str, takes_several: bool, file: str | Path | Sequence[str | Path]
+) -> Path | list[Path]:
     """Convert the argument `file` to what a procedure takes: one path, or a list of paths."""
     if isinstance(file, str | Path):
-        return [Path(file)] if many else Path(file)
-    if not many:
+        return [Path(file)] if takes_several else Path(file)
+    if not takes_several:
         raise ValueError(f"procedure {procedure!r} takes one file")
     return [Path(path) for path in file]
 
 
-def _taken(option: Option, value: Any) -> object:
+def _to_procedure_value(option: Option, value: Any) -> object:
     """Convert an option to the form that the function of a procedure takes; numbers are in SI units."""
-    if value is None or not (option.number or option.unit):
-        return _given(option, value)
-    if option.unit and isinstance(value, str):
-        return number(option.name, value, option.unit, option.unit, None)
+    if value is None or not (option.is_number or option.default_unit):
+        return _to_command_line_value(option, value)
+    if option.default_unit and isinstance(value, str):
+        return parse_number(option.name, value, option.default_unit, option.default_unit, None)
     if not isinstance(value, int | float | np.number):
-        raise ValueError(f"{option.name} = {value!r} is no number: {option.text}")
+        raise ValueError(f"{option.name} = {value!r} is no number: {option.help_text}")
     return float(value)
 
 
@@ -259,7 +267,7 @@ def fit(
     >>> drive.values["K1"]
     4700.0
     """
-    requested, available = joint or (start.file.joint if start else None), procedures()
+    requested, available = joint or (start.file.joint if start else None), fit_procedures()
     allowed = {
         name: [other for other in choices if requested in (None, other)]
         for name, choices in available.items()
@@ -270,16 +278,18 @@ def fit(
     if len(joints := allowed[procedure]) > 1:
         raise ValueError(f"procedure {procedure!r} is of several joints; expected joint = one of {joints}")
     chosen = available[procedure][joints[0]]
-    if chosen.file == (file is None):
-        raise ValueError(f"procedure {procedure!r} takes {'a' if chosen.file else 'no'} file")
-    units = {option.unit_by for option in chosen.options}  # for text without a unit; numbers here are SI
+    if chosen.takes_file == (file is None):
+        raise ValueError(f"procedure {procedure!r} takes {'a' if chosen.takes_file else 'no'} file")
+    units = {option.unit_option for option in chosen.options}  # for text without a unit; numbers here are SI
     declared = {option.name: option for option in chosen.options if option.name not in units}
     if unknown := [name for name in options if name not in declared]:
         raise ValueError(f"unknown name {unknown[0]!r}, allowed are {', '.join(declared)}")
-    if missing := [name for name, option in declared.items() if option.required and name not in options]:
-        raise ValueError(f"{', '.join(missing)} missing: {declared[missing[0]].text}")
-    data = () if file is None else (_paths(procedure, chosen.many, file),)
+    if missing := [name for name, option in declared.items() if option.is_required and name not in options]:
+        raise ValueError(f"{', '.join(missing)} missing: {declared[missing[0]].help_text}")
+    data = () if file is None else (_procedure_paths(procedure, chosen.takes_several_files, file),)
     names = [free] if isinstance(free, str) else free
-    with _named_as_in_python():
-        values = {n: _taken(option, options.get(n, option.default)) for n, option in declared.items()}
+    with _use_python_names():
+        values = {
+            n: _to_procedure_value(option, options.get(n, option.default)) for n, option in declared.items()
+        }
         return Fit(chosen.run(*data, start and start.file, names, **values))

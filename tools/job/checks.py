@@ -11,20 +11,20 @@ from scipy.integrate import simpson
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.quantity import Array
 
-from ..joint_parts import part
-from ..published.computed import published
-from ..published.reference import Point, points
+from ..joint_parts import load_tool_module
+from ..published.computed import published_numbers
+from ..published.reference import Point, read_points
 from ..published.validation import ValidatedPoint, compare
 from ..ramps import ramp
 from ..systems.decays import DAMPING_TOLERANCE as LOOP_DAMPING_TOLERANCE
 from ..systems.decays import FREQUENCY_TOLERANCE, Decay
 from ..systems.ringing import DAMPING_TOLERANCE, RESONANCE_TOLERANCE, Ringing
 
-_COARSE = 10.0
+_STEP_FACTOR = 10.0
 """Step of the repeated ramp over the step of the default ramp [1]."""
-_INTERVALS = 10_000
+_SIMPSON_INTERVALS = 10_000
 """Intervals of the Simpson rule between two ends of an integral [1]."""
-ThroughFmu = Callable[[Point, Path], float | None]
+FmuEvaluation = Callable[[Point, Path], float | None]
 """(published point, folder of the FMUs) -> value computed by an FMU; None if no FMU has this quantity."""
 INTEGRATION_TOLERANCE = 1e-6
 """Allowed deviation [1] of an FMU from an independent integration of its stiffness."""
@@ -46,43 +46,46 @@ class Check:
     fmu: str
     name: str
     deviation: float
-    allowed: float
+    tolerance: float
 
     @property
-    def passed(self) -> bool:
+    def is_passed(self) -> bool:
         """Whether the deviation is within the tolerance; False for NaN."""
-        return bool(self.deviation <= self.allowed)
+        return bool(self.deviation <= self.tolerance)
 
 
-def default_ramp(name: str, folder: Path, factor: float = 1.0) -> ramp.RampResult:
+def run_default_ramp(name: str, folder: Path, factor: float = 1.0) -> ramp.RampResult:
     """Run the default load ramp of an FMU, with its step times a factor."""
     r = MODELS[name].ramp
-    return ramp.run(folder / f"{name}.fmu", r.input, r.end, r.step * factor)
+    return ramp.run_ramp(folder / f"{name}.fmu", r.input, r.end, r.step * factor)
 
 
-def check(name: str, folder: Path, result: ramp.RampResult) -> list[Check]:
+def check_ramp(name: str, folder: Path, result: ramp.RampResult) -> list[Check]:
     """Check the ramp of an FMU: repeat it with larger steps, then run the check RAMPS[name] of the joint."""
-    worst = _repeated(name, folder, result)
+    worst = _coarse_deviation(name, folder, result)
     checks = [
         Check(name, "ten times larger steps, every output at the shared points", worst, REPEAT_TOLERANCE)
     ]
-    module = part(KINDS[MODELS[name].joint], "checks")
+    module = load_tool_module(KINDS[MODELS[name].joint], "checks")
     if module and name in module.RAMPS:
         compared, largest = module.RAMPS[name](folder, result)
         checks.append(Check(name, compared, largest, INTEGRATION_TOLERANCE))
     return checks
 
 
-def same(name: str, folder: Path, expected: ramp.RampResult) -> Check:
+def compare_flavour(name: str, folder: Path, expected: ramp.RampResult) -> Check:
     """Compare the ramp of another flavour, with ten times larger steps, with `expected` at equal loads."""
-    worst = _repeated(name, folder, expected)
+    worst = _coarse_deviation(name, folder, expected)
     return Check(name, f"flavour {folder.name}: every output the same", worst, FLAVOUR_TOLERANCE)
 
 
-def _repeated(name: str, folder: Path, result: ramp.RampResult) -> float:
+def _coarse_deviation(name: str, folder: Path, result: ramp.RampResult) -> float:
     """Largest deviation [1] of any column between the ramp with ten times larger steps and `result`."""
-    coarse = default_ramp(name, folder, _COARSE).columns
-    return max(deviation(coarse[column], fine[:: int(_COARSE)]) for column, fine in result.columns.items())
+    coarse = run_default_ramp(name, folder, _STEP_FACTOR).columns
+    return max(
+        relative_deviation(coarse[column], fine[:: int(_STEP_FACTOR)])
+        for column, fine in result.columns.items()
+    )
 
 
 def check_ringing(systems: Mapping[str, Sequence[Ringing]]) -> list[Check]:
@@ -109,33 +112,33 @@ def check_decays(systems: Mapping[str, Sequence[Decay]]) -> list[Check]:
     return checks
 
 
-def integrals(rate: Callable[[Array], Array], ends: Iterable[float]) -> Array:
+def integrate_logarithmically(rate: Callable[[Array], Array], ends: Iterable[float]) -> Array:
     """Integrals of `rate` between neighbouring ends > 0, by Simpson's rule over the logarithm.
 
     Within 1e-8 of an adaptive rule, also for a law with a kink.
     """
     values = []
     for pair in pairwise(ends):
-        points = np.geomspace(*pair, _INTERVALS + 1)
-        values.append(simpson(points * rate(points), dx=np.log(pair[1] / pair[0]) / _INTERVALS))
+        points = np.geomspace(*pair, _SIMPSON_INTERVALS + 1)
+        values.append(simpson(points * rate(points), dx=np.log(pair[1] / pair[0]) / _SIMPSON_INTERVALS))
     return np.array(values)
 
 
-def deviation(value: object, expected: object) -> float:
+def relative_deviation(value: object, expected: object) -> float:
     """Largest difference over the largest expected value [1]; largest |value| if all expected are zero."""
     a, b = np.asarray(value), np.asarray(expected)
     scale = float(np.max(np.abs(b)))
     return float(np.max(np.abs(a - b))) / scale if scale > 0.0 else float(np.max(np.abs(a)))
 
 
-def published_through_fmus(folder: Path) -> list[ValidatedPoint]:
+def compute_published_points(folder: Path) -> list[ValidatedPoint]:
     """Compute published points by running FMUs, with `through_fmu` of the joints that define it."""
     rows = []
     for kind in KINDS.values():
-        compute: ThroughFmu | None = getattr(part(kind, "checks"), "through_fmu", None)
+        compute: FmuEvaluation | None = getattr(load_tool_module(kind, "checks"), "through_fmu", None)
         if compute is None:
             continue
-        for point in (p for paper in published(kind).papers for p in points(paper)):
+        for point in (p for paper in published_numbers(kind).papers for p in read_points(paper)):
             value = compute(point, folder)
             if value is not None:
                 rows.append(compare(point, value))

@@ -9,7 +9,7 @@ from jointfmu_fmu_src.building import FLAVOURS, build
 
 from jointfmu.files.writing import write_text
 from jointfmu.joints import MODELS
-from jointfmu.progress import processes, track
+from jointfmu.progress import track_progress, worker_processes
 from jointfmu.quantity import Array
 
 from ..laboratory.assemble import write_laboratory
@@ -18,13 +18,21 @@ from ..proof.run import prove
 from ..published import validation
 from ..ramps import ramp
 from ..report.figure import Figure
-from ..report.page import drawn, write_report
+from ..report.page import build_figures, write_report
 from ..systems import cosimulation, decays
 from ..systems.decays import Decay
 from ..systems.ringing import Ringing, examples
 from ..systems.ssp import build_systems
 from ..systems.system import System
-from .checks import Check, check, check_decays, check_ringing, default_ramp, published_through_fmus, same
+from .checks import (
+    Check,
+    check_decays,
+    check_ramp,
+    check_ringing,
+    compare_flavour,
+    compute_published_points,
+    run_default_ramp,
+)
 
 
 @dataclass(slots=True)
@@ -45,8 +53,8 @@ class JobResult:
     figures     : {joint: figures of the report}
     """
 
-    fmus: Path
-    built: list[Path] = field(default_factory=list)
+    fmi2_folder: Path
+    fmu_paths: list[Path] = field(default_factory=list)
     systems: list[Path] = field(default_factory=list)
     problems: list[str] = field(default_factory=list)
     ramps: dict[str, ramp.RampResult] = field(default_factory=dict)
@@ -60,21 +68,21 @@ class JobResult:
     figures: dict[str, list[Figure]] = field(default_factory=dict)
 
     @property
-    def misses(self) -> list[str]:
+    def failures(self) -> list[str]:
         """One line for each failure.
 
         A published point that an FMU misses is listed only if the package meets it.
         """
         lines = list(self.problems)
-        lines += [f"{shown(proof.fmu)}: {text}" for proof in self.proofs for text in proof.misses]
+        lines += [f"{report_name(proof.fmu)}: {text}" for proof in self.proofs for text in proof.failures]
         lines += [
-            f"{c.fmu}: {c.name}: {c.deviation:.2g}, allowed {c.allowed:.0e}"
+            f"{c.fmu}: {c.name}: {c.deviation:.2g}, allowed {c.tolerance:.0e}"
             for c in self.checks
-            if not c.passed
+            if not c.is_passed
         ]
         met = {(r.point.paper, r.point.id) for r in self.rows if r.passed}
         worse = [r for r in self.fmu_rows if not r.passed and (r.point.paper, r.point.id) in met]
-        for source, rows in (("package", validation.missed(self.rows)), ("FMU", worse)):
+        for source, rows in (("package", validation.missed_points(self.rows)), ("FMU", worse)):
             lines += [
                 f"{r.point.paper}: {r.point.id} by the {source}: published {r.point.value}, "
                 f"computed {r.computed:.6g}"
@@ -83,79 +91,81 @@ class JobResult:
         return lines
 
 
-def shown(fmu: Path) -> str:
+def report_name(fmu: Path) -> str:
     """Name of an FMU in the report: flavour/name."""
     return f"{fmu.parent.name}/{fmu.stem}"
 
 
-def run(out: Path) -> JobResult:
+def run_job(out_folder: Path) -> JobResult:
     """Build, prove and check all flavours; write report, laboratory page and ramps to out_folder/report.
 
     The report shows the ramps of the flavour `fmi2`. The ramps of the other flavours must be equal to them.
     """
-    folder = out / "fmi2"
+    folder = out_folder / "fmi2"
     outcome = JobResult(folder)
-    with processes() as pool:
-        outcome.built = build([], list(FLAVOURS), None, out, pool=pool)
-        outcome.systems = build_systems(out, joints=False, pool=pool)
+    with worker_processes() as pool:
+        outcome.fmu_paths = build([], list(FLAVOURS), None, out_folder, pool=pool)
+        outcome.systems = build_systems(out_folder, joints=False, pool=pool)
         components = [path for path in outcome.systems if path.suffix == ".fmu"]
         arms, ringdowns = pool.submit(cosimulation.arms, folder), pool.submit(decays.examples, folder)
         ringing = pool.submit(examples, folder)
-        page = pool.submit(write_laboratory, out / "report" / "laboratory.html")
-        paths = [*outcome.built, *components]
-        examined = pool.map(_examined, paths)
-        _compare(outcome, out)
+        page = pool.submit(write_laboratory, out_folder / "report" / "laboratory.html")
+        paths = [*outcome.fmu_paths, *components]
+        examined = pool.map(_examine, paths)
+        _compare_ramps(outcome, out_folder)
         outcome.arms, outcome.decays, outcome.ringing = arms.result(), ringdowns.result(), ringing.result()
-        outcome.figures = drawn(outcome)  # while other processes prove the FMUs
-        for problems, proof in track(examined, "validate and prove", len(paths)):
+        outcome.figures = build_figures(outcome)  # while other processes prove the FMUs
+        for problems, proof in track_progress(examined, "validate and prove", len(paths)):
             outcome.problems += problems
             outcome.proofs.append(proof)
         outcome.checks += [*check_ringing(outcome.ringing), *check_decays(outcome.decays)]
-        write_report(out / "report" / "index.html", outcome)
+        write_report(out_folder / "report" / "index.html", outcome)
         page.result()
     return outcome
 
 
-def _examined(path: Path) -> tuple[list[str], Proof]:
+def _examine(path: Path) -> tuple[list[str], Proof]:
     """Validate an FMU with fmpy and prove it: problems found, result of the proof."""
-    return [f"{shown(path)}: {problem}" for problem in validate_fmu(str(path))], prove(path)
+    return [f"{report_name(path)}: {problem}" for problem in validate_fmu(str(path))], prove(path)
 
 
-def _compare(outcome: JobResult, out: Path) -> None:
+def _compare_ramps(outcome: JobResult, out: Path) -> None:
     """Run and check the ramps of all FMUs, and compare with the published numbers."""
-    for name in track(MODELS, "ramp", len(MODELS)):
-        result = default_ramp(name, outcome.fmus)
+    for name in track_progress(MODELS, "ramp", len(MODELS)):
+        result = run_default_ramp(name, outcome.fmi2_folder)
         outcome.ramps[name] = result
         outcome.problems += [f"{name}: unexpected message: {text}" for text in result.messages]
         write_text(out / "report" / f"{name}.csv", result.csv())
-        outcome.checks += check(name, outcome.fmus, result)
-        other_folders = [out / flavour for flavour in FLAVOURS if out / flavour != outcome.fmus]
-        outcome.checks += [same(name, folder, result) for folder in other_folders]
-    for step in track(("package", "FMUs"), "compare", 2):
+        outcome.checks += check_ramp(name, outcome.fmi2_folder, result)
+        other_folders = [out / flavour for flavour in FLAVOURS if out / flavour != outcome.fmi2_folder]
+        outcome.checks += [compare_flavour(name, folder, result) for folder in other_folders]
+    for step in track_progress(("package", "FMUs"), "compare", 2):
         if step == "package":
             outcome.rows = validation.validate()
         else:
-            outcome.fmu_rows = published_through_fmus(outcome.fmus)
+            outcome.fmu_rows = compute_published_points(outcome.fmi2_folder)
 
 
-def main(out: Path) -> int:
+def main(out_folder: Path) -> int:
     """Run the main job and print a summary. Returns the exit code: 0, 1 for a failure, 2 for bad input."""
     try:
-        outcome = run(out)
+        outcome = run_job(out_folder)
     except (ValueError, RuntimeError) as error:
         print(f"build_fmus.py: {error}", file=sys.stderr)
         return 2 if isinstance(error, ValueError) else 1
     except KeyboardInterrupt:
         print("build_fmus.py: interrupted", file=sys.stderr)
         return 130
-    misses = outcome.misses
-    folders = ", ".join(str(out / flavour) for flavour in FLAVOURS)
-    print(f"built: {len(outcome.built)} FMUs in {folders}: {', '.join(MODELS)}")
-    print(f"systems: {', '.join(p.name for p in outcome.systems if p.suffix == '.ssp')} in {out / 'ssp'}")
+    misses = outcome.failures
+    folders = ", ".join(str(out_folder / flavour) for flavour in FLAVOURS)
+    print(f"built: {len(outcome.fmu_paths)} FMUs in {folders}: {', '.join(MODELS)}")
+    print(
+        f"systems: {', '.join(p.name for p in outcome.systems if p.suffix == '.ssp')} in {out_folder / 'ssp'}"
+    )
     partners = [path for path in outcome.systems if path.suffix == ".fmu"]
-    print(f"validated with fmpy: {len(outcome.built) + len(partners)}; ramps run: {len(outcome.ramps)}")
-    worst = max((proof.worst.share for proof in outcome.proofs if proof.worst), default=0.0)
-    runs = sum(proof.runs for proof in outcome.proofs)
+    print(f"validated with fmpy: {len(outcome.fmu_paths) + len(partners)}; ramps run: {len(outcome.ramps)}")
+    worst = max((proof.worst.error_ratio for proof in outcome.proofs if proof.worst), default=0.0)
+    runs = sum(proof.run_count for proof in outcome.proofs)
     print(
         f"proved in fmpy: {len(outcome.proofs)} FMUs by {runs} runs of their experiments, "
         f"at worst {worst:.1e} of what is allowed"
@@ -164,7 +174,9 @@ def main(out: Path) -> int:
         f"compared: {validation.summary(outcome.rows)}; "
         f"{len(outcome.fmu_rows)} of them again through the FMUs; {len(outcome.checks)} checks of the ramps"
     )
-    print(f"report: {out / 'report' / 'index.html'}; laboratory: {out / 'report' / 'laboratory.html'}")
+    print(
+        f"report: {out_folder / 'report' / 'index.html'}; laboratory: {out_folder / 'report' / 'laboratory.html'}"
+    )
     print(f"missed: {len(misses)}")
     for line in misses:
         print(f"  {line}")

@@ -15,12 +15,12 @@ from jointfmu_fmu_src.licence import webassembly_licences
 from jointfmu_fmu_src.templates import template
 
 from jointfmu import __version__
-from jointfmu.contact.roughness import FACTOR
+from jointfmu.contact.roughness import RQ_OVER_RA
 from jointfmu.files.writing import write_text
-from jointfmu.parameters import ORIGINS, SAME_HEIGHT
+from jointfmu.parameters import HEIGHT_TOLERANCE, ORIGINS
 from jointfmu.quantity import units
 
-from .describe import compiled, described, modules
+from .describe import compile_modules, describe_module, list_modules
 
 _FOLDER = Path(__file__).with_name("web")
 _SCRIPTS = (*("engine", "sight", "controls"), *("curves", "path", "turn", "contact", "body", "files", "main"))
@@ -40,31 +40,33 @@ def write_laboratory(path: Path) -> None:
     Raises ValueError if it cannot be written, ImportError if ziglang is missing, RuntimeError if the
     compiler fails.
     """
-    write_text(path, page())
+    write_text(path, render_page())
 
 
-def page() -> str:
+def render_page() -> str:
     """Render the page as HTML text."""
-    page_modules = modules()
-    binaries = compiled(page_modules)
+    page_modules = list_modules()
+    binaries = compile_modules(page_modules)
     sizes = [len(binary) for binary in binaries]
     document = {
-        "modules": [described(module) | {"size": n} for module, n in zip(page_modules, sizes, strict=True)],
+        "modules": [
+            describe_module(module) | {"size": n} for module, n in zip(page_modules, sizes, strict=True)
+        ],
         "origins": ORIGINS,
-        "roughness": {"factor": FACTOR, "close": SAME_HEIGHT},
-        "units": {base: units.sizes(base, *others) for base, others in _FILE_UNITS.items()},
+        "roughness": {"factor": RQ_OVER_RA, "close": HEIGHT_TOLERANCE},
+        "units": {base: units.unit_sizes(base, *others) for base, others in _FILE_UNITS.items()},
     }
     text = json.dumps(document, ensure_ascii=False, allow_nan=False, separators=(",", ":")).encode()
     content = gzip.compress(b"".join([struct.pack("<I", len(text)), text, *binaries]), 9, mtime=0)
     return template(_FOLDER / "page.html").render(
         version=__version__,
-        style=chart.style() + web_file("style.css"),
-        script=chart.script() + "\n".join(web_file(f"{name}.js") for name in _SCRIPTS),
+        style=chart.style() + read_web_file("style.css"),
+        script=chart.script() + "\n".join(read_web_file(f"{name}.js") for name in _SCRIPTS),
         content=b64encode(content).decode(),
         licences=webassembly_licences(),
     )
 
 
-def web_file(name: str) -> str:
+def read_web_file(name: str) -> str:
     """Read a file of the page as text. The report uses the style sheet too."""
     return (_FOLDER / name).read_text(encoding="utf-8")

@@ -9,28 +9,34 @@ from threading import Lock
 from typing import Any
 
 from jointfmu_fmu_src.native.compiled.compiler import webassembly
-from jointfmu_fmu_src.native.compiled.kept import keeping
+from jointfmu_fmu_src.native.compiled.kept import cached_result
 from jointfmu_fmu_src.native.data import split
 from jointfmu_fmu_src.native.page import panels
-from jointfmu_fmu_src.xml_parts import Listed, listed
+from jointfmu_fmu_src.xml_parts import ListedVariable, list_variables
 
 from jointfmu.joints import KINDS
-from jointfmu.joints.kind import Kind
+from jointfmu.joints.kind import JointKind
 from jointfmu.joints.model import Model
-from jointfmu.parameters import ParameterFile, declared_entries, dump, is_height, load
+from jointfmu.parameters import (
+    ParameterFile,
+    declared_entries,
+    format_parameter_file,
+    is_height,
+    load_parameter_file,
+)
 from jointfmu.quantity import units
 from jointfmu.quantity.interval import Interval
 
-from ..joint_parts import part
-from ..published.computed import published
-from ..published.reference import ROLES, points
+from ..joint_parts import load_tool_module
+from ..published.computed import published_numbers
+from ..published.reference import ROLES, read_points
 from ..ramps.loops import suffix
-from ..shown import shown_unit
+from ..shown import choose_display_unit
 from .part import LaboratoryModel
 
-_OWN = "laboratory.c"
-_MAP = "map.c"
-_GENERATES = Lock()
+_LABORATORY_SOURCE = "laboratory.c"
+_MAP_SOURCE = "map.c"
+_CODE_GENERATION_LOCK = Lock()
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,115 +50,127 @@ class Module:
     files: Sequence[ParameterFile]
 
     @property
-    def map(self) -> Path | None:
+    def map_source(self) -> Path | None:
         """Path of the C source for the map of the contact; None if the joint has no module `laboratory`.
 
         The file need not exist.
         """
-        module = part(KINDS[self.model.joint], "laboratory")
-        return Path(str(module.__file__)).with_name(_MAP) if module else None
+        module = load_tool_module(KINDS[self.model.joint], "laboratory")
+        return Path(str(module.__file__)).with_name(_MAP_SOURCE) if module else None
 
-    def sources(self) -> dict[str, str]:
+    def collect_sources(self) -> dict[str, str]:
         """Collect all C sources, of the FMU and of the functions that the page calls: {file name: text}."""
         # imported here because it needs casadi, which pages of the report do not need
         from jointfmu_fmu_src.native.code.generate import sources, token
 
         files = sources(self.model.name, self.files[0])
-        return files | self._added() | {"token.h": f'#define TOKEN "{token(files)}"\n'}
+        return files | self._page_sources() | {"token.h": f'#define TOKEN "{token(files)}"\n'}
 
-    def compiled(self) -> bytes:
+    def compile_module(self) -> bytes:
         """Compile the module to WebAssembly (a WASI reactor without imports), or read it from the cache.
 
         It exports the functions of laboratory.c. Raises ImportError if ziglang is missing, RuntimeError with
         the first error of the compiler.
         """
-        return keeping(f"{dump(self.files[0])} {self._added()}", self.model, self._compiled)
+        return cached_result(
+            f"{format_parameter_file(self.files[0])} {self._page_sources()}",
+            self.model,
+            self._compile_uncached,
+        )
 
-    def _added(self) -> dict[str, str]:
+    def _page_sources(self) -> dict[str, str]:
         """C sources of the functions that the page calls: {file name: text}."""
-        paths = [Path(__file__).with_name(_OWN), *([self.map] if self.map and self.map.is_file() else [])]
+        paths = [
+            Path(__file__).with_name(_LABORATORY_SOURCE),
+            *([self.map_source] if self.map_source and self.map_source.is_file() else []),
+        ]
         return {path.name: path.read_text(encoding="utf-8") for path in paths}
 
-    def _compiled(self) -> bytes:
-        with _GENERATES:  # casadi is not thread-safe
-            files = self.sources()
+    def _compile_uncached(self) -> bytes:
+        with _CODE_GENERATION_LOCK:  # casadi is not thread-safe
+            files = self.collect_sources()
         units = [name for name in files if name.endswith(".c") and not name.startswith("fmi")]
         return webassembly(self.model.name, files, units)
 
 
-def modules() -> list[Module]:
+def list_modules() -> list[Module]:
     """List the modules of all joints and shipped parameter files, in display order."""
-    return [module for kind in KINDS.values() for model in kind.models for module in _of(kind, model)]
+    return [
+        module for kind in KINDS.values() for model in kind.models for module in _group_by_code(kind, model)
+    ]
 
 
-def compiled(some: Sequence[Module]) -> list[bytes]:
+def compile_modules(page_modules: Sequence[Module]) -> list[bytes]:
     """Compile modules in parallel threads; returns the binaries."""
     with ThreadPoolExecutor() as pool:
-        return list(pool.map(Module.compiled, some))
+        return list(pool.map(Module.compile_module, page_modules))
 
 
-def _of(kind: Kind, model: Model) -> Iterator[Module]:
+def _group_by_code(kind: JointKind, model: Model) -> Iterator[Module]:
     """Group the shipped files of a joint into modules.
 
     Files share the C code if they have the same law and the same values of all parameters that the FMU does
     not expose.
     """
     groups: dict[tuple[object, ...], list[ParameterFile]] = {}
-    for file in _files(kind):
-        exposed = model.of(kind.name, file.values).parameter_fields()
-        fixed = tuple((name, value) for name, value in file.flat.items() if name not in exposed)
+    for file in _load_shipped_files(kind):
+        exposed = model.with_parameters(kind.name, file.values).parameter_fields()
+        fixed = tuple((name, value) for name, value in file.values_by_name.items() if name not in exposed)
         groups.setdefault((file.law, fixed), []).append(file)
     for files in groups.values():
-        yield Module(model.of(kind.name, files[0].values), files)
+        yield Module(model.with_parameters(kind.name, files[0].values), files)
 
 
-def _files(kind: Kind) -> list[ParameterFile]:
+def _load_shipped_files(kind: JointKind) -> list[ParameterFile]:
     """Load the shipped parameter files of a joint, the default file first."""
     default = kind.default_file()
     return [
-        load(path, kind.name) for path in sorted(default.parent.glob("*.toml"), key=lambda p: p != default)
+        load_parameter_file(path, kind.name)
+        for path in sorted(default.parent.glob("*.toml"), key=lambda p: p != default)
     ]
 
 
-_NOMINALS = 2.0
+_SLIDER_END_RATIO = 2.0
 """Largest value of an input's slider over the nominal value of the input [1]."""
-_DECADE = 10.0
+_SLIDER_FACTOR = 10.0
 """Factor between start value and both ends of a parameter's slider, if no interval is known [1]."""
 
 
-def described(module: Module) -> dict[str, object]:
+def describe_module(module: Module) -> dict[str, object]:
     """JSON object of a module: everything except the binary."""
     model, first = module.model, module.files[0]
-    kind, bench = KINDS[model.joint], _bench(model)
-    bound = set(_bound(first))
+    kind, bench = KINDS[model.joint], _laboratory_model(model)
+    bound = set(_bound_parameters(first))
     curves = (*panels(model), *bench.panels)  # the panels of the documentation come first
-    rows = [_row(v, model, bench) | {"bound": v.name in bound} for v in listed(model, first)]
+    rows = [
+        _variable_document(v, model, bench) | {"bound": v.name in bound} for v in list_variables(model, first)
+    ]
     return {
         "name": model.name,
         "joint": kind.name,
         "title": kind.title,
         "law": first.law,
         "default": first.law == next(iter(kind.laws)),
-        "entries": _entries(model, first),
+        "entries": _entry_documents(model, first),
         "fixed": list(split(model, first).fixed),
-        "height": next(filter(is_height, first.flat), None),
+        "height": next(filter(is_height, first.values_by_name), None),
         "doc": model.doc,
         "variables": rows,
         "surfaces": [surface.prefix for surface in kind.surfaces],
-        "sets": [_set(file, model) for file in module.files],
+        "sets": [_parameter_set_document(file, model) for file in module.files],
         "ramp": {"input": model.ramp.input, "end": model.ramp.end},
         "panels": [{"over": p.over, "quantities": list(p.quantities)} for p in curves],
-        "pairs": pairs(model),
-        "path": list(bench.path or (model.ramp.input,)),
-        "points": list(_points(model, bench)),
-        "measured": [m._asdict() for m in bench.measured],
-        "map": _map(bench, first),
-        "turn": bench.turn and bench.turn._asdict(),
+        "pairs": conjugate_pairs(model),
+        "path": list(bench.path_inputs or (model.ramp.input,)),
+        "points": list(_published_points(model, bench)),
+        "measured": [m._asdict() for m in bench.measured_curves],
+        "map": _map_document(bench, first),
+        "turn": bench.transmission and bench.transmission._asdict(),
         "example": bench.example and bench.example._asdict(),
     }
 
 
-def pairs(model: Model) -> dict[str, str]:
+def conjugate_pairs(model: Model) -> dict[str, str]:
     """Energy-conjugate pairs of inputs and outputs: {input: output}.
 
     The output has the same suffix as the input. For the input of the ramp without a suffix it is the first
@@ -167,49 +185,53 @@ def pairs(model: Model) -> dict[str, str]:
     return conjugates
 
 
-def _bench(model: Model) -> LaboratoryModel:
+def _laboratory_model(model: Model) -> LaboratoryModel:
     """Additions of the joint's module `laboratory` to a model; an empty object if there are none."""
-    module = part(KINDS[model.joint], "laboratory")
+    module = load_tool_module(KINDS[model.joint], "laboratory")
     benches: dict[str, LaboratoryModel] = module.LABORATORY if module else {}
     return benches.get(model.name, LaboratoryModel())
 
 
-def _row(v: Listed, model: Model, bench: LaboratoryModel) -> dict[str, object]:
-    unit = v.attributes.get("unit", "1")
+def _variable_document(
+    variable: ListedVariable, model: Model, laboratory_model: LaboratoryModel
+) -> dict[str, object]:
+    unit = variable.attributes.get("unit", "1")
     row: dict[str, object] = {
-        "name": v.name,
-        "causality": v.causality,
-        "doc": v.doc,
-        "start": v.start,
-        "boolean": v.boolean,
+        "name": variable.name,
+        "causality": variable.causality,
+        "doc": variable.doc,
+        "start": variable.start,
+        "boolean": variable.boolean,
     }
-    typical = float(v.attributes.get("nominal", 0.0))
-    if v.causality != "output":
-        row |= {"low": _end(v, "min"), "high": _end(v, "max")}
-        field = model.parameter_fields().get(v.name)
+    typical = float(variable.attributes.get("nominal", 0.0))
+    if variable.causality != "output":
+        row |= {"low": _interval_end(variable, "min"), "high": _interval_end(variable, "max")}
+        field = model.parameter_fields().get(variable.name)
         row["whole"] = bool(field and field.metadata.get("whole"))
-        row["span"] = span = bench.spans.get(v.name) or _span(v, model, row)
-        row["log"] = v.causality == "parameter" and span[0] > 0.0 and span[1] > 5.0 * span[0]
-        typical = span[1] if v.causality == "input" or not v.start else float(v.start)
-    shown = shown_unit(unit, typical)
-    return row | {"unit": unit, "shown": shown, "factor": units.factor(unit, shown)}
+        row["span"] = span = laboratory_model.slider_spans.get(variable.name) or _slider_span(
+            variable, model, row
+        )
+        row["log"] = variable.causality == "parameter" and span[0] > 0.0 and span[1] > 5.0 * span[0]
+        typical = span[1] if variable.causality == "input" or not variable.start else float(variable.start)
+    shown = choose_display_unit(unit, typical)
+    return row | {"unit": unit, "shown": shown, "factor": units.conversion_factor(unit, shown)}
 
 
-def _end(v: Listed, which: str) -> float | None:
-    return float(v.attributes[which]) if which in v.attributes else None
+def _interval_end(variable: ListedVariable, attribute: str) -> float | None:
+    return float(variable.attributes[attribute]) if attribute in variable.attributes else None
 
 
-def _span(v: Listed, model: Model, row: dict[str, Any]) -> tuple[float, float]:
+def _slider_span(variable: ListedVariable, model: Model, row: dict[str, Any]) -> tuple[float, float]:
     """Lower and upper end of a slider [SI]."""
-    if v.boolean:
+    if variable.boolean:
         return 0.0, 1.0
-    start = float(v.start or 0.0)
+    start = float(variable.start or 0.0)
     low = -math.inf if row["low"] is None else row["low"]
     high = math.inf if row["high"] is None else row["high"]
-    if v.causality == "input":
+    if variable.causality == "input":
         driven = {i.name: i.unit for i in model.inputs}[model.ramp.input]
-        unit = v.attributes["unit"]
-        end = model.ramp.end if unit == driven else _NOMINALS * float(v.attributes["nominal"])
+        unit = variable.attributes["unit"]
+        end = model.ramp.end if unit == driven else _SLIDER_END_RATIO * float(variable.attributes["nominal"])
         return max(low, -end), end
     if start == 0.0:
         return 0.0, high if math.isfinite(high) else 1.0
@@ -218,30 +240,30 @@ def _span(v: Listed, model: Model, row: dict[str, Any]) -> tuple[float, float]:
         return max(low + margin, 0.0), high - margin
     if row["whole"]:
         return low, 4.0 * start
-    return max(start / _DECADE, low), min(start * _DECADE, high)
+    return max(start / _SLIDER_FACTOR, low), min(start * _SLIDER_FACTOR, high)
 
 
-def _bound(file: ParameterFile) -> Iterator[str]:
+def _bound_parameters(file: ParameterFile) -> Iterator[str]:
     """Yield the parameters that must not change because values compiled into the code depend on them."""
     kind = KINDS[file.joint]
-    for name, value in file.flat.items():
+    for name, value in file.values_by_name.items():
         if isinstance(value, float):
             try:
                 changed = file.with_values({name: value + 1.0}, "user", "").values
             except ValueError:
                 continue
-            if any(line.startswith(name) for line in kind.contradictions(changed)):
+            if any(line.startswith(name) for line in kind.find_contradictions(changed)):
                 yield name
 
 
-def _entries(model: Model, file: ParameterFile) -> dict[str, dict[str, object]]:
+def _entry_documents(model: Model, file: ParameterFile) -> dict[str, dict[str, object]]:
     """Entries that a parameter file may have: {structured name: {unit, value, default, interval}}.
 
     value    : value in the module's first file; roughnesses and start values of inputs have none
     default  : value if a file does not have the entry
     interval : lower and upper end, and whether they are open, of numbers that the C code does not check
     """
-    exposed, flat, variables = model.parameter_fields(), file.flat, KINDS[model.joint].variables
+    exposed, flat, variables = model.parameter_fields(), file.values_by_name, KINDS[model.joint].variables
     rows: dict[str, dict[str, object]] = {}
     for name, item in declared_entries(model.joint, type(file.values)).items():
         section, _, leaf = name.partition(".")
@@ -256,36 +278,42 @@ def _entries(model: Model, file: ParameterFile) -> dict[str, dict[str, object]]:
         elif section == "inputs":
             row["default"] = variables[leaf].start
         if "interval" in meta and name not in exposed and "series" not in meta:
-            row["interval"] = _ends(meta["interval"])
+            row["interval"] = _interval_ends(meta["interval"])
     return rows
 
 
-def _ends(interval: Interval) -> list[float | bool | None]:
+def _interval_ends(interval: Interval) -> list[float | bool | None]:
     """Lower and upper end of an interval, None if infinite, and whether the ends are open."""
     ends = [end if math.isfinite(end) else None for end in (interval.low, interval.high)]
     return [*ends, interval.low_open, interval.high_open]
 
 
-def _set(file: ParameterFile, model: Model) -> dict[str, object]:
+def _parameter_set_document(file: ParameterFile, model: Model) -> dict[str, object]:
     """JSON object of a parameter file: values of exposed parameters, start values of inputs, TOML text."""
     names = model.parameter_fields()
-    values = {name: value for name, value in file.flat.items() if name in names}
-    inputs = {v.name: file.start(v.name) for v in model.inputs}
-    return {"name": file.name, "values": values, "fixed": {}, "inputs": inputs, "toml": dump(file)}
+    values = {name: value for name, value in file.values_by_name.items() if name in names}
+    inputs = {v.name: file.start_value(v.name) for v in model.inputs}
+    return {
+        "name": file.name,
+        "values": values,
+        "fixed": {},
+        "inputs": inputs,
+        "toml": format_parameter_file(file),
+    }
 
 
-def _points(model: Model, bench: LaboratoryModel) -> Iterator[dict[str, object]]:
+def _published_points(model: Model, laboratory_model: LaboratoryModel) -> Iterator[dict[str, object]]:
     outputs = {v.name: v for v in model.outputs}
     known = {v.name for v in model.inputs} | set(model.parameter_fields())
-    for paper in published(KINDS[model.joint]).papers:
-        for point in points(paper):
-            shown = bench.points.get(point.quantity)
+    for paper in published_numbers(KINDS[model.joint]).papers:
+        for point in read_points(paper):
+            shown = laboratory_model.published_points.get(point.quantity)
             if shown is None or not set(point.where) <= set(shown.arguments):
                 continue
             at = {shown.arguments[name]: value for name, value in point.where.items()}
             if not set(at) <= known:  # the law does not have this parameter
                 continue
-            factor = units.factor(point.unit, outputs[shown.output].unit)
+            factor = units.conversion_factor(point.unit, outputs[shown.output].unit)
             yield {
                 "id": f"{paper}: {point.id}",
                 "place": point.place,
@@ -297,10 +325,16 @@ def _points(model: Model, bench: LaboratoryModel) -> Iterator[dict[str, object]]
             }
 
 
-def _map(bench: LaboratoryModel, file: ParameterFile) -> dict[str, object] | None:
-    picture = bench.picture
+def _map_document(laboratory_model: LaboratoryModel, file: ParameterFile) -> dict[str, object] | None:
+    picture = laboratory_model.contact_map
     if picture is None:
         return None
-    marks, what = picture.marks(file.values)
-    row = {"name": picture.name, "doc": picture.doc, "shown": picture.shown, "marks": marks, "what": what}
-    return row | {"factor": units.factor(picture.unit, picture.shown)}
+    marks, what = picture.compute_marks(file.values)
+    row = {
+        "name": picture.name,
+        "doc": picture.doc,
+        "shown": picture.display_unit,
+        "marks": marks,
+        "what": what,
+    }
+    return row | {"factor": units.conversion_factor(picture.unit, picture.display_unit)}

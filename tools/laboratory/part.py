@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 from jointfmu_fmu_src.joint_parts import RampPanel
 
 
-class Shown(NamedTuple):
+class PublishedQuantity(NamedTuple):
     """Output of the FMU for a published quantity, and {argument of the quantity: variable of the FMU}."""
 
     output: str
@@ -27,14 +27,14 @@ class MeasuredCurve(NamedTuple):
 
     label: str
     source: str
-    over: str
-    quantity: str
+    abscissa: str
+    ordinate: str
     x: Sequence[float]
     y: Sequence[float]
-    times: str
+    scale_parameter: str
 
 
-class Map(NamedTuple):
+class ContactMap(NamedTuple):
     """Map of a quantity over the contact, computed by `lab_map` in the file `map.c` of the joint.
 
     unit, display_unit : SI unit, unit on the page
@@ -43,12 +43,12 @@ class Map(NamedTuple):
 
     name: str
     unit: str
-    shown: str
+    display_unit: str
     doc: str
-    marks: Callable[[Any], tuple[Sequence[Sequence[float]], str]]
+    compute_marks: Callable[[Any], tuple[Sequence[Sequence[float]], str]]
 
 
-class Turn(NamedTuple):
+class TransmissionView(NamedTuple):
     """Animation of a transmission: an input shaft turns, an output shaft follows against a load.
 
     input_angle, speed       : inputs of the FMU: angle and speed of the input shaft
@@ -59,7 +59,7 @@ class Turn(NamedTuple):
     default_speed            : speed of the input shaft [rad/s]
     """
 
-    driven: str
+    input_angle: str
     speed: str
     follower: str
     follower_speed: str
@@ -68,7 +68,7 @@ class Turn(NamedTuple):
     error: str
     ratio: str
     rated: str
-    usual: float
+    default_speed: float
 
 
 class Example(NamedTuple):
@@ -93,10 +93,10 @@ class LaboratoryModel:
     """
 
     panels: Sequence[RampPanel] = ()
-    spans: Mapping[str, tuple[float, float]] = field(default_factory=dict)
-    path: Sequence[str] = ()
-    points: Mapping[str, Shown] = field(default_factory=dict)
-    measured: Sequence[MeasuredCurve] = ()
-    picture: Map | None = None
-    turn: Turn | None = None
+    slider_spans: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    path_inputs: Sequence[str] = ()
+    published_points: Mapping[str, PublishedQuantity] = field(default_factory=dict)
+    measured_curves: Sequence[MeasuredCurve] = ()
+    contact_map: ContactMap | None = None
+    transmission: TransmissionView | None = None
     example: Example | None = None

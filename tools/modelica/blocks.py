@@ -10,7 +10,7 @@ from jointfmu.joints import KINDS
 from jointfmu.joints.model import Model, Variable
 from jointfmu.quantity.units import UNITS
 
-from .records import number, text
+from .records import escape_string, format_number
 
 _ROTATIONAL, _TRANSLATIONAL = "Modelica.Mechanics.Rotational", "Modelica.Mechanics.Translational"
 _ADAPTORS = {  # (rotational, the FMU takes motion) -> adaptor
@@ -28,27 +28,27 @@ _TAKES_FORCE = (
 _TAKES_MOTION = "It takes motion and gives force, so it belongs between inertias."
 
 
-def interface(model: Model) -> dict[str, object]:
+def interface_terms(model: Model) -> dict[str, object]:
     """Template variables of the partial block with an FMU's inputs and outputs."""
 
-    def column(variables: Sequence[Variable]) -> list[dict[str, object]]:
+    def connector_rows(variables: Sequence[Variable]) -> list[dict[str, object]]:
         """Rows of the connectors on one side of the block."""
         return [
             {
                 "name": v.name,
                 "unit": v.unit,
-                "doc": text(v.doc),
-                "low": f", min={number(v.low)}" if v.low > -np.inf else "",
+                "doc": escape_string(v.doc),
+                "low": f", min={format_number(v.minimum)}" if v.minimum > -np.inf else "",
                 "y": y,
             }
-            for v, y in zip(variables, _heights(variables), strict=True)
+            for v, y in zip(variables, _connector_heights(variables), strict=True)
         ]
 
-    inputs, outputs = column(model.inputs), column(model.outputs)
-    return {"name": model.name, "doc": text(model.doc), "inputs": inputs, "outputs": outputs}
+    inputs, outputs = connector_rows(model.inputs), connector_rows(model.outputs)
+    return {"name": model.name, "doc": escape_string(model.doc), "inputs": inputs, "outputs": outputs}
 
 
-def wrapper(model: Model) -> dict[str, object]:
+def wrapper_terms(model: Model) -> dict[str, object]:
     """Template variables of the model that connects an FMU to flanges."""
     flanges = terminals(model)
     members = {variable for t in flanges for variable, _ in t.members.values()}
@@ -60,20 +60,20 @@ def wrapper(model: Model) -> dict[str, object]:
         {
             "name": v.name,
             "type": f"Modelica.Units.SI.{UNITS[v.unit].quantity}",
-            "modifier": f"(min={number(v.low)}, start=0)"
-            if v.low > -np.inf and not v.start
+            "modifier": f"(min={format_number(v.minimum)}, start=0)"
+            if v.minimum > -np.inf and not v.start
             else f"={v.start:g}",
-            "doc": text(v.doc),
+            "doc": escape_string(v.doc),
         }
         for v in model.inputs
         if v.name not in members
     ]
     return {
         "name": model.name,
-        "doc": text(f"{model.name} as an imported FMU, between flanges"),
+        "doc": escape_string(f"{model.name} as an imported FMU, between flanges"),
         "note": note,
         "parameters": parameters,
-        "terminals": [_flange(t, _ports(model)) for t in flanges],
+        "terminals": [_flange_terms(t, _port_positions(model)) for t in flanges],
     }
 
 
@@ -82,20 +82,22 @@ def _takes_motion(model: Model) -> bool:
     return all(flow != "inflow" for t in terminals(model) for _, flow in t.members.values())
 
 
-def _ports(model: Model) -> dict[str, tuple[float, float]]:
+def _port_positions(model: Model) -> dict[str, tuple[float, float]]:
     """Positions (x, y) of the FMU's inputs and outputs in the diagram of a wrapper."""
     sides = zip((-24.0, 22.0), (model.inputs, model.outputs), strict=True)
     return {
-        v.name: (x, round(0.2 * y, 1)) for x, side in sides for v, y in zip(side, _heights(side), strict=True)
+        v.name: (x, round(0.2 * y, 1))
+        for x, side in sides
+        for v, y in zip(side, _connector_heights(side), strict=True)
     }
 
 
-def _heights(variables: Sequence[Variable]) -> list[int]:
+def _connector_heights(variables: Sequence[Variable]) -> list[int]:
     """Vertical positions of the connectors on one side of a block, from 90 down to -90."""
     return [round(90 - (i + 0.5) * 180 / len(variables)) for i in range(len(variables))]
 
 
-def _flange(terminal: Terminal, ports: Mapping[str, tuple[float, float]]) -> dict[str, object]:
+def _flange_terms(terminal: Terminal, port_positions: Mapping[str, tuple[float, float]]) -> dict[str, object]:
     """Template variables of a flange with its adaptor.
 
     Potential, rate and force of the terminal are connected to p, pder and f of the adaptor.
@@ -118,7 +120,7 @@ def _flange(terminal: Terminal, ports: Mapping[str, tuple[float, float]]) -> dic
         f"{gain}.u": (flip * (-39.0 if takes_motion else -51.0), y - 25.0),
         f"{gain}.y": (flip * (-50.5 if takes_motion else -39.5), y - 25.0),
         terminal.name: (flip * -100.0, y),
-        **{f"fmu.{name}": place for name, place in ports.items()},
+        **{f"fmu.{name}": place for name, place in port_positions.items()},
     }
     wires = [(f"{adaptor}.p", f"fmu.{potential}")]
     wires += [(f"{adaptor}.pder", f"fmu.{rate}")] if rate else []
@@ -128,12 +130,18 @@ def _flange(terminal: Terminal, ports: Mapping[str, tuple[float, float]]) -> dic
     shaft = "{0,0,0}" if rotational else "{0,127,0}"
     return {
         "name": terminal.name,
-        "doc": text(terminal.doc),
+        "doc": escape_string(terminal.doc),
         "connector": terminal.kind + terminal.side,
         "adaptor": _ADAPTORS[rotational, takes_motion],
         "use_rate": str(rate is not None).lower(),
         "connections": [
-            (start, end, _line(places[start], places[end], shaft if start == terminal.name else "{0,0,127}"))
+            (
+                start,
+                end,
+                _format_connection_line(
+                    places[start], places[end], shaft if start == terminal.name else "{0,0,127}"
+                ),
+            )
             for start, end in [(terminal.name, f"{adaptor}.flange"), *wires]
         ],
         "x": flip * -100,
@@ -144,7 +152,7 @@ def _flange(terminal: Terminal, ports: Mapping[str, tuple[float, float]]) -> dic
     }
 
 
-def _line(start: tuple[float, float], end: tuple[float, float], color: str) -> str:
+def _format_connection_line(start: tuple[float, float], end: tuple[float, float], color: str) -> str:
     """Format the line of a connection: horizontal, vertical at half width, horizontal."""
     middle = 0.5 * (start[0] + end[0])
     corners = [start, (middle, start[1]), (middle, end[1]), end] if start[1] != end[1] else [start, end]

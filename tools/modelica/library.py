@@ -13,25 +13,32 @@ from jointfmu_fmu_src.partners.laws import POINTS
 from jointfmu_fmu_src.templates import FRAME, law_terms, template
 
 from jointfmu import __version__
-from jointfmu.files.outputs import MARK, TEXT, check_output
+from jointfmu.files.outputs import EXCHANGE_TEXT, PROGRAM_MARK, check_output
 from jointfmu.files.writing import write_files
 from jointfmu.joints import KINDS, MODELS
-from jointfmu.joints.kind import Kind
+from jointfmu.joints.kind import JointKind
 from jointfmu.joints.model import Model
-from jointfmu.parameters import ParameterFile, default
+from jointfmu.parameters import ParameterFile, load_default
 from jointfmu.quantity import flat_fields
-from jointfmu.quantity.smooth import STEP
+from jointfmu.quantity.smooth import STEP_COEFFICIENTS
 
-from ..joint_parts import part
+from ..joint_parts import load_tool_module
 from ..systems.system import System, systems
-from .blocks import interface, wrapper
-from .records import TOLERANCE, ModelicaComponent, ModelicaRecord, WorkingPoint, environment, text
-from .systems import model_name, system_model
+from .blocks import interface_terms, wrapper_terms
+from .records import (
+    RELATIVE_TOLERANCE,
+    ModelicaComponent,
+    ModelicaRecord,
+    WorkingPoint,
+    escape_string,
+    template_environment,
+)
+from .systems import model_name, render_system_model
 
-NAME = "JointStiffness"
-_PARTNERS = ("LinkWeight", "Load", "AngleProfile", "TorqueCurve")
+LIBRARY_NAME = "JointStiffness"
+_PARTNER_COMPONENTS = ("LinkWeight", "Load", "AngleProfile", "TorqueCurve")
 """Components of systems that are no joints: loads, profiles, weight."""
-_FUNCTIONS = (
+_FUNCTION_NAMES = (
     "load",
     "stiffness",
     "bend",
@@ -44,12 +51,12 @@ _FUNCTIONS = (
     "loadDerivative",
     "stiffnessDerivative",
 )
-Points = Mapping[str, Sequence[WorkingPoint]]
+WorkingPoints = Mapping[str, Sequence[WorkingPoint]]
 """Working points of the records: {joint: working points}."""
 
 
 @dataclass(frozen=True, slots=True)
-class _Joint:
+class _LibraryJoint:
     """A joint in the library.
 
     file      : parameter file
@@ -58,7 +65,7 @@ class _Joint:
     templates : templates of the joint
     """
 
-    kind: Kind
+    kind: JointKind
     file: ParameterFile
     component: ModelicaComponent
     records: Mapping[WorkingPoint, ModelicaRecord]
@@ -70,10 +77,10 @@ class _Joint:
         return next(iter(self.records.values()))
 
 
-def write(
+def write_library(
     folder: Path,
     file: ParameterFile | None = None,
-    points: Points | None = None,
+    points: WorkingPoints | None = None,
     *,
     force: bool = False,
 ) -> list[Path]:
@@ -83,55 +90,60 @@ def write(
     points : {joint: working points}, in place of the default working points
     force  : replace a library of this name that jointfmu did not write
     """
-    check_output(folder / NAME / "package.mo", TEXT, force)
-    return write_files(folder / NAME, library(file, points))
+    check_output(folder / LIBRARY_NAME / "package.mo", EXCHANGE_TEXT, force)
+    return write_files(folder / LIBRARY_NAME, render_library(file, points))
 
 
-def library(file: ParameterFile | None = None, points: Points | None = None) -> dict[str, str]:
+def render_library(file: ParameterFile | None = None, points: WorkingPoints | None = None) -> dict[str, str]:
     """Render all files of the library: {path in the library: text}."""
     joints = [
-        _joint(kind, module, file, (points or {}).get(kind.name))
+        _collect_joint(kind, module, file, (points or {}).get(kind.name))
         for kind in KINDS.values()
-        if (module := part(kind, "modelica"))
+        if (module := load_tool_module(kind, "modelica"))
     ]
-    shared = environment()
+    shared = template_environment()
     block, model = (shared.get_template(name) for name in ("Interfaces/block.mo", "Wrappers/wrapper.mo"))
     packages = {
-        "Examples": _examples(joints, shared),
-        "Components": _components(joints) | _plain(shared, "Components", _PARTNERS, points=POINTS, comb=comb),
-        "Wrappers": {name: model.render(wrapper(fmu)) for name, fmu in MODELS.items()},
-        "Interfaces": {name: block.render(interface(fmu)) for name, fmu in MODELS.items()},
-        "Data": _data(joints),
-        "Functions": _plain(shared, "Functions", _FUNCTIONS, step=[round(a) for a in STEP]),
+        "Examples": _render_examples(joints, shared),
+        "Components": _render_components(joints)
+        | _render_plain_classes(shared, "Components", _PARTNER_COMPONENTS, points=POINTS, comb=comb),
+        "Wrappers": {name: model.render(wrapper_terms(fmu)) for name, fmu in MODELS.items()},
+        "Interfaces": {name: block.render(interface_terms(fmu)) for name, fmu in MODELS.items()},
+        "Data": _render_records(joints),
+        "Functions": _render_plain_classes(
+            shared, "Functions", _FUNCTION_NAMES, step=[round(a) for a in STEP_COEFFICIENTS]
+        ),
     }
-    notes = [text(joint.component.note) for joint in joints if joint.component.note]
+    notes = [escape_string(joint.component.note) for joint in joints if joint.component.note]
     common = {"version": __version__, "notes": notes, "example": next(iter(MODELS))}
     out = {
-        "package.mo": shared.get_template("package.mo").render(common, tolerance=f"{TOLERANCE:g}"),
-        "package.order": _order(packages),
+        "package.mo": shared.get_template("package.mo").render(common, tolerance=f"{RELATIVE_TOLERANCE:g}"),
+        "package.order": _render_package_order(packages),
     }
     for package, classes in packages.items():
         out[f"{package}/package.mo"] = shared.get_template(f"{package}/package.mo").render(common)
-        out[f"{package}/package.order"] = _order(classes)
+        out[f"{package}/package.order"] = _render_package_order(classes)
         out |= {f"{package}/{name}.mo": content for name, content in classes.items()}
     return dict(sorted(out.items()))
 
 
-def _joint(
-    kind: Kind, module: ModuleType, file: ParameterFile | None, points: Sequence[WorkingPoint] | None
-) -> _Joint:
+def _collect_joint(
+    kind: JointKind, module: ModuleType, file: ParameterFile | None, points: Sequence[WorkingPoint] | None
+) -> _LibraryJoint:
     """Collect parameters, component, records and templates of a joint."""
     component: ModelicaComponent = module.COMPONENT
     is_given = file is not None and file.joint == kind.name
-    joint_file = file if file and is_given else default(kind.name)
-    used_points = tuple(points or (*_start(joint_file), *component.points))
+    joint_file = file if file and is_given else load_default(kind.name)
+    used_points = tuple(points or (*_start_point(joint_file), *component.points))
     found: Sequence[ModelicaRecord]
     if is_given:
         found = component.records(joint_file, used_points)
     else:
         found = _default_records(kind.name, module, used_points)
     records = dict(zip(used_points, found, strict=True))
-    return _Joint(kind, joint_file, component, records, environment(Path(str(module.__file__)).parent))
+    return _LibraryJoint(
+        kind, joint_file, component, records, template_environment(Path(str(module.__file__)).parent)
+    )
 
 
 @cache
@@ -140,40 +152,42 @@ def _default_records(
 ) -> tuple[ModelicaRecord, ...]:
     """Records of the default parameters of a joint, which the library of another joint has too."""
     component: ModelicaComponent = module.COMPONENT
-    return tuple(component.records(default(joint), points))
+    return tuple(component.records(load_default(joint), points))
 
 
-def _start(file: ParameterFile) -> list[WorkingPoint]:
+def _start_point(file: ParameterFile) -> list[WorkingPoint]:
     """Working point given by the start values of the inputs in a parameter file, as a list of one or none."""
-    point = tuple(file.start(name) for name in KINDS[file.joint].working_point)
+    point = tuple(file.start_value(name) for name in KINDS[file.joint].working_point)
     return [point] if point and point[0] > 0.0 else []
 
 
-def _order(names: Mapping[str, object]) -> str:
+def _render_package_order(names: Mapping[str, object]) -> str:
     """Render the file package.order."""
     return "\n".join(names) + "\n"
 
 
-def _plain(shared: Environment, package: str, names: Sequence[str], **terms: object) -> dict[str, str]:
+def _render_plain_classes(
+    shared: Environment, package: str, names: Sequence[str], **terms: object
+) -> dict[str, str]:
     """Render classes that do not depend on a joint: {class: text}."""
     return {name: shared.get_template(f"{package}/{name}.mo").render(terms) for name in names}
 
 
-def _components(joints: Sequence[_Joint]) -> dict[str, str]:
+def _render_components(joints: Sequence[_LibraryJoint]) -> dict[str, str]:
     classes = {}
     for joint in joints:
         name, model = joint.component.name, MODELS[joint.component.name]
         classes[name] = joint.templates.get_template(f"Components/{name}.mo").render(
-            joint.component.texts(joint.record),
-            meta=_meanings(joint.kind),
+            joint.component.template_texts(joint.record),
+            meta=_parameter_meanings(joint.kind),
             docs={v.name: v.doc for v in (*model.inputs, *model.outputs)},
-            html=_documentation(model, joint.file),
+            html=_render_documentation(model, joint.file),
             record=joint.record.name,
         )
     return classes
 
 
-def _data(joints: Sequence[_Joint]) -> dict[str, str]:
+def _render_records(joints: Sequence[_LibraryJoint]) -> dict[str, str]:
     """Render the base records and the records with tables: {record: text}, base records first.
 
     Raises ValueError if a record has the name of a base record.
@@ -182,7 +196,7 @@ def _data(joints: Sequence[_Joint]) -> dict[str, str]:
     for joint in joints:
         base = joint.component.base
         extended = joint.templates.get_template(f"Data/{base}.mo")
-        bases[base] = extended.render(meta=_meanings(joint.kind))
+        bases[base] = extended.render(meta=_parameter_meanings(joint.kind))
         filled = joint.templates.get_template("Data/record.mo")
         for record in joint.records.values():
             if record.name in {other.component.base for other in joints}:
@@ -190,52 +204,56 @@ def _data(joints: Sequence[_Joint]) -> dict[str, str]:
                     f"name = {joint.file.name!r}: the library has a class {record.name}; "
                     "expected another name"
                 )
-            tables[record.name] = filled.render(record.content(base), version=__version__)
+            tables[record.name] = filled.render(record.template_terms(base), version=__version__)
     return bases | tables
 
 
-def _examples(joints: Sequence[_Joint], shared: Environment) -> dict[str, str]:
+def _render_examples(joints: Sequence[_LibraryJoint], shared: Environment) -> dict[str, str]:
     """Render the shipped systems: {class: text}."""
     by_kind = {joint.kind.name: joint for joint in joints}
     classes = {}
     for system in systems().values():
         for joint in joints:
             system = system.with_joint(joint.file)
-        classes[model_name(system)] = system_model(
-            system, shared, partial(_known, by_kind), f"{NAME}.Examples"
+        classes[model_name(system)] = render_system_model(
+            system, shared, partial(_find_record, by_kind), f"{LIBRARY_NAME}.Examples"
         )
     return classes
 
 
-def system_text(system: System) -> str:
+def render_system(system: System) -> str:
     """Render a system as a stand-alone model that uses the components of the library."""
-    return f"// {MARK}\n{system_model(system, environment(), lambda kind, file, point: None)}"
+    return f"// {PROGRAM_MARK}\n{render_system_model(system, template_environment(), lambda kind, file, point: None)}"
 
 
-def _known(
-    joints: Mapping[str, _Joint], kind: str, file: ParameterFile, point: WorkingPoint
+def _find_record(
+    joints: Mapping[str, _LibraryJoint], kind: str, file: ParameterFile, point: WorkingPoint
 ) -> ModelicaRecord | None:
     """Find the record of the library with a joint's parameters at a working point; None if there is none."""
     joint = joints[kind]
-    special = joint.component.special
-    same = all(joint.file.flat.get(name) == value for name, value in file.flat.items() if name not in special)
+    special = joint.component.component_only_parameters
+    same = all(
+        joint.file.values_by_name.get(name) == value
+        for name, value in file.values_by_name.items()
+        if name not in special
+    )
     return joint.records.get(point, joint.record if not point else None) if same else None
 
 
-def _meanings(kind: Kind) -> dict[str, str]:
+def _parameter_meanings(kind: JointKind) -> dict[str, str]:
     """Meanings of the parameters of all laws of a joint: {structured name: meaning}."""
     return {
-        name: text(item.metadata["doc"])
+        name: escape_string(item.metadata["doc"])
         for parameters in kind.laws.values()
         for name, item in flat_fields(parameters)
         if "doc" in item.metadata
     }
 
 
-def _documentation(model: Model, file: ParameterFile) -> dict[str, str]:
+def _render_documentation(model: Model, file: ParameterFile) -> dict[str, str]:
     """Render sections of the FMU's documentation page for a Modelica annotation: {section: text}."""
     folder = Path(__file__).parent
     page = template(asset(model, "page.html"), folder, FRAME)
     names = ("what", "law", "trust", "paper")
     terms = {"model": model, "fmu": False, **law_terms(file)}
-    return {name: text(page.render(terms, part=name).strip()) for name in names}
+    return {name: escape_string(page.render(terms, part=name).strip()) for name in names}

@@ -17,45 +17,45 @@ from jointfmu.mechanics.curve import Curve
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
 
-from ..thinning import kept
+from ..thinning import decimate
 
-GIVEN, COMPUTED = 15, 10
+GIVEN_DIGITS, COMPUTED_DIGITS = 15, 10
 """Digits of numbers from a parameter file, and of computed numbers. More digits of computed numbers would
 depend on the processor; the error of the tables is 1e-7."""
 
 
-def number(value: float, digits: int = GIVEN) -> str:
+def format_number(value: float, digits: int = GIVEN_DIGITS) -> str:
     """Format a number or a Boolean as a Modelica expression."""
     if isinstance(value, bool):
         return str(value).lower()
     return f"{value + 0.0:.{digits}g}"
 
 
-def matrix(rows: NDArray[np.float64]) -> str:
+def format_matrix(rows: NDArray[np.float64]) -> str:
     """Format a matrix of computed numbers as a Modelica expression, one row per line."""
-    lines = (", ".join(number(x, COMPUTED) for x in row) for row in rows)
+    lines = (", ".join(format_number(x, COMPUTED_DIGITS) for x in row) for row in rows)
     return "[\n      " + ";\n      ".join(lines) + "]"
 
 
-def text(content: str) -> str:
+def escape_string(content: str) -> str:
     """Escape a text for a Modelica string. A blank is added after a final backslash for simple parsers."""
     content += " " * content.endswith("\\")
     return content.replace("\\", "\\\\").replace('"', '\\"')
 
 
-def html(content: str) -> str:
+def escape_html(content: str) -> str:
     """Escape a plain text for the HTML of a documentation annotation, which is a Modelica string."""
-    return text(escape(content, quote=False))
+    return escape_string(escape(content, quote=False))
 
 
-def identifier(name: str) -> str:
+def make_identifier(name: str) -> str:
     """Make a Modelica identifier from a title."""
     words = re.sub(r"[^A-Za-z0-9]+", "_", name).strip("_")
     plain = words[:1].isalpha() and not reserved(words) and words.lower() != "package"
     return words[0].upper() + words[1:] if plain else f"Joint_{words}"
 
 
-def environment(*folders: Path) -> Environment:
+def template_environment(*folders: Path) -> Environment:
     """Jinja environment with the templates of the folders, then of the library. Unknown names are errors."""
     return Environment(
         loader=FileSystemLoader([*folders, Path(__file__).parent / "templates"]),
@@ -71,9 +71,9 @@ def environment(*folders: Path) -> Environment:
     )
 
 
-TOLERANCE = 1e-7
+RELATIVE_TOLERANCE = 1e-7
 """Largest relative error [1] of load and stiffness of a table, against the original curve."""
-_INNER = np.linspace(0.0, 1.0, 9)[1:-1]
+_SAMPLE_FRACTIONS = np.linspace(0.0, 1.0, 9)[1:-1]
 
 
 class InterpolationTable(NamedTuple):
@@ -87,17 +87,17 @@ class InterpolationTable(NamedTuple):
     error: float
 
 
-def curve_of(table: InterpolationTable) -> Curve:
+def to_curve(table: InterpolationTable) -> Curve:
     """Convert a table to a curve."""
     x, y, k, before, after = table.rows.T
     return Curve(x, y, k, after[:-1], before[1:])
 
 
-def thinned(
+def decimate_curve(
     curve: Curve,
-    reference: int = -1,
-    keep: Collection[int] = (),
-    fits: Callable[[int, int], bool] | None = None,
+    reference_node: int = -1,
+    fixed_nodes: Collection[int] = (),
+    segment_fits: Callable[[int, int], bool] | None = None,
 ) -> InterpolationTable:
     """Select few nodes of a curve whose quintic spline reproduces it within RELATIVE_TOLERANCE.
 
@@ -108,23 +108,25 @@ def thinned(
 
     The nodes are selected one after the other.
     """
-    kinks = np.flatnonzero(curve.bend_end[:-1] != curve.bend_start[1:]) + 1
-    stops = {*kinks.tolist(), *keep, curve.displacement.size - 1}
-    floor = (0.0, 0.0) if reference < 0 else (curve.load[reference], curve.stiffness[reference])
+    kinks = np.flatnonzero(curve.slope_end[:-1] != curve.slope_start[1:]) + 1
+    stops = {*kinks.tolist(), *fixed_nodes, curve.displacement.size - 1}
+    floor = (
+        (0.0, 0.0) if reference_node < 0 else (curve.load[reference_node], curve.stiffness[reference_node])
+    )
 
     def reproduces(i: int, j: int) -> bool:
-        accurate = _segment_error(curve, i, j, floor) <= TOLERANCE
-        return accurate and (fits is None or fits(i, j))
+        accurate = _segment_error(curve, i, j, floor) <= RELATIVE_TOLERANCE
+        return accurate and (segment_fits is None or segment_fits(i, j))
 
-    index = kept(stops, reproduces)
+    index = decimate(stops, reproduces)
     worst = max(_segment_error(curve, i, j, floor) for i, j in pairwise(index.tolist()))
-    before = np.concatenate([[curve.bend_start[0]], curve.bend_end[index[1:] - 1]])
-    after = np.concatenate([curve.bend_start[index[:-1]], [curve.bend_end[-1]]])
+    before = np.concatenate([[curve.slope_start[0]], curve.slope_end[index[1:] - 1]])
+    after = np.concatenate([curve.slope_start[index[:-1]], [curve.slope_end[-1]]])
     columns = [curve.displacement[index], curve.load[index], curve.stiffness[index], before, after]
     return InterpolationTable(np.column_stack(columns), worst)
 
 
-def _segment_error(curve: Curve, i: int, j: int, floor: tuple[float, float]) -> float:
+def _segment_error(curve: Curve, i: int, j: int, min_reference: tuple[float, float]) -> float:
     """Largest relative error of load and stiffness if one quintic leads from node i to node j.
 
     min_reference : smallest load and stiffness to which the errors are relative
@@ -134,14 +136,14 @@ def _segment_error(curve: Curve, i: int, j: int, floor: tuple[float, float]) -> 
         curve.displacement[ends],
         curve.load[ends],
         curve.stiffness[ends],
-        curve.bend_start[i : i + 1],
-        curve.bend_end[j - 1 : j],
+        curve.slope_start[i : i + 1],
+        curve.slope_end[j - 1 : j],
     )
     x = curve.displacement[i : j + 1]
-    points = np.concatenate([x[1:-1], (x[:-1, None] + np.diff(x)[:, None] * _INNER).ravel()])
+    points = np.concatenate([x[1:-1], (x[:-1, None] + np.diff(x)[:, None] * _SAMPLE_FRACTIONS).ravel()])
     worst = 0.0
     for exact, approximate, reference in zip(
-        curve.derivatives(points), quintic.derivatives(points), floor, strict=True
+        curve.derivatives(points), quintic.derivatives(points), min_reference, strict=True
     ):
         size = np.maximum(np.abs(exact), reference)
         positive = size > 0.0
@@ -169,26 +171,26 @@ class ModelicaRecord:
     title: str
     table: InterpolationTable
     values: Mapping[str, str] = field(default_factory=dict)
-    more: str = ""
+    error_note: str = ""
 
     @property
     def end(self) -> float:
         """Largest load of the table [N or N.m]."""
         return float(self.table.rows[-1, 1])
 
-    def content(self, base: str) -> dict[str, object]:
+    def template_terms(self, base: str) -> dict[str, object]:
         """Template variables of the record.
 
         base : name of the record that it extends
         """
         return {
             "name": self.name,
-            "title": text(self.title),
+            "title": escape_string(self.title),
             "base": base,
-            "values": {**self.values, "table": matrix(self.table.rows)},
-            "about": html(f"From the parameters {self.title}."),
-            "error": f"{max(self.table.error, TOLERANCE):.0e}",
-            "more": self.more,
+            "values": {**self.values, "table": format_matrix(self.table.rows)},
+            "about": escape_html(f"From the parameters {self.title}."),
+            "error": f"{max(self.table.error, RELATIVE_TOLERANCE):.0e}",
+            "more": self.error_note,
         }
 
 
@@ -218,19 +220,19 @@ class ModelicaComponent:
     base: str
     points: Sequence[WorkingPoint] = ((),)
     records: Callable[[ParameterFile, Sequence[WorkingPoint]], list[ModelicaRecord]]
-    texts: Callable[[ModelicaRecord], Mapping[str, str]]
+    template_texts: Callable[[ModelicaRecord], Mapping[str, str]]
     note: str = ""
     flanges: Sequence[str] = ("flange_a", "flange_b")
-    of_system: Callable[[ParameterFile], Mapping[str, str]] = lambda file: {}
-    held: Mapping[str, str] = field(default_factory=dict)
-    special: Sequence[str] = ()
+    system_parameters: Callable[[ParameterFile], Mapping[str, str]] = lambda file: {}
+    fixed_input_parameters: Mapping[str, str] = field(default_factory=dict)
+    component_only_parameters: Sequence[str] = ()
 
 
-def given(values: Mapping[str, float]) -> dict[str, str]:
+def format_given(values: Mapping[str, float]) -> dict[str, str]:
     """Format values of a parameter file as Modelica expressions."""
-    return {name: number(value, GIVEN) for name, value in values.items()}
+    return {name: format_number(value, GIVEN_DIGITS) for name, value in values.items()}
 
 
-def computed(values: Mapping[str, float]) -> dict[str, str]:
+def format_computed(values: Mapping[str, float]) -> dict[str, str]:
     """Format computed values as Modelica expressions."""
-    return {name: number(value, COMPUTED) for name, value in values.items()}
+    return {name: format_number(value, COMPUTED_DIGITS) for name, value in values.items()}

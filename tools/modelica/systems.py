@@ -10,34 +10,36 @@ from jointfmu_fmu_src.partners.laws import POINTS
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile
 
-from ..joint_parts import part as joint_part
+from ..joint_parts import load_tool_module as joint_part
 from ..systems.system import Component as Part
 from ..systems.system import System
 from ..systems.wiring import End, ends
-from .records import ModelicaComponent, ModelicaRecord, html, number, text
+from .records import ModelicaComponent, ModelicaRecord, escape_html, escape_string, format_number
 
-_MSL = "Modelica.Mechanics"
+_MECHANICS_PACKAGE = "Modelica.Mechanics"
 _LIBRARY = "JointStiffness.Components"
-_NOMINAL = {"phi": "1e-3", "w": "0.1", "s": "1e-6", "v": "1e-3"}
+_NOMINAL_VALUES = {"phi": "1e-3", "w": "0.1", "s": "1e-6", "v": "1e-3"}
 """{state: nominal value [SI]} of bodies."""
-_APART, _ROW = 30, 30
+_COLUMN_SPACING, _ROW_SPACING = 30, 30
 """Distances on the diagram: between columns of components, and between rows."""
 
-Records = Callable[[str, ParameterFile, tuple[float, ...]], ModelicaRecord | None]
+RecordLookup = Callable[[str, ParameterFile, tuple[float, ...]], ModelicaRecord | None]
 """(kind of joint, parameter file, working point) -> record of the library; None if it has no such record."""
 
 
-class Declared(NamedTuple):
+class Declaration(NamedTuple):
     """Declaration of a component: type, name, modifications (`values`), position (x, y) on the diagram."""
 
     type: str
     name: str
-    values: str
+    modifications: str
     x: int
     y: int
 
 
-def system_model(system: System, shared: Environment, library: Records, within: str = "") -> str:
+def render_system_model(
+    system: System, shared: Environment, find_record: RecordLookup, package: str = ""
+) -> str:
     """Render a system as a Modelica model.
 
     find_record : finds the record of a joint in the library; a joint without one gets a record in the model
@@ -47,53 +49,53 @@ def system_model(system: System, shared: Environment, library: Records, within: 
     `wiring.ends`.
     """
     connected = ends(system)
-    positions = _places(system, connected)
+    positions = _diagram_positions(system, connected)
     records: list[dict[str, object]] = []
-    declarations: list[Declared] = []
+    declarations: list[Declaration] = []
     lines: list[tuple[str, str, str]] = []
 
-    def declare(kind: str, name: str, values: Iterable[str], of: str = "") -> None:
+    def declare(kind: str, name: str, values: Iterable[str], neighbour: str = "") -> None:
         """Declare a component; it is placed to the right of the component `of` to which it belongs."""
-        x, y = positions[of or name]
-        if of:
-            x += _APART
-            y -= _ROW * sum((declared.x, declared.y) == (x, y) for declared in declarations)
-        declarations.append(Declared(kind, name, ", ".join(values), x, y))
+        x, y = positions[neighbour or name]
+        if neighbour:
+            x += _COLUMN_SPACING
+            y -= _ROW_SPACING * sum((declared.x, declared.y) == (x, y) for declared in declarations)
+        declarations.append(Declaration(kind, name, ", ".join(values), x, y))
         positions[name] = (x, y)
 
-    def connect(one: str, other: str) -> None:
+    def connect(start_flange: str, end_flange: str) -> None:
         """Connect two flanges, `component.flange`."""
-        points = (positions[end.partition(".")[0]] for end in (one, other))
-        lines.append((one, other, ",".join(f"{{{x},{y}}}" for x, y in points)))
+        points = (positions[end.partition(".")[0]] for end in (start_flange, end_flange))
+        lines.append((start_flange, end_flange, ",".join(f"{{{x},{y}}}" for x, y in points)))
 
     for name, component in system.components.items():
         if component.file:
-            data, changes = _record(component, library, records)
+            data, changes = _joint_modifications(component, find_record, records)
             declare(f"{_LIBRARY}.{component.model}", name, [*data, *changes])
         else:
-            _PARTNERS[component.model](component, declare, connect)
+            _PARTNER_DECLARERS[component.model](component, declare, connect)
     for end, other_end in connected:
         assert end.component
-        flange, other_flange = _flange(end), _flange(other_end) if other_end.component else None
+        flange, other_flange = _flange_name(end), _flange_name(other_end) if other_end.component else None
         if flange is None:
             continue
         if other_flange is None:
             support = f"{flange.replace('.', '_')}_held"
             domain = "Rotational" if end.flange and end.flange.kind == ROTATIONAL else "Translational"
-            declare(f"{_MSL}.{domain}.Components.Fixed", support, [], end.component.name)
+            declare(f"{_MECHANICS_PACKAGE}.{domain}.Components.Fixed", support, [], end.component.name)
             other_flange = f"{support}.flange"
         connect(flange, other_flange)
     return shared.get_template("Examples/system.mo").render(
-        within=within,
+        within=package,
         name=model_name(system),
-        title=text(system.title),
+        title=escape_string(system.title),
         records=records,
         parts=declarations,
         lines=lines,
-        stop=number(system.stop_time),
-        interval=number(system.interval),
-        about=html(f"{system.description}."),
-        sources=_sources(system),
+        stop=format_number(system.stop_time),
+        interval=format_number(system.interval),
+        about=escape_html(f"{system.description}."),
+        sources=_format_sources(system),
     )
 
 
@@ -102,7 +104,7 @@ def model_name(system: System) -> str:
     return system.name.title().replace("_", "")
 
 
-def _flange(end: End) -> str | None:
+def _flange_name(end: End) -> str | None:
     """Name `component.flange` of the end of a connection; None if the component has no such flange."""
     assert end.component
     name = end.component.name
@@ -112,121 +114,132 @@ def _flange(end: End) -> str | None:
     assert end.flange
     shaft = end.flange.name.removeprefix("flange")
     flange = f"flange_{end.flange.side}" if shaft.isdigit() else end.flange.name
-    return f"{name}.{flange}" if end.body or flange in _component(end.component).flanges else None
+    return f"{name}.{flange}" if end.body or flange in _modelica_component(end.component).flanges else None
 
 
-def _component(part: Part) -> ModelicaComponent:
+def _modelica_component(system_component: Part) -> ModelicaComponent:
     """Modelica component of a joint in a system. Raises ValueError if the library has none."""
-    module = joint_part(KINDS[part.kind], "modelica")
-    if module is None or module.COMPONENT.name != part.model:
-        raise ValueError(f"{part.name}: the Modelica library has no component of a {part.model}")
+    module = joint_part(KINDS[system_component.kind], "modelica")
+    if module is None or module.COMPONENT.name != system_component.model:
+        raise ValueError(
+            f"{system_component.name}: the Modelica library has no component of a {system_component.model}"
+        )
     component: ModelicaComponent = module.COMPONENT
     return component
 
 
-def _record(
-    part: Part, library: Records, records: list[dict[str, object]]
+def _joint_modifications(
+    system_component: Part, find_record: RecordLookup, records: list[dict[str, object]]
 ) -> tuple[Sequence[str], Sequence[str]]:
     """Modifications of a joint's component: its record, and other parameters that the system sets.
 
     records : list of records in the model, to which a record is added if the library has none
     """
-    assert part.file
-    component = _component(part)
-    file = part.file
-    point = tuple(part.state.get(name, file.start(name)) for name in KINDS[part.kind].working_point)
-    changes = [f"{key}={value}" for key, value in component.of_system(file).items()]
+    assert system_component.file
+    component = _modelica_component(system_component)
+    file = system_component.file
+    point = tuple(
+        system_component.state.get(name, file.start_value(name))
+        for name in KINDS[system_component.kind].working_point
+    )
+    changes = [f"{key}={value}" for key, value in component.system_parameters(file).items()]
     changes += [
-        f"{component.held[name]}={number(part.state[name])}" for name in component.held if name in part.state
+        f"{component.fixed_input_parameters[name]}={format_number(system_component.state[name])}"
+        for name in component.fixed_input_parameters
+        if name in system_component.state
     ]
-    known_record = library(part.kind, file, point)
+    known_record = find_record(system_component.kind, file, point)
     if known_record:
         return [f"data=JointStiffness.Data.{known_record.name}()"], changes
     (record,) = component.records(file, [point])
-    name = f"{part.name[0].upper()}{part.name[1:]}Data"
-    title = text(f"{file.name}, of {part.name}")
-    records.append(record.content(component.base) | {"name": name, "title": title})
+    name = f"{system_component.name[0].upper()}{system_component.name[1:]}Data"
+    title = escape_string(f"{file.name}, of {system_component.name}")
+    records.append(record.template_terms(component.base) | {"name": name, "title": title})
     return [f"data={name}()"], changes
 
 
-def _numbers(values: Mapping[str, Any], names: Iterable[str] | None = None) -> list[str]:
-    return [f"{key}={number(value)}" for key, value in values.items() if names is None or key in names]
+def _format_numbers(values: Mapping[str, Any], names: Iterable[str] | None = None) -> list[str]:
+    return [f"{key}={format_number(value)}" for key, value in values.items() if names is None or key in names]
 
 
-def _states(*names: str) -> list[str]:
-    return [f"{name}(fixed=true, start=0, nominal={_NOMINAL[name]})" for name in names]
+def _format_states(*names: str) -> list[str]:
+    return [f"{name}(fixed=true, start=0, nominal={_NOMINAL_VALUES[name]})" for name in names]
 
 
 Declare = Callable[..., None]
 Connect = Callable[[str, str], None]
 
 
-def _inertia(part: Part, declare: Declare, connect: Connect) -> None:
+def _declare_inertia(system_component: Part, declare: Declare, connect: Connect) -> None:
     declare(
-        f"{_MSL}.Rotational.Components.Inertia",
-        part.name,
-        [*_numbers(part.values, ("J",)), *_states("phi", "w")],
+        f"{_MECHANICS_PACKAGE}.Rotational.Components.Inertia",
+        system_component.name,
+        [*_format_numbers(system_component.values, ("J",)), *_format_states("phi", "w")],
     )
-    weight = {key: part.values.get(key, 0.0) for key in ("m", "l")}
+    weight = {key: system_component.values.get(key, 0.0) for key in ("m", "l")}
     if all(weight.values()):
-        name = f"{part.name}_weight"
-        declare(f"{_LIBRARY}.LinkWeight", name, _numbers(weight), part.name)
-        connect(f"{part.name}.flange_b", f"{name}.flange")
+        name = f"{system_component.name}_weight"
+        declare(f"{_LIBRARY}.LinkWeight", name, _format_numbers(weight), system_component.name)
+        connect(f"{system_component.name}.flange_b", f"{name}.flange")
 
 
-def _source(block: str, domain: str, kind: str, signal: str) -> Callable[[Part, Declare, Connect], None]:
+def _create_source_declarer(
+    block: str, domain: str, kind: str, signal: str
+) -> Callable[[Part, Declare, Connect], None]:
     """Return the function that declares a load: a signal block and a source of force or torque."""
 
-    def add(part: Part, declare: Declare, connect: Connect) -> None:
-        values = part.values
-        points = [number(values[f"p{k}"]) for k in range(1, POINTS + 1) if f"p{k}" in values]
-        modifications = _numbers({key: value for key, value in values.items() if not key[1:].isdigit()})
+    def declare_source(system_component: Part, declare: Declare, connect: Connect) -> None:
+        values = system_component.values
+        points = [format_number(values[f"p{k}"]) for k in range(1, POINTS + 1) if f"p{k}" in values]
+        modifications = _format_numbers(
+            {key: value for key, value in values.items() if not key[1:].isdigit()}
+        )
         if points:
             modifications.append(f"p={{{', '.join(points)}}}")
-        declare(f"{_LIBRARY}.{block}", part.name, modifications)
-        source = f"{part.name}_{signal}"
-        declare(f"{_MSL}.{domain}.Sources.{kind}", source, [], part.name)
-        connect(f"{part.name}.y", f"{source}.{signal}")
+        declare(f"{_LIBRARY}.{block}", system_component.name, modifications)
+        source = f"{system_component.name}_{signal}"
+        declare(f"{_MECHANICS_PACKAGE}.{domain}.Sources.{kind}", source, [], system_component.name)
+        connect(f"{system_component.name}.y", f"{source}.{signal}")
 
-    return add
+    return declare_source
 
 
-_PARTNERS: dict[str, Callable[[Part, Declare, Connect], None]] = {
-    "RotationalInertia": _inertia,
+_PARTNER_DECLARERS: dict[str, Callable[[Part, Declare, Connect], None]] = {
+    "RotationalInertia": _declare_inertia,
     "TranslationalMass": lambda part, declare, _: declare(
-        f"{_MSL}.Translational.Components.Mass",
+        f"{_MECHANICS_PACKAGE}.Translational.Components.Mass",
         part.name,
-        [*_numbers(part.values, ("m",)), *_states("s", "v")],
+        [*_format_numbers(part.values, ("m",)), *_format_states("s", "v")],
     ),
-    "TorqueProfile": _source("Load", "Rotational", "Torque", "tau"),
-    "ForceProfile": _source("Load", "Translational", "Force", "f"),
-    "TorqueCurve": _source("TorqueCurve", "Rotational", "Torque", "tau"),
+    "TorqueProfile": _create_source_declarer("Load", "Rotational", "Torque", "tau"),
+    "ForceProfile": _create_source_declarer("Load", "Translational", "Force", "f"),
+    "TorqueCurve": _create_source_declarer("TorqueCurve", "Rotational", "Torque", "tau"),
     "AngleProfile": lambda part, declare, _: declare(
-        f"{_LIBRARY}.AngleProfile", part.name, _numbers(part.values)
+        f"{_LIBRARY}.AngleProfile", part.name, _format_numbers(part.values)
     ),
 }
 
 
-def _places(system: System, connected: Sequence[tuple[End, End]]) -> dict[str, tuple[int, int]]:
+def _diagram_positions(system: System, connections: Sequence[tuple[End, End]]) -> dict[str, tuple[int, int]]:
     """Positions of the components on the diagram: a row for each connected chain, in file order."""
     chains: list[set[str]] = []
-    for pair in connected:
+    for pair in connections:
         names = {end.component.name for end in pair if end.component}
         joined = [chain for chain in chains if chain & names]
         chains = [chain for chain in chains if not chain & names] + [names.union(*joined)]
     order = list(system.components)
     chains.sort(key=lambda chain: min(map(order.index, chain)))
     return {
-        name: (_APART * column * 2 - 80, 80 - _ROW * row)
+        name: (_COLUMN_SPACING * column * 2 - 80, 80 - _ROW_SPACING * row)
         for row, chain in enumerate(chains)
         for column, name in enumerate(sorted(chain, key=order.index))
     }
 
 
-def _sources(system: System) -> str:
+def _format_sources(system: System) -> str:
     rows = "".join(
-        f"<tr><td><code>{part.name}.{name}</code></td><td>{number(value)} "
-        f"{part.units[name].replace('.', ' ')}</td><td>{html(part.sources[name])}</td></tr>\n"
+        f"<tr><td><code>{part.name}.{name}</code></td><td>{format_number(value)} "
+        f"{part.units[name].replace('.', ' ')}</td><td>{escape_html(part.sources[name])}</td></tr>\n"
         for part in system.components.values()
         for name, value in part.values.items()
     )

@@ -9,7 +9,7 @@ from jointfmu_fmu_src.native.compiled.compiler import file_name, libraries
 
 from jointfmu.files import archives
 
-from ..host import description
+from ..host import read_description
 
 INPUTS = ["phi1", "w1", "phi2", "w2"]
 """First inputs of the FMU of a joint between two flanges."""
@@ -43,7 +43,7 @@ def plugin(fmu: str | Path, out: str | Path) -> Path:
 
 def _sources(fmu: Path) -> tuple[str, dict[str, str]]:
     """Name of an FMU and {file name: text} of its C sources; ValueError if it is not suitable."""
-    model_description = description(fmu)
+    model_description = read_description(fmu)
     with archives.open_archive(fmu) as archive:
         sources = {
             member.removeprefix("sources/"): archives.read_member(archive, member).decode()

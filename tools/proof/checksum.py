@@ -3,7 +3,7 @@
 import hashlib
 from xml.etree.ElementTree import Element
 
-DEFAULT = "SHA3-256"
+DEFAULT_ALGORITHM = "SHA3-256"
 """checksumType if a related file states none."""
 ALGORITHMS = {
     f"{family}-{bits}": f"{name}{bits}"
@@ -22,7 +22,7 @@ def check(related: Element, content: bytes) -> None:
     """
     if (stated := related.get("checksum")) is None:
         return
-    kind = related.get("checksumType", DEFAULT)
+    kind = related.get("checksumType", DEFAULT_ALGORITHM)
     if kind not in ALGORITHMS:
         raise ValueError(f"has checksumType = {kind!r}, allowed are {', '.join(ALGORITHMS)}")
     if (found := hashlib.new(ALGORITHMS[kind], content).hexdigest()) != stated.strip().lower():

@@ -13,17 +13,17 @@ from typing import Any
 import numpy as np
 from jointfmu_fmu_src.proof.standard import FLOOR
 
-from ..host import Instance, description, opened
-from .task import Rows, Task, reader
+from ..host import Instance, open_instance, read_description
+from .task import Rows, Task, output_reader
 
-MOST_STEPS = 100_000
+MAX_SOLVER_STEPS = 100_000
 """Maximum number of solver steps between two communication points."""
-NEAR = 1e-9
+EVENT_TIME_TOLERANCE = 1e-9
 """Distance of an event from a communication point, over the communication interval [1], below which both
 coincide."""
 
 
-def available() -> bool:
+def has_solver() -> bool:
     """Whether fmpy contains its solver CVode for this platform."""
     from fmpy import __file__ as package
     from fmpy import platform_tuple
@@ -31,25 +31,27 @@ def available() -> bool:
     return Path(package).parent.joinpath("sundials", platform_tuple).is_dir()
 
 
-def fmpy(task: Task, messages: list[str]) -> Rows:
+def run_fmpy_exchange(task: Task, messages: list[str]) -> Rows:
     """Execute an experiment for model exchange in fmpy with CVode (FMI 2.0 and 3.0).
 
     messages : list to which the warnings and errors of the FMU are appended
     """
-    with opened(task.folder, description(task.fmu), task.fmu, messages, exchange=True) as instance:
-        instance.begin(task.times[0])
-        instance.set({**task.settings, **task.given(0)})
+    with open_instance(
+        task.folder, read_description(task.fmu), task.fmu, messages, exchange=True
+    ) as instance:
+        instance.enter_initialization(task.times[0])
+        instance.set_values({**task.settings, **task.inputs_at(0)})
         instance.fmu.exitInitializationMode()
-        motion = _Motion(instance, task)
-        read = reader(instance, task.outputs)
+        motion = _ExchangeSimulation(instance, task)
+        read = output_reader(instance, task.outputs)
         rows: Rows = [read()]
         for i in range(len(task.times) - 1):
-            motion.over(i)
+            motion.advance(i)
             rows.append(read())
     return rows
 
 
-class _Motion:
+class _ExchangeSimulation:
     """Simulation of an FMU for model exchange between communication points.
 
     interval : index of the current communication interval
@@ -63,85 +65,92 @@ class _Motion:
 
         self.instance, self.fmu, self.task = instance, instance.fmu, task
         model, variables = instance.description, instance.variables
-        self.accepts = model.modelExchange.needsCompletedIntegratorStep
-        self.continuous = [
+        self.needs_completed_step = model.modelExchange.needsCompletedIntegratorStep
+        self.continuous_inputs = [
             name
             for name in task.inputs
             if task.kinds[name] == "real" and variables[name].variability != "discrete"
         ]
         self.interval, self.time = 0, task.times[0]
         self.failure: Exception | None = None
-        self._settle()
+        self._iterate_event()
         rates = "Derivatives" if instance.version == 2 else "ContinuousStateDerivatives"
         self.solver = CVodeSolver(
             nx=model.numberOfContinuousStates,
             nz=model.numberOfEventIndicators,
-            get_x=self._direct("GetContinuousStates"),
-            set_x=self._direct("SetContinuousStates"),
-            get_dx=self._direct(f"Get{rates}"),
-            get_z=self._direct("GetEventIndicators"),
+            get_x=self._c_callback("GetContinuousStates"),
+            set_x=self._c_callback("SetContinuousStates"),
+            get_dx=self._c_callback(f"Get{rates}"),
+            get_z=self._c_callback("GetEventIndicators"),
             get_nominals=self._nominals,
-            set_time=self._kept(self._at) if self.continuous else self._direct("SetTime"),
-            input=_Nothing,
+            set_time=self._keep_failure(self._set_time)
+            if self.continuous_inputs
+            else self._c_callback("SetTime"),
+            input=_NoInput,
             startTime=task.times[0],
             relativeTolerance=task.tolerance,
-            maxNumSteps=MOST_STEPS,
+            maxNumSteps=MAX_SOLVER_STEPS,
         )
 
-    def over(self, interval: int) -> None:
+    def advance(self, interval: int) -> None:
         """Integrate one communication interval, and handle the events up to and at its end."""
         self.interval = interval
         begin, end = self.task.times[interval : interval + 2]
-        time_tolerance = NEAR * (end - begin)
+        time_tolerance = EVENT_TIME_TOLERANCE * (end - begin)
         while end - self.time > time_tolerance:
             if self.event <= self.time:
                 raise RuntimeError(f"announces an event at {self.event:g} s when it is {self.time:g} s")
             stop = self.event if self.event < end + time_tolerance else end
-            _stop_at(self.solver, stop)
+            _set_stop_time(self.solver, stop)
             _, roots, self.time = self.solver.step(self.time, stop)
             if self.failure:
                 raise self.failure
-            self._at(self.time)
-            step_event, terminates = self.fmu.completedIntegratorStep() if self.accepts else (False, False)
-            self._check(terminates)
-            input_event = end - self.time <= time_tolerance and self._jumps(interval + 1)
+            self._set_time(self.time)
+            step_event, terminates = (
+                self.fmu.completedIntegratorStep() if self.needs_completed_step else (False, False)
+            )
+            self._check_termination(terminates)
+            input_event = end - self.time <= time_tolerance and self._has_input_event(interval + 1)
             if step_event or input_event or np.any(roots) or self.time >= self.event:
                 self.fmu.enterEventMode()
                 if input_event:
-                    self.instance.set(self.task.given(interval + 1))
-                self._settle()
+                    self.instance.set_values(self.task.inputs_at(interval + 1))
+                self._iterate_event()
                 self.solver.reset(self.time)
 
-    def _check(self, ends: bool) -> None:
+    def _check_termination(self, terminates: bool) -> None:
         """Raise RuntimeError if the FMU requests the end of the simulation."""
-        if ends:
+        if terminates:
             raise RuntimeError(f"the FMU ends the simulation at {self.time:g} s")
 
-    def _settle(self) -> None:
+    def _iterate_event(self) -> None:
         """Iterate an event until the FMU needs no further iteration, then enter continuous-time mode."""
         iterate = True
         while iterate:
-            iterate, terminates, *_, has_next_event, next_event = self.instance.update()
-            self._check(terminates)
+            iterate, terminates, *_, has_next_event, next_event = self.instance.update_discrete_states()
+            self._check_termination(terminates)
         self.event = float(next_event) if has_next_event else np.inf
         self.fmu.enterContinuousTimeMode()
 
-    def _jumps(self, i: int) -> bool:
+    def _has_input_event(self, i: int) -> bool:
         """Whether an input jumps, or a discrete input changes, at communication point i."""
-        previous, new = self.task.given(i - 1), self.task.given(i)
-        left_limits = {**previous, **{name: self.task.before[name][i] for name in self.continuous}}
+        previous, new = self.task.inputs_at(i - 1), self.task.inputs_at(i)
+        left_limits = {
+            **previous,
+            **{name: self.task.inputs_before[name][i] for name in self.continuous_inputs},
+        }
         return left_limits != new
 
-    def _at(self, time: float) -> None:
+    def _set_time(self, time: float) -> None:
         """Set the time [s] and the continuous inputs of the FMU."""
         self.fmu.setTime(time)
         i = self.interval
         begin, end = self.task.times[i : i + 2]
         fraction = (time - begin) / (end - begin)
-        for name in self.continuous:
-            first, last = self.task.inputs[name][i], self.task.before[name][i + 1]
+        for name in self.continuous_inputs:
+            first, last = self.task.inputs[name][i], self.task.inputs_before[name][i + 1]
             value = first if first == last else (1.0 - fraction) * first + fraction * last
-            self.instance.set({name: value})
+            self.instance.set_values({name: value})
 
     def _nominals(self, values: object, count: int) -> None:
         """Write the nominal values of the states times FLOOR: sizes below which the tolerance is absolute.
@@ -151,7 +160,7 @@ class _Motion:
         self.fmu.getNominalsOfContinuousStates(values, count)
         np.ctypeslib.as_array(values, (count,))[:] *= FLOOR
 
-    def _direct(self, name: str) -> Callable[..., None]:
+    def _c_callback(self, name: str) -> Callable[..., None]:
         """C function of the FMU as a callback of the solver; its first failure is kept in `failure`.
 
         The function is called directly, because fmpy's wrapper takes longer than most laws.
@@ -168,7 +177,7 @@ class _Motion:
 
         return call
 
-    def _kept(self, call: Callable[..., object]) -> Callable[..., None]:
+    def _keep_failure(self, call: Callable[..., object]) -> Callable[..., None]:
         """Python function as a callback of the solver; its first exception is kept in `failure`.
 
         The solver is C code and does not pass exceptions on.
@@ -183,7 +192,7 @@ class _Motion:
         return callback
 
 
-class _Nothing:
+class _NoInput:
     """Input object for fmpy's solver without effect: the inputs are set together with the time."""
 
     @staticmethod
@@ -191,7 +200,7 @@ class _Nothing:
         pass
 
 
-def _stop_at(solver: Any, time: float) -> None:
+def _set_stop_time(solver: Any, time: float) -> None:
     """Limit the integration of a solver to a time [s]; the inputs change there."""
     from fmpy.sundials.libraries import sundials_cvode
 

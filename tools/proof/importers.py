@@ -9,38 +9,38 @@ from typing import Any
 
 from jointfmu_fmu_src.proof.standard import CO_SIMULATION, MODEL_EXCHANGE
 
-from ..host import description, opened
+from ..host import open_instance, read_description
 from . import exchange
-from .task import Execute, Rows, Task, reader
+from .task import Execute, Rows, Task, output_reader
 
 
-def fmpy(task: Task, messages: list[str]) -> Rows:
+def run_fmpy(task: Task, messages: list[str]) -> Rows:
     """Execute an experiment for co-simulation in fmpy (FMI 2.0 and 3.0).
 
     messages : list to which the warnings and errors of the FMU are appended
     """
-    with opened(task.folder, description(task.fmu), task.fmu, messages) as slave:
-        slave.begin(task.times[0])
-        slave.set({**task.settings, **task.given(0)})
+    with open_instance(task.folder, read_description(task.fmu), task.fmu, messages) as slave:
+        slave.enter_initialization(task.times[0])
+        slave.set_values({**task.settings, **task.inputs_at(0)})
         slave.fmu.exitInitializationMode()
-        read = reader(slave, task.outputs)
+        read = output_reader(slave, task.outputs)
         rows: Rows = [read()]
         for i, time in enumerate(task.times[:-1]):
-            slave.set(task.given(i))
-            slave.advance(time, task.times[i + 1] - time)
+            slave.set_values(task.inputs_at(i))
+            slave.do_step(time, task.times[i + 1] - time)
             rows.append(read())
     return rows
 
 
-def start_values(task: Task, messages: list[str]) -> list[list[Any]]:
+def read_start_values(task: Task, messages: list[str]) -> list[list[Any]]:
     """Read the start values of the variables `task.outputs`, of any type, in fmpy: one row."""
     exchanged = task.interface == MODEL_EXCHANGE
-    with opened(task.folder, description(task.fmu), task.fmu, messages, exchanged) as slave:
-        slave.begin()
-        return [[slave.value(name) for name in task.outputs]]
+    with open_instance(task.folder, read_description(task.fmu), task.fmu, messages, exchanged) as slave:
+        slave.enter_initialization()
+        return [[slave.get_value(name) for name in task.outputs]]
 
 
-def ecos(task: Task, messages: list[str]) -> Rows:
+def run_ecos(task: Task, messages: list[str]) -> Rows:
     """Execute an experiment for co-simulation in ecos (FMI 2.0 and 3.0).
 
     Errors of the FMU appear only in the log of ecos, see `worker`.
@@ -49,11 +49,11 @@ def ecos(task: Task, messages: list[str]) -> Rows:
     from ecospy.EcosParameterSet import EcosParameterSet
 
     size = task.step
-    _known(task)
+    _check_types(task)
     EcosLib.set_log_level("debug")
     structure, start = EcosSimulationStructure(), EcosParameterSet()
     structure.add_model("fmu", task.fmu)
-    for name, value in {**task.settings, **task.given(0)}.items():
+    for name, value in {**task.settings, **task.inputs_at(0)}.items():
         add = {bool: start.add_bool, int: start.add_int, str: start.add_string}.get(
             type(value), start.add_real
         )
@@ -67,7 +67,7 @@ def ecos(task: Task, messages: list[str]) -> Rows:
             raise RuntimeError(EcosLib.get_last_error())
         rows: Rows = [[float(get(f"fmu::{name}")) for name, get in getters.items()]]
         for i in range(len(task.times) - 1):
-            for name, value in task.given(i).items():
+            for name, value in task.inputs_at(i).items():
                 setters[name](f"fmu::{name}", value)
             simulation.step(1)
             rows.append([float(get(f"fmu::{name}")) for name, get in getters.items()])
@@ -75,7 +75,7 @@ def ecos(task: Task, messages: list[str]) -> Rows:
     return rows
 
 
-def libcosim(task: Task, messages: list[str]) -> Rows:
+def run_libcosim(task: Task, messages: list[str]) -> Rows:
     """Execute an experiment for co-simulation in libcosim (FMI 2.0).
 
     libcosim gives no outputs before the first step: the first row is None. Its step size is a whole number of
@@ -87,7 +87,7 @@ def libcosim(task: Task, messages: list[str]) -> Rows:
     from libcosimpy.CosimObserver import CosimObserver
     from libcosimpy.CosimSlave import CosimLocalSlave
 
-    _known(task)
+    _check_types(task)
     nanoseconds = round(task.step * 1e9)
     if nanoseconds < 1 or abs(nanoseconds - task.step * 1e9) > 1e-3:
         raise ValueError(f"has a step of {task.step!r} s, libcosim takes whole nanoseconds")
@@ -97,14 +97,14 @@ def libcosim(task: Task, messages: list[str]) -> Rows:
     if not (execution.add_observer(observer) and execution.add_manipulator(manipulator)):
         raise RuntimeError(get_last_error_message())
     reference = {v.name.decode(): v.reference for v in execution.slave_variables(slave)}
-    for name, value in {**task.settings, **task.given(0)}.items():
+    for name, value in {**task.settings, **task.inputs_at(0)}.items():
         kinds = {bool: "boolean", int: "integer", str: "string"}
         setter = getattr(execution, f"{kinds.get(type(value), 'real')}_initial_value")
         if not setter(slave, reference[name], value):
             raise RuntimeError(f"{name} = {value!r}: {get_last_error_message()}")
     rows: Rows = [None]
     for i in range(len(task.times) - 1):
-        inputs = task.given(i)
+        inputs = task.inputs_at(i)
         for kind in set(task.kinds.values()):
             if names := [name for name in inputs if task.kinds[name] == kind]:
                 setter = getattr(manipulator, f"slave_{kind}_values")
@@ -120,7 +120,7 @@ def libcosim(task: Task, messages: list[str]) -> Rows:
     return rows
 
 
-def load(importer: str) -> None:
+def load_importer(importer: str) -> None:
     """Load the library of an importer; ImportError or OSError if it is missing."""
     if importer == "ecos":
         from ecospy import EcosSimulationStructure
@@ -132,28 +132,28 @@ def load(importer: str) -> None:
         CosimExecution.from_step_size(step_size=1e9)
 
 
-def _known(task: Task) -> None:
+def _check_types(task: Task) -> None:
     """Raise ValueError for a variable of a type that ecos cannot set and libcosim does not list."""
-    variables = {v.name: v for v in description(task.fmu).modelVariables}
+    variables = {v.name: v for v in read_description(task.fmu).modelVariables}
     for name in (*task.settings, *task.inputs, *task.outputs):
         if variables[name].type in ("Enumeration", "Int64"):
             raise ValueError(f"{name} is of type {variables[name].type}, which this importer does not take")
 
 
 IMPORTERS: Mapping[str, Mapping[str, Execute]] = {
-    "fmpy": {CO_SIMULATION: fmpy, MODEL_EXCHANGE: exchange.fmpy},
-    "ecos": {CO_SIMULATION: ecos},
-    "libcosim": {CO_SIMULATION: libcosim},
+    "fmpy": {CO_SIMULATION: run_fmpy, MODEL_EXCHANGE: exchange.run_fmpy_exchange},
+    "ecos": {CO_SIMULATION: run_ecos},
+    "libcosim": {CO_SIMULATION: run_libcosim},
 }
 """{importer: {interface: function that executes an experiment}}."""
 PACKAGES = {"fmpy": "fmpy", "ecos": "ecospy", "libcosim": "libcosimpy"}
 """{importer: Python package}."""
 SYSTEM_LIBRARIES = {"ecos": "libtbb12", "libcosim": "libatomic1"}
 """{importer: Debian package of a library that the importer loads}."""
-VERSIONS = {"fmpy": "23", "ecos": "23", "libcosim": "2"}
+FMI_VERSIONS = {"fmpy": "23", "ecos": "23", "libcosim": "2"}
 """{importer: major versions of FMI that it supports}; libcosim crashes with other versions."""
 
 
 def interfaces(importer: str) -> list[str]:
     """FMI interfaces in which an importer runs FMUs on this platform; fmpy lacks its solver on some."""
-    return [name for name in IMPORTERS[importer] if name != MODEL_EXCHANGE or exchange.available()]
+    return [name for name in IMPORTERS[importer] if name != MODEL_EXCHANGE or exchange.has_solver()]

@@ -13,50 +13,54 @@ from jointfmu_fmu_src.proof.series import TimeSeries, text
 from jointfmu_fmu_src.proof.standard import CO_SIMULATION, FOLDER
 
 from jointfmu.files import archives
-from jointfmu.files.outputs import MARK, FileKind, check_outputs
-from jointfmu.files.writing import made_folder, write_bytes
+from jointfmu.files.outputs import PROGRAM_MARK, FileKind, check_outputs
+from jointfmu.files.writing import existing_folder, write_bytes
 
 from .. import host
 from .manifest import Experiment
 from .outcome import Outcome, Proof
-from .plan import TOLERANCE
+from .plan import DEFAULT_TOLERANCE
 
 if TYPE_CHECKING:
     from fmpy.model_description import ModelDescription
 
 README = "README.md"
 LISTING = FileKind("listing", (".md",))
-KNOWN = ("c-code", "darwin64", "linux32", "linux64", "win32", "win64")
+FMI2_PLATFORMS = ("c-code", "darwin64", "linux32", "linux64", "win32", "win64")
 """Platform names of the cross-check rules for FMI 2.0. For FMI 3.0 the names in the FMU are used."""
 
 
-def write(proof: Proof, out: Path, force: bool = False) -> list[Path]:
+def write_listing(proof: Proof, out: Path, force: bool = False) -> list[Path]:
     """Write the files of a passed proof into one folder for each platform of the FMU, and return the folders.
 
     force : overwrite files also in a folder whose README.md was not written by jointfmu
 
     Raises ValueError if no experiment is suitable, or if a file must not or cannot be written.
     """
-    described = host.description(proof.fmu)
-    files = _files(proof, _chosen(proof), described)
+    described = host.read_description(proof.fmu)
+    files = _listing_files(proof, _select_outcome(proof), described)
     tool, _, version = (described.generationTool or "unknown").rpartition(" ")
-    subfolders = [_safe(tool or version), _safe(version), _safe(described.modelName)]
+    subfolders = [
+        _safe_file_name(tool or version),
+        _safe_file_name(version),
+        _safe_file_name(described.modelName),
+    ]
     version = described.fmiVersion[:3]
     folders = [out.joinpath("fmus", version, "cs", p, *subfolders) for p in _platforms(proof.fmu, version)]
     check_outputs((folder / README for folder in folders), LISTING, force)
     for folder in folders:
-        with made_folder(folder):
+        with existing_folder(folder):
             for name, content in files.items():
                 write_bytes(folder / name, content)
     return folders
 
 
-def _chosen(proof: Proof) -> Outcome:
+def _select_outcome(proof: Proof) -> Outcome:
     """Select the outcome to be listed: the first validation, else the first listable experiment.
 
     Raises ValueError if no experiment is listable.
     """
-    listable = [o for o in proof.outcomes if o.interface == CO_SIMULATION and _fits(o.experiment)]
+    listable = [o for o in proof.outcomes if o.interface == CO_SIMULATION and _is_listable(o.experiment)]
     if not listable:
         raise ValueError(
             f"{proof.fmu}: no experiment without parameters has results from start to end to list"
@@ -65,35 +69,39 @@ def _chosen(proof: Proof) -> Outcome:
     return next(validations, listable[0])
 
 
-def _fits(one: Experiment) -> bool:
+def _is_listable(experiment: Experiment) -> bool:
     """Whether an experiment can be listed.
 
     Its reference results cover the time from start to stop, and it sets no variables but its inputs.
     """
-    if one.unfit or one.references is None or not one.settings.keys() <= set(_inputs(one)):
+    if (
+        experiment.unsupported_reason
+        or experiment.references is None
+        or not experiment.settings.keys() <= set(_input_names(experiment))
+    ):
         return False
-    start, stop = _ends(one)
-    return bool(one.references.time[0] <= start and one.references.time[-1] >= stop)
+    start, stop = _time_range(experiment)
+    return bool(experiment.references.time[0] <= start and experiment.references.time[-1] >= stop)
 
 
-def _inputs(one: Experiment) -> list[str]:
+def _input_names(experiment: Experiment) -> list[str]:
     """Names of the inputs that an experiment drives."""
-    return list(one.stimuli.columns) if one.stimuli else []
+    return list(experiment.stimuli.columns) if experiment.stimuli else []
 
 
-def _ends(one: Experiment) -> tuple[float, float]:
+def _time_range(experiment: Experiment) -> tuple[float, float]:
     """Start and stop time [s] of an experiment; if not stated: zero, and the end of the reference results."""
-    assert one.references is not None
-    stop = float(one.references.time[-1]) if one.stop is None else one.stop
-    return one.start or 0.0, stop
-
-
-def _files(proof: Proof, chosen: Outcome, description: "ModelDescription") -> dict[str, bytes]:
-    """Files of the listing, {name: content}, for the chosen outcome."""
-    experiment, name = chosen.experiment, _safe(description.modelName)
     assert experiment.references is not None
-    start, stop = _ends(experiment)
-    tolerance = TOLERANCE if experiment.tolerance is None else experiment.tolerance
+    stop = float(experiment.references.time[-1]) if experiment.stop is None else experiment.stop
+    return experiment.start or 0.0, stop
+
+
+def _listing_files(proof: Proof, chosen: Outcome, description: "ModelDescription") -> dict[str, bytes]:
+    """Files of the listing, {name: content}, for the chosen outcome."""
+    experiment, name = chosen.experiment, _safe_file_name(description.modelName)
+    assert experiment.references is not None
+    start, stop = _time_range(experiment)
+    tolerance = DEFAULT_TOLERANCE if experiment.tolerance is None else experiment.tolerance
     options = {
         "StartTime": start,
         "StopTime": stop,
@@ -114,10 +122,10 @@ def _files(proof: Proof, chosen: Outcome, description: "ModelDescription") -> di
 
 def _readme(proof: Proof, chosen: Outcome, description: "ModelDescription") -> str:
     """Text of README.md for the chosen outcome."""
-    experiment, worst, name = chosen.experiment, chosen.worst, _safe(description.modelName)
+    experiment, worst, name = chosen.experiment, chosen.worst, _safe_file_name(description.modelName)
     assert worst is not None
     tool = description.generationTool or "an unknown tool"
-    inputs = ", ".join(f"`{n}`" for n in _inputs(experiment))
+    inputs = ", ".join(f"`{n}`" for n in _input_names(experiment))
     driven = f"`{name}_in.csv` drives {inputs}; " if experiment.stimuli else ""
     text = f"{description.description or description.modelName}."
     return f"""# {description.modelName}
@@ -128,10 +136,10 @@ These are the files of the experiment "{experiment.name}" in `{FOLDER}` of the F
 {driven}`{name}_ref.csv` has the reference results that the FMU carries, `{name}_ref.opt` times, step
 and relative tolerance. Nothing else is set.
 
-Run in {proof.importer} by `jointfmu prove {name}.fmu`: of {len(chosen.points)} outputs at {chosen.compared}
-times `{worst.output}` is furthest off, by {worst.error:.1e}; allowed is {worst.allowed:.1e}.
+Run in {proof.importer} by `jointfmu prove {name}.fmu`: of {len(chosen.points)} outputs at {chosen.compared_points}
+times `{worst.output}` is furthest off, by {worst.error:.1e}; allowed is {worst.tolerance:.1e}.
 
-<!-- {MARK} -->
+<!-- {PROGRAM_MARK} -->
 """
 
 
@@ -140,9 +148,9 @@ def _platforms(fmu: Path, version: str) -> list[str]:
     with archives.open_archive(fmu) as archive:
         names = archive.namelist()
         platforms = {match[1] for name in names if (match := re.match(r"binaries/([^/]+)/.", name))}
-    return sorted(platforms & set(KNOWN) if version.startswith("2") else platforms)
+    return sorted(platforms & set(FMI2_PLATFORMS) if version.startswith("2") else platforms)
 
 
-def _safe(name: str) -> str:
+def _safe_file_name(name: str) -> str:
     """Replace the characters of a name that are not safe in a file name."""
     return re.sub(r"[^\w.+-]+", "_", name) or "unknown"

@@ -26,18 +26,18 @@ from jointfmu_fmu_src.proof.standard import (
     TRANSIENT,
 )
 
-from jointfmu.files.archives import Members
+from jointfmu.files.archives import FmuMembers
 
 from . import checksum
 
-VALUES = "http://ssp-standard.org/SSP1/SystemStructureParameterValues"
+SSV_NAMESPACE = "http://ssp-standard.org/SSP1/SystemStructureParameterValues"
 """XML namespace of SSV files."""
-_OTHER_NAMES = ("application/x-ma-ls-experiments", "application/octet-stream")
+_OTHER_EXPERIMENT_TYPES = ("application/x-ma-ls-experiments", "application/octet-stream")
 """Other MIME types accepted for files of experiments: in the example of the standard, and its default."""
 
 
 @dataclass(frozen=True, slots=True)
-class Setting:
+class StartSetting:
     """Start value of a variable in an experiment; `unit` as stated in the file, empty if not stated."""
 
     value: float | int | bool | str
@@ -65,15 +65,15 @@ class Experiment:
     stop: float | None = None
     step: float | None = None
     tolerance: float | None = None
-    settings: Mapping[str, Setting] = field(default_factory=dict)
+    settings: Mapping[str, StartSetting] = field(default_factory=dict)
     stimuli: TimeSeries | None = None
     references: TimeSeries | None = None
     interfaces: Sequence[str] = INTERFACES
     scales: Mapping[str, float] = field(default_factory=dict)
-    unfit: str = ""
+    unsupported_reason: str = ""
 
 
-class Related:
+class RelatedFiles:
     """Reader of the related files of an FMU: the files named in its manifest and experiments.
 
     members : {path: content} of files to be read instead of the files in the FMU
@@ -83,7 +83,7 @@ class Related:
 
     def __init__(self, fmu: Path, members: Mapping[str, bytes] | None = None) -> None:
         self.fmu = fmu
-        self._fmu_members = Members(fmu)
+        self._fmu_members = FmuMembers(fmu)
         self.members: Mapping[str, bytes] = members or self._fmu_members
         if MANIFEST not in self.members:
             raise ValueError(f"{fmu}: has no {MANIFEST}; expected an FMU with experiments after FMI-LS-REF")
@@ -99,7 +99,7 @@ class Related:
             raise ValueError(f"{self.fmu}: {MANIFEST} is of {standard!r}, expected {NAME!r}")
         experiments = []
         for related in root.iter("Related"):
-            self._unchanged(related)
+            self._check_checksum(related)
             role, _, purpose = related.get("role", "").partition("/")
             if role == "experiment":
                 experiments += self._experiments(related, purpose or PURPOSES[0])
@@ -107,7 +107,7 @@ class Related:
             raise ValueError(f"{self.fmu}: {MANIFEST} names no experiment; expected one at least")
         return experiments
 
-    def _unchanged(self, related: Element) -> None:
+    def _check_checksum(self, related: Element) -> None:
         """Compare a related file in the FMU with its checksum, if the manifest states one.
 
         related : element of the manifest
@@ -125,10 +125,12 @@ class Related:
     def _experiments(self, related: Element, purpose: str) -> list[Experiment]:
         """Experiments of a related file; if its type is not supported, one experiment with the reason."""
         source, kind = related.get("source", ""), related.get("type", EXPERIMENTS)
-        if kind not in (EXPERIMENTS, *_OTHER_NAMES):
-            return [Experiment(source, purpose, unfit=f"is of type {kind}, {EXPERIMENTS} is read")]
+        if kind not in (EXPERIMENTS, *_OTHER_EXPERIMENT_TYPES):
+            return [
+                Experiment(source, purpose, unsupported_reason=f"is of type {kind}, {EXPERIMENTS} is read")
+            ]
         if urlsplit(source).scheme:
-            return [Experiment(source, purpose, unfit="lies outside of the FMU")]
+            return [Experiment(source, purpose, unsupported_reason="lies outside of the FMU")]
         path = self._path(MANIFEST, source)
         labels = {label.get("name") for label in related.iter("Label")}
         interfaces = [name for name, label in LABELS.items() if label in labels] or INTERFACES
@@ -138,10 +140,10 @@ class Related:
     def _experiment(self, path: str, node: Element, purpose: str, interfaces: Sequence[str]) -> Experiment:
         """Experiment of an XML element in the file `path`, with the files that it names."""
         name = node.get("name", "")
-        kinds = [child.tag for child in node if child.tag not in ("Annotations", *_FILES)]
+        kinds = [child.tag for child in node if child.tag not in ("Annotations", *_FILE_TYPES)]
         unfit = f"is a {kinds[0]}" if kinds and kinds[0] != TRANSIENT else ""
         files: dict[str, str] = {}
-        for tag, kind in _FILES.items():
+        for tag, kind in _FILE_TYPES.items():
             children = node.findall(tag)
             if len(children) > 1:
                 unfit = unfit or f"has {len(children)} {tag}, one is read"
@@ -185,15 +187,15 @@ class Related:
             text = f"{self.fmu}: {path}: experiment {experiment!r} has {key} = {value!r}, expected a number"
             raise ValueError(text) from None
 
-    def _settings(self, path: str) -> dict[str, Setting]:
+    def _settings(self, path: str) -> dict[str, StartSetting]:
         """Start values of an SSV file, {variable: start value}."""
         settings = {}
-        for parameter in self._xml(path).iter(f"{{{VALUES}}}Parameter"):
+        for parameter in self._xml(path).iter(f"{{{SSV_NAMESPACE}}}Parameter"):
             name = parameter.get("name", "")
             for child in parameter:
                 kind, value = child.tag.rpartition("}")[2], child.get("value", "")
                 try:
-                    settings[name] = Setting(_value(kind, value), child.get("unit", ""))
+                    settings[name] = StartSetting(_parse_value(kind, value), child.get("unit", ""))
                 except (KeyError, ValueError):
                     raise ValueError(f"{self.fmu}: {path}: {name} = {value!r} is no {kind}") from None
                 break
@@ -222,15 +224,15 @@ class Related:
             raise ValueError(f"{self.fmu}: {path} is no XML ({error})") from None
 
 
-_FILES = {"Parameters": SSV, "Stimuli": CSV, "References": CSV}
+_FILE_TYPES = {"Parameters": SSV, "Stimuli": CSV, "References": CSV}
 """{child element of an experiment: MIME type of the file that it names}."""
-_TRUTH = {"true": True, "1": True, "false": False, "0": False}
+_BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
 
 
-def _value(kind: str, value: str) -> float | int | bool | str:
+def _parse_value(kind: str, value: str) -> float | int | bool | str:
     """Parse a value of an SSV file by the name of its XML element (kind): Real, Integer, Boolean, String."""
     if kind == "Boolean":
-        return _TRUTH[value]
+        return _BOOLEANS[value]
     if kind.startswith(("Integer", "Int", "UInt")):
         return int(value)
     return float(value) if kind.startswith(("Real", "Float")) else value

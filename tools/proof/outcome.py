@@ -22,7 +22,7 @@ class WorstPoint:
     time: float
     value: float
     reference: float
-    allowed: float
+    tolerance: float
 
     @property
     def error(self) -> float:
@@ -30,17 +30,17 @@ class WorstPoint:
         return abs(self.value - self.reference)
 
     @property
-    def finite(self) -> bool:
+    def is_finite(self) -> bool:
         return bool(np.isfinite(self.value))
 
     @property
-    def share(self) -> float:
+    def error_ratio(self) -> float:
         """Error over tolerance [1]; infinite if the value is not finite."""
-        return self.error / self.allowed if self.finite else np.inf
+        return self.error / self.tolerance if self.is_finite else np.inf
 
     @property
-    def passed(self) -> bool:
-        return bool(self.share <= 1.0)
+    def is_within_tolerance(self) -> bool:
+        return bool(self.error_ratio <= 1.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +56,7 @@ class Outcome:
     experiment: Experiment
     interface: str
     points: Sequence[WorstPoint] = ()
-    compared: int = 0
+    compared_points: int = 0
     error: str = ""
 
     @property
@@ -65,20 +65,20 @@ class Outcome:
         return f"{self.experiment.name}, {self.interface}" if self.interface else self.experiment.name
 
     @property
-    def left_out(self) -> str:
+    def exclusion_reason(self) -> str:
         """Why the experiment was not executed; empty if it was."""
-        text = self.experiment.unfit or f"is for {' and '.join(self.experiment.interfaces)}"
+        text = self.experiment.unsupported_reason or f"is for {' and '.join(self.experiment.interfaces)}"
         return "" if self.interface else text
 
     @property
     def worst(self) -> WorstPoint | None:
         """Worst point of all outputs; None if nothing was compared."""
-        return max(self.points, key=lambda point: point.share, default=None)
+        return max(self.points, key=lambda point: point.error_ratio, default=None)
 
     @property
-    def passed(self) -> bool:
+    def has_passed(self) -> bool:
         """Whether there is no error and all outputs are within their tolerance."""
-        return not self.error and all(point.passed for point in self.points)
+        return not self.error and all(point.is_within_tolerance for point in self.points)
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,12 +95,12 @@ class Proof:
     fmu: Path
     importer: str
     interfaces: Sequence[str]
-    starts: int
-    differing: Sequence[str]
+    compared_starts: int
+    start_differences: Sequence[str]
     outcomes: Sequence[Outcome]
 
     @property
-    def runs(self) -> int:
+    def run_count(self) -> int:
         """Number of executed experiments, counted for each interface."""
         return sum(bool(outcome.interface) for outcome in self.outcomes)
 
@@ -108,28 +108,30 @@ class Proof:
     def worst(self) -> WorstPoint | None:
         """Point with the largest error over tolerance, of all outcomes; None if nothing was compared."""
         points = [outcome.worst for outcome in self.outcomes if outcome.worst]
-        return max(points, key=lambda point: point.share, default=None)
+        return max(points, key=lambda point: point.error_ratio, default=None)
 
     @property
-    def passed(self) -> bool:
-        return not self.misses
+    def has_passed(self) -> bool:
+        return not self.failures
 
     @property
-    def misses(self) -> list[str]:
+    def failures(self) -> list[str]:
         """Failures, one line each: start values, errors, experiments with their worst output."""
-        lines = list(self.differing)
-        if self.outcomes and not self.runs:
+        lines = list(self.start_differences)
+        if self.outcomes and not self.run_count:
             lines.append(f"{self.importer} executes none of the experiments")
         for outcome in self.outcomes:
             name = outcome.name
             if outcome.error:
                 lines.append(f"{name}: {outcome.error}")
-            missed = sorted((p for p in outcome.points if not p.passed), key=lambda p: -p.share)
+            missed = sorted(
+                (p for p in outcome.points if not p.is_within_tolerance), key=lambda p: -p.error_ratio
+            )
             if missed:
                 worst, *others = missed  # sorted by error over tolerance
                 lines.append(
                     f"{name}: {worst.output} = {worst.value:.10g} at {worst.time:g} s, reference "
-                    f"{worst.reference:.10g}, off by {worst.error:.2g}, allowed {worst.allowed:.2g}"
+                    f"{worst.reference:.10g}, off by {worst.error:.2g}, allowed {worst.tolerance:.2g}"
                     + (f"; also {', '.join(p.output for p in others)}" if others else "")
                 )
         return lines

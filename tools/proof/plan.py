@@ -12,17 +12,17 @@ from jointfmu.quantity import Array
 
 from .manifest import Experiment
 from .outcome import Outcome, WorstPoint
-from .values import course, kind, setting
+from .values import convert_setting, input_values, variable_kind
 
 if TYPE_CHECKING:
     from fmpy.model_description import ModelDescription
 
 
-TOLERANCE = 1e-3
+DEFAULT_TOLERANCE = 1e-3
 """Default relative tolerance of an experiment that states none [1]."""
-MEETING = 1e-6
+TIME_TOLERANCE = 1e-6
 """Time difference over the step size [1], below which two times count as equal."""
-STEPS, MOST_STEPS = 500, 10_000_000
+DEFAULT_STEPS, MAX_STEPS = 500, 10_000_000
 """Number of steps of an experiment that states no step size, and maximum number of steps."""
 
 
@@ -40,10 +40,10 @@ class ExperimentPlan:
     interface: str
     nominal: Mapping[str, float]
     task: dict[str, Any]
-    refused: str = ""
+    refusal: str = ""
 
     @classmethod
-    def of(
+    def create(
         cls, fmu: Path, folder: str, experiment: Experiment, interface: str, description: "ModelDescription"
     ) -> "ExperimentPlan":
         """Plan an experiment with an FMU that is unpacked in `folder`."""
@@ -57,31 +57,33 @@ class ExperimentPlan:
             for name in (*experiment.settings, *inputs, *outputs):
                 if name not in variables:
                     raise ValueError(f"the FMU has no variable {name!r}")
-            times = _times(experiment, description)
+            times = _communication_points(experiment, description)
             if stimuli and interface == MODEL_EXCHANGE:
-                times = _with_corners(times, stimuli.time)
+                times = _insert_corners(times, stimuli.time)
             values: dict[str, object] = {
-                "settings": {n: setting(variables[n], value) for n, value in experiment.settings.items()},
-                "kinds": {n: kind(variables[n]) for n in (*inputs, *outputs)},
+                "settings": {
+                    n: convert_setting(variables[n], value) for n, value in experiment.settings.items()
+                },
+                "kinds": {n: variable_kind(variables[n]) for n in (*inputs, *outputs)},
             }
             if stimuli:
                 for key, left_limit in (("inputs", False), ("before", True)):
-                    values[key] = {n: course(variables[n], stimuli, times, left_limit) for n in inputs}
+                    values[key] = {n: input_values(variables[n], stimuli, times, left_limit) for n in inputs}
         except ValueError as error:
             return cls(experiment, interface, {}, {}, str(error))
         values |= {"times": times.tolist(), "outputs": outputs, "tolerance": SOLVER * _tolerance(experiment)}
         if experiment.references:
             values["due"] = experiment.references.time.tolist()
         nominal = {n: abs(float(getattr(variables[n], "nominal", None) or 1.0)) for n in outputs}
-        return cls(experiment, interface, nominal, task(fmu, folder, interface, **values))
+        return cls(experiment, interface, nominal, task_fields(fmu, folder, interface, **values))
 
-    def outcome(self, answer: Mapping[str, Any] | None) -> Outcome:
+    def evaluate_answer(self, answer: Mapping[str, Any] | None) -> Outcome:
         """Compare the answer of an importer with the reference results.
 
         answer : {"rows"} or {"error"} from a `worker`; None if the experiment was not executed
         """
         if answer is None:
-            return Outcome(self.experiment, self.interface, error=self.refused)
+            return Outcome(self.experiment, self.interface, error=self.refusal)
         if "error" in answer:
             return Outcome(self.experiment, self.interface, error=answer["error"])
         expected = self.experiment.references
@@ -111,12 +113,12 @@ class ExperimentPlan:
 
 def _tolerance(experiment: Experiment) -> float:
     """Relative tolerance [1] of an experiment, or the default."""
-    return TOLERANCE if experiment.tolerance is None else experiment.tolerance
+    return DEFAULT_TOLERANCE if experiment.tolerance is None else experiment.tolerance
 
 
-def _with_corners(times: Array, corners: Array) -> Array:
+def _insert_corners(times: Array, corners: Array) -> Array:
     """Insert the corners of the inputs [s] into communication points [s]; a corner replaces an equal time."""
-    equal = MEETING * float(np.min(np.diff(times)))
+    equal = TIME_TOLERANCE * float(np.min(np.diff(times)))
     inner = np.unique(corners[(corners > times[0] + equal) & (corners < times[-1] - equal)])
     positions = np.searchsorted(inner, times)
     bounds = np.concatenate([[-np.inf], inner, [np.inf]])
@@ -124,7 +126,7 @@ def _with_corners(times: Array, corners: Array) -> Array:
     return np.sort(np.append(times[distinct], inner))
 
 
-def _times(experiment: Experiment, description: "ModelDescription") -> Array:
+def _communication_points(experiment: Experiment, description: "ModelDescription") -> Array:
     """Communication points (n) [s] of an experiment.
 
     Times that the experiment does not state are taken from its reference results, or from the default
@@ -132,24 +134,24 @@ def _times(experiment: Experiment, description: "ModelDescription") -> Array:
     """
     default = description.defaultExperiment
     results = experiment.references or experiment.stimuli
-    start = _first(experiment.start, getattr(default, "startTime", None), 0.0)
-    stop = _first(
+    start = _first_stated(experiment.start, getattr(default, "startTime", None), 0.0)
+    stop = _first_stated(
         experiment.stop, results.time[-1] if results else None, getattr(default, "stopTime", None), start
     )
     if not stop > start:
         raise ValueError(f"its stop time is {stop:g} s; expected one after {start:g} s")
-    step = _first(experiment.step, getattr(default, "stepSize", None), (stop - start) / STEPS)
-    if not step > 0.0 or (stop - start) / step > MOST_STEPS:
-        raise ValueError(f"its step is {step:g} s; expected at least {(stop - start) / MOST_STEPS:g} s")
+    step = _first_stated(experiment.step, getattr(default, "stepSize", None), (stop - start) / DEFAULT_STEPS)
+    if not step > 0.0 or (stop - start) / step > MAX_STEPS:
+        raise ValueError(f"its step is {step:g} s; expected at least {(stop - start) / MAX_STEPS:g} s")
     count = int(np.ceil((stop - start) / step * (1.0 - 1e-12)))
     return np.append(start + step * np.arange(count), stop)
 
 
-def task(fmu: Path, folder: str, interface: str, **more: object) -> dict[str, object]:
+def task_fields(fmu: Path, folder: str, interface: str, **more: object) -> dict[str, object]:
     """Fields of a `Task`, as a JSON object."""
     return {"fmu": str(fmu), "folder": str(folder), "interface": interface, **more}
 
 
-def _first(*values: Any) -> float:
+def _first_stated(*values: Any) -> float:
     """First value that is not None."""
     return float(next(value for value in values if value is not None))

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 
 from jointfmu_fmu_src.proof.standard import PURPOSES
 
-from ..shown import aligned
+from ..shown import align_columns
 from .outcome import Outcome, Proof, WorstPoint
 
 _NUMBERS = ("time [s]", "value", "reference", "off by", "allowed")
@@ -21,44 +21,44 @@ def lines(proof: Proof) -> Iterator[str]:
     worst: dict[str, tuple[Outcome, WorstPoint]] = {}
     for outcome in proof.outcomes:
         point = outcome.worst
-        verdict = _verdict(outcome), str(outcome.compared or ""), point.output if point else ""
+        verdict = _verdict(outcome), str(outcome.compared_points or ""), point.output if point else ""
         cells = _cells(point) if point else ("",) * len(_NUMBERS)
         experiments.append((outcome.experiment.name, outcome.interface, *verdict, *cells))
         for output_point in outcome.points:
             name = output_point.output
-            if name not in worst or output_point.share > worst[name][1].share:
+            if name not in worst or output_point.error_ratio > worst[name][1].error_ratio:
                 worst[name] = outcome, output_point
-    yield f"{proof.fmu} in {proof.importer}, {' and '.join(proof.interfaces)}: {count_of(proof)}"
+    yield f"{proof.fmu} in {proof.importer}, {' and '.join(proof.interfaces)}: {count_text(proof)}"
     if proof.outcomes:
         yield ""
-        yield from aligned(experiments, len(_EXPERIMENT) - len(_NUMBERS))
+        yield from align_columns(experiments, len(_EXPERIMENT) - len(_NUMBERS))
     if worst:
         yield ""
         rows = [(n, o.experiment.name, o.interface, *_cells(p)) for n, (o, p) in worst.items()]
-        yield from aligned([_OUTPUT, *rows], len(_OUTPUT) - len(_NUMBERS))
+        yield from align_columns([_OUTPUT, *rows], len(_OUTPUT) - len(_NUMBERS))
     yield ""
-    yield from (f"missed: {text}" for text in proof.misses)
+    yield from (f"missed: {text}" for text in proof.failures)
     yield summary(proof)
 
 
-def count_of(proof: Proof) -> str:
+def count_text(proof: Proof) -> str:
     """Number of experiments of each purpose, and number of compared start values, as text."""
     experiments = {id(o.experiment): o.experiment for o in proof.outcomes}.values()
     purposes = [experiment.purpose for experiment in experiments]
     ordered = (*PURPOSES, *sorted({*purposes} - {*PURPOSES}))
     counts = [f"{purposes.count(p)} {p}" for p in ordered if p in purposes]
-    return f"{', '.join(counts) or 'no experiment executed'}; {proof.starts} start values"
+    return f"{', '.join(counts) or 'no experiment executed'}; {proof.compared_starts} start values"
 
 
 def summary(proof: Proof) -> str:
     """One line: number of experiments that passed, missed, and were not executed; differing start values."""
-    excluded = sum(bool(outcome.left_out) for outcome in proof.outcomes)
-    missed = sum(not outcome.passed for outcome in proof.outcomes)
+    excluded = sum(bool(outcome.exclusion_reason) for outcome in proof.outcomes)
+    missed = sum(not outcome.has_passed for outcome in proof.outcomes)
     if not proof.outcomes:
         return "it does not start, nothing was executed"
     passed = len(proof.outcomes) - excluded - missed
     words = [f"{passed} passed", f"{missed} missed", *([f"{excluded} not executed"] if excluded else [])]
-    if count := len(proof.differing):
+    if count := len(proof.start_differences):
         words.append(f"{count} start {'value differs' if count == 1 else 'values differ'}")
     return ", ".join(words)
 
@@ -69,10 +69,10 @@ def document(proof: Proof) -> dict[str, object]:
         "fmu": str(proof.fmu),
         "importer": proof.importer,
         "interfaces": list(proof.interfaces),
-        "passed": proof.passed,
-        "start_values": {"compared": proof.starts, "differing": list(proof.differing)},
+        "passed": proof.has_passed,
+        "start_values": {"compared": proof.compared_starts, "differing": list(proof.start_differences)},
         "experiments": [_experiment(outcome) for outcome in proof.outcomes],
-        "misses": proof.misses,
+        "misses": proof.failures,
     }
 
 
@@ -83,31 +83,31 @@ def _experiment(outcome: Outcome) -> dict[str, object]:
         "interface": outcome.interface or None,
         "purpose": outcome.experiment.purpose,
         "verdict": _verdict(outcome),
-        "error": outcome.error or outcome.left_out or None,
-        "points": outcome.compared,
+        "error": outcome.error or outcome.exclusion_reason or None,
+        "points": outcome.compared_points,
         "outputs": [_point(point) for point in outcome.points],
     }
 
 
 def _point(point: WorstPoint) -> Mapping[str, object]:
     """Worst point of an output as a JSON object."""
-    value = point.value if point.finite else None
+    value = point.value if point.is_finite else None
     return {
         "output": point.output,
         "time": point.time,
         "value": value,
         "reference": point.reference,
         "error": None if value is None else point.error,
-        "allowed": point.allowed,
-        "passed": point.passed,
+        "allowed": point.tolerance,
+        "passed": point.is_within_tolerance,
     }
 
 
 def _verdict(outcome: Outcome) -> str:
     """Verdict on an experiment, as text."""
-    if outcome.left_out:
-        return f"not executed: {outcome.left_out}"
-    if not outcome.passed:
+    if outcome.exclusion_reason:
+        return f"not executed: {outcome.exclusion_reason}"
+    if not outcome.has_passed:
         return "missed"
     return "passed" if outcome.points else "runs, no reference"
 
@@ -115,4 +115,4 @@ def _verdict(outcome: Outcome) -> str:
 def _cells(point: WorstPoint) -> tuple[str, ...]:
     """Cells of a table row: time, value, reference, error and tolerance of a point."""
     numbers = (f"{point.time:g}", f"{point.value:.10g}", f"{point.reference:.10g}")
-    return (*numbers, f"{point.error:.1e}", f"{point.allowed:.1e}")
+    return (*numbers, f"{point.error:.1e}", f"{point.tolerance:.1e}")

@@ -12,21 +12,21 @@ from typing import TYPE_CHECKING, Any
 
 from jointfmu_fmu_src.proof.standard import CO_SIMULATION, MODEL_EXCHANGE
 
-from jointfmu.progress import track
+from jointfmu.progress import track_progress
 
-from ..host import unpacked
-from .importers import PACKAGES, SYSTEM_LIBRARIES, VERSIONS, interfaces
-from .manifest import Experiment, Related
+from ..host import unpack_fmu
+from .importers import FMI_VERSIONS, PACKAGES, SYSTEM_LIBRARIES, interfaces
+from .manifest import Experiment, RelatedFiles
 from .outcome import Proof
-from .plan import ExperimentPlan, task
-from .values import has_start, start
+from .plan import ExperimentPlan, task_fields
+from .values import has_start, start_value
 
 if TYPE_CHECKING:
     from fmpy.model_description import ModelDescription
 
 
 @dataclass(frozen=True, slots=True)
-class Expected:
+class ExpectedContents:
     """Expected contents of an FMU, from another source than the FMU itself.
 
     source  : name of the source, for messages
@@ -35,53 +35,56 @@ class Expected:
     """
 
     source: str
-    starts: Mapping[str, object]
+    start_values: Mapping[str, object]
     members: Mapping[str, bytes]
 
 
-def prove(fmu: Path, importer: str = "fmpy", expected: Expected | None = None) -> Proof:
+def prove(fmu: Path, importer: str = "fmpy", expected: ExpectedContents | None = None) -> Proof:
     """Execute all experiments in the manifest of an FMU, or in the manifest of `expected`.
 
     Raises ValueError, one line: no FMU, an FMU that does not run on this platform, no manifest, a broken
     manifest, an importer that is not installed or does not support the FMI version of the FMU.
     """
-    experiments = Related(fmu, expected.members if expected else None).experiments()
+    experiments = RelatedFiles(fmu, expected.members if expected else None).experiments()
     _check_importer(importer)
-    with unpacked(fmu, exchange=True) as (folder, description):
-        if description.fmiVersion[0] not in VERSIONS[importer]:
+    with unpack_fmu(fmu, exchange=True) as (folder, description):
+        if description.fmiVersion[0] not in FMI_VERSIONS[importer]:
             raise ValueError(
                 f"{fmu}: is of FMI {description.fmiVersion}, {importer} takes "
-                f"{' and '.join(f'{digit}.0' for digit in VERSIONS[importer])}"
+                f"{' and '.join(f'{digit}.0' for digit in FMI_VERSIONS[importer])}"
             )
-        offered = _offered(description)
+        offered = _offered_interfaces(description)
         common = [name for name in interfaces(importer) if name in offered]
         if not common:
             raise ValueError(
                 f"{fmu}: is for {' and '.join(offered)}, {importer} runs {' and '.join(interfaces(importer))}"
             )
         plans = [
-            ExperimentPlan.of(fmu, folder, experiment, interface, description)
+            ExperimentPlan.create(fmu, folder, experiment, interface, description)
             for experiment in experiments
-            for interface in _executed(experiment, common)
+            for interface in _usable_interfaces(experiment, common)
         ]
         started = [v for v in description.modelVariables if has_start(v)]
-        start_task = {**task(fmu, folder, offered[0], outputs=[v.name for v in started]), "start": True}
+        start_task = {
+            **task_fields(fmu, folder, offered[0], outputs=[v.name for v in started]),
+            "start": True,
+        }
         tasks = [plan.task for plan in plans if plan.task]
-        answers = _answers("fmpy", [start_task, *(tasks if importer == "fmpy" else [])])
+        answers = _run_worker("fmpy", [start_task, *(tasks if importer == "fmpy" else [])])
         first = next(answers)
         if "error" in first:
             return Proof(fmu, importer, common, 0, [f"start: {first['error']}"], [])
         starts = {v.name: value for v, value in zip(started, first["rows"][0], strict=True)}
         differences = [
-            f"{v.name} starts at {_shown(starts[v.name])}, modelDescription.xml says {v.start}"
+            f"{v.name} starts at {_format_value(starts[v.name])}, modelDescription.xml says {v.start}"
             for v in started
-            if starts[v.name] != start(v)
+            if starts[v.name] != start_value(v)
         ]
-        differences += _differing(starts, expected) if expected else []
+        differences += _differences(starts, expected) if expected else []
         if importer != "fmpy":
-            answers = _answers(importer, tasks)
-        tracked_plans = track(plans, fmu.stem, len(plans))
-        outcomes = [plan.outcome(next(answers) if plan.task else None) for plan in tracked_plans]
+            answers = _run_worker(importer, tasks)
+        tracked_plans = track_progress(plans, fmu.stem, len(plans))
+        outcomes = [plan.evaluate_answer(next(answers) if plan.task else None) for plan in tracked_plans]
     return Proof(fmu, importer, common, len(started), differences, outcomes)
 
 
@@ -103,35 +106,37 @@ def _check_importer(importer: str) -> None:
             )
 
 
-def _differing(found: Mapping[str, object], expected: Expected) -> list[str]:
+def _differences(starts: Mapping[str, object], expected: ExpectedContents) -> list[str]:
     """A line for each start value of the FMU that differs from the expected one.
 
     starts : {variable: start value} of the FMU
     """
     return [
-        f"{name} {f'starts at {_shown(found[name])}' if name in found else 'is no parameter of the FMU'}, "
-        f"{expected.source} says {_shown(value)}"
-        for name, value in expected.starts.items()
-        if name not in found or found[name] != value
+        f"{name} {f'starts at {_format_value(starts[name])}' if name in starts else 'is no parameter of the FMU'}, "
+        f"{expected.source} says {_format_value(value)}"
+        for name, value in expected.start_values.items()
+        if name not in starts or starts[name] != value
     ]
 
 
-def _offered(description: "ModelDescription") -> list[str]:
+def _offered_interfaces(description: "ModelDescription") -> list[str]:
     """FMI interfaces that an FMU offers."""
     kinds = {CO_SIMULATION: description.coSimulation, MODEL_EXCHANGE: description.modelExchange}
     return [name for name, kind in kinds.items() if kind is not None]
 
 
-def _executed(experiment: Experiment, common: Sequence[str]) -> Sequence[str]:
+def _usable_interfaces(experiment: Experiment, common: Sequence[str]) -> Sequence[str]:
     """Interfaces in which an experiment is executed; [""] if in none.
 
     common : interfaces of both FMU and importer
     """
-    usable = [] if experiment.unfit else [name for name in common if name in experiment.interfaces]
+    usable = (
+        [] if experiment.unsupported_reason else [name for name in common if name in experiment.interfaces]
+    )
     return usable or [""]
 
 
-def _answers(importer: str, tasks: Sequence[Mapping[str, Any]]) -> Iterator[dict[str, Any]]:
+def _run_worker(importer: str, tasks: Sequence[Mapping[str, Any]]) -> Iterator[dict[str, Any]]:
     """Execute tasks in a `worker` process, and yield its answers, {"rows"} or {"error"}, as they arrive.
 
     If the process dies, the remaining answers are errors.
@@ -159,6 +164,6 @@ def _answers(importer: str, tasks: Sequence[Mapping[str, Any]]) -> Iterator[dict
         yield {"error": f"{importer} ended with status {status}; the FMU's library may be broken"}
 
 
-def _shown(value: object) -> str:
+def _format_value(value: object) -> str:
     """Format a start value as in modelDescription.xml."""
     return str(value).lower() if isinstance(value, bool) else repr(value)

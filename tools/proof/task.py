@@ -7,7 +7,7 @@ import numpy as np
 
 from ..host import Instance
 
-REAL = ("Real", "Float64")
+REAL_TYPES = ("Real", "Float64")
 """Types of real variables in FMI 2.0 and 3.0."""
 
 
@@ -33,13 +33,13 @@ class Task:
     settings: Mapping[str, object] = field(default_factory=dict)
     times: Sequence[float] = ()
     inputs: Mapping[str, Sequence[float]] = field(default_factory=dict)
-    before: Mapping[str, Sequence[float]] = field(default_factory=dict)
+    inputs_before: Mapping[str, Sequence[float]] = field(default_factory=dict)
     outputs: Sequence[str] = ()
     kinds: Mapping[str, str] = field(default_factory=dict)
     tolerance: float = 1e-5
-    due: Sequence[float] = ()
+    comparison_times: Sequence[float] = ()
 
-    def given(self, i: int) -> dict[str, float]:
+    def inputs_at(self, i: int) -> dict[str, float]:
         """{input: value} at the communication point i; at a jump the value after it."""
         return {name: values[i] for name, values in self.inputs.items()}
 
@@ -56,15 +56,15 @@ class Task:
             raise ValueError("has steps of different size, this importer has one")
         return size
 
-    def compared(self, rows: "Rows") -> "Rows":
+    def mask_rows(self, rows: "Rows") -> "Rows":
         """Replace rows that are not needed for the comparison by None.
 
         Rows next to a comparison time, and the first and the last row, are kept.
         """
         available = np.array([i for i, row in enumerate(rows) if row is not None], dtype=int)
-        if not (len(self.due) and available.size):
+        if not (len(self.comparison_times) and available.size):
             return rows
-        after = np.searchsorted(np.take(self.times, available), self.due, side="right")
+        after = np.searchsorted(np.take(self.times, available), self.comparison_times, side="right")
         neighbours = np.clip([after - 1, after], 0, available.size - 1)
         needed = {*available[neighbours.ravel()].tolist(), int(available[0]), int(available[-1])}
         return [row if i in needed else None for i, row in enumerate(rows)]
@@ -76,8 +76,8 @@ Execute = Callable[[Task, list[str]], Rows]
 """Function of an importer: (task, messages) -> rows; it appends the messages of the FMU."""
 
 
-def reader(instance: Instance, outputs: Sequence[str]) -> Callable[[], list[float]]:
+def output_reader(instance: Instance, outputs: Sequence[str]) -> Callable[[], list[float]]:
     """Function that reads the outputs of an instance; if all are real variables, in one call."""
-    if all(instance.variables[name].type in REAL for name in outputs):
-        return instance.reals(outputs).get
-    return lambda: [float(instance.value(name)) for name in outputs]
+    if all(instance.variables[name].type in REAL_TYPES for name in outputs):
+        return instance.group_reals(outputs).get_values
+    return lambda: [float(instance.get_value(name)) for name in outputs]

@@ -6,51 +6,51 @@ from jointfmu_fmu_src.proof.series import TimeSeries
 
 from jointfmu.quantity import Array
 
-from .manifest import Setting
-from .task import REAL
+from .manifest import StartSetting
+from .task import REAL_TYPES
 
 if TYPE_CHECKING:
     from fmpy.model_description import ScalarVariable
 
 
-KINDS = {
-    **dict.fromkeys(REAL, "real"),
+VARIABLE_KINDS = {
+    **dict.fromkeys(REAL_TYPES, "real"),
     "Boolean": "boolean",
     **dict.fromkeys(("Integer", "Enumeration", "Int32", "Int64"), "integer"),
 }
 """{FMI type: kind} of possible inputs and compared outputs; in CSV files booleans are 0 or 1."""
 
 
-def kind(variable: "ScalarVariable") -> str:
+def variable_kind(variable: "ScalarVariable") -> str:
     """Kind of a variable: "real", "integer" or "boolean"; ValueError for other types and arrays."""
-    if variable.type not in KINDS or variable.dimensions:
+    if variable.type not in VARIABLE_KINDS or variable.dimensions:
         text = "an array" if variable.dimensions else f"of type {variable.type}"
         raise ValueError(f"{variable.name} is {text}; single real, whole and truth values are compared")
-    return KINDS[variable.type]
+    return VARIABLE_KINDS[variable.type]
 
 
-def setting(variable: "ScalarVariable", given: Setting) -> object:
+def convert_setting(variable: "ScalarVariable", stated: StartSetting) -> object:
     """Convert a stated start value to the type of its variable.
 
     Raises ValueError if its unit is not that of the variable, or if it is no value of this type.
     """
     unit = variable.unit or "1"
-    if given.unit and given.unit != unit:
-        raise ValueError(f"{variable.name} is given in {given.unit!r}, expected {unit!r}")
-    value = given.value
+    if stated.unit and stated.unit != unit:
+        raise ValueError(f"{variable.name} is given in {stated.unit!r}, expected {unit!r}")
+    value = stated.value
     items = variable.declaredType.items or () if variable.type == "Enumeration" else ()
     value = next((item.value for item in items if item.name == value), value)
     if variable.type == "String":
         return str(value)
     try:
-        return typed(variable, float(value))
+        return convert_value(variable, float(value))
     except ValueError:
-        raise ValueError(f"{variable.name} = {given.value!r} is no {variable.type}") from None
+        raise ValueError(f"{variable.name} = {stated.value!r} is no {variable.type}") from None
 
 
-def typed(variable: "ScalarVariable", value: float) -> float | int | bool:
+def convert_value(variable: "ScalarVariable", value: float) -> float | int | bool:
     """Convert a number to the kind of a variable (real, integer, boolean); ValueError if it is none."""
-    if (variable_kind := kind(variable)) == "real":
+    if (variable_kind := variable_kind(variable)) == "real":
         return value
     number = int(value)
     if number != value or (variable_kind == "boolean" and number not in (0, 1)):
@@ -58,26 +58,32 @@ def typed(variable: "ScalarVariable", value: float) -> float | int | bool:
     return bool(number) if variable_kind == "boolean" else number
 
 
-def course(variable: "ScalarVariable", stimuli: TimeSeries, times: Array, before: bool) -> list[Any]:
+def input_values(
+    variable: "ScalarVariable", stimuli: TimeSeries, times: Array, left_limit: bool
+) -> list[Any]:
     """Values of an input at times (n) [s]: real inputs are interpolated linearly, others are held.
 
     left_limit : at a jump, take the value before it instead of the value after it; real inputs only
     """
-    if kind(variable) != "real":
-        return [typed(variable, value) for value in stimuli.held(variable.name, times).tolist()]
-    values = stimuli.before(variable.name, times) if before else stimuli.at(variable.name, times)
+    if variable_kind(variable) != "real":
+        return [convert_value(variable, value) for value in stimuli.hold(variable.name, times).tolist()]
+    values = (
+        stimuli.interpolate_left(variable.name, times)
+        if left_limit
+        else stimuli.interpolate(variable.name, times)
+    )
     return list(values.tolist())
 
 
 def has_start(variable: "ScalarVariable") -> bool:
     """Whether a variable is a parameter or input with a start value that can be compared."""
     is_settable = variable.causality in ("parameter", "input") and variable.start is not None
-    return is_settable and variable.type in KINDS and not variable.dimensions
+    return is_settable and variable.type in VARIABLE_KINDS and not variable.dimensions
 
 
-def start(variable: "ScalarVariable") -> float | int | bool:
+def start_value(variable: "ScalarVariable") -> float | int | bool:
     """Start value of a variable in modelDescription.xml, converted to its type."""
     text = str(variable.start)
     if variable.type == "Boolean":
         return text in ("true", "1")
-    return float(text) if variable.type in REAL else int(text)
+    return float(text) if variable.type in REAL_TYPES else int(text)

@@ -16,7 +16,7 @@ from typing import Any, TextIO
 from . import importers
 from .task import Task
 
-_REFUSED = re.compile(r"fmi[23](?:Error|Fatal|Discard)\s+(?P<reason>\S.*)")
+_REFUSAL_PATTERN = re.compile(r"fmi[23](?:Error|Fatal|Discard)\s+(?P<reason>\S.*)")
 """Line in the log of ecos for a call that an FMU refused."""
 
 
@@ -31,13 +31,13 @@ def main() -> None:
         functions = importers.IMPORTERS[document["importer"]]
         for task in document["tasks"]:
             reads_start_values = task.pop("start", False)
-            execute = importers.start_values if reads_start_values else functions[task["interface"]]
-            reply = _reply(execute, task, log)
+            execute = importers.read_start_values if reads_start_values else functions[task["interface"]]
+            reply = _execute_task(execute, task, log)
             replies.write(json.dumps(reply) + "\n")
             replies.flush()
 
 
-def _reply(execute: Any, task: dict[str, Any], log: TextIO) -> dict[str, Any]:
+def _execute_task(execute: Any, task: dict[str, Any], log: TextIO) -> dict[str, Any]:
     """Execute a task and return the answer: {"rows", "messages"} or {"error", "messages"}.
 
     execute : function of the importer
@@ -50,11 +50,11 @@ def _reply(execute: Any, task: dict[str, Any], log: TextIO) -> dict[str, Any]:
     rows: Any = []
     try:
         job = Task(**task)
-        rows = job.compared(execute(job, messages))
+        rows = job.mask_rows(execute(job, messages))
     except Exception as failure:  # importers raise bare Exception
         error = " ".join(str(failure).split()) or type(failure).__name__
     log.seek(begin)
-    refused = _REFUSED.search(log.read())
+    refused = _REFUSAL_PATTERN.search(log.read())
     if refused:
         error = refused["reason"]
     elif error and messages:

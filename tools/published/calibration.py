@@ -13,10 +13,10 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from jointfmu.joints import KINDS
-from jointfmu.parameters import ParameterFile, default, dump
+from jointfmu.parameters import ParameterFile, format_parameter_file, load_default
 
-from .computed import CalibrationFit, published
-from .reference import Point, points
+from .computed import CalibrationFit, published_numbers
+from .reference import Point, read_points
 
 
 def calibrate(start: ParameterFile) -> ParameterFile:
@@ -25,25 +25,25 @@ def calibrate(start: ParameterFile) -> ParameterFile:
     Raises ValueError if the joint has no calibration points, RuntimeError if a point is not met.
     """
     kind = KINDS[start.joint]
-    own = published(kind)
+    own = published_numbers(kind)
     if not own.calibration:
-        some = [name for name in KINDS if published(KINDS[name]).calibration]
+        some = [name for name in KINDS if published_numbers(KINDS[name]).calibration]
         raise ValueError(f"joint = {start.joint!r} has no calibration points; allowed are {', '.join(some)}")
-    known = {p.id: p for paper in own.papers for p in points(paper) if p.role == "calibration"}
+    known = {p.id: p for paper in own.papers for p in read_points(paper) if p.role == "calibration"}
     for fit in own.calibration:
         start = _solve(start, fit, [known[name] for name in fit.points])
     return start
 
 
-def _solve(start: ParameterFile, fit: CalibrationFit, chosen: Sequence[Point]) -> ParameterFile:
+def _solve(start: ParameterFile, fit: CalibrationFit, calibration_points: Sequence[Point]) -> ParameterFile:
     names = list(fit.unknowns)
-    source = "fitted to " + ", ".join(point.id for point in chosen)
+    source = "fitted to " + ", ".join(point.id for point in calibration_points)
 
     def at(logs: Any) -> ParameterFile:
         values = dict(zip(names, np.exp(logs).tolist(), strict=True))
         return start.with_values(values, "calibration", source)
 
-    residuals = _residuals(at, published(KINDS[start.joint]).observables, chosen)
+    residuals = _residuals(at, published_numbers(KINDS[start.joint]).observables, calibration_points)
     first = np.log(list(fit.unknowns.values()))
     solution = least_squares(residuals, first, xtol=1e-15, ftol=1e-15, gtol=1e-15, max_nfev=400)
     worst = float(np.max(np.abs(solution.fun)))
@@ -53,16 +53,16 @@ def _solve(start: ParameterFile, fit: CalibrationFit, chosen: Sequence[Point]) -
 
 
 def _residuals(
-    at: Callable[[object], ParameterFile],
+    parameters_at: Callable[[object], ParameterFile],
     observables: Mapping[str, Callable[..., float | bool]],
-    chosen: Sequence[Point],
+    calibration_points: Sequence[Point],
 ) -> Callable[[object], list[float]]:
     def residuals(logs: object) -> list[float]:
-        values = at(logs).values
-        return [observables[p.quantity](values, **p.where) / p.value - 1.0 for p in chosen]
+        values = parameters_at(logs).values
+        return [observables[p.quantity](values, **p.where) / p.value - 1.0 for p in calibration_points]
 
     return residuals
 
 
 if __name__ == "__main__":
-    print(dump(calibrate(default(sys.argv[1]))), end="")
+    print(format_parameter_file(calibrate(load_default(sys.argv[1]))), end="")

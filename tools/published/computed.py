@@ -3,9 +3,9 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from jointfmu.joints.kind import Kind
+from jointfmu.joints.kind import JointKind
 
-from ..joint_parts import part
+from ..joint_parts import load_tool_module
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,7 +20,7 @@ class CalibrationFit:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Published:
+class PublishedNumbers:
     """The published numbers that a joint is compared with, and how they are computed.
 
     papers      : files of them in models/reference/
@@ -33,7 +33,7 @@ class Published:
     calibration: Sequence[CalibrationFit] = ()
 
 
-def published(kind: Kind) -> Published:
+def published_numbers(kind: JointKind) -> PublishedNumbers:
     """What the joint's part says; nothing if no paper is about it."""
-    own: Published = getattr(part(kind, "published"), "PUBLISHED", Published())
+    own: PublishedNumbers = getattr(load_tool_module(kind, "published"), "PUBLISHED", PublishedNumbers())
     return own

@@ -18,15 +18,15 @@ ROLES = {
     "claim": "claim of the text",
 }
 """What a published point shows, in plain words. A calibrated or circular one proves nothing."""
-PROVES_NOTHING = ("calibration", "circular")
-GUESSED = ("interpolation", "prediction")
+UNTESTED_ROLES = ("calibration", "circular")
+GUESS_ROLES = ("interpolation", "prediction")
 """Roles that stand beside a trivial guess."""
 CALIBRATION_TOLERANCE = 1e-6
 """Relative miss of a calibration point [1]: the fits are exact, this leaves room for rounding."""
 
-_RULES = {"constant": 1, "power law": 2, "offset": 3, "proportion": 3, "growth": 3}
+_RULE_POINTS = {"constant": 1, "power law": 2, "offset": 3, "proportion": 3, "growth": 3}
 """Points that a trivial guess is taken from, by rule."""
-_POWERS = ("power law", "growth")
+_POWER_RULES = ("power law", "growth")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -44,11 +44,13 @@ class Guess:
     over: str = ""
 
     def __post_init__(self) -> None:
-        if self.rule not in _RULES:
-            raise ValueError(f"guess: rule = {self.rule!r}, allowed are {', '.join(_RULES)}")
-        if len(self.points) != _RULES[self.rule]:
-            raise ValueError(f"guess: {len(self.points)} points, a {self.rule} takes {_RULES[self.rule]}")
-        if bool(self.over) != (self.rule in _POWERS):
+        if self.rule not in _RULE_POINTS:
+            raise ValueError(f"guess: rule = {self.rule!r}, allowed are {', '.join(_RULE_POINTS)}")
+        if len(self.points) != _RULE_POINTS[self.rule]:
+            raise ValueError(
+                f"guess: {len(self.points)} points, a {self.rule} takes {_RULE_POINTS[self.rule]}"
+            )
+        if bool(self.over) != (self.rule in _POWER_RULES):
             raise ValueError(
                 f"guess: over = {self.over!r}, a {self.rule} takes {'a name' if not self.over else 'none'}"
             )
@@ -101,11 +103,13 @@ class Point:
             raise ValueError(f"{where}: role = {self.role!r}, allowed are {', '.join(ROLES)}")
         if (self.role == "claim") != isinstance(self.value, bool):
             raise ValueError(f"{where}: value = {self.value!r}, a claim is true or false, others numbers")
-        if self.guess and self.role not in GUESSED:
-            raise ValueError(f"{where}: role = {self.role!r} has a guess, allowed are {', '.join(GUESSED)}")
+        if self.guess and self.role not in GUESS_ROLES:
+            raise ValueError(
+                f"{where}: role = {self.role!r} has a guess, allowed are {', '.join(GUESS_ROLES)}"
+            )
 
 
-def points(paper: str) -> list[Point]:
+def read_points(paper: str) -> list[Point]:
     """All points of a paper, in the order of its file."""
     text = (files("jointfmu_models") / "reference" / f"{paper}.toml").read_text(encoding="utf-8")
     document = tomllib.loads(text)
@@ -117,7 +121,7 @@ def _point(paper: str, joint: str, entry: dict[str, Any]) -> Point:
     return Point(paper=paper, joint=joint, **(entry | guess))
 
 
-def guesses(published: Sequence[Point]) -> dict[str, float]:
+def trivial_guesses(published: Sequence[Point]) -> dict[str, float]:
     """The trivial guesses of one paper's points, by id; from the calibration points and nothing else.
 
     Raises ValueError if a guess names a point that neither calibrates nor has a guess of its own.
@@ -134,7 +138,7 @@ def guesses(published: Sequence[Point]) -> dict[str, float]:
 
     def guess(point: Point, how: Guess, asking: tuple[str, ...]) -> float:
         a, *more = (value(name, asking) for name in how.points)
-        if how.rule in _POWERS:
+        if how.rule in _POWER_RULES:
             x, x_a, *others = (p.where[how.over] for p in (point, *(known[name] for name in how.points)))
             (y, z), (x_y, x_z) = (a, *more)[-2:], (x_a, *others)[-2:]
             power = np.log(z / y) / np.log(x_z / x_y)

@@ -7,13 +7,13 @@ from math import isfinite
 from typing import Any
 
 from jointfmu.joints import KINDS
-from jointfmu.parameters import ParameterFile, default
+from jointfmu.parameters import ParameterFile, load_default
 
-from ..shown import aligned
-from .computed import published
-from .reference import PROVES_NOTHING, ROLES, Point, guesses, points
+from ..shown import align_columns
+from .computed import published_numbers
+from .reference import ROLES, UNTESTED_ROLES, Point, read_points, trivial_guesses
 
-_HEAD = (
+_TABLE_HEAD = (
     *("paper", "point", "unit", "published", "computed", "error", "tolerance"),
     *("guess", "its error", "nearer", "number", "role", "verdict"),
 )
@@ -74,22 +74,22 @@ def _error(point: Point, value: float) -> float:
     return (value - point.value) / (1.0 if point.absolute else abs(point.value))
 
 
-def validate(sets: Mapping[str, ParameterFile] | None = None) -> list[ValidatedPoint]:
+def validate(parameter_sets: Mapping[str, ParameterFile] | None = None) -> list[ValidatedPoint]:
     """Compute every published point with the default parameter sets, or those given by joint."""
-    given, rows = sets or {}, []
+    given, rows = parameter_sets or {}, []
     for kind in KINDS.values():
-        own = published(kind)
+        own = published_numbers(kind)
         for paper in own.papers:
-            values = (given.get(kind.name) or default(kind.name)).values
-            observables, known = own.observables, points(paper)
-            guessed = guesses(known)
+            values = (given.get(kind.name) or load_default(kind.name)).values
+            observables, known = own.observables, read_points(paper)
+            guessed = trivial_guesses(known)
             rows += [compare(p, observables[p.quantity](values, **p.where), guessed.get(p.id)) for p in known]
     return rows
 
 
-def missed(rows: Sequence[ValidatedPoint]) -> list[ValidatedPoint]:
+def missed_points(rows: Sequence[ValidatedPoint]) -> list[ValidatedPoint]:
     """Rows that miss, but for those whose value proves nothing: calibrated and circular ones."""
-    return [row for row in rows if row.point.role not in PROVES_NOTHING and not row.passed]
+    return [row for row in rows if row.point.role not in UNTESTED_ROLES and not row.passed]
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,8 +120,8 @@ def counts(rows: Sequence[ValidatedPoint]) -> Counts:
     printed = sum(point.printed for point in numbers)
     guessed = [row for row in rows if row.nearer]
 
-    def by_role(some: Sequence[ValidatedPoint]) -> dict[str, int]:
-        found = Counter(row.point.role for row in some)
+    def by_role(points: Sequence[ValidatedPoint]) -> dict[str, int]:
+        found = Counter(row.point.role for row in points)
         return {role: found[role] for role in ROLES}
 
     return Counts(
@@ -133,37 +133,37 @@ def counts(rows: Sequence[ValidatedPoint]) -> Counts:
         guessed=by_role(guessed),
         nearer=by_role([row for row in guessed if row.nearer == "law"]),
         contradictions=[row.point.id for row in rows if row.point.text is not None],
-        missed=[row.point.id for row in missed(rows)],
+        missed=[row.point.id for row in missed_points(rows)],
     )
 
 
 def table(rows: Sequence[ValidatedPoint]) -> str:
     """The comparison as text."""
-    return "\n".join(aligned([_HEAD, *map(_cells, rows)]))
+    return "\n".join(align_columns([_TABLE_HEAD, *map(_cells, rows)]))
 
 
 def _cells(row: ValidatedPoint) -> tuple[str, ...]:
     p = row.point
     if isinstance(p.value, bool):
-        shown = (shown_claim(row), str(row.computed).lower(), "-", "-")
+        shown = (format_claim(row), str(row.computed).lower(), "-", "-")
         source = "text"
     else:
-        shown = (f"{p.value:.6g}", f"{row.computed:.6g}", shown_error(p, row.error), shown_tolerance(p))
+        shown = (f"{p.value:.6g}", f"{row.computed:.6g}", format_error(p, row.error), format_tolerance(p))
         source = "printed" if p.printed else "derived"
     guess = ("-", "-", "-")
     if row.guess is not None and row.guess_error is not None:
-        guess = (f"{row.guess:.6g}", shown_error(p, row.guess_error), row.nearer)
+        guess = (f"{row.guess:.6g}", format_error(p, row.guess_error), row.nearer)
     return (p.paper, p.id, p.unit, *shown, *guess, source, p.role, "pass" if row.passed else "MISS")
 
 
-def shown_error(point: Point, error: float) -> str:
+def format_error(point: Point, error: float) -> str:
     """An error as text: in per cent, or in the point's unit where that is how it is judged."""
     scale, unit = _scale(point)
     small = abs(error) <= _ROUNDING * point.tolerance
     return ("0" if small else f"{scale * error:+.3g}") + unit
 
 
-def shown_tolerance(point: Point) -> str:
+def format_tolerance(point: Point) -> str:
     """A tolerance as text, as `shown_error`."""
     scale, unit = _scale(point)
     return f"{scale * point.tolerance:.3g}{unit}"
@@ -176,7 +176,7 @@ def _scale(point: Point) -> tuple[float, str]:
     return 1.0, {"%": " points", "1": ""}.get(point.unit, f" {point.unit}")
 
 
-def shown_claim(row: ValidatedPoint) -> str:
+def format_claim(row: ValidatedPoint) -> str:
     """A claim as text, with the text's own where its equations give the opposite."""
     p = row.point
     return str(p.value).lower() + ("" if p.text is None else f" (text: {str(p.text).lower()})")

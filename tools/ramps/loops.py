@@ -11,27 +11,27 @@ import numpy as np
 from jointfmu.quantity import Array, units
 
 from .. import columns
-from ..host import unpacked
+from ..host import unpack_fmu
 from . import ramp
 
 if TYPE_CHECKING:
     from fmpy.model_description import ModelDescription
 
 SHAPES = ("triangle", "sine")
-POINTS, CYCLES = 200, 2
-LEAST_POINTS, MOST_POINTS = 8, 1_000_000
-MOST_CYCLES = 1000
-ROUNDING = 1e-12
+DEFAULT_POINTS, DEFAULT_CYCLES = 200, 2
+MIN_POINTS, MAX_POINTS = 8, 1_000_000
+MAX_CYCLES = 1000
+RELATIVE_ROUNDING = 1e-12
 """Work over that of the loop's box [1] that is round-off."""
-ENERGY = units.base("J")
-FORCES = (units.base("N"), units.base("N.m"))
+ENERGY_UNIT = units.base_exponents("J")
+FORCE_UNITS = (units.base_exponents("N"), units.base_exponents("N.m"))
 """What counts as a force or torque; the other of two conjugate variables is the motion."""
-NAMES = {"m": ("displacement", "force"), "rad": ("angle", "torque")}
+COLUMN_NAMES = {"m": ("displacement", "force"), "rad": ("angle", "torque")}
 """{unit of the motion: names of motion and force in the file}, those that `fit loop` reads."""
 
 
 @dataclass(frozen=True, slots=True)
-class Swing:
+class CyclicPath:
     """How an input is driven.
 
     about  : where it starts and about which it swings
@@ -40,29 +40,29 @@ class Swing:
     cycles : after the first loading; the last one counts
     """
 
-    about: float = 0.0
+    centre: float = 0.0
     shape: str = SHAPES[0]
-    points: int = POINTS
-    cycles: int = CYCLES
+    points: int = DEFAULT_POINTS
+    cycles: int = DEFAULT_CYCLES
 
     def __post_init__(self) -> None:
-        if not np.isfinite(self.about):
-            raise ValueError(f"about = {self.about:g} is outside (-inf, inf): must be finite")
-        if self.points % 4 or not LEAST_POINTS <= self.points <= MOST_POINTS:
+        if not np.isfinite(self.centre):
+            raise ValueError(f"about = {self.centre:g} is outside (-inf, inf): must be finite")
+        if self.points % 4 or not MIN_POINTS <= self.points <= MAX_POINTS:
             raise ValueError(
-                f"points = {self.points}, allowed are multiples of 4 from {LEAST_POINTS} to {MOST_POINTS}"
+                f"points = {self.points}, allowed are multiples of 4 from {MIN_POINTS} to {MAX_POINTS}"
             )
-        if not 1 <= self.cycles <= MOST_CYCLES:
-            raise ValueError(f"cycles = {self.cycles} is outside [1, {MOST_CYCLES}]")
+        if not 1 <= self.cycles <= MAX_CYCLES:
+            raise ValueError(f"cycles = {self.cycles} is outside [1, {MAX_CYCLES}]")
 
-    def along(self, amplitude: float) -> Array:
+    def path(self, amplitude: float) -> Array:
         """The points: first loading to the amplitude, then whole cycles from there."""
         if not 0.0 < amplitude < np.inf:
             raise ValueError(f"loop = {amplitude:g} is outside (0, inf): the amplitude of the input")
         phase = np.arange(self.points // 4 + self.cycles * self.points + 1) / self.points
         turned = np.abs((phase + 0.25) % 1.0 - 0.5)  # 1/4 at zero, least at the top
         value = 1.0 - 4.0 * turned if self.shape == "triangle" else np.sin(2.0 * np.pi * phase)
-        return np.asarray(self.about + amplitude * value)
+        return np.asarray(self.centre + amplitude * value)
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,12 +76,12 @@ class HysteresisLoop:
 
     motion: Array
     force: Array
-    closed: int
+    cycle_start: int
     result: ramp.RampResult
 
     @property
     def _cycle(self) -> tuple[Array, Array]:
-        return self.motion[self.closed :], self.force[self.closed :]
+        return self.motion[self.cycle_start :], self.force[self.cycle_start :]
 
     @property
     def amplitudes(self) -> tuple[float, float]:
@@ -94,7 +94,7 @@ class HysteresisLoop:
         """Work [J] that goes in over the last cycle, by trapezoids; none where it is round-off."""
         motion, force = self._cycle
         work = float(np.sum(0.5 * (force[1:] + force[:-1]) * np.diff(motion)))
-        return work if abs(work) > ROUNDING * float(np.ptp(motion) * np.ptp(force)) else 0.0
+        return work if abs(work) > RELATIVE_ROUNDING * float(np.ptp(motion) * np.ptp(force)) else 0.0
 
     def row(self) -> dict[str, float]:
         """What the loop gives; secant stiffness through its ends, loss factor loss/(pi K a^2)."""
@@ -108,7 +108,7 @@ class HysteresisLoop:
             "loss_factor": self.loss / (np.pi * force * motion) if force else 0.0,
         }
         if "E_loss" in self.result.columns:
-            found["E_loss"] = float(np.diff(self.result.columns["E_loss"][[self.closed, -1]])[0])
+            found["E_loss"] = float(np.diff(self.result.columns["E_loss"][[self.cycle_start, -1]])[0])
         return found
 
 
@@ -128,9 +128,9 @@ class HysteresisLoops:
     loops: Sequence[HysteresisLoop]
 
     @property
-    def names(self) -> tuple[str, str]:
+    def column_names(self) -> tuple[str, str]:
         """Names of motion and force in files: those that `fit loop` reads."""
-        return NAMES[self.units[0]]
+        return COLUMN_NAMES[self.units[0]]
 
     @property
     def messages(self) -> tuple[str, ...]:
@@ -148,9 +148,9 @@ class HysteresisLoops:
     def table(self) -> str:
         """The rows as CSV text, six digits."""
         rows = self.rows()
-        own = dict(zip(("motion", "force"), self.names, strict=True))
+        own = dict(zip(("motion", "force"), self.column_names, strict=True))
         given = {"E_loss": "J", "loss_factor": "1"} | self.row_units
-        return columns.text(
+        return columns.format_table(
             [(own.get(name, name), given[name]) for name in rows[0]],
             [np.array([row[name] for row in rows]) for name in rows[0]],
             digits=6,
@@ -160,7 +160,7 @@ class HysteresisLoops:
         """Every point of every loop as CSV text that `fit loop` reads: runs, motion, force, the outputs."""
         first = self.loops[0].result
         others = [name for name in first.columns if name not in (self.motion, self.force)]
-        names = [*self.names, *others]
+        names = [*self.column_names, *others]
         heads = [
             ("run", "1"),
             *zip(names, (*self.units, *(first.units[name] for name in others)), strict=True),
@@ -175,15 +175,17 @@ class HysteresisLoops:
             for number, loop in enumerate(self.loops, 1)
         ]
         sign = "-" if self.sign < 0.0 else ""
-        told = f"# {self.names[0]} = {self.motion}, {self.names[1]} = {sign}{self.force}"
-        return columns.text(heads, [np.concatenate(part) for part in zip(*parts, strict=True)], above=[told])
+        told = f"# {self.column_names[0]} = {self.motion}, {self.column_names[1]} = {sign}{self.force}"
+        return columns.format_table(
+            heads, [np.concatenate(part) for part in zip(*parts, strict=True)], header_lines=[told]
+        )
 
 
-def run(
+def run_loops(
     fmu: str | Path,
     input_name: str,
     amplitudes: Sequence[float],
-    swing: Swing,
+    cyclic_path: CyclicPath,
     output: str | None = None,
     settings: Mapping[str, object] | None = None,
 ) -> HysteresisLoops:
@@ -193,25 +195,29 @@ def run(
 
     Raises ValueError as `ramp.run`, for a swing that is none, or where no output is conjugate to the input.
     """
-    points = [swing.along(amplitude) for amplitude in amplitudes]
-    with unpacked(fmu) as (_, description):
-        output = conjugate(*variables(description), input_name, output, str(fmu))
-    return of([ramp.along(fmu, input_name, each, settings) for each in points], input_name, output, swing)
+    points = [cyclic_path.path(amplitude) for amplitude in amplitudes]
+    with unpack_fmu(fmu) as (_, description):
+        output = find_conjugate(*input_and_output_units(description), input_name, output, str(fmu))
+    return loops_from_results(
+        [ramp.run_path(fmu, input_name, each, settings) for each in points], input_name, output, cyclic_path
+    )
 
 
-def of(results: Sequence[ramp.RampResult], input_name: str, output: str, swing: Swing) -> HysteresisLoops:
+def loops_from_results(
+    results: Sequence[ramp.RampResult], input_name: str, output: str, cyclic_path: CyclicPath
+) -> HysteresisLoops:
     """The loops of an input that swung, one for each amplitude, with an output that is conjugate to it."""
     first = max(results, key=lambda result: float(np.ptp(result.columns[input_name])))
-    driven = units.base(first.units[input_name]) in FORCES
+    driven = units.base_exponents(first.units[input_name]) in FORCE_UNITS
     motion, force = (output, input_name) if driven else (input_name, output)
     x, y = first.columns[motion], first.columns[force]
     sign = -1.0 if np.sum((x - x.mean()) * (y - y.mean())) < 0.0 else 1.0
-    closed = swing.points // 4 + (swing.cycles - 1) * swing.points
+    closed = cyclic_path.points // 4 + (cyclic_path.cycles - 1) * cyclic_path.points
     loops = [HysteresisLoop(r.columns[motion], sign * r.columns[force], closed, r) for r in results]
     return HysteresisLoops(motion, force, (first.units[motion], first.units[force]), sign, loops)
 
 
-def variables(description: "ModelDescription") -> tuple[dict[str, str], dict[str, str]]:
+def input_and_output_units(description: "ModelDescription") -> tuple[dict[str, str], dict[str, str]]:
     """{name: unit} of the inputs and of the outputs of an fmpy model description."""
     inputs, outputs = (
         {v.name: v.unit or "1" for v in description.modelVariables if v.causality == causality}
@@ -220,7 +226,7 @@ def variables(description: "ModelDescription") -> tuple[dict[str, str], dict[str
     return inputs, outputs
 
 
-def conjugate(
+def find_conjugate(
     inputs: Mapping[str, str], outputs: Mapping[str, str], input_name: str, output: str | None, source: str
 ) -> str:
     """The output whose product with the input is an energy, of the same suffix where there are several.
@@ -230,7 +236,7 @@ def conjugate(
     if input_name not in inputs:
         raise ValueError(f"{source}: unknown input {input_name!r}, allowed are {', '.join(inputs)}")
     own = inputs[input_name]
-    fitting = [name for name, unit in outputs.items() if unit != "J" and _energy(own, unit)]
+    fitting = [name for name, unit in outputs.items() if unit != "J" and _is_energy(own, unit)]
     if output is not None:
         if output not in fitting:
             raise ValueError(
@@ -253,11 +259,13 @@ def suffix(name: str) -> str:
     return match[0] if match else ""
 
 
-def _energy(one: str, other: str) -> bool:
+def _is_energy(first: str, second: str) -> bool:
     """Whether the product of two units is an energy; the radian counts as none."""
     try:
-        parts = units.base(one), units.base(other)
+        parts = units.base_exponents(first), units.base_exponents(second)
     except ValueError:
         return False
     whole = {name: sum(part.get(name, 0) for part in parts) for name in {**parts[0], **parts[1]}}
-    return {name: n for name, n in whole.items() if n and name != "rad"} == ENERGY and one != "1" != other
+    return {
+        name: n for name, n in whole.items() if n and name != "rad"
+    } == ENERGY_UNIT and first != "1" != second

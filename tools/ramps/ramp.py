@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from jointfmu.progress import track
+from jointfmu.progress import track_progress
 from jointfmu.quantity import Array
 
 from .. import columns
-from ..host import opened, unpacked
+from ..host import open_instance, unpack_fmu
 
 if TYPE_CHECKING:
     from fmpy.model_description import ModelDescription
@@ -28,14 +28,14 @@ class RampResult:
     def csv(self) -> str:
         """The ramp as CSV text, header `name [unit]`, numbers exact."""
         heads = [(name, self.units[name]) for name in self.columns]
-        return columns.text(heads, list(self.columns.values()))
+        return columns.format_table(heads, list(self.columns.values()))
 
 
-LARGEST = 1e12
+MAX_END = 1e12
 """Largest end of a ramp [SI]: a meganewton a million times over."""
 
 
-def steps(to: float, step: float) -> Array:
+def ramp_points(to: float, step: float) -> Array:
     """Points 0, step, 2 step ... to; the last step may be shorter.
 
     Raises ValueError if a value is not finite, `to` beyond LARGEST, the step zero, or leads away from `to`.
@@ -43,9 +43,9 @@ def steps(to: float, step: float) -> Array:
     for name, value in (("to", to), ("step", step)):
         if not np.isfinite(value):
             raise ValueError(f"{name} = {value:g} is outside (-inf, inf): must be finite")
-    if abs(to) > LARGEST:
+    if abs(to) > MAX_END:
         raise ValueError(
-            f"to = {to:g} is outside [-{LARGEST:g}, {LARGEST:g}] (SI): no load or motion is so large"
+            f"to = {to:g} is outside [-{MAX_END:g}, {MAX_END:g}] (SI): no load or motion is so large"
         )
     if step == 0.0 or to / step < 0.0:
         allowed = "(-inf, 0)" if to < 0.0 else "(0, inf)"
@@ -58,7 +58,7 @@ def steps(to: float, step: float) -> Array:
     return np.asarray(whole if reached else np.append(whole, to), dtype=np.float64)
 
 
-def run(
+def run_ramp(
     fmu: str | Path,
     input_name: str,
     to: float,
@@ -80,10 +80,10 @@ def run(
         a value is impossible, or the FMU refuses a value (the message is the FMU's own)
     RuntimeError : the FMU does not instantiate
     """
-    return along(fmu, input_name, steps(to, step), settings)
+    return run_path(fmu, input_name, ramp_points(to, step), settings)
 
 
-def along(
+def run_path(
     fmu: str | Path, input_name: str, points: Array, settings: Mapping[str, object] | None = None
 ) -> RampResult:
     """Drive one input along points (n), one step of one second each; all else stays. Raises as `run`."""
@@ -104,7 +104,7 @@ def drive(
     clock = rows.pop("time", np.arange(float(count)))
     if not (clock[0] == 0.0 and np.all(np.diff(clock) > 0.0) and np.all(np.isfinite(clock))):
         raise ValueError(f"{fmu}: time does not rise from 0 s")
-    with unpacked(fmu) as (folder, description):
+    with unpack_fmu(fmu) as (folder, description):
         return _drive(folder, description, rows, clock, dict(settings or {}), str(fmu))
 
 
@@ -118,9 +118,9 @@ def broadcast(columns: Mapping[str, Array], source: str) -> tuple[dict[str, Arra
     return {name: np.broadcast_to(column, count) for name, column in columns.items()}, count
 
 
-def units(fmu: str | Path) -> dict[str, str]:
+def variable_units(fmu: str | Path) -> dict[str, str]:
     """{variable: its unit} of an FMU; ValueError as `host.unpacked`."""
-    with unpacked(fmu) as (_, description):
+    with unpack_fmu(fmu) as (_, description):
         return {v.name: v.unit or "1" for v in description.modelVariables}
 
 
@@ -151,17 +151,17 @@ def _drive(
     messages: list[str] = []
     rows: list[list[float]] = []
     points = np.stack([*inputs.values()], axis=-1) if inputs else np.empty((time.size, 0))
-    with opened(folder, md, source, messages) as fmu:
+    with open_instance(folder, md, source, messages) as fmu:
         try:
-            fmu.begin()
-            fmu.set({**settings, **dict(zip(inputs, points[0].tolist(), strict=True))})
+            fmu.enter_initialization()
+            fmu.set_values({**settings, **dict(zip(inputs, points[0].tolist(), strict=True))})
             fmu.fmu.exitInitializationMode()
-            driven, read = fmu.reals([*inputs]), fmu.reals([v.name for v in outputs])
-            for i, values in enumerate(track(points.tolist(), Path(source).stem, len(points))):
-                driven.set(*values)
+            driven, read = fmu.group_reals([*inputs]), fmu.group_reals([v.name for v in outputs])
+            for i, values in enumerate(track_progress(points.tolist(), Path(source).stem, len(points))):
+                driven.set_values(*values)
                 if i:
-                    fmu.advance(float(time[i - 1]), float(time[i] - time[i - 1]))
-                rows.append(read.get())
+                    fmu.do_step(float(time[i - 1]), float(time[i] - time[i - 1]))
+                rows.append(read.get_values())
         except Exception as error:
             raise ValueError(f"{source}: {messages[0] if messages else error}") from None
     table = np.asarray(rows).reshape(len(points), len(outputs))

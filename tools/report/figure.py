@@ -7,34 +7,34 @@ from typing import TYPE_CHECKING, NamedTuple
 from jointfmu_fmu_src.joint_parts import chart
 from jointfmu_fmu_src.joint_parts.chart import Panel, Series
 
-from ..laboratory.assemble import web_file
+from ..laboratory.assemble import read_web_file
 from ..plots import BLUE, GREEN, GREY, RED
-from ..published.reference import PROVES_NOTHING, ROLES, Point
+from ..published.reference import ROLES, UNTESTED_ROLES, Point
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Canvas
 
 
-def style() -> str:
+def style_sheet() -> str:
     """Style sheet (CSS) of the reports."""
-    return chart.style() + web_file("style.css") + _own("report.css")
+    return chart.style() + read_web_file("style.css") + _read_asset("report.css")
 
 
-def script(*names: str) -> str:
+def page_script(*names: str) -> str:
     """JavaScript of the charts, and of the named scripts of this folder."""
-    return chart.script("figures") + "".join(map(_own, names))
+    return chart.script("figures") + "".join(map(_read_asset, names))
 
 
-def _own(name: str) -> str:
+def _read_asset(name: str) -> str:
     return Path(__file__).with_name(name).read_text(encoding="utf-8")
 
 
-SET, OWN, PREDICTED = "set by it", "set independently", "predicted"
+ROLE_SET, ROLE_INDEPENDENT, ROLE_PREDICTED = "set by it", "set independently", "predicted"
 """Role of a published number: a parameter was set from it; a parameter has the same meaning but another
 source; the number is independent of all parameters, so it is a prediction."""
 
 
-class Beside(NamedTuple):
+class ComparisonRow(NamedTuple):
     """Comparison of a published number with the number that the joint has.
 
     unit                : SI unit of both numbers
@@ -46,13 +46,13 @@ class Beside(NamedTuple):
     name: str
     unit: str
     published: float
-    bound: bool
+    is_upper_limit: bool
     computed: float
     role: str
     source: str
 
 
-__all__ = ["Figure", "Panel", "Series", "drawn", "published"]
+__all__ = ["Figure", "Panel", "Series", "draw_panels", "published_series"]
 
 _COLOURS = (BLUE, RED, GREEN, GREY, "#8055a8", "#b8860b")
 
@@ -75,7 +75,7 @@ class Figure(NamedTuple):
     table: Sequence[Sequence[str]] = ()
 
 
-def published(points: Sequence[Point], over: str) -> list[Series]:
+def published_series(points: Sequence[Point], argument: str) -> list[Series]:
     """Series of published numbers over an argument, one for each role.
 
     Marks are empty if numbers of this role are no independent check.
@@ -83,13 +83,13 @@ def published(points: Sequence[Point], over: str) -> list[Series]:
     series = []
     for role in dict.fromkeys(point.role for point in points):
         chosen = [point for point in points if point.role == role]
-        x, y = [p.where[over] for p in chosen], [float(p.value) for p in chosen]
-        marks = "empty" if role in PROVES_NOTHING else "full"
+        x, y = [p.where[argument] for p in chosen], [float(p.value) for p in chosen]
+        marks = "empty" if role in UNTESTED_ROLES else "full"
         series.append(Series(f"published: {ROLES[role]}", x, y, marks, titles=[p.id for p in chosen]))
     return series
 
 
-def drawn(canvas: "Canvas", panels: Sequence[Panel]) -> None:
+def draw_panels(canvas: "Canvas", panels: Sequence[Panel]) -> None:
     """Draw panels side by side with matplotlib."""
     for axes, panel in zip(canvas.subplots(1, len(panels), squeeze=False)[0], panels, strict=True):
         for series, color in zip(panel.series, _COLOURS, strict=False):

@@ -11,22 +11,22 @@ from jointfmu import __version__
 from jointfmu.files.timestamp import build_time
 from jointfmu.files.writing import write_text
 from jointfmu.joints import KINDS
-from jointfmu.joints.kind import Kind
+from jointfmu.joints.kind import JointKind
 
-from ..joint_parts import part
+from ..joint_parts import load_tool_module
 from ..published.reference import ROLES
-from ..published.validation import shown_claim, shown_error, shown_tolerance, summary
+from ..published.validation import format_claim, format_error, format_tolerance, summary
 from ..systems.system import systems
-from .figure import Figure, script, style
-from .systems import motions, resonances, ring_downs
+from .figure import Figure, page_script, style_sheet
+from .systems import motion_figures, resonance_figures, ring_down_figures
 
 
-def drawn(outcome: Any) -> dict[str, list[Figure]]:
+def build_figures(outcome: Any) -> dict[str, list[Figure]]:
     """Build the figures of all joints: {joint: figures}.
 
     outcome : result of `python build_fmus.py` with simulated systems
     """
-    return {name: _figures(kind, outcome) for name, kind in KINDS.items()}
+    return {name: _joint_figures(kind, outcome) for name, kind in KINDS.items()}
 
 
 def write_report(path: Path, outcome: Any) -> None:
@@ -41,18 +41,18 @@ def write_report(path: Path, outcome: Any) -> None:
         outcome=outcome,
         roles=ROLES,
         sentence=summary(outcome.rows),
-        shown_error=shown_error,
-        shown_tolerance=shown_tolerance,
-        shown_claim=shown_claim,
+        shown_error=format_error,
+        shown_tolerance=format_tolerance,
+        shown_claim=format_claim,
         fmu_values={(r.point.paper, r.point.id): r for r in outcome.fmu_rows},
-        tabs=[_tab(kind, outcome) for kind in KINDS.values()],
-        style=style(),
-        script=script("tabs.js"),
+        tabs=[_tab_terms(kind, outcome) for kind in KINDS.values()],
+        style=style_sheet(),
+        script=page_script("tabs.js"),
     )
     write_text(path, page)
 
 
-def _tab(kind: Kind, outcome: Any) -> dict[str, Any]:
+def _tab_terms(kind: JointKind, outcome: Any) -> dict[str, Any]:
     """Template variables for the tab of one joint."""
     names = [model.name for model in kind.models]
     kinds = {name: {j.kind for j in system.joints.values()} for name, system in systems().items()}
@@ -67,8 +67,11 @@ def _tab(kind: Kind, outcome: Any) -> dict[str, Any]:
     }
 
 
-def _figures(kind: Kind, outcome: Any) -> list[Figure]:
-    module = part(kind, "figures")
+def _joint_figures(kind: JointKind, outcome: Any) -> list[Figure]:
+    module = load_tool_module(kind, "figures")
     figures: list[Figure] = module.figures(outcome) if module else []
-    figures += [*resonances(outcome.ringing, kind.name, outcome.fmus), *ring_downs(outcome.decays, kind.name)]
-    return figures + motions(outcome.arms, kind.name)
+    figures += [
+        *resonance_figures(outcome.ringing, kind.name, outcome.fmus),
+        *ring_down_figures(outcome.decays, kind.name),
+    ]
+    return figures + motion_figures(outcome.arms, kind.name)

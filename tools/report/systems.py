@@ -8,54 +8,64 @@ import numpy as np
 from jointfmu.joints import KINDS
 from jointfmu.quantity import Array
 
-from ..shown import spelled
+from ..shown import format_unit
 from ..systems.decays import Decay
 from ..systems.ringing import Body, Ringing, VibratingJoint, stiffness_line, vibrating_joints
 from ..systems.system import System
 from ..systems.wiring import model_of, wires
 from .figure import Figure, Panel, Series
 
-SIZE, WIDE = (9.6, 4.0), (11.4, 3.8)
+RESONANCE_SIZE, DECAY_SIZE = (9.6, 4.0), (11.4, 3.8)
 """Sizes [inch] of the pictures of resonance and of free decay."""
-_WAYS = ((1.0, "above"), (-1.0, "below"))
+_ENVELOPE_SIDES = ((1.0, "above"), (-1.0, "below"))
 """Sign and name of both envelopes."""
 
 
-def resonances(found: Mapping[str, Sequence[Ringing]], joint: str, folder: Path) -> list[Figure]:
+def resonance_figures(results: Mapping[str, Sequence[Ringing]], joint: str, folder: Path) -> list[Figure]:
     """Resonance figures of all systems with a joint of this kind.
 
     results : {system: results at each load}
     folder  : folder with the FMUs (FMI 2.0)
     """
-    return [_resonance(name, item, found[name], folder) for name, item in _ringing(joint) if name in found]
+    return [
+        _resonance_figure(name, item, results[name], folder)
+        for name, item in _vibrating_systems(joint)
+        if name in results
+    ]
 
 
-def _ringing(joint: str) -> list[tuple[str, VibratingJoint]]:
+def _vibrating_systems(joint: str) -> list[tuple[str, VibratingJoint]]:
     """Systems in which the vibrating joint is of this kind: (name, vibrating joint)."""
     return [(name, item) for name, item in vibrating_joints().items() if item.joint.kind == joint]
 
 
-def _resonance(name: str, one: VibratingJoint, points: Sequence[Ringing], folder: Path) -> Figure:
-    body, moving = one.body, one.moving.name
+def _resonance_figure(
+    name: str, vibrating_joint: VibratingJoint, points: Sequence[Ringing], folder: Path
+) -> Figure:
+    body, moving = vibrating_joint.body, vibrating_joint.moving.name
     return Figure(
         f"In a system: resonance of the {name.replace('_', ' ')} over its {body.load.name}",
         f"The {moving} vibrates freely about a working point, {body.doc}. First chart: resonance frequency; "
         "circles are peaks of the spectrum of the simulated signal, the line is the square root of "
         f"{body.stiffness} over the inertia of the {moving}. Second chart: free decay at the first "
         f"{body.load.name}, with the envelopes of the stated damping. Friction is left out.",
-        resonance_panels(points, one, folder),
+        resonance_panels(points, vibrating_joint, folder),
     )
 
 
-def ring_downs(decays: Mapping[str, Sequence[Decay]], joint: str) -> list[Figure]:
+def ring_down_figures(decays: Mapping[str, Sequence[Decay]], joint: str) -> list[Figure]:
     """Free-decay figures of all systems with a slipping joint of this kind."""
-    return [_ring_down(name, item, decays[name]) for name, item in _ringing(joint) if name in decays]
+    return [
+        _ring_down_figure(name, item, decays[name])
+        for name, item in _vibrating_systems(joint)
+        if name in decays
+    ]
 
 
-def _ring_down(name: str, one: VibratingJoint, points: Sequence[Decay]) -> Figure:
-    body, moving, (point, *_) = one.body, one.moving.name, points
+def _ring_down_figure(name: str, vibrating_joint: VibratingJoint, points: Sequence[Decay]) -> Figure:
+    body, moving, (point, *_) = vibrating_joint.body, vibrating_joint.moving.name, points
     has_law = point.law is not None
-    deflection = f"{body.deflection.factor * body.pull.deflection:g} {spelled(body.deflection.unit)}"
+    deflection = f"{body.deflection.factor * body.pull.deflection:g} {format_unit(body.deflection.unit)}"
     return Figure(
         f"In a system: free decay of the {name.replace('_', ' ')}",
         f"The {moving}, {body.doc}, is released from a deflection of {deflection} ({body.pull.doc}) at "
@@ -68,12 +78,12 @@ def _ring_down(name: str, one: VibratingJoint, points: Sequence[Decay]) -> Figur
     )
 
 
-def resonance_panels(points: Sequence[Ringing], one: VibratingJoint, folder: Path) -> list[Panel]:
+def resonance_panels(points: Sequence[Ringing], vibrating_joint: VibratingJoint, folder: Path) -> list[Panel]:
     """Panels: resonance over the load, and one free decay with the envelopes of the stated damping."""
-    points, body = sorted(points, key=lambda point: point.load), one.body
+    points, body = sorted(points, key=lambda point: point.load), vibrating_joint.body
     x = [body.load.factor * point.load for point in points]
     hertz = 0.5 / np.pi
-    loads, expected = stiffness_line(one, folder, points)
+    loads, expected = stiffness_line(vibrating_joint, folder, points)
     over = [
         Series("sqrt(K/J)", body.load.factor * loads, hertz * expected),
         Series("simulated", x, [hertz * p.frequency for p in points], "empty"),
@@ -82,7 +92,9 @@ def resonance_panels(points: Sequence[Ringing], one: VibratingJoint, folder: Pat
     envelope = scale * first.signal[0] * np.exp(-first.stated * first.expected * first.time)
     time = 1e3 * first.time
     decay = [Series("decay", time, scale * first.signal)]
-    decay += [Series(f"envelope, {side}", time, sign * envelope, dashed=True) for sign, side in _WAYS]
+    decay += [
+        Series(f"envelope, {side}", time, sign * envelope, dashed=True) for sign, side in _ENVELOPE_SIDES
+    ]
     return [
         Panel("Resonance over the load", body.load.label, "resonance [Hz]", over),
         Panel(f"Free decay at {x[0]:g} {body.load.unit}", "time [ms]", body.deflection.label, decay),
@@ -121,13 +133,13 @@ def decay_panels(points: Sequence[Decay], body: Body) -> list[Panel]:
 
 MOTION_SIZE = (11.4, 3.8)
 """Size [inch] of the picture of a simulated system."""
-_STRETCHES = 400
+_PLOT_INTERVALS = 400
 """Number of intervals of a curve over time; the smallest and the largest point of each is drawn."""
-Run = Mapping[str, Array]
+SystemRun = Mapping[str, Array]
 """Results of a simulated system: {COMPONENT.OUTPUT: values (n)} and `time` (n) [s]."""
 
 
-def units(system: System) -> dict[str, str]:
+def output_units(system: System) -> dict[str, str]:
     """Units of all outputs and of `time`: {COMPONENT.OUTPUT: unit}."""
     outputs = {
         f"{name}.{v.name}": v.unit for name, part in system.components.items() for v in model_of(part).outputs
@@ -135,7 +147,7 @@ def units(system: System) -> dict[str, str]:
     return {"time": "s"} | outputs
 
 
-def loads(system: System) -> dict[str, tuple[str, str]]:
+def joint_load_outputs(system: System) -> dict[str, tuple[str, str]]:
     """Outputs of the joints that act as force or torque on the connected body: {joint: (output, unit)}."""
     outputs = {}
     for wire in wires(system):
@@ -145,7 +157,7 @@ def loads(system: System) -> dict[str, tuple[str, str]]:
     return outputs
 
 
-def windup(system: System, run: Run) -> tuple[Array, Array, Array]:
+def wind_up_and_tip_error(system: System, run: SystemRun) -> tuple[Array, Array, Array]:
     """Commanded angles and wind-up (times, axes) [rad] of an arm, and its tip error (times) [m].
 
     The tip error is the distance between the tip at the angles of the links and at the commanded angles.
@@ -154,53 +166,54 @@ def windup(system: System, run: Run) -> tuple[Array, Array, Array]:
     for name in system.arm.names:
         drive = system.joints[f"{name}_drive"]
         assert drive.file
-        commanded.append(run[f"{name}_motor.phi"] / drive.file.flat["ratio"])
+        commanded.append(run[f"{name}_motor.phi"] / drive.file.values_by_name["ratio"])
         links.append(run[f"{name}_link.phi"])
     q, real = np.stack(commanded, axis=1), np.stack(links, axis=1)
     error = np.linalg.norm(system.arm.tip(real) - system.arm.tip(q), axis=1)
     return q, real - q, error
 
 
-def _drawn(name: str, time: Array, values: Array) -> Series:
+def _thin_series(name: str, time: Array, values: Array) -> Series:
     """Series with the smallest and the largest point of each of _PLOT_INTERVALS intervals."""
-    size = -(-values.size // _STRETCHES)
+    size = -(-values.size // _PLOT_INTERVALS)
     intervals = [(k, values[k : k + size]) for k in range(0, values.size, size)]
     indices = sorted({k + int(f(interval)) for k, interval in intervals for f in (np.argmin, np.argmax)})
     return Series(name, time[indices], values[indices])
 
 
-def panels(system: System, run: Run) -> list[Panel]:
+def system_panels(system: System, run: SystemRun) -> list[Panel]:
     """Panels of the joint loads over time; for an arm also of wind-up and tip error."""
     over = "time [s]"
-    outputs = loads(system)
+    outputs = joint_load_outputs(system)
     unit = " or ".join(dict.fromkeys(unit for _, unit in outputs.values()))
     curves = [
-        _drawn(name.removesuffix("_drive"), run["time"], run[output]) for name, (output, _) in outputs.items()
+        _thin_series(name.removesuffix("_drive"), run["time"], run[output])
+        for name, (output, _) in outputs.items()
     ]
     charts = [Panel("Loads of the joints", over, f"load [{unit}]", curves)]
     if system.arm:
-        _, wind_up, error = windup(system, run)
+        _, wind_up, error = wind_up_and_tip_error(system, run)
         curves = [
-            _drawn(name, run["time"], 1e3 * values)
+            _thin_series(name, run["time"], 1e3 * values)
             for name, values in zip(system.arm.names, wind_up.T, strict=True)
         ]
         charts.append(Panel("Wind-up of the drives", over, "wind-up [mrad]", curves))
-        tip = [_drawn("tip", run["time"], 1e3 * error)]
+        tip = [_thin_series("tip", run["time"], 1e3 * error)]
         charts.append(Panel("Error of the tip", over, "error [mm]", tip))
     return charts
 
 
-def motions(runs: Mapping[str, tuple[System, Run]], joint: str) -> list[Figure]:
+def motion_figures(runs: Mapping[str, tuple[System, SystemRun]], joint: str) -> list[Figure]:
     """Figures of the motion of all arms that have a joint of this kind."""
     return [
-        _motion(system, run)
+        _motion_figure(system, run)
         for system, run in runs.values()
         if joint in {part.kind for part in system.joints.values()}
     ]
 
 
-def _motion(system: System, run: Run) -> Figure:
-    _, wind_up, error = windup(system, run)
+def _motion_figure(system: System, run: SystemRun) -> Figure:
+    _, wind_up, error = wind_up_and_tip_error(system, run)
     (largest, worst) = np.max(np.abs(wind_up), axis=0), float(np.max(error))
     soft = system.arm.names[int(np.argmax(largest))]
     return Figure(
@@ -211,5 +224,5 @@ def _motion(system: System, run: Run) -> Figure:
         f"{1e3 * error[-1]:.2f} mm at the end, under the weight. The {soft} has the largest wind-up, "
         f"{1e3 * np.max(largest):.2f} mrad. The loads of the drives are those of a rigid arm: the effect of "
         "one drive's wind-up on the other drives is neglected.",
-        panels(system, run),
+        system_panels(system, run),
     )

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from jointfmu.files.text import toml_string
+from jointfmu.files.text import format_toml_string
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
 
@@ -67,8 +67,8 @@ def text(
     )
     head = [
         "schema = 1",
-        f"name = {toml_string(f'Axes of {title}')}",
-        f"description = {toml_string(f'Elastic axes with {payload:g} kg at {pose_text}')}",
+        f"name = {format_toml_string(f'Axes of {title}')}",
+        f"description = {format_toml_string(f'Elastic axes with {payload:g} kg at {pose_text}')}",
         "connect = [",
         *wires,
         "]\n",
@@ -85,6 +85,4 @@ def text(
 
 def _entry(name: str, value: float, unit: str, source: str) -> str:
     """TOML line of a derived value with unit and source."""
-    return (
-        f'{name} = {{ value = {value!r}, unit = "{unit}", kind = "derived", source = {toml_string(source)} }}'
-    )
+    return f'{name} = {{ value = {value!r}, unit = "{unit}", kind = "derived", source = {format_toml_string(source)} }}'

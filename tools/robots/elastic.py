@@ -61,7 +61,7 @@ class ElasticAxis:
             yield f"{prefix} rated torque, {drive.rated_torque:g} N.m, of {drive.name}"
 
 
-def read(path: str | Path) -> Any:
+def read_robot(path: str | Path) -> Any:
     """Read a robot (MJCF or URDF) as an MjSpec of MuJoCo; raises ValueError if that fails."""
     import mujoco
 
@@ -217,7 +217,7 @@ def unit(model: Any, name: str) -> str:
     return "m" if model.joint(name).type[0] == mujoco.mjtJoint.mjJNT_SLIDE else "rad"
 
 
-def posed(model: Any, angles: Mapping[str, str]) -> Array:
+def joint_positions(model: Any, angles: Mapping[str, str]) -> Array:
     """Joint positions of the rigid robot: first keyframe or default pose, with given angles replaced.
 
     angles : {joint: text of its position [rad or m]}

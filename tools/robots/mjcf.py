@@ -51,22 +51,22 @@ class Miss:
             yield _verdict(f"area of the loop at {torque:g} N.m", self.area, AREA)
 
 
-def _verdict(what: str, miss: float, most: float) -> str:
+def _verdict(quantity: str, miss: float, tolerance: float) -> str:
     """Text that compares a relative error [1] with its tolerance [1]."""
-    verdict = "within" if abs(miss) <= most else "MISSED:"
-    return f"{what}: {100.0 * miss:+.2f} % of the FMU's, {verdict} {100.0 * most:g} %"
+    verdict = "within" if abs(miss) <= tolerance else "MISSED:"
+    return f"{quantity}: {100.0 * miss:+.2f} % of the FMU's, {verdict} {100.0 * tolerance:g} %"
 
 
-def tendons(drive: Transmission, fitted: FittedTendons, name: str, motor: str, link: str) -> str:
+def tendons(drive: Transmission, spring: FittedTendons, name: str, motor: str, link: str) -> str:
     """MJCF of the tendons between the hinges of motor and link, children of `<tendon>`."""
     joints = (
         f'<joint joint={quoteattr(link)} coef="1"/>'
         f'<joint joint={quoteattr(motor)} coef="{-1.0 / drive.ratio:.17g}"/>'
     )
-    elastic = f'stiffness="{fitted.linear:.9g} 0 {fitted.cubic:.9g}" damping="{drive.damping:.9g}"'
+    elastic = f'stiffness="{spring.linear:.9g} 0 {spring.cubic:.9g}" damping="{drive.damping:.9g}"'
     springs = [(name, elastic)] + [
         (f"{name}_slider{i}", f'stiffness="{k:.9g}" springyield="{y:.9g}"')
-        for i, (k, y) in enumerate(fitted.sliders, 1)
+        for i, (k, y) in enumerate(spring.sliders, 1)
     ]
     return "\n".join(
         f'    <fixed name={quoteattr(tendon)} springlength="0 0" {numbers}>{joints}</fixed>'
@@ -74,7 +74,7 @@ def tendons(drive: Transmission, fitted: FittedTendons, name: str, motor: str, l
     )
 
 
-def _model(drive: Transmission, fitted: FittedTendons, motor_inertia: float, link_inertia: float) -> str:
+def _model(drive: Transmission, spring: FittedTendons, motor_inertia: float, link_inertia: float) -> str:
     """MJCF of motor, drive and link."""
     torque = drive.max_torque / abs(drive.ratio)
     friction = element(drive, "motor", motor_inertia, STEP) if drive.static else ""
@@ -92,7 +92,7 @@ damping="{drive.viscous:.9g}"/>
     </body>
   </worldbody>
   <tendon>
-{tendons(drive, fitted, "drive", "motor", "link")}
+{tendons(drive, spring, "drive", "motor", "link")}
   </tendon>
   <actuator>
     <motor name="motor" joint="motor" forcerange="{-torque:.9g} {torque:.9g}"/>
@@ -102,7 +102,7 @@ damping="{drive.viscous:.9g}"/>
 """
 
 
-def led(drive: Transmission, fitted: FittedTendons, wind_up: Array) -> Array:
+def drive_torque(drive: Transmission, spring: FittedTendons, wind_up: Array) -> Array:
     """Simulate the torques (n) [N.m] of the drive in MuJoCo along prescribed wind-ups (n) [rad] from rest.
 
     Raises ImportError without mujoco, ValueError if MuJoCo has no yielding springs.
@@ -110,7 +110,7 @@ def led(drive: Transmission, fitted: FittedTendons, wind_up: Array) -> Array:
     import mujoco
 
     time_step = LEAD / len(wind_up)
-    text = _model(drive, fitted, LOCKED, LOCKED)
+    text = _model(drive, spring, LOCKED, LOCKED)
     model = mujoco.MjModel.from_xml_string(text)
     model.opt.timestep, model.opt.gravity[:] = time_step, 0.0
     data, link = mujoco.MjData(model), model.joint("link").dofadr[0]
@@ -124,14 +124,14 @@ def led(drive: Transmission, fitted: FittedTendons, wind_up: Array) -> Array:
     return np.array(torques)
 
 
-def measured(drive: Transmission, fitted: FittedTendons) -> Miss:
+def compare_with_fmu(drive: Transmission, spring: FittedTendons) -> Miss:
     """Compare MuJoCo's drive with the FMU's law in first loading to the largest fit torque and one loop."""
-    torques, x = drive.loop(fitted.torque)
-    simulated = led(drive, fitted, x)
+    torques, x = drive.loop(spring.torque)
+    simulated = drive_torque(drive, spring, x)
     fmu_area, mujoco_area = area(x, torques), area(x, simulated)
     ramp = 1.2 * x[: RAMP + 1]
-    wind_up = np.interp(fitted.torque, led(drive, fitted, ramp), ramp)
-    return Miss(float(wind_up / x[RAMP] - 1.0), mujoco_area / fmu_area - 1.0 if fitted.sliders else None)
+    wind_up = np.interp(spring.torque, drive_torque(drive, spring, ramp), ramp)
+    return Miss(float(wind_up / x[RAMP] - 1.0), mujoco_area / fmu_area - 1.0 if spring.sliders else None)
 
 
 def check_version() -> None:
@@ -159,7 +159,7 @@ def text(drive: Transmission, torque: float) -> tuple[str, Miss, list[str]]:
 
     check_version()
     fitted = fit(drive, torque)
-    miss = measured(drive, fitted)
+    miss = compare_with_fmu(drive, fitted)
     stiffness = fitted.linear + sum(k for k, _ in fitted.sliders)
     link = stiffness / (2.0 * np.pi * FREQUENCY) ** 2
     motor = link / drive.ratio**2

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 
 from jointfmu_fmu_src.naming import reserved
 
-from jointfmu.parameters import ParameterFile, dump
+from jointfmu.parameters import ParameterFile, format_parameter_file
 
 
 def identifier(name: str) -> str:
@@ -23,7 +23,7 @@ def check_names(files: Mapping[str, ParameterFile]) -> None:
     first: dict[str, tuple[str, ParameterFile]] = {}
     for joint, file in files.items():
         other, known = first.setdefault(identifier(file.name), (joint, file))
-        if dump(known) != dump(file):
+        if format_parameter_file(known) != format_parameter_file(file):
             raise ValueError(
                 f"the drives of {other} and {joint} are both named {file.name!r} and differ; "
                 "expected a name of its own in one of their files"

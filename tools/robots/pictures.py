@@ -41,12 +41,12 @@ def over_poses(
 ) -> tuple[list[Array], Array]:
     """Angles [rad] of the grid axes, and frequencies (..., n) [Hz] over their grid; others keep `pose`."""
     grid = [angles(model, axis) for axis in swept(axes)]
-    poses = turned(model, axes, pose, grid)
+    poses = grid_poses(model, axes, pose, grid)
     rows = [frequencies(model, axes, grid_pose, payload, tip) for grid_pose in poses]
     return grid, np.reshape(rows, (*map(len, grid), len(axes)))
 
 
-def turned(model: "MjModel", axes: Sequence[ElasticAxis], pose: Array, grid: list[Array]) -> Array:
+def grid_poses(model: "MjModel", axes: Sequence[ElasticAxis], pose: Array, grid: list[Array]) -> Array:
     """Poses (k, n) of the grid, the last grid axis varying fastest; other joints keep `pose`."""
     indices = [int(model.joint(axis.joint).qposadr[0]) for axis in swept(axes)]
     mesh = np.stack(np.meshgrid(*grid, indexing="ij"), axis=-1).reshape(-1, len(grid))
@@ -63,23 +63,23 @@ def lowest(
     Of several such poses: the one nearest to `pose`. Joints outside the grid keep `pose`.
     """
     poses = sorted(
-        turned(model, axes, pose, grid),
+        grid_poses(model, axes, pose, grid),
         key=lambda grid_pose: round(float(np.linalg.norm(grid_pose - pose)), 9),
     )
     return max(poses, key=lambda grid_pose: round(sag(model, axes, grid_pose, payload, tip)[1], 9))
 
 
-def draw_frequencies(path: Path, axes: Sequence[ElasticAxis], grid: list[Array], found: Array) -> None:
+def draw_frequencies(path: Path, axes: Sequence[ElasticAxis], grid: list[Array], frequencies: Array) -> None:
     """Plot the lowest two natural frequencies over the pose grid."""
     names = [axis.joint for axis in swept(axes)]
-    with plots.drawing(path, SIZE) as figure:
-        for i in range(min(2, found.shape[-1])):
-            panel = figure.add_subplot(1, min(2, found.shape[-1]), i + 1)
+    with plots.open_figure(path, SIZE) as figure:
+        for i in range(min(2, frequencies.shape[-1])):
+            panel = figure.add_subplot(1, min(2, frequencies.shape[-1]), i + 1)
             panel.set(title=f"frequency {i + 1} [Hz]", xlabel=f"{names[0]} [deg]")
             if len(grid) == 1:
-                panel.plot(np.rad2deg(grid[0]), found[:, i], color=plots.BLUE)
+                panel.plot(np.rad2deg(grid[0]), frequencies[:, i], color=plots.BLUE)
                 continue
-            filled = panel.contourf(*map(np.rad2deg, grid), found[..., i].T, levels=12, cmap="viridis")
+            filled = panel.contourf(*map(np.rad2deg, grid), frequencies[..., i].T, levels=12, cmap="viridis")
             figure.colorbar(filled, ax=panel)
             panel.set_ylabel(f"{names[1]} [deg]")
 
@@ -90,7 +90,7 @@ def draw_payload(
     """Plot wind-ups and tip error against payload; returns their values (n) [rad] and [m] at full payload."""
     loads = np.linspace(0.0, payload, LOADS)
     rows = [sag(model, axes, pose, float(load), tip) for load in loads]
-    with plots.drawing(path, SIZE) as figure:
+    with plots.open_figure(path, SIZE) as figure:
         wind_up_axes, error_axes = figure.subplots(1, 2)
         for axis, line in zip(axes, np.array([x for x, _ in rows]).T, strict=True):
             wind_up_axes.plot(loads, 1e3 * line, label=axis.joint)

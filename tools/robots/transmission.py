@@ -10,7 +10,7 @@ from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
 
-from ..joint_parts import part
+from ..joint_parts import load_tool_module
 
 RAMP, LOOP = 200, 800
 """Number of points of the ramp to the largest torque, and of the loop after it [1]."""
@@ -61,9 +61,9 @@ def area(wind_up: Array, torque: Array) -> float:
 
 def transmission(file: ParameterFile) -> Transmission:
     """Drive of a parameter file. Raises ValueError if its joint is no drive."""
-    tool_module = part(KINDS[file.joint], "transmission")
+    tool_module = load_tool_module(KINDS[file.joint], "transmission")
     if tool_module is None:
-        drives = [name for name, kind in KINDS.items() if part(kind, "transmission")]
+        drives = [name for name, kind in KINDS.items() if load_tool_module(kind, "transmission")]
         raise ValueError(
             f"{file.name} is a {file.joint}, no drive of a motor; allowed is a {', '.join(drives)}"
         )

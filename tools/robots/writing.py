@@ -7,7 +7,7 @@ from . import mjcf, urdf
 from .transmission import transmission
 
 
-def written(form: str, source: str, torque: float | None) -> tuple[str, list[str], dict[str, object]]:
+def write_drive(form: str, source: str, torque: float | None) -> tuple[str, list[str], dict[str, object]]:
     """Write a drive in a robot format, fitted up to a torque.
 
     form   : a key of WRITERS

@@ -13,29 +13,29 @@ from jointfmu.quantity import Array
 
 from .spectrum import ScaleSeries
 
-FLOOR = 0.03
+MIN_DEVIATION = 0.03
 """Smallest standard deviation of ln(value) from the law at each scale [1]."""
-CORRELATION = 0.5
+CORRELATION_LENGTH = 0.5
 """Correlation length in ln(scale) [1] of the deviations from the law."""
-DRIFT = 0.1
+MAX_DRIFT = 0.1
 """Largest drift of D over a self-affine range [1]; a larger one is allowed within two standard errors."""
-MOST_DRIFT = 0.7
+MAX_UNCERTAIN_DRIFT = 0.7
 """Largest drift of D over a self-affine range [1] for any standard error; well below the interval 1 to 2."""
-RUN = 0.8
+FULL_INTERVAL_DRIFT = 0.8
 """Drift of D over all scales [1], above which D covers the whole interval from 1 to 2 (no fractal)."""
-ENOUGH = 1.5
+SUFFICIENT_DECADES = 1.5
 """Shortest range [decades] that counts as self-affine if D covers its whole interval over all scales."""
-BOUND = 0.02
+HURST_MARGIN = 0.02
 """Smallest distance of the fitted H from 0 and from 1 [1]."""
-ROUGHEST = 0.25
+MAX_DEVIATION = 0.25
 """Largest standard deviation of ln(value) from the law over a self-affine range [1]."""
-SHORTEST = 0.5
+MIN_DECADES = 0.5
 """Shortest range [decades] that the search considers."""
-INFLATION = 1.15
+COVARIANCE_FACTOR = 1.15
 """Factor on the covariance of the result, from simulation (benchmarks/surface_round_trip.py: coverage)."""
-OFFSET = 2.0
+OFFSET_DEVIATION = 2.0
 """Prior standard deviation of the offset [1], relative to the value at the shortest scale."""
-UNSURE = 0.3
+MAX_VARIANCE = 0.3
 """Largest variance of ln(value) [1]; values with a larger one are left out."""
 
 
@@ -66,18 +66,18 @@ class SelfAffineLaw:
     drift_error: float
     low: float
     high: float
-    runs: bool = False
+    covers_interval: bool = False
 
     @property
-    def straight(self) -> bool:
+    def is_self_affine(self) -> bool:
         """Whether the law holds over the range: drift and deviation are within their limits."""
-        allowed = max(DRIFT, min(2.0 * self.drift_error, MOST_DRIFT))
-        return abs(self.drift) <= allowed and self.deviation <= ROUGHEST and not self.runs
+        allowed = max(MAX_DRIFT, min(2.0 * self.drift_error, MAX_UNCERTAIN_DRIFT))
+        return abs(self.drift) <= allowed and self.deviation <= MAX_DEVIATION and not self.covers_interval
 
     @property
-    def at_bound(self) -> bool:
+    def is_at_bound(self) -> bool:
         """Whether H lies at an end of its interval; its standard error is then invalid."""
-        return not 1.5 * BOUND < self.H < 1.0 - 1.5 * BOUND
+        return not 1.5 * HURST_MARGIN < self.H < 1.0 - 1.5 * HURST_MARGIN
 
     @property
     def decades(self) -> float:
@@ -85,12 +85,12 @@ class SelfAffineLaw:
         return float(np.log10(self.high / self.low))
 
 
-def fit(series: ScaleSeries, low: float | None = None, high: float | None = None) -> SelfAffineLaw:
+def fit_law(series: ScaleSeries, low: float | None = None, high: float | None = None) -> SelfAffineLaw:
     """Fit the law over a range of scales [m], or over the longest self-affine range.
 
     Raises ValueError if the given range has fewer than four values.
     """
-    sure = np.diag(series.covariance(0.5)) < UNSURE
+    sure = np.diag(series.covariance(0.5)) < MAX_VARIANCE
     if low is not None and high is not None:
         inside = (series.scale >= low * (1 - 1e-9)) & (series.scale <= high * (1 + 1e-9))
         if (inside & sure).sum() < 4:
@@ -99,11 +99,11 @@ def fit(series: ScaleSeries, low: float | None = None, high: float | None = None
                 f"method, at least 4 are needed; allowed is within {series.scale[sure][0]:.3g} "
                 f"{series.scale[sure][-1]:.3g} m"
             )
-        return _fit(series.within(inside & sure))
-    return _search(series.within(sure))
+        return _fit_series(series.select(inside & sure))
+    return _search_range(series.select(sure))
 
 
-def _search(series: ScaleSeries) -> SelfAffineLaw:
+def _search_range(series: ScaleSeries) -> SelfAffineLaw:
     """Fit over the longest self-affine range; without one, over the range with least drift plus deviation."""
     n = series.scale.size
     step = max(1, n // 10)
@@ -117,21 +117,21 @@ def _search(series: ScaleSeries) -> SelfAffineLaw:
         ),
         reverse=True,
     )
-    complete = _fit(series)
-    covers_interval = abs(complete.drift) > max(RUN, 2.0 * complete.drift_error)
+    complete = _fit_series(series)
+    covers_interval = abs(complete.drift) > max(FULL_INTERVAL_DRIFT, 2.0 * complete.drift_error)
     candidates: list[SelfAffineLaw] = []
     for length, negative_start, j in windows:
-        if length < SHORTEST and candidates:
+        if length < MIN_DECADES and candidates:
             break
-        candidate = _fit(series.within(np.arange(-negative_start, j)))
-        candidate = replace(candidate, runs=covers_interval and candidate.decades < ENOUGH)
-        if candidate.straight:
+        candidate = _fit_series(series.select(np.arange(-negative_start, j)))
+        candidate = replace(candidate, runs=covers_interval and candidate.decades < SUFFICIENT_DECADES)
+        if candidate.is_self_affine:
             return candidate
         candidates.append(candidate)
     return min(candidates, key=lambda law: abs(law.drift) + law.deviation)
 
 
-def _fit(series: ScaleSeries) -> SelfAffineLaw:
+def _fit_series(series: ScaleSeries) -> SelfAffineLaw:
     """Fit the law to all values of a series, by generalised least squares with iterated covariance."""
     x, y = np.log(series.scale), np.log(series.value)
     reference = float(np.exp(x.mean()))
@@ -139,29 +139,29 @@ def _fit(series: ScaleSeries) -> SelfAffineLaw:
     start = np.array([0.5, 0.0, 0.0][: 3 if offset else 2])
     scatter = series.covariance(0.5)
 
-    def law(p: Array) -> Array:
+    def log_law(p: Array) -> Array:
         """ln(value) of the law at all scales, for p = (H, level, offset)."""
         expected = series.expected(p[0]) * reference ** (-2.0 * p[0])
         return np.asarray(np.log(expected + (p[2] * expected[0] if offset else 0.0)) + p[1])
 
-    start[1] = np.mean(y - law(start))
-    deviation, p = FLOOR, start
+    start[1] = np.mean(y - log_law(start))
+    deviation, p = MIN_DEVIATION, start
     for _ in range(3):
-        whiten = _whitening(scatter + deviation**2 * _hang(x))
+        whiten = _whitening_matrix(scatter + deviation**2 * _correlation_matrix(x))
         unbiased = y + 0.5 * np.diag(scatter)
 
-        def residual(p: Array, whiten: Array = whiten, known: Array = unbiased) -> Array:
+        def residual(p: Array, whiten: Array = whiten, data: Array = unbiased) -> Array:
             """Whitened residual of the law, then of the prior of the offset."""
-            white = whiten @ (known - law(p))
-            return np.append(white, p[2] / OFFSET) if offset else np.asarray(white)
+            white = whiten @ (data - log_law(p))
+            return np.append(white, p[2] / OFFSET_DEVIATION) if offset else np.asarray(white)
 
-        bounds = ([BOUND, -np.inf, -0.9][: p.size], [1.0 - BOUND, np.inf, np.inf][: p.size])
+        bounds = ([HURST_MARGIN, -np.inf, -0.9][: p.size], [1.0 - HURST_MARGIN, np.inf, np.inf][: p.size])
         result = least_squares(residual, p, bounds=bounds, x_scale=np.array([0.1, 0.1, 0.1])[: p.size])
         p = result.x
         scatter = series.covariance(float(np.clip(p[0], 0.05, 0.95)))
-        deviation = _excess(unbiased - law(p), scatter, x, p.size)
-    drift, drift_error = _drift(x, unbiased - law(p), scatter)
-    covariance = INFLATION * np.linalg.inv(result.jac.T @ result.jac)[:2, :2]
+        deviation = _excess_deviation(unbiased - log_law(p), scatter, x, p.size)
+    drift, drift_error = _estimate_drift(x, unbiased - log_law(p), scatter)
+    covariance = COVARIANCE_FACTOR * np.linalg.inv(result.jac.T @ result.jac)[:2, :2]
     return SelfAffineLaw(
         H=float(p[0]),
         level=float(p[1]),
@@ -176,7 +176,7 @@ def _fit(series: ScaleSeries) -> SelfAffineLaw:
     )
 
 
-def _whitening(covariance: Array) -> Array:
+def _whitening_matrix(covariance: Array) -> Array:
     """Matrix that transforms residuals with this covariance to independent ones of variance 1.
 
     The inverse is computed: for matrices this small, the threads of scipy's triangular solver take fifty
@@ -185,30 +185,30 @@ def _whitening(covariance: Array) -> Array:
     return np.asarray(np.linalg.inv(np.linalg.cholesky(covariance)))
 
 
-def _hang(x: Array) -> Array:
+def _correlation_matrix(x: Array) -> Array:
     """Correlation matrix (n, n) [1] of the deviations from the law at ln(scale) x (n)."""
-    return np.asarray(np.exp(-np.abs(x[:, None] - x) / CORRELATION))
+    return np.asarray(np.exp(-np.abs(x[:, None] - x) / CORRELATION_LENGTH))
 
 
-def _excess(residual: Array, chance: Array, x: Array, parameters: int) -> float:
+def _excess_deviation(residual: Array, scatter: Array, x: Array, parameter_count: int) -> float:
     """Standard deviation from the law beyond statistical scatter: chi-squared then has its expected value.
 
     scatter : covariance (n, n) of the residual from statistics
     """
-    degrees_of_freedom = max(x.size - parameters, 1)
-    correlation, deviations = _hang(x), np.geomspace(FLOOR, 3.0, 60)
+    degrees_of_freedom = max(x.size - parameter_count, 1)
+    correlation, deviations = _correlation_matrix(x), np.geomspace(MIN_DEVIATION, 3.0, 60)
 
-    def enough(deviation: float) -> bool:
+    def is_sufficient(deviation: float) -> bool:
         """Whether chi-squared is at most its expected value for this standard deviation."""
-        chi_squared = residual @ np.linalg.solve(chance + deviation**2 * correlation, residual)
+        chi_squared = residual @ np.linalg.solve(scatter + deviation**2 * correlation, residual)
         return bool(chi_squared <= degrees_of_freedom)
 
-    return float(deviations[min(bisect_left(deviations, True, key=enough), deviations.size - 1)])
+    return float(deviations[min(bisect_left(deviations, True, key=is_sufficient), deviations.size - 1)])
 
 
-def _drift(x: Array, residual: Array, chance: Array) -> tuple[float, float]:
+def _estimate_drift(x: Array, residual: Array, scatter: Array) -> tuple[float, float]:
     """Change of D over the range and its standard error, from an additional quadratic term in ln(scale)."""
-    whiten = _whitening(chance + FLOOR**2 * _hang(x))
+    whiten = _whitening_matrix(scatter + MIN_DEVIATION**2 * _correlation_matrix(x))
     t = x - x.mean()
     columns = [np.ones_like(t), t, t**2]
     white = whiten @ np.stack(columns, axis=1)

@@ -11,14 +11,14 @@ from numpy.typing import NDArray
 
 from jointfmu.quantity import Array
 
-from .heights import FLAT, FORMS, Areal, Heights
+from .heights import FORMS, RELATIVE_ROUND_OFF, ArealMap, Heights
 
 Mask = NDArray[np.bool_]
-SPIKE = 8.0
+SPIKE_RATIO = 8.0
 """Deviation of a spike from the median of its neighbours over the standard deviation [1]."""
-SWEEPS = 50
+FILL_ITERATIONS = 50
 """Number of iterations of the harmonic filling: enough for gaps up to about ten points wide."""
-MOST_MISSING = 0.2
+MAX_MISSING_SHARE = 0.2
 """Largest share of missing points [1] that can be filled."""
 
 
@@ -42,7 +42,7 @@ class Repair:
         return f"{self.name}: {self.count} of {self.points} points ({share:.3g} %){self.effect}"
 
 
-def without_spikes(heights: Heights) -> tuple[Heights, list[Repair]]:
+def remove_spikes(heights: Heights) -> tuple[Heights, list[Repair]]:
     """Replace spikes by missing points; return the heights and the repairs.
 
     A spike deviates from the median of its neighbours by more than SPIKE_RATIO standard deviations. The
@@ -53,20 +53,20 @@ def without_spikes(heights: Heights) -> tuple[Heights, list[Repair]]:
 
     z = heights.z
     valid = np.isfinite(z)
-    deviation = np.abs(z - median_filter(_nearest(z, valid), size=5, mode="nearest"))
+    deviation = np.abs(z - median_filter(_fill_nearest(z, valid), size=5, mode="nearest"))
     scale = float(np.quantile(deviation[valid], 0.9)) / 1.645
     if scale == 0.0:
         return heights, []
-    spikes = valid & (deviation > SPIKE * scale)
+    spikes = valid & (deviation > SPIKE_RATIO * scale)
     if not spikes.any():
         return heights, []
     clean = heights.with_heights(np.where(spikes, np.nan, z))
-    rms_before, rms_after = (float(np.nanstd(without_form(scan).z)) for scan in (heights, clean))
+    rms_before, rms_after = (float(np.nanstd(remove_form(scan).z)) for scan in (heights, clean))
     effect = f"; with them Sq is {rms_before / rms_after:.3g} times as large" if rms_after > 0.0 else ""
     return clean, [Repair("spikes taken as missing", int(spikes.sum()), z.size, effect)]
 
 
-def without_form(heights: Heights, form: str = "tilt") -> Heights:
+def remove_form(heights: Heights, form: str = "tilt") -> Heights:
     """Subtract the least-squares polynomial in x (and y) of the valid points.
 
     form : "mean", "tilt" or "curvature": order 0, 1 or 2
@@ -77,7 +77,7 @@ def without_form(heights: Heights, form: str = "tilt") -> Heights:
     axes = [np.linspace(-1.0, 1.0, n) for n in heights.z.shape]
     grids = np.meshgrid(*axes, indexing="ij", sparse=True)
     valid = np.isfinite(heights.z)
-    terms = _polynomial([np.broadcast_to(g, heights.z.shape) for g in grids], order)
+    terms = _monomials([np.broadcast_to(g, heights.z.shape) for g in grids], order)
     weights = [np.where(valid, t, 0.0).ravel() for t in terms]
     normal_matrix, residual = np.array([[a @ b for b in weights] for a in weights]), heights.z
     for _ in range(2):  # the second pass removes the round-off of a large form
@@ -87,7 +87,7 @@ def without_form(heights: Heights, form: str = "tilt") -> Heights:
     return heights.with_heights(residual)
 
 
-def _polynomial(axes: list[Array], order: int) -> list[Array]:
+def _monomials(axes: list[Array], order: int) -> list[Array]:
     """Monomials up to an order in one or two coordinates."""
     terms = [np.ones_like(axes[0])]
     if order >= 1:
@@ -97,7 +97,7 @@ def _polynomial(axes: list[Array], order: int) -> list[Array]:
     return terms
 
 
-def filled(heights: Heights) -> tuple[Heights, list[Repair]]:
+def fill_gaps(heights: Heights) -> tuple[Heights, list[Repair]]:
     """Fill missing points, for the spectrum: by linear interpolation in a profile, harmonically in a map.
 
     Returns the heights and the repairs. Raises ValueError if more than MAX_MISSING_SHARE of the points are
@@ -108,33 +108,33 @@ def filled(heights: Heights) -> tuple[Heights, list[Repair]]:
     count = int(z.size - valid.sum())
     if count == 0:
         return heights, []
-    if count > MOST_MISSING * z.size:
+    if count > MAX_MISSING_SHARE * z.size:
         raise ValueError(
             f"{heights.name}: {count} of {z.size} points are missing or spikes, "
-            f"at most {100.0 * MOST_MISSING:g} % can be filled"
+            f"at most {100.0 * MAX_MISSING_SHARE:g} % can be filled"
         )
     if z.ndim == 1:
         index = np.arange(z.size)
         complete = np.interp(index, index[valid], z[valid])
     else:
-        complete = _harmonic(_nearest(z, valid), ~valid)
+        complete = _fill_harmonically(_fill_nearest(z, valid), ~valid)
     method = "linearly" if z.ndim == 1 else "harmonically"
     return heights.with_heights(complete), [Repair(f"missing points filled {method}", count, z.size)]
 
 
-def _harmonic(z: Array, missing: Mask) -> Array:
+def _fill_harmonically(z: Array, missing: Mask) -> Array:
     """Solve Laplace's equation at the missing points by Jacobi iterations, from the initial heights z."""
     row, column = np.nonzero(missing)
     low, high = np.maximum(row - 1, 0), np.minimum(row + 1, z.shape[0] - 1)
     left, right = np.maximum(column - 1, 0), np.minimum(column + 1, z.shape[1] - 1)
     heights = z.copy()
-    for _ in range(SWEEPS):
+    for _ in range(FILL_ITERATIONS):
         neighbours = heights[low, column] + heights[high, column] + heights[row, left] + heights[row, right]
         heights[row, column] = 0.25 * neighbours
     return heights
 
 
-def _nearest(z: Array, valid: Mask) -> Array:
+def _fill_nearest(z: Array, valid: Mask) -> Array:
     """Fill missing points with the height of the nearest valid point."""
     if valid.all():
         return z
@@ -145,7 +145,7 @@ def _nearest(z: Array, valid: Mask) -> Array:
 
 
 @dataclass(frozen=True, slots=True)
-class Prepared:
+class PreparedScan:
     """Scan without spikes and form.
 
     gappy    : heights with missing points as NaN, for the structure function
@@ -154,27 +154,27 @@ class Prepared:
     """
 
     gappy: Heights
-    whole: Heights
+    complete: Heights
     repairs: tuple[Repair, ...]
 
 
-def prepare(heights: Heights, form: str = FORMS[0], keep_spikes: bool = False) -> Prepared:
+def prepare_scan(heights: Heights, form: str = FORMS[0], keep_spikes: bool = False) -> PreparedScan:
     """Prepare a scan: remove spikes (unless `keep_spikes`), remove the form, fill missing points.
 
     Raises ValueError if only round-off remains without the form, or if too many points are missing.
     """
-    clean, spikes = (heights, []) if keep_spikes else without_spikes(heights)
-    gappy = without_form(clean, form)
-    if np.nanmax(np.abs(gappy.z)) <= FLAT * np.nanmax(np.abs(clean.z)):
+    clean, spikes = (heights, []) if keep_spikes else remove_spikes(heights)
+    gappy = remove_form(clean, form)
+    if np.nanmax(np.abs(gappy.z)) <= RELATIVE_ROUND_OFF * np.nanmax(np.abs(clean.z)):
         raise ValueError(f"{heights.name}: without its {form} the surface is smooth, it has no D and no G")
-    complete, gaps = filled(gappy)
-    return Prepared(gappy, complete, (*spikes, *gaps))
+    complete, gaps = fill_gaps(gappy)
+    return PreparedScan(gappy, complete, (*spikes, *gaps))
 
 
-FEWEST = 5.0
+MIN_WAVE_SPACINGS = 5.0
 """Shortest wavelength of the slope over the point spacing [1]. Shorter waves are noise or effects of the
 instrument (docs/surfaces.md)."""
-WAVES = 4.0
+MIN_WAVE_RATIO = 4.0
 """Smallest ratio of the longest to the shortest wavelength [1]."""
 
 
@@ -190,9 +190,9 @@ class ScanRoughness:
     longest_wave, shortest_wave : wavelengths [m]
     """
 
-    areal: bool
+    is_areal: bool
     rms: float
-    mean: float
+    mean_absolute: float
     h: float
     slope: float
     longest_wave: float
@@ -204,17 +204,17 @@ def default_wave(heights: Heights) -> float:
     return min(heights.lengths)
 
 
-def check_wave(heights: Heights, longest: float) -> None:
+def check_wave(heights: Heights, longest_wave: float) -> None:
     """Raise ValueError if a scan cannot resolve waves up to this longest wavelength [m]."""
-    low, high = WAVES * _shortest(heights), max(heights.lengths)
-    if not low <= longest <= high * (1.0 + 1e-9):
+    low, high = MIN_WAVE_RATIO * _shortest_wave(heights), max(heights.lengths)
+    if not low <= longest_wave <= high * (1.0 + 1e-9):
         raise ValueError(
-            f"{heights.name}: longest wave = {longest:g} m is outside [{low:.3g}, {high:.3g}], from "
-            f"{WAVES * FEWEST:g} points to the length of the scan"
+            f"{heights.name}: longest wave = {longest_wave:g} m is outside [{low:.3g}, {high:.3g}], from "
+            f"{MIN_WAVE_RATIO * MIN_WAVE_SPACINGS:g} points to the length of the scan"
         )
 
 
-def of_scan(gappy: Heights, whole: Heights, longest: float) -> ScanRoughness:
+def scan_roughness(gappy: Heights, complete: Heights, longest_wave: float) -> ScanRoughness:
     """Roughness of a scan from waves up to a longest wavelength [m].
 
     gappy    : heights without form, missing points as NaN
@@ -226,28 +226,30 @@ def of_scan(gappy: Heights, whole: Heights, longest: float) -> ScanRoughness:
     """
     from scipy.fft import dctn
 
-    check_wave(whole, longest)
+    check_wave(complete, longest_wave)
     valid = gappy.z[np.isfinite(gappy.z)] - float(np.nanmean(gappy.z))
-    spacings = (whole.dy, whole.dx) if isinstance(whole, Areal) else (whole.dx,)
-    axes = [np.arange(n) / (2.0 * n * d) for n, d in zip(whole.z.shape, spacings, strict=True)]
+    spacings = (complete.dy, complete.dx) if isinstance(complete, ArealMap) else (complete.dx,)
+    axes = [np.arange(n) / (2.0 * n * d) for n, d in zip(complete.z.shape, spacings, strict=True)]
     squared = sum(f**2 for f in np.meshgrid(*axes, indexing="ij", sparse=True))
-    power = dctn(whole.z, norm="ortho") ** 2 / whole.z.size
-    shortest = _shortest(whole)
-    inside = squared >= (1.0 - 1e-9) / longest**2
+    power = dctn(complete.z, norm="ortho") ** 2 / complete.z.size
+    shortest = _shortest_wave(complete)
+    inside = squared >= (1.0 - 1e-9) / longest_wave**2
     resolved = inside & (squared <= (1.0 + 1e-9) / shortest**2)
-    directions = 1.0 if isinstance(whole, Areal) else 2.0
+    directions = 1.0 if isinstance(complete, ArealMap) else 2.0
     slope = 2.0 * np.pi * np.sqrt(directions * np.sum(power[resolved] * squared[resolved]))
     return ScanRoughness(
-        areal=isinstance(whole, Areal),
+        is_areal=isinstance(complete, ArealMap),
         rms=float(np.sqrt(np.mean(valid**2))),
-        mean=float(np.mean(np.abs(valid))),
+        mean_absolute=float(np.mean(np.abs(valid))),
         h=float(np.sqrt(np.sum(power[inside]))),
         slope=float(slope),
-        longest_wave=longest,
+        longest_wave=longest_wave,
         shortest_wave=shortest,
     )
 
 
-def _shortest(heights: Heights) -> float:
+def _shortest_wave(heights: Heights) -> float:
     """Shortest wavelength [m] of the slope."""
-    return FEWEST * max((heights.dx, heights.dy) if isinstance(heights, Areal) else (heights.dx,))
+    return MIN_WAVE_SPACINGS * max(
+        (heights.dx, heights.dy) if isinstance(heights, ArealMap) else (heights.dx,)
+    )

@@ -9,15 +9,15 @@ from numpy.typing import NDArray
 
 from jointfmu.quantity import Array
 
-from ..columns import CONTROL
+from ..columns import CONTROL_CHARACTERS
 
 FORMS = ("tilt", "mean", "curvature")
 """Forms that can be removed: a plane (default), the mean height, a surface of second order."""
-LEAST_PROFILE = 128
+MIN_PROFILE_POINTS = 128
 """Smallest number of points of a profile: the lags of the structure function then span 0.9 decades."""
-LEAST_AREAL = 64
+MIN_AREAL_POINTS = 64
 """Smallest number of points along each side of an areal map."""
-FLAT = 1e-9
+RELATIVE_ROUND_OFF = 1e-9
 """Height variation over the absolute height [1], below which it is round-off."""
 
 
@@ -35,9 +35,11 @@ class Profile:
     name: str
 
     def __post_init__(self) -> None:
-        if self.z.size < LEAST_PROFILE:
-            raise ValueError(f"{self.name}: {self.z.size} points, a profile needs at least {LEAST_PROFILE}")
-        _check(self.name, self.z, self.dx)
+        if self.z.size < MIN_PROFILE_POINTS:
+            raise ValueError(
+                f"{self.name}: {self.z.size} points, a profile needs at least {MIN_PROFILE_POINTS}"
+            )
+        _check_heights(self.name, self.z, self.dx)
 
     @property
     def lengths(self) -> tuple[float, ...]:
@@ -49,7 +51,7 @@ class Profile:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Areal:
+class ArealMap:
     """Heights over a rectangle (areal map).
 
     z      : heights (ny, nx) [m], NaN where missing
@@ -63,26 +65,26 @@ class Areal:
     name: str
 
     def __post_init__(self) -> None:
-        if min(self.z.shape) < LEAST_AREAL:
+        if min(self.z.shape) < MIN_AREAL_POINTS:
             shape = " x ".join(str(n) for n in self.z.shape[::-1])
             raise ValueError(
-                f"{self.name}: {shape} points, an areal map needs at least {LEAST_AREAL} x {LEAST_AREAL}"
+                f"{self.name}: {shape} points, an areal map needs at least {MIN_AREAL_POINTS} x {MIN_AREAL_POINTS}"
             )
-        _check(self.name, self.z, self.dx, self.dy)
+        _check_heights(self.name, self.z, self.dx, self.dy)
 
     @property
     def lengths(self) -> tuple[float, ...]:
         """Side lengths along x and y [m]."""
         return self.z.shape[1] * self.dx, self.z.shape[0] * self.dy
 
-    def with_heights(self, z: Array) -> "Areal":
+    def with_heights(self, z: Array) -> "ArealMap":
         return replace(self, z=z)
 
 
-Heights = Profile | Areal
+Heights = Profile | ArealMap
 
 
-def _check(name: str, z: Array, *spacings: float) -> None:
+def _check_heights(name: str, z: Array, *spacings: float) -> None:
     """Raise ValueError if a spacing is not positive, or if all heights are missing or constant."""
     for spacing in spacings:
         if not (np.isfinite(spacing) and spacing > 0.0):
@@ -91,19 +93,21 @@ def _check(name: str, z: Array, *spacings: float) -> None:
     if valid.size == 0:
         raise ValueError(f"{name}: all {z.size} heights are missing or NaN")
     low, high = float(valid.min()), float(valid.max())
-    if high - low <= FLAT * max(abs(low), abs(high)):
+    if high - low <= RELATIVE_ROUND_OFF * max(abs(low), abs(high)):
         raise ValueError(f"{name}: all heights are {low:g} m, a constant surface has no D and no G")
 
 
-Places = NDArray[np.int64]
+GridIndices = NDArray[np.int64]
 
-NOISE = 0.05
+GRID_TOLERANCE = 0.05
 """Largest deviation of a position from a regular grid over the grid spacing [1]."""
-DIGITS = 1e9
+MAX_DIGIT_UNITS = 1e9
 """Largest position over the unit of its last digit [1]; beyond it, the last digit is unknown."""
 
 
-def places(path: Path, name: str, at: Array, factor: float, repeats: bool = False) -> tuple[Places, float]:
+def fit_grid(
+    path: Path, name: str, positions: Array, factor: float, allow_repeats: bool = False
+) -> tuple[GridIndices, float]:
     """Fit a regular grid to positions (n,); return the grid index of each position, from 0, and the spacing.
 
     path, name    : file and axis, for messages
@@ -115,22 +119,26 @@ def places(path: Path, name: str, at: Array, factor: float, repeats: bool = Fals
     ends. If this fails, points are missing: the spacing is then the median gap, and each position must be a
     multiple of it. Raises ValueError if this fails too.
     """
-    if at.size < 2 or not np.all(np.isfinite(at)):
+    if positions.size < 2 or not np.all(np.isfinite(positions)):
         raise ValueError(f"{path}: {name} has a gap or a single value; expected positions in rising order")
-    gaps = np.diff(at)
-    if at[-1] == at[0] or (not repeats and gaps.min() <= 0.0):
+    gaps = np.diff(positions)
+    if positions[-1] == positions[0] or (not allow_repeats and gaps.min() <= 0.0):
         raise ValueError(f"{path}: {name} repeats values; expected every position once")
-    offset = at - at[0]
-    step = float(offset[-1] / (at.size - 1))
-    index = np.arange(at.size)
-    digit = last_digit(at)
+    offset = positions - positions[0]
+    step = float(offset[-1] / (positions.size - 1))
+    index = np.arange(positions.size)
+    digit = last_digit_unit(positions)
     rounding = 0.5 * (digit + max(digit[0], digit[-1]))
-    if np.all(_off(offset, index, step) <= np.maximum(NOISE * step, rounding)):
+    if np.all(_grid_distance(offset, index, step) <= np.maximum(GRID_TOLERANCE * step, rounding)):
         return index, step
     if np.median(gaps) > 0.0:
         step = float(offset[-1] / max(np.rint(offset[-1] / np.median(gaps)), 1.0))
     index = np.rint(offset / step).astype(np.int64)
-    if gaps.min() <= 0.0 or np.diff(index).min() < 1 or _off(offset, index, step).max() > NOISE * step:
+    if (
+        gaps.min() <= 0.0
+        or np.diff(index).min() < 1
+        or _grid_distance(offset, index, step).max() > GRID_TOLERANCE * step
+    ):
         raise ValueError(
             f"{path}: the spacing of {name} varies ({gaps.min() * factor:.4g} to "
             f"{gaps.max() * factor:.4g} m); resample to a constant one"
@@ -138,23 +146,23 @@ def places(path: Path, name: str, at: Array, factor: float, repeats: bool = Fals
     return index, step
 
 
-def _off(at: Array, place: Places, step: float) -> Array:
+def _grid_distance(positions: Array, index: GridIndices, step: float) -> Array:
     """Distance of each position from its grid point."""
-    return np.asarray(np.abs(at - place * step))
+    return np.asarray(np.abs(positions - index * step))
 
 
-def last_digit(at: Array) -> Array:
+def last_digit_unit(positions: Array) -> Array:
     """Unit of the last digit of each position (n,), for a fixed number of decimals or of significant digits.
 
     0 if the positions have more digits than MAX_DIGIT_UNITS.
     """
-    sizes = np.where(at == 0.0, 1.0, np.abs(at))
+    sizes = np.where(positions == 0.0, 1.0, np.abs(positions))
     decade = 10.0 ** np.floor(np.log10(sizes))
-    decimal, significant = _exact(at), _exact(sizes / decade) * decade
+    decimal, significant = _common_power_of_ten(positions), _common_power_of_ten(sizes / decade) * decade
     return np.maximum(decimal, significant)
 
 
-def _exact(numbers: Array) -> float:
+def _common_power_of_ten(numbers: Array) -> float:
     """Largest power of ten, at most 1, of which all numbers are multiples.
 
     0 if the largest number is more than MAX_DIGIT_UNITS times that power.
@@ -162,16 +170,16 @@ def _exact(numbers: Array) -> float:
     largest = float(np.abs(numbers).max())
     for power in range(0, -16, -1):
         scaled = numbers * 10.0**-power
-        if largest * 10.0**-power > DIGITS:
+        if largest * 10.0**-power > MAX_DIGIT_UNITS:
             break
         if np.abs(scaled - np.rint(scaled)).max() < 1e-6:
             return float(10.0**power)
     return 0.0
 
 
-SMALL = 2**22
+MAX_CHECKED_SIZE = 2**22
 """Largest size [bytes] of a text file in which the check counts the numbers."""
-FOREIGN = {
+FOREIGN_SIGNATURES = {
     b"\x89PNG": "a PNG picture",
     b"\xff\xd8\xff": "a JPEG picture",
     b"GIF8": "a GIF picture",
@@ -180,12 +188,12 @@ FOREIGN = {
     b"\x7fELF": "a program",
 }
 """First bytes of files that cannot be a surface, and what they are."""
-SIGNED = (
+SIGNED_SUFFIXES = (
     *("al3d", "bcr", "bcrf", "datx", "frt", "gwy", "h5", "jpk", "lext", "mdt", "mi", "nc", "npy", "npz"),
     *("opd", "os3d", "qep", "sdf", "sur", "tmd", "vk3", "vk4", "vk6", "vk7", "x3p", "zmg", "zon"),
 )
 """Suffixes of formats of SurfaceTopography that begin with a known signature."""
-SIGNATURES = (
+FORMAT_SIGNATURES = (
     *(b"aISO-1.0", b"bISO-1.0", b"\x01\xb0\x93\xff", b"PK\x03\x04", b"fileType", b"CDF", b"\x89HDF"),
     *(b"\x93NUMPY", b"II*\0", b"MM\0*", b"DIGITAL SURF", b"DSCOMPRESSED", b"Binary TrueMap", b"VK"),
     *(b"Zeta-Instruments", b"KPK", b"OmniSurf3D", b"AliconaImaging", b"fileformat = bcr", b"f\0i\0l\0e"),
@@ -195,26 +203,28 @@ SIGNATURES = (
 _NUMBER = re.compile(rb"\d+")
 
 
-def check(path: Path) -> None:
+def check_surface_file(path: Path) -> None:
     """Raise ValueError (one line) if a file is no surface, by its first bytes or by too few numbers."""
     with path.open("rb") as file:
         start = file.read(64)
-    if kind := next((text for signature, text in FOREIGN.items() if start.startswith(signature)), None):
+    if kind := next(
+        (text for signature, text in FOREIGN_SIGNATURES.items() if start.startswith(signature)), None
+    ):
         raise ValueError(f"{path}: is no surface: it is {kind}")
-    if path.suffix[1:].lower() in SIGNED and not signed(start):
+    if path.suffix[1:].lower() in SIGNED_SUFFIXES and not has_signature(start):
         raise ValueError(
             f"{path}: is no surface: it does not begin as a {path.suffix} file, nor as any other"
         )
-    if path.stat().st_size > SMALL:
+    if path.stat().st_size > MAX_CHECKED_SIZE:
         return
     data = path.read_bytes()
-    if not CONTROL.search(data) and (count := len(_NUMBER.findall(data))) < LEAST_PROFILE:
+    if not CONTROL_CHARACTERS.search(data) and (count := len(_NUMBER.findall(data))) < MIN_PROFILE_POINTS:
         raise ValueError(
             f"{path}: is no surface: a text of {count} numbers, "
-            f"a profile needs at least {LEAST_PROFILE} points"
+            f"a profile needs at least {MIN_PROFILE_POINTS} points"
         )
 
 
-def signed(start: bytes) -> bool:
+def has_signature(first_bytes: bytes) -> bool:
     """Whether the first bytes of a file are the signature of a known format."""
-    return start.startswith(SIGNATURES) or start[2:].startswith(b"Directory")
+    return first_bytes.startswith(FORMAT_SIGNATURES) or first_bytes[2:].startswith(b"Directory")

@@ -6,35 +6,35 @@ from dataclasses import replace
 import numpy as np
 
 from jointfmu.quantity import Array
-from jointfmu.quantity.refusal import Refusal
+from jointfmu.quantity.refusal import InputRefusal
 
 from .. import fractal
-from .fit import SelfAffineLaw, fit
-from .form import check_wave, default_wave, of_scan, prepare
-from .heights import Areal, Heights
+from .fit import SelfAffineLaw, fit_law
+from .form import check_wave, default_wave, prepare_scan, scan_roughness
+from .heights import ArealMap, Heights
 from .results import (
-    TEXTURE,
+    TEXTURE_THRESHOLD,
     ArealFractal,
     Estimate,
+    FractalResult,
     Identification,
     ProfileFractal,
-    Result,
     RoughnessEstimate,
-    texture,
-    warnings,
+    list_warnings,
+    mean_line_shares,
 )
-from .spectrum import ScaleSeries, psd, structure
+from .spectrum import ScaleSeries, power_spectrum, structure_function
 
-LEVEL = 0.95
+CONFIDENCE_LEVEL = 0.95
 """Level of the confidence intervals [1]."""
-DRAWS = 4000
+SAMPLE_COUNT = 4000
 
 
 def identify(
     surfaces: Sequence[Heights],
     form: str = "tilt",
-    span: tuple[float, float] | None = None,
-    longest: float | None = None,
+    scale_range: tuple[float, float] | None = None,
+    longest_wave: float | None = None,
     side: str | None = None,
     keep_spikes: bool = False,
 ) -> Identification:
@@ -54,43 +54,47 @@ def identify(
     if len(surfaces) not in (1, 2):
         raise ValueError(f"{len(surfaces)} files given, allowed are one surface or the two of a pair")
     if side is not None and len(surfaces) == 2:
-        raise Refusal(f"side = {side} beside two files, of which the first is side 1; leave it out", "side")
-    areal = {isinstance(surface, Areal) for surface in surfaces}
+        raise InputRefusal(
+            f"side = {side} beside two files, of which the first is side 1; leave it out", "side"
+        )
+    areal = {isinstance(surface, ArealMap) for surface in surfaces}
     if len(areal) == 2:
         raise ValueError("a profile and an areal map given, a pair needs two of the same kind")
-    if longest is not None:
+    if longest_wave is not None:
         for surface in surfaces:
-            check_wave(surface, longest)
-    prepared = [prepare(surface, form, keep_spikes) for surface in surfaces]
+            check_wave(surface, longest_wave)
+    prepared = [prepare_scan(surface, form, keep_spikes) for surface in surfaces]
     directions = ("areal", "x", "y") if areal == {True} else ("profile",)
-    low, high = span or (None, None)
+    low, high = scale_range or (None, None)
     results = []
     for direction in directions:
-        for method in (structure, psd):
+        for method in (structure_function, power_spectrum):
             all_series = [
-                method(surface.gappy if method is structure else surface.whole, direction)
+                method(surface.gappy if method is structure_function else surface.complete, direction)
                 for surface in prepared
             ]
-            series = doubled(all_series[0]) if side == "both" else all_series[0]
+            series = double_series(all_series[0]) if side == "both" else all_series[0]
             if len(all_series) == 2:
-                series = added(all_series[0], all_series[1])
-            results.append(_result(series, fit(series, low, high)))
-    repairs = [(surface.whole.name, repair) for surface in prepared for repair in surface.repairs]
-    line_shares = [texture(surface.whole) for surface in prepared if isinstance(surface.whole, Areal)]
+                series = add_series(all_series[0], all_series[1])
+            results.append(_fractal_result(series, fit_law(series, low, high)))
+    repairs = [(surface.complete.name, repair) for surface in prepared for repair in surface.repairs]
+    line_shares = [
+        mean_line_shares(surface.complete) for surface in prepared if isinstance(surface.complete, ArealMap)
+    ]
     names = tuple(surface.name for surface in surfaces)
-    textured = any(max(shares) > TEXTURE for shares in line_shares)
-    wave = longest or min(default_wave(surface) for surface in surfaces)
-    scans = tuple(of_scan(surface.gappy, surface.whole, wave) for surface in prepared)
-    notes = tuple(warnings(results, textured))
+    textured = any(max(shares) > TEXTURE_THRESHOLD for shares in line_shares)
+    wave = longest_wave or min(default_wave(surface) for surface in surfaces)
+    scans = tuple(scan_roughness(surface.gappy, surface.complete, wave) for surface in prepared)
+    notes = tuple(list_warnings(results, textured))
     return Identification(names, tuple(results), tuple(repairs), notes, textured, scans, side)
 
 
-def doubled(series: ScaleSeries) -> ScaleSeries:
+def double_series(series: ScaleSeries) -> ScaleSeries:
     """Series of the equivalent surface of two sides with the same finish, from the series of one side."""
-    return replace(series, value=2.0 * series.value, raw=2.0 * series.raw)
+    return replace(series, value=2.0 * series.value, raw=2.0 * series.function_value)
 
 
-def added(first: ScaleSeries, second: ScaleSeries) -> ScaleSeries:
+def add_series(first: ScaleSeries, second: ScaleSeries) -> ScaleSeries:
     """Series of the equivalent surface of two surfaces: the sum of both over their common range of scales.
 
     Raises ValueError if fewer than four scales are common.
@@ -101,10 +105,10 @@ def added(first: ScaleSeries, second: ScaleSeries) -> ScaleSeries:
             f"the two surfaces share no scales: {first.scale[0]:.3g} to {first.scale[-1]:.3g} m and "
             f"{second.scale[0]:.3g} to {second.scale[-1]:.3g} m"
         )
-    first = first.within(common)
+    first = first.select(common)
     x1, x2 = np.log(first.scale), np.log(second.scale)
     interpolation = np.stack([np.interp(x1, x2, unit) for unit in np.eye(x2.size)], axis=1)
-    value, raw = (np.exp(interpolation @ np.log(a)) for a in (second.value, second.raw))
+    value, raw = (np.exp(interpolation @ np.log(a)) for a in (second.value, second.function_value))
     share = first.value / (first.value + value)
 
     def covariance(H: float) -> Array:
@@ -113,40 +117,42 @@ def added(first: ScaleSeries, second: ScaleSeries) -> ScaleSeries:
         covariance2 = interpolation @ second.covariance(H) @ interpolation.T
         return np.asarray(np.outer(share, share) * covariance1 + np.outer(1 - share, 1 - share) * covariance2)
 
-    return replace(first, value=first.value + value, raw=first.raw + raw, covariance=covariance)
+    return replace(first, value=first.value + value, raw=first.function_value + raw, covariance=covariance)
 
 
-def _result(series: ScaleSeries, fitted: SelfAffineLaw) -> Result:
+def _fractal_result(series: ScaleSeries, law: SelfAffineLaw) -> FractalResult:
     """Fractal parameters of the profile and of the surface, with intervals by Monte Carlo sampling.
 
     Only one of the two is measured; the other follows for an isotropic surface.
     """
     rng = np.random.default_rng(0)
-    root = np.linalg.cholesky(fitted.covariance)
-    draws = np.array([fitted.H, fitted.level]) + rng.standard_normal((DRAWS, 2)) @ root.T
-    H = np.clip(np.append(fitted.H, draws[:, 0]), 0.005, 0.995)
-    level = np.append(fitted.level, draws[:, 1])
-    log = (level + np.log(2.0) - 2.0 * H * np.log(fitted.reference)) / (2.0 * (1.0 - H))
-    shift = np.log(fractal.profile_share(H)) / (2.0 * (1.0 - H))
+    root = np.linalg.cholesky(law.covariance)
+    draws = np.array([law.H, law.level]) + rng.standard_normal((SAMPLE_COUNT, 2)) @ root.T
+    H = np.clip(np.append(law.H, draws[:, 0]), 0.005, 0.995)
+    level = np.append(law.level, draws[:, 1])
+    log = (level + np.log(2.0) - 2.0 * H * np.log(law.reference)) / (2.0 * (1.0 - H))
+    shift = np.log(fractal.profile_power_ratio(H)) / (2.0 * (1.0 - H))
     if series.method == "psd" and series.direction == "areal":
         profile, areal = log + shift, log
     else:
         profile, areal = log, log - shift
-    return Result(
+    return FractalResult(
         method=series.method,
         direction=series.direction,
         series=series,
-        fit=fitted,
+        fit=law,
         profile=ProfileFractal(
-            D=Estimate(*_interval(2.0 - H)), G=RoughnessEstimate.of_logarithms(*_interval(profile))
+            D=Estimate(*_confidence_interval(2.0 - H)),
+            G=RoughnessEstimate.from_logarithms(*_confidence_interval(profile)),
         ),
         areal=ArealFractal(
-            D_s=Estimate(*_interval(3.0 - H)), G_s=RoughnessEstimate.of_logarithms(*_interval(areal))
+            D_s=Estimate(*_confidence_interval(3.0 - H)),
+            G_s=RoughnessEstimate.from_logarithms(*_confidence_interval(areal)),
         ),
     )
 
 
-def _interval(values: Array) -> tuple[float, float, float]:
+def _confidence_interval(values: Array) -> tuple[float, float, float]:
     """Estimate and confidence interval from values: the first is the estimate, the others are samples."""
-    low, high = np.quantile(values[1:], [0.5 - 0.5 * LEVEL, 0.5 + 0.5 * LEVEL])
+    low, high = np.quantile(values[1:], [0.5 - 0.5 * CONFIDENCE_LEVEL, 0.5 + 0.5 * CONFIDENCE_LEVEL])
     return float(values[0]), float(low), float(high)

@@ -7,12 +7,12 @@ from jointfmu.joints import KINDS
 from jointfmu.joints.kind import RoughSurface
 from jointfmu.parameters import ParameterFile
 
-from .results import Estimate, Identification, Result
+from .results import Estimate, FractalResult, Identification
 
 
-def changes(
-    identified: Identification, joint: str, method: str | None = None
-) -> dict[str, tuple[float, Result]]:
+def fractal_parameters(
+    identification: Identification, joint: str, method: str | None = None
+) -> dict[str, tuple[float, FractalResult]]:
     """D and G of the rough surfaces of a joint kind: {parameter name: (value, result it comes from)}.
 
     If the measured surface is textured, a profile is taken along the direction that the joint needs.
@@ -22,40 +22,42 @@ def changes(
     """
     if joint not in KINDS:
         raise ValueError(f"joint = {joint!r} is not one of {', '.join(KINDS)}")
-    values: dict[str, tuple[float, Result]] = {}
+    values: dict[str, tuple[float, FractalResult]] = {}
     for surface in KINDS[joint].surfaces:
-        result = identified.best(_direction(identified, surface), method)
+        result = identification.select_best(_profile_direction(identification, surface), method)
         D, G = _dimension_and_roughness(result, surface)
         values |= {f"{surface.prefix}.D": (D.value, result), f"{surface.prefix}.G": (G.value, result)}
     return values
 
 
-def doubt(identified: Identification, joint: str) -> str | None:
+def undetermined_reason(identification: Identification, joint: str) -> str | None:
     """Reason why D and G of the rough surfaces of a joint are not determined; None if they are."""
-    directions = dict.fromkeys(_direction(identified, surface) for surface in KINDS[joint].surfaces)
-    doubts = (identified.doubt(direction) for direction in directions)
+    directions = dict.fromkeys(
+        _profile_direction(identification, surface) for surface in KINDS[joint].surfaces
+    )
+    doubts = (identification.undetermined_reason(direction) for direction in directions)
     return next((text for text in doubts if text), None)
 
 
-def _direction(identified: Identification, surface: RoughSurface) -> str | None:
+def _profile_direction(identification: Identification, surface: RoughSurface) -> str | None:
     """Direction that the joint needs, if the measured surface is textured; else None: the whole surface."""
-    return surface.direction if identified.textured else None
+    return surface.direction if identification.is_textured else None
 
 
-def _dimension_and_roughness(result: Result, surface: RoughSurface) -> tuple[Estimate, Estimate]:
+def _dimension_and_roughness(result: FractalResult, surface: RoughSurface) -> tuple[Estimate, Estimate]:
     """D and G that the joint needs: of the surface or of the profile."""
     if surface.areal:
         return result.areal.D_s, result.areal.G_s
     return result.profile.D, result.profile.G
 
 
-def meaning(joint: str) -> str:
+def dimension_meaning(joint: str) -> str:
     """Meaning of D of the first rough surface of a joint, as text."""
     return "D_s of the surface" if KINDS[joint].surfaces[0].areal else "D of the profile"
 
 
 def with_surface(
-    file: ParameterFile, identified: Identification, method: str | None = None, force: bool = False
+    file: ParameterFile, identification: Identification, method: str | None = None, force: bool = False
 ) -> ParameterFile:
     """Set the parameters of a file that follow from a measured surface, with their sources.
 
@@ -64,54 +66,56 @@ def with_surface(
 
     force : set D and G or the Hurst exponent even if they are not determined; ValueError if one is not finite
     """
-    sure = force or doubt(identified, file.joint) is None
+    sure = force or undetermined_reason(identification, file.joint) is None
     if file.law == ROUGHNESS_LAW:
-        file = _with_law(file, identified, method, sure)
+        file = _with_roughness_law(file, identification, method, sure)
     elif sure:
-        file = _with_fractal(file, identified, method)
-    for side, scan in identified.sides.items():
-        name = identified.names[min(side, len(identified.names)) - 1]
+        file = _with_fractal_parameters(file, identification, method)
+    for side, scan in identification.roughness_by_side.items():
+        name = identification.names[min(side, len(identification.names)) - 1]
         source = f"measured: {name}; waves up to {scan.longest_wave:.4g} m"
         file = file.with_roughness({f"Rq{side}": scan.h}, "user", source)
     return file
 
 
-def _with_law(
-    file: ParameterFile, identified: Identification, method: str | None, sure: bool
+def _with_roughness_law(
+    file: ParameterFile, identification: Identification, method: str | None, set_hurst: bool
 ) -> ParameterFile:
     """Set slope, longest wave and, if it is determined, the Hurst exponent of the law `roughness`."""
-    shortest, longest = identified.scans[0].shortest_wave, identified.longest_wave
-    source = f"measured: {_files(identified)}; waves up to {longest:.4g} m"
+    shortest, longest = identification.scans[0].shortest_wave, identification.longest_wave
+    source = f"measured: {_describe_files(identification)}; waves up to {longest:.4g} m"
     file = file.with_values({"longest_wave": longest}, "user", source)
-    file = file.with_values({"slope": identified.slope}, "user", f"{source}, down to {shortest:.3g} m")
-    if not sure:
+    file = file.with_values({"slope": identification.slope}, "user", f"{source}, down to {shortest:.3g} m")
+    if not set_hurst:
         return file
-    result = identified.best(method=method)
-    return file.with_values({"hurst": result.fit.H}, "user", _band(identified, result))
+    result = identification.select_best(method=method)
+    return file.with_values({"hurst": result.fit.H}, "user", _describe_fit(identification, result))
 
 
-def _with_fractal(file: ParameterFile, identified: Identification, method: str | None) -> ParameterFile:
+def _with_fractal_parameters(
+    file: ParameterFile, identification: Identification, method: str | None
+) -> ParameterFile:
     """Set D and G of the rough surfaces of the joint; ValueError if one is not finite."""
     surfaces = {surface.prefix: surface for surface in KINDS[file.joint].surfaces}
-    for name, (value, result) in changes(identified, file.joint, method).items():
+    for name, (value, result) in fractal_parameters(identification, file.joint, method).items():
         if not math.isfinite(value):
             D, G = result.profile.D.value, result.profile.G
             raise ValueError(
-                f"{name} of {' and '.join(identified.names)} is not determined (D = {D:.2f}, the interval of "
+                f"{name} of {' and '.join(identification.names)} is not determined (D = {D:.2f}, the interval of "
                 f"G spans {G.decades:.0f} decades): {file.joint} needs a number"
             )
         prefix, _, symbol = name.rpartition(".")
-        source = _source(identified, result, surfaces[prefix], symbol)
+        source = _describe_source(identification, result, surfaces[prefix], symbol)
         file = file.with_values({name: value}, "user", source)
     return file
 
 
-def _files(identified: Identification) -> str:
+def _describe_files(identification: Identification) -> str:
     """Names of the scanned files and the sides that they represent, as text."""
-    if len(identified.names) == 2:
-        return f"{identified.names[0]} and {identified.names[1]} (equivalent surface)"
-    side = identified.side
-    return identified.names[0] + (
+    if len(identification.names) == 2:
+        return f"{identification.names[0]} and {identification.names[1]} (equivalent surface)"
+    side = identification.side
+    return identification.names[0] + (
         ""
         if side is None
         else " (both sides alike)"
@@ -120,21 +124,23 @@ def _files(identified: Identification) -> str:
     )
 
 
-def _band(identified: Identification, result: Result) -> str:
+def _describe_fit(identification: Identification, result: FractalResult) -> str:
     """Text for a source: files, method and range of scales of a result."""
     methods = {"structure": "structure function, lags", "psd": "power spectral density, wavelengths"}
     return (
-        f"identified from {_files(identified)} by {methods[result.method]} "
+        f"identified from {_describe_files(identification)} by {methods[result.method]} "
         f"{result.fit.low:.3g} to {result.fit.high:.3g} m"
     )
 
 
-def _source(identified: Identification, result: Result, surface: RoughSurface, which: str) -> str:
+def _describe_source(
+    identification: Identification, result: FractalResult, surface: RoughSurface, symbol: str
+) -> str:
     """Text for the source of D or G: files, method, direction and confidence interval."""
     D, G = _dimension_and_roughness(result, surface)
-    estimate = D if which == "D" else G
+    estimate = D if symbol == "D" else G
     if surface.areal:
         extent = "of the surface"
     else:
         extent = "of the profile" if result.direction in ("profile", "areal") else f"along {result.direction}"
-    return f"{_band(identified, result)}; {extent}; 95 % interval {estimate.low:.4g} to {estimate.high:.4g}"
+    return f"{_describe_fit(identification, result)}; {extent}; 95 % interval {estimate.low:.4g} to {estimate.high:.4g}"

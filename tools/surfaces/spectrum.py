@@ -14,15 +14,15 @@ from numpy.typing import NDArray
 
 from jointfmu.quantity import Array
 
-from ..fractal import second_difference, structure_constant
-from .heights import Areal, Heights
+from ..fractal import second_difference_ratio, structure_constant
+from .heights import ArealMap, Heights
 
 METHODS = ("structure", "psd")
-SIDES = ("1", "2", "both")
+SCAN_SIDES = ("1", "2", "both")
 """Side of the contact that a single scan represents: 1 or 2 (the other side is smooth), or both (alike)."""
-LEAST = 1e-200
+MIN_VALUE = 1e-200
 """Smallest value of a series [m2]: constant heights also have a logarithm."""
-KERNEL = 0.3
+KERNEL_WIDTH = 0.3
 """Standard deviation of the Gaussian kernel in ln(frequency) [1]; it smooths discrete waves with a frequency
 ratio up to 2."""
 
@@ -44,43 +44,43 @@ class ScaleSeries:
     direction: str
     scale: Array
     value: Array
-    raw: Array
+    function_value: Array
     expected: Callable[[float], Array]
     covariance: Callable[[float], Array]
 
-    def within(self, keep: NDArray[Any]) -> "ScaleSeries":
+    def select(self, selection: NDArray[Any]) -> "ScaleSeries":
         """Series at the selected scales, by mask or indices."""
         return replace(
             self,
-            scale=self.scale[keep],
-            value=self.value[keep],
-            raw=self.raw[keep],
-            expected=lambda H: self.expected(H)[keep],
-            covariance=lambda H: self.covariance(H)[np.ix_(keep, keep)],
+            scale=self.scale[selection],
+            value=self.value[selection],
+            raw=self.function_value[selection],
+            expected=lambda H: self.expected(H)[selection],
+            covariance=lambda H: self.covariance(H)[np.ix_(selection, selection)],
         )
 
 
-MODES = 256
+MODE_COUNT = 256
 """Number of Fourier modes per direction in a covariance; shorter waves hardly contribute."""
 
 
-def structure(heights: Heights, direction: str) -> ScaleSeries:
+def structure_function(heights: Heights, direction: str) -> ScaleSeries:
     """Structure function along a profile, along x or y of a map, or the mean of both directions ("areal").
 
     S(tau) = <(z(x + tau) - z(x))^2>, V(tau) = <(z(x + tau) - 2 z(x) + z(x - tau))^2>. Pairs with a missing
     point are left out. Lags tau are from 2 spacings to an eighth of the length.
     """
-    if direction == "areal" and isinstance(heights, Areal):
-        return _mean_of_directions(heights)
+    if direction == "areal" and isinstance(heights, ArealMap):
+        return _average_directions(heights)
     z = np.atleast_2d(heights.z)
-    z, spacing = (z.T, heights.dy) if isinstance(heights, Areal) and direction == "y" else (z, heights.dx)
-    lags, value, raw = _differences(z)
+    z, spacing = (z.T, heights.dy) if isinstance(heights, ArealMap) and direction == "y" else (z, heights.dx)
+    lags, value, raw = _mean_square_differences(z)
     length = z.shape[1] * spacing
     lag = lags * spacing
-    return _smoothed(direction, lag, value, raw, _line_covariance(lag, length))
+    return _smooth_structure(direction, lag, value, raw, _line_covariance(lag, length))
 
 
-def _differences(z: Array) -> tuple[Array, Array, Array]:
+def _mean_square_differences(z: Array) -> tuple[Array, Array, Array]:
     """Lags in points, and V and S [m2] at these lags, averaged over the rows of z."""
     lags = np.unique(np.round(np.exp(np.arange(np.log(2.0), np.log(z.shape[1] // 8), 0.08))).astype(int))
     value, raw = np.empty(lags.size), np.empty(lags.size)
@@ -88,22 +88,22 @@ def _differences(z: Array) -> tuple[Array, Array, Array]:
         step = z[:, lag:] - z[:, :-lag]
         raw[i] = _mean_square(step)
         value[i] = _mean_square(step[:, lag:] - step[:, :-lag])
-    return lags.astype(float), np.maximum(value, LEAST), np.maximum(raw, LEAST)
+    return lags.astype(float), np.maximum(value, MIN_VALUE), np.maximum(raw, MIN_VALUE)
 
 
-def _smoothed(
+def _smooth_structure(
     direction: str, lag: Array, value: Array, raw: Array, covariance: Callable[[float], Array]
 ) -> ScaleSeries:
     """Series of a structure function, smoothed over ln(lag) with the same kernel as the spectrum."""
     x = np.log(lag)
-    scale = np.exp(np.arange(x[0] + KERNEL, x[-1], 0.2))
-    weight = np.exp(-0.5 * ((np.log(scale)[:, None] - x) / KERNEL) ** 2) * np.gradient(x)
+    scale = np.exp(np.arange(x[0] + KERNEL_WIDTH, x[-1], 0.2))
+    weight = np.exp(-0.5 * ((np.log(scale)[:, None] - x) / KERNEL_WIDTH) ** 2) * np.gradient(x)
     weight = weight / weight.sum(axis=1, keepdims=True)
 
     @cache
-    def spread(H: float) -> Array:
+    def smoothed_covariance(H: float) -> Array:
         """Covariance of ln(value) after smoothing."""
-        law = weight * power_law(lag, H)
+        law = weight * structure_power_law(lag, H)
         law = law / law.sum(axis=1, keepdims=True)
         return np.asarray(law @ covariance(H) @ law.T)
 
@@ -112,27 +112,27 @@ def _smoothed(
         direction=direction,
         scale=scale,
         value=weight @ value,
-        raw=weight @ raw,
-        expected=lambda H: np.asarray(weight @ power_law(lag, H)),
-        covariance=spread,
+        function_value=weight @ raw,
+        expected=lambda H: np.asarray(weight @ structure_power_law(lag, H)),
+        covariance=smoothed_covariance,
     )
 
 
-def _mean_square(step: Array) -> float:
+def _mean_square(values: Array) -> float:
     """Mean square of the finite values."""
-    mean = float(np.einsum("ij,ij->", step, step) / step.size)
+    mean = float(np.einsum("ij,ij->", values, values) / values.size)
     if np.isfinite(mean):
         return mean
-    finite = step[np.isfinite(step)]
+    finite = values[np.isfinite(values)]
     return float(np.einsum("i,i->", finite, finite) / finite.size)
 
 
-def power_law(scale: Array, H: float) -> Array:
+def structure_power_law(scale: Array, H: float) -> Array:
     """V [m2] at lags [m] for Phi(frequency) = frequency^(-2H)."""
-    return np.asarray(2.0 * structure_constant(H) * second_difference(H) * scale ** (2.0 * H))
+    return np.asarray(2.0 * structure_constant(H) * second_difference_ratio(H) * scale ** (2.0 * H))
 
 
-def _response(scale: Array, frequency: Array) -> Array:
+def _wave_weights(scale: Array, frequency: Array) -> Array:
     """Weight (lags, frequencies) [1] of a wave of frequency f in V(tau): (1 - cos 2 pi f tau)^2."""
     return np.asarray((1.0 - np.cos(2.0 * np.pi * np.multiply.outer(scale, frequency))) ** 2)
 
@@ -142,13 +142,13 @@ def _line_covariance(scale: Array, length: float) -> Callable[[float], Array]:
 
     Several lines of a map count as one line, which is conservative also for a textured map.
     """
-    frequency = np.arange(1, 4 * MODES) / length
-    response = _response(scale, frequency)
+    frequency = np.arange(1, 4 * MODE_COUNT) / length
+    response = _wave_weights(scale, frequency)
 
     def covariance(H: float) -> Array:
         weight = response * frequency ** (-1.0 - 2.0 * H)
         weight = weight / weight.sum(axis=1, keepdims=True)
-        return _times(weight, weight)
+        return _multiply_transposed(weight, weight)
 
     return covariance
 
@@ -158,30 +158,35 @@ def _areal_covariance(scale: Array, lengths: tuple[float, ...]) -> Callable[[flo
 
     The map is isotropic, with side lengths [m].
     """
-    fx, fy = (np.arange(1, MODES) / length for length in lengths)
-    wx, wy = _response(scale, fx), _response(scale, fy)
+    fx, fy = (np.arange(1, MODE_COUNT) / length for length in lengths)
+    wx, wy = _wave_weights(scale, fx), _wave_weights(scale, fy)
     square = fx[None, :] ** 2 + fy[:, None] ** 2
 
     def covariance(H: float) -> Array:
         power = square ** (-1.0 - H)  # a quarter of the plane; two quarters are independent
         squared = power**2
-        cross = _times(_times(wx, squared), wy)
-        total = _times(wx * squared.sum(axis=0), wx) + _times(wy * squared.sum(axis=1), wy) + cross + cross.T
+        cross = _multiply_transposed(_multiply_transposed(wx, squared), wy)
+        total = (
+            _multiply_transposed(wx * squared.sum(axis=0), wx)
+            + _multiply_transposed(wy * squared.sum(axis=1), wy)
+            + cross
+            + cross.T
+        )
         mean = wx @ power.sum(axis=0) + wy @ power.sum(axis=1)
         return np.asarray(0.5 * total / np.multiply.outer(mean, mean))
 
     return covariance
 
 
-def _times(a: Array, b: Array) -> Array:
+def _multiply_transposed(a: Array, b: Array) -> Array:
     """Matrix product a b^T in one thread. For small matrices, the threads of BLAS take ten times as long."""
     return np.asarray(np.einsum("ik,jk->ij", a, b))
 
 
-def _mean_of_directions(heights: Areal) -> ScaleSeries:
+def _average_directions(heights: ArealMap) -> ScaleSeries:
     """Series of V and S averaged over both directions, at the lags along x that y covers too."""
-    lag_x, *along_x = _differences(heights.z)
-    lag_y, *along_y = _differences(heights.z.T)
+    lag_x, *along_x = _mean_square_differences(heights.z)
+    lag_y, *along_y = _mean_square_differences(heights.z.T)
     lag, lag_y = lag_x * heights.dx, lag_y * heights.dy
     common = (lag >= lag_y[0] * 0.999) & (lag <= lag_y[-1] * 1.001)
     lag = lag[common]
@@ -189,27 +194,27 @@ def _mean_of_directions(heights: Areal) -> ScaleSeries:
         0.5 * (x[common] + np.exp(np.interp(np.log(lag), np.log(lag_y), np.log(y))))
         for x, y in zip(along_x, along_y, strict=True)
     )
-    return _smoothed("areal", lag, value, raw, _areal_covariance(lag, heights.lengths))
+    return _smooth_structure("areal", lag, value, raw, _areal_covariance(lag, heights.lengths))
 
 
-HANN = 35.0 / 18.0
+HANN_CORRELATED_MODES = 35.0 / 18.0
 """Number of neighbouring Fourier modes that a Hann window correlates to one, per direction [1]."""
 
 
-def psd(heights: Heights, direction: str) -> ScaleSeries:
+def power_spectrum(heights: Heights, direction: str) -> ScaleSeries:
     """Power spectral density of a profile, of the lines along x or y of a map, or radial ("areal").
 
     Phi = frequency times one-sided density, with a Hann window, smoothed over ln(frequency) with a Gaussian
     kernel. Wavelengths are from 5 spacings to a third of the length. `heights` must have no missing points.
     """
     z = np.atleast_2d(heights.z)
-    if direction == "areal" and isinstance(heights, Areal):
+    if direction == "areal" and isinstance(heights, ArealMap):
         frequency, power, share, spacing = _areal_modes(z, heights.dx, heights.dy)
-        length, per_mode = min(heights.lengths), HANN**2
+        length, per_mode = min(heights.lengths), HANN_CORRELATED_MODES**2
     else:
-        spacing = heights.dy if isinstance(heights, Areal) and direction == "y" else heights.dx
+        spacing = heights.dy if isinstance(heights, ArealMap) and direction == "y" else heights.dx
         frequency, power, share = _line_modes(z.T if direction == "y" else z, spacing)
-        length, per_mode = 1.0 / frequency[0], HANN
+        length, per_mode = 1.0 / frequency[0], HANN_CORRELATED_MODES
     bins = np.floor(np.log(frequency / frequency.min()) / 0.02).astype(int)
     used = np.bincount(bins) > 0
     count = np.bincount(bins)[used].astype(float)
@@ -219,44 +224,44 @@ def psd(heights: Heights, direction: str) -> ScaleSeries:
     )
     f = np.exp(logs / count)
     wavelength = np.exp(np.arange(np.log(5.0 * spacing), np.log(length / 3.0), 0.2))
-    kernel = np.exp(-0.5 * (np.log(wavelength[:, None] * f) / KERNEL) ** 2)
+    kernel = np.exp(-0.5 * (np.log(wavelength[:, None] * f) / KERNEL_WIDTH) ** 2)
     norm = kernel @ share
     areal = direction == "areal"
 
-    def law(H: float) -> Array:
-        return np.asarray(share * f ** (-2.0 * H) * _broadening(f * length, H, areal))
+    def expected_power(H: float) -> Array:
+        return np.asarray(share * f ** (-2.0 * H) * _window_factor(f * length, H, areal))
 
     def covariance(H: float) -> Array:
-        weight = kernel * law(H)
+        weight = kernel * expected_power(H)
         weight = weight / weight.sum(axis=1, keepdims=True)
         return np.asarray((weight * (per_mode / count)) @ weight.T)
 
-    value = np.maximum(kernel @ power / norm, LEAST)
+    value = np.maximum(kernel @ power / norm, MIN_VALUE)
     return ScaleSeries(
         method="psd",
         direction=direction,
         scale=wavelength,
         value=value,
-        raw=value * wavelength,
-        expected=lambda H: np.asarray(kernel @ law(H) / norm),
+        function_value=value * wavelength,
+        expected=lambda H: np.asarray(kernel @ expected_power(H) / norm),
         covariance=covariance,
     )
 
 
-def _broadening(k: Array, H: float, areal: bool) -> Array:
+def _window_factor(k: Array, H: float, is_areal: bool) -> Array:
     """Factor [1] of a Hann window on a power law at k waves per length: the window mixes neighbouring modes.
 
     Along a line, the weights of modes k - 1, k, k + 1 are 1/6, 2/3, 1/6. Over an area, the factor is the
     second-order expansion.
     """
     k = np.maximum(k, 2.0)
-    if areal:
+    if is_areal:
         return np.asarray(1.0 + (2.0 + 2.0 * H) ** 2 / (6.0 * k**2))
     s = 1.0 + 2.0 * H
     return np.asarray(2.0 / 3.0 + ((1.0 - 1.0 / k) ** -s + (1.0 + 1.0 / k) ** -s) / 6.0)
 
 
-def _window(n: int) -> Array:
+def _hann_window(n: int) -> Array:
     """Hann window (n,) with a mean square of 1."""
     window = np.sin(np.pi * (np.arange(n) + 0.5) / n) ** 2
     return np.asarray(window / np.sqrt(np.mean(window**2)))
@@ -265,7 +270,7 @@ def _window(n: int) -> Array:
 def _line_modes(z: Array, spacing: float) -> tuple[Array, Array, Array]:
     """Frequency [1/m], variance [m2] and df/f [1] of the Fourier modes, averaged over lines; no mean."""
     n = z.shape[1]
-    window = _window(n)
+    window = _hann_window(n)
     level = (z @ window) / window.sum()
     modes = np.fft.rfft((z - level[:, None]) * window, axis=1)[:, 1:]
     power = 2.0 * np.mean(np.abs(modes) ** 2, axis=0) / n**2
@@ -279,7 +284,7 @@ def _areal_modes(z: Array, dx: float, dy: float) -> tuple[Array, Array, Array, f
     Returns their frequency f [1/m], variance [m2], share df_x df_y/(pi f^2) [1], and max(dx, dy) [m].
     """
     ny, nx = z.shape
-    window = np.multiply.outer(_window(ny), _window(nx))
+    window = np.multiply.outer(_hann_window(ny), _hann_window(nx))
     level = float(np.sum(z * window) / np.sum(window))
     power = 2.0 * np.abs(np.fft.rfft2((z - level) * window)) ** 2 / (nx * ny) ** 2
     fx, fy = np.fft.rfftfreq(nx, dx)[None, :], np.fft.fftfreq(ny, dy)[:, None]

@@ -6,13 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from jointfmu.quantity import Array, Checked, Interval, Limit, quantity
+from jointfmu.quantity import Array, CheckedParameters, Interval, ParameterLimit, quantity_field
 
-from .heights import Areal, Profile
+from .heights import ArealMap, Profile
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Waves(Checked):
+class Waves(CheckedParameters):
     """Waves and sampling of a Weierstrass-Mandelbrot function.
 
     size   : longest wavelength and length of the sample L [m]
@@ -22,9 +22,9 @@ class Waves(Checked):
     The shortest wavelength is at least twice the spacing.
     """
 
-    size: float = quantity("m", "side length of the surface, and its longest wave", gt=0.0)
-    points: int = quantity("1", "points along a side", ge=2.0, whole=True)
-    gamma: float = quantity("1", "frequency ratio of the Weierstrass-Mandelbrot function", gt=1.0)
+    size: float = quantity_field("m", "side length of the surface, and its longest wave", gt=0.0)
+    points: int = quantity_field("1", "points along a side", ge=2.0, is_integer=True)
+    gamma: float = quantity_field("1", "frequency ratio of the Weierstrass-Mandelbrot function", gt=1.0)
 
     @property
     def positions(self) -> Array:
@@ -42,7 +42,7 @@ class Waves(Checked):
         return np.asarray(G ** (1.0 - H) * np.sqrt(np.log(self.gamma)) * self.frequencies**-H)
 
 
-def isotropic(waves: Waves, D: float, G: float, ridges: int, seed: int) -> Areal:
+def synthesize_isotropic(waves: Waves, D: float, G: float, direction_count: int, seed: int) -> ArealMap:
     """Isotropic surface of Hu 2023, Eq. 1.
 
     D      : fractal dimension of the surface [1], 2 < D < 3
@@ -53,27 +53,27 @@ def isotropic(waves: Waves, D: float, G: float, ridges: int, seed: int) -> Areal
     Because cos(a x + b y + c) = Re(exp(i a x) exp(i (b y + c))), the sum over M (n_max + 1) waves is one
     product of two matrices. Its cost is hardly more than the cost of the cosines along the sides.
     """
-    _interval("D", D, 2.0, 3.0, "fractal dimension of the surface")
-    phases = np.random.default_rng(seed).uniform(0.0, 2.0 * np.pi, (ridges, waves.frequencies.size))
-    angle = np.pi * np.arange(1, ridges + 1)[:, None] / ridges
+    _check_open_interval("D", D, 2.0, 3.0, "fractal dimension of the surface")
+    phases = np.random.default_rng(seed).uniform(0.0, 2.0 * np.pi, (direction_count, waves.frequencies.size))
+    angle = np.pi * np.arange(1, direction_count + 1)[:, None] / direction_count
     wave = 2.0 * np.pi * waves.frequencies
-    amplitude = np.broadcast_to(waves.amplitudes(3.0 - D, G) / np.sqrt(ridges), phases.shape).ravel()
+    amplitude = np.broadcast_to(waves.amplitudes(3.0 - D, G) / np.sqrt(direction_count), phases.shape).ravel()
     along_x = np.multiply.outer(waves.positions, (wave * np.cos(angle)).ravel())
     along_y = np.multiply.outer(waves.positions, (wave * np.sin(angle)).ravel()) + phases.ravel()
     z = (amplitude * np.sin(along_y)) @ np.sin(along_x).T - (amplitude * np.cos(along_y)) @ np.cos(along_x).T
     z += float(np.sum(amplitude * np.cos(phases.ravel())))
     spacing = waves.size / waves.points
-    return Areal(z=z, dx=spacing, dy=spacing, name="synthetic surface")
+    return ArealMap(z=z, dx=spacing, dy=spacing, name="synthetic surface")
 
 
-def line(waves: Waves, D: float, G: float, rng: np.random.Generator) -> Array:
+def profile_heights(waves: Waves, D: float, G: float, rng: np.random.Generator) -> Array:
     """Heights (points,) [m] of a random profile: Hu 2023, Eq. 2, and Yu 2022, Eq. 2 (with x and L).
 
     D   : fractal dimension of the profile [1], 1 < D < 2
     G   : fractal roughness [m]
     rng : generator of the random phases
     """
-    _interval("D", D, 1.0, 2.0, "fractal dimension of the profile")
+    _check_open_interval("D", D, 1.0, 2.0, "fractal dimension of the profile")
     z = np.zeros(waves.points)
     x, amplitudes = waves.positions, waves.amplitudes(2.0 - D, G)
     for f, a, phase in zip(
@@ -83,25 +83,25 @@ def line(waves: Waves, D: float, G: float, rng: np.random.Generator) -> Array:
     return z
 
 
-def profile(waves: Waves, D: float, G: float, seed: int) -> Profile:
+def synthesize_profile(waves: Waves, D: float, G: float, seed: int) -> Profile:
     """Profile with random phases from a seed; D and G as in `profile_heights`."""
-    z = line(waves, D, G, np.random.default_rng(seed))
+    z = profile_heights(waves, D, G, np.random.default_rng(seed))
     return Profile(z=z, dx=waves.size / waves.points, name="synthetic profile")
 
 
-def textured(waves: Waves, D: tuple[float, float], G: tuple[float, float], seed: int) -> Areal:
+def synthesize_textured(waves: Waves, D: tuple[float, float], G: tuple[float, float], seed: int) -> ArealMap:
     """Textured surface with two directions, Yu 2022, Eq. 3 (corrected): z(x, y) = z_1(x) + z_2(y).
 
     D, G : fractal dimension [1] and roughness [m] of the profiles along x and y
     """
     rng = np.random.default_rng(seed)
-    along_x, along_y = (line(waves, d, g, rng) for d, g in zip(D, G, strict=True))
+    along_x, along_y = (profile_heights(waves, d, g, rng) for d, g in zip(D, G, strict=True))
     spacing = waves.size / waves.points
     z = along_x[None, :] + along_y[:, None]
-    return Areal(z=z, dx=spacing, dy=spacing, name="synthetic textured surface")
+    return ArealMap(z=z, dx=spacing, dy=spacing, name="synthetic textured surface")
 
 
-def _interval(name: str, value: float, low: float, high: float, doc: str) -> None:
+def _check_open_interval(name: str, value: float, low: float, high: float, doc: str) -> None:
     """Raise ValueError if a value is outside the open interval (low, high)."""
-    if text := Limit(name, Interval(low, high), doc).problem(value, "1"):
+    if text := ParameterLimit(name, Interval(low, high), doc).find_problem(value, "1"):
         raise ValueError(text)

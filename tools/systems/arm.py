@@ -30,14 +30,14 @@ from jointfmu_fmu_src.partners.laws import GRAVITY, TorqueCurve
 from numpy.typing import ArrayLike
 
 from jointfmu.joints import MODELS
-from jointfmu.parameters import default, entries
+from jointfmu.parameters import load_default, read_entries
 from jointfmu.quantity import (
     Array,
-    Checked,
-    build,
+    CheckedParameters,
+    build_parameter_set,
+    find_problem,
     flat_fields,
-    problem,
-    quantity,
+    quantity_field,
     smooth_step,
     smooth_step_slopes,
 )
@@ -48,15 +48,15 @@ AXES: Mapping[str, Array] = {"y": np.array([0.0, 1.0, 0.0]), "z": np.array([0.0,
 
 
 @dataclass(frozen=True, kw_only=True)
-class Link(Checked):
+class Link(CheckedParameters):
     """One link behind its axis."""
 
-    length: float = quantity("m", "from this axis to the next one, or to the tip", ge=0.0)
-    mass: float = quantity("kg", "mass of the link with the next drive", gt=0.0)
-    centre: float = quantity("m", "from the axis to the centre of mass", ge=0.0)
-    J_along: float = quantity("kg.m2", "moment of inertia about the link's own line", gt=0.0)
-    J_across: float = quantity("kg.m2", "the same across it, about the centre of mass", gt=0.0)
-    travel: float = quantity("rad", "angle of the motion")
+    length: float = quantity_field("m", "from this axis to the next one, or to the tip", ge=0.0)
+    mass: float = quantity_field("kg", "mass of the link with the next drive", gt=0.0)
+    centre: float = quantity_field("m", "from the axis to the centre of mass", ge=0.0)
+    J_along: float = quantity_field("kg.m2", "moment of inertia about the link's own line", gt=0.0)
+    J_across: float = quantity_field("kg.m2", "the same across it, about the centre of mass", gt=0.0)
+    travel: float = quantity_field("rad", "angle of the motion")
 
 
 @dataclass(frozen=True)
@@ -147,8 +147,8 @@ def _of(matrices: Array, vectors: Array) -> Array:
 
 
 _MOTION = {
-    "start": quantity("s", "begin of the motion", ge=0.0),
-    "duration": quantity("s", "from its begin to its end", gt=0.0),
+    "start": quantity_field("s", "begin of the motion", ge=0.0),
+    "duration": quantity_field("s", "from its begin to its end", gt=0.0),
 }
 Sections = dict[str, dict[str, object]]
 
@@ -163,9 +163,9 @@ def arm_parts(path: Path, section: object) -> tuple[Arm, Sections, list[tuple[st
         raise ValueError(f"arm = {section!r}, expected a section [arm]")
     own = {key: value for key, value in section.items() if key in _MOTION}
     axes = {key: value for key, value in section.items() if key not in _MOTION}
-    times, _, _ = entries(path, _MOTION, own)
+    times, _, _ = read_entries(path, _MOTION, own)
     for name, item in _MOTION.items():
-        if text := problem(name, times.get(name), item):
+        if text := find_problem(name, times.get(name), item):
             raise ValueError(f"arm.{text}")
     fields, links, drives = dict(flat_fields(Link)), [], {}
     for name, given in axes.items():
@@ -173,8 +173,8 @@ def arm_parts(path: Path, section: object) -> tuple[Arm, Sections, list[tuple[st
             axis = given.get("axis") if isinstance(given, Mapping) else given
             raise ValueError(f"arm.{name}.axis = {axis!r}, allowed are {', '.join(AXES)}")
         try:
-            values, _, _ = entries(path, fields, {k: v for k, v in given.items() if k in fields})
-            links.append(build(Link, values))
+            values, _, _ = read_entries(path, fields, {k: v for k, v in given.items() if k in fields})
+            links.append(build_parameter_set(Link, values))
         except ValueError as error:
             raise ValueError(f"arm.{name}: {str(error).removeprefix(f'{path}: ')}") from None
         drives[name] = {key: value for key, value in given.items() if key not in fields and key != "axis"}
@@ -206,8 +206,8 @@ def _ratio(path: Path, name: str, drive: Mapping[str, object]) -> float:
     if isinstance(entry, Mapping) and isinstance(entry.get("value"), int | float):
         return float(entry["value"])
     joint = MODELS[model].joint
-    file = joint_file(path.parent, f"arm.{name}", joint, drive) or default(joint)
-    return float(file.flat["ratio"])
+    file = joint_file(path.parent, f"arm.{name}", joint, drive) or load_default(joint)
+    return float(file.values_by_name["ratio"])
 
 
 def _axis(arm: Arm, name: str, drive: Mapping[str, object], ratio: float) -> Sections:

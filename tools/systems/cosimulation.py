@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from jointfmu.progress import track
+from jointfmu.progress import track_progress
 from jointfmu.quantity import Array
 
 from .master import Slave
@@ -67,7 +67,7 @@ def simulate(
         look(joints)
         rows[0] = now
         groups = [others, joints] if master.in_turn else [[*others, *joints]]
-        for k in track(range(count), f"run {system.name}", count):
+        for k in track_progress(range(count), f"run {system.name}", count):
             for group in groups:
                 feed(group)
                 for name in group:

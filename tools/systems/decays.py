@@ -9,7 +9,7 @@ import numpy as np
 from jointfmu_fmu_src.partners import PARTNERS
 from scipy.interpolate import CubicSpline
 
-from jointfmu.progress import track
+from jointfmu.progress import track_progress
 from jointfmu.quantity import Array
 
 from ..fitting import decay
@@ -21,12 +21,12 @@ from .ringing import PER_PERIOD, Body, Rest, VibratingJoint, vibrating_joints
 PERIODS, SETTLED = 60, 10
 """Periods of a decay, and the last ones, whose mean is where the joint settles: friction holds it off its
 working point."""
-BEYOND = 2.0
+MAX_LOGARITHM_RATIO = 2.0
 """Logarithm of a swing's first half over its middle, over the damping ratio [1]: pi/2, and a little more."""
 FREQUENCY_TOLERANCE, DAMPING_TOLERANCE = 5e-3, 2e-2
 """Of a window of a decay against the loops of its mean amplitude [1]; the damping after the first window,
 within whose two periods half of the amplitude is lost."""
-LEAST = 0.01
+MIN_AMPLITUDE_RATIO = 0.01
 """Amplitude over the first one [1] down to which a decay is followed."""
 
 
@@ -65,7 +65,7 @@ def examples(folder: Path) -> dict[str, list[Decay]]:
 
 
 def decays(
-    one: VibratingJoint,
+    joint: VibratingJoint,
     folder: Path,
     first: float,
     loads: Sequence[float] | None = None,
@@ -81,25 +81,28 @@ def decays(
 
     Raises ValueError for an FMU that is missing or refuses, and where too few periods stand out.
     """
-    joint = {**one.parameters, **(settings or {})}
-    loads = [max(one.body.loads(folder / f"{one.fmu}.fmu", joint))] if loads is None else loads
-    inertia = one.inertia if inertia is None else inertia
-    return [_decay_at(one, folder, load, joint, inertia, first) for load in track(loads, "ring", len(loads))]
+    joint = {**joint.parameters, **(settings or {})}
+    loads = [max(joint.body.loads(folder / f"{joint.fmu}.fmu", joint))] if loads is None else loads
+    inertia = joint.inertia if inertia is None else inertia
+    return [
+        _decay_at(joint, folder, load, joint, inertia, first)
+        for load in track_progress(loads, "ring", len(loads))
+    ]
 
 
 def _decay_at(
-    one: VibratingJoint,
+    joint: VibratingJoint,
     folder: Path,
     load: float,
     parameters: Mapping[str, Any],
     mass: float,
     first: float,
 ) -> Decay:
-    body, path = one.body, folder / f"{one.fmu}.fmu"
+    body, path = joint.body, folder / f"{joint.fmu}.fmu"
     rest, partner = body.rest(path, load, parameters), PARTNERS[body.partner]
-    states = [v.name for v in partner.outputs[: partner.states]]
+    states = [v.name for v in partner.outputs[: partner.state_count]]
     pulled = rest.position + np.copysign(first, rest.position)  # one way from no load: the joint begins there
-    start, held = {one.key: mass, states[0]: pulled}, {**parameters, **body.start(load)}
+    start, held = {joint.key: mass, states[0]: pulled}, {**parameters, **body.start(load)}
     step = 2.0 * np.pi / np.sqrt(rest.stiffness / mass) / PER_PERIOD
     with (
         Slave(path, {**held, body.motion[0]: pulled}, body.motion, (body.force,)) as joint,
@@ -108,10 +111,10 @@ def _decay_at(
         signal = motion(joint, moving, rest.force, step, PERIODS * PER_PERIOD)[:, 0] - rest.position
         messages = tuple(dict.fromkeys(joint.messages + moving.messages))
     time = np.asarray(step * np.arange(signal.size), dtype=np.float64)
-    found = decay.points(time, signal, f"load = {load:g}: ")
-    seen = found.amplitude > LEAST * first
+    found = decay.analyse_decay(time, signal, f"load = {load:g}: ")
+    seen = found.amplitude > MIN_AMPLITUDE_RATIO * first
     amplitude = found.amplitude[seen]
-    widest = amplitude * np.exp(BEYOND * found.damping[seen])
+    widest = amplitude * np.exp(MAX_LOGARITHM_RATIO * found.damping[seen])
     settled = rest._replace(position=rest.position + float(np.mean(signal[-SETTLED * PER_PERIOD :])))
     expected, stated, law = _of_loops(path, held, body, settled, mass, amplitude, widest)
     frequency = 2.0 * np.pi * found.frequency[seen]
@@ -121,7 +124,7 @@ def _decay_at(
 
 def _of_loops(
     path: Path,
-    held: Mapping[str, object],
+    settings: Mapping[str, object],
     body: Body,
     rest: Rest,
     mass: float,
@@ -130,8 +133,8 @@ def _of_loops(
 ) -> tuple[Array, Array, Array | None]:
     """Frequency [rad/s] and damping ratio [1] by the energy of loops, a little wider than the amplitudes, and
     half of `eta_loop` [1]."""
-    swing = loops.Swing(about=rest.position, shape="sine", cycles=1)
-    run = loops.run(path, body.motion[0], widest.tolist(), swing, body.force, held)
+    swing = loops.CyclicPath(centre=rest.position, shape="sine", cycles=1)
+    run = loops.run_loops(path, body.motion[0], widest.tolist(), swing, body.force, settings)
     found = [
         of_loop(loop, rest.damping).decay(np.array([a]), mass)
         for loop, a in zip(run.loops, amplitudes, strict=True)
@@ -145,7 +148,7 @@ def _of_loops(
 
 def of_loop(loop: loops.HysteresisLoop, viscous: float) -> HysteresisLaw:
     """The law by Masing's rule whose branches are the mean of a loop's two."""
-    motion, force = loop.motion[loop.closed :], loop.force[loop.closed :]
+    motion, force = loop.motion[loop.cycle_start :], loop.force[loop.cycle_start :]
     half = motion.size // 2
     falling, rising = slice(None, half + 1), slice(half, None)
     way = 0.5 * (motion[0] - motion[falling])

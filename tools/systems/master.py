@@ -11,7 +11,7 @@ from fmpy.fmi1 import FMICallException
 
 from jointfmu.quantity import Array
 
-from ..host import opened, unpacked
+from ..host import open_instance, unpack_fmu
 
 T = TypeVar("T")
 
@@ -29,29 +29,29 @@ class Slave:
         self.messages: list[str] = []
         self._path = path
         with ExitStack() as entered:
-            folder, description = entered.enter_context(unpacked(path))
+            folder, description = entered.enter_context(unpack_fmu(path))
             known = [v.name for v in description.modelVariables]
             for name in (*start, *inputs, *outputs):
                 if name not in known:
                     raise ValueError(f"{path}: unknown name {name!r}, allowed are {', '.join(known)}")
-            self._fmu = entered.enter_context(opened(folder, description, str(path), self.messages))
+            self._fmu = entered.enter_context(open_instance(folder, description, str(path), self.messages))
             try:
-                self._fmu.begin()
-                self._fmu.set(start)
+                self._fmu.enter_initialization()
+                self._fmu.set_values(start)
                 self._fmu.fmu.exitInitializationMode()
             except FMICallException as error:
                 raise ValueError(f"{path}: {self.messages[0] if self.messages else error}") from None
-            self._in, self._out = self._fmu.reals(inputs), self._fmu.reals(outputs)
+            self._in, self._out = self._fmu.group_reals(inputs), self._fmu.group_reals(outputs)
             self._entered = entered.pop_all()
 
     def set(self, *values: float) -> None:
-        self._call(self._in.set, *values)
+        self._call(self._in.set_values, *values)
 
     def get(self) -> list[float]:
-        return self._call(self._out.get)
+        return self._call(self._out.get_values)
 
     def step(self, time: float, size: float) -> None:
-        self._call(self._fmu.advance, time, size)
+        self._call(self._fmu.do_step, time, size)
 
     def _call(self, function: Callable[..., T], *arguments: float) -> T:
         """Call a function of the FMU; ValueError with the FMU's reason if it refuses."""
@@ -69,7 +69,9 @@ class Slave:
         self._entered.close()
 
 
-def motion(joint: Slave, body: Slave, load: float, step: float, count: int, late: bool = False) -> Array:
+def motion(
+    joint: Slave, body: Slave, load: float, step: float, count: int, side_by_side: bool = False
+) -> Array:
     """Position and speed (count + 1, 2) of a body on a joint under a constant load [N or N.m].
 
     joint : inputs position and speed, output the force on the body
@@ -84,12 +86,12 @@ def motion(joint: Slave, body: Slave, load: float, step: float, count: int, late
     for k in range(count):
         body.set(load, force)
         body.step(k * step, step)
-        if late:
+        if side_by_side:
             (force,) = joint.get()
         states[k + 1] = body.get()
         joint.set(*states[k + 1])
         joint.step(k * step, step)
-        if not late:
+        if not side_by_side:
             (force,) = joint.get()
     return states
 

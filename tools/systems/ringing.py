@@ -10,10 +10,10 @@ from jointfmu_fmu_src.partners import PARTNERS
 from jointfmu_fmu_src.partners import parameters as partner_parameters
 
 from jointfmu.joints import KINDS
-from jointfmu.progress import track
+from jointfmu.progress import track_progress
 from jointfmu.quantity import Array, flat_fields
 
-from ..joint_parts import part
+from ..joint_parts import load_tool_module
 from .master import Slave, damping_ratio, motion, peak
 from .ssp import fmu_names, values
 from .system import Component, System, systems
@@ -144,9 +144,9 @@ class Body:
 
 def body_on(joint: str) -> Body:
     """How a joint rings with a body on it; ValueError if it says nothing of that."""
-    ringing = part(KINDS[joint], "ringing")
+    ringing = load_tool_module(KINDS[joint], "ringing")
     if ringing is None:
-        able = [name for name, kind in KINDS.items() if part(kind, "ringing")]
+        able = [name for name, kind in KINDS.items() if load_tool_module(kind, "ringing")]
         raise ValueError(f"joint {joint!r} does not say how it rings, allowed are {', '.join(able)}")
     body: Body = ringing.RINGING
     return body
@@ -178,7 +178,9 @@ class VibratingJoint:
     def inertia(self) -> float:
         """Of the body [kg or kg.m2]."""
         given = self.moving.values.get(self.key)
-        return float(partner_parameters(self.moving.model).flat[self.key] if given is None else given)
+        return float(
+            partner_parameters(self.moving.model).values_by_name[self.key] if given is None else given
+        )
 
     @property
     def inertia_unit(self) -> str:
@@ -225,11 +227,11 @@ def vibrating_joints() -> dict[str, VibratingJoint]:
     """What rings in the shipped systems of one joint that says how, by the system's name."""
     alone = {n: s for n, s in systems().items() if len(s.joints) == 1}
     kinds = {n: next(iter(s.joints.values())).kind for n, s in alone.items()}
-    return {n: vibrating_joint(s) for n, s in alone.items() if part(KINDS[kinds[n]], "ringing")}
+    return {n: vibrating_joint(s) for n, s in alone.items() if load_tool_module(KINDS[kinds[n]], "ringing")}
 
 
 def ring(
-    one: VibratingJoint, folder: Path, loads: Sequence[float] | None = None, inertia: float | None = None
+    joint: VibratingJoint, folder: Path, loads: Sequence[float] | None = None, inertia: float | None = None
 ) -> list[Ringing]:
     """The body of a system on its joint without friction, about working points under a load.
 
@@ -239,28 +241,35 @@ def ring(
 
     Raises ValueError for an FMU that is missing or refuses, and where nothing rings.
     """
-    joint = {**one.parameters, **one.body.elastic}
+    joint = {**joint.parameters, **joint.body.elastic}
     if loads is None:
-        loads = one.body.loads(folder / f"{one.fmu}.fmu", joint)
+        loads = joint.body.loads(folder / f"{joint.fmu}.fmu", joint)
     if inertia is None:
-        inertia = one.inertia
-    return [_ring_at(one, folder, load, joint, inertia) for load in track(loads, "ring", len(loads))]
+        inertia = joint.inertia
+    return [
+        _ring_at(joint, folder, load, joint, inertia) for load in track_progress(loads, "ring", len(loads))
+    ]
 
 
-def stiffness_line(one: VibratingJoint, folder: Path, points: Sequence[Ringing]) -> tuple[Array, Array]:
+def stiffness_line(
+    vibrating_joint: VibratingJoint, folder: Path, points: Sequence[Ringing]
+) -> tuple[Array, Array]:
     """Loads (n), evenly from the least to the largest of some points, and sqrt(K/J) there [rad/s]."""
-    joint, path = {**one.parameters, **one.body.elastic}, folder / f"{one.fmu}.fmu"
+    joint, path = (
+        {**vibrating_joint.parameters, **vibrating_joint.body.elastic},
+        folder / f"{vibrating_joint.fmu}.fmu",
+    )
     ends, inertia = [point.load for point in points], points[0].inertia
     loads = np.linspace(min(ends), max(ends), LINE)
-    stiffness = np.array([one.body.rest(path, float(load), joint).stiffness for load in loads])
+    stiffness = np.array([vibrating_joint.body.rest(path, float(load), joint).stiffness for load in loads])
     return loads, np.sqrt(stiffness / inertia)
 
 
 def _ring_at(
-    one: VibratingJoint, folder: Path, load: float, parameters: Mapping[str, Any], inertia: float
+    joint: VibratingJoint, folder: Path, load: float, parameters: Mapping[str, Any], inertia: float
 ) -> Ringing:
     """Free motion about one working point, with parameters of the joint."""
-    body, path = one.body, folder / f"{one.fmu}.fmu"
+    body, path = joint.body, folder / f"{joint.fmu}.fmu"
     rest, partner = body.rest(path, load, parameters), PARTNERS[body.partner]
     first, least = body.release / rest.stiffness, RESOLVED * abs(rest.position)
     if not first > least:
@@ -268,8 +277,8 @@ def _ring_at(
             f"load = {load:g}: too large, its deflection of {rest.position:g} hides a first one of "
             f"{first:.3g}; allowed is more than {least:.3g}"
         )
-    states = [v.name for v in partner.outputs[: partner.states]]
-    start = {one.key: inertia, states[0]: rest.position + first}
+    states = [v.name for v in partner.outputs[: partner.state_count]]
+    start = {joint.key: inertia, states[0]: rest.position + first}
     forces = [v.name for v in partner.inputs]
     with (
         Slave(path, {**parameters, **body.start(load)}, body.motion, (body.force,)) as joint,

@@ -22,7 +22,7 @@ from jointfmu import __version__
 from jointfmu.files.outputs import ARCHIVE, check_outputs
 from jointfmu.files.timestamp import fixed_time
 from jointfmu.parameters import ParameterFile
-from jointfmu.progress import each
+from jointfmu.progress import map_jobs
 
 from .system import Component, System, systems
 from .wiring import lags, model_of, wires
@@ -175,17 +175,18 @@ def build_systems(
     archives = [_target(system, out, *kind) for system in chosen for kind in product(FOLDERS, MASTERS)]
     check_outputs([*fmus_out, *archives], ARCHIVE, force)
     work = partial(_versions, out, variability)
-    built = each(pool, work, "build FMUs of systems", [*wanted_fmus], [*wanted_fmus.values()])
+    built = map_jobs(pool, work, "build FMUs of systems", [*wanted_fmus], [*wanted_fmus.values()])
     fmus = [path for paths in zip(*built, strict=True) for path in paths]
     return fmus + [path for system in chosen for path in pack_system(system, out)]
 
 
-def _versions(out: Path, variability: str, fmu: str, one: Component) -> list[Path]:
+def _versions(out: Path, variability: str, fmu: str, component: Component) -> list[Path]:
     """Build an FMU of a component in all versions of FMI, which share what is compiled."""
-    file = (one.file if one.own else one.base) or partner_parameters(one.model)
-    alias = "" if fmu == one.model else fmu
+    file = (component.file if component.own else component.base) or partner_parameters(component.model)
+    alias = "" if fmu == component.model else fmu
     return [
-        build(one.model, file, out / f"fmi{version}", version, variability, alias) for version in VERSIONS
+        build(component.model, file, out / f"fmi{version}", version, variability, alias)
+        for version in VERSIONS
     ]
 
 
@@ -230,7 +231,7 @@ def values(component: Component) -> dict[str, Value]:
     found: dict[str, Value] = {}
     if component.file:
         for name, item in model_of(component).parameter_fields().items():
-            value = component.file.flat[name]
+            value = component.file.values_by_name[name]
             if not isinstance(value, bool):
                 found[name] = Value(
                     value, item.metadata.get("unit", ""), component.file.sources.get(name, "")
@@ -254,7 +255,7 @@ def fmu_names(system: System) -> dict[str, str]:
         exposed = model_of(component).parameter_fields()
         baked = {
             key: value
-            for key, value in component.file.flat.items()
+            for key, value in component.file.values_by_name.items()
             if key not in exposed or isinstance(value, bool)
         } | {"law": component.file.law}
         same = [fmu for model, values, fmu in variants if (model, values) == (component.model, baked)]

@@ -21,12 +21,12 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from jointfmu_fmu_src.naming import ALLOWED, is_identifier
+from jointfmu_fmu_src.naming import NAME_RULE, is_identifier
 from jointfmu_fmu_src.partners import PARTNERS
 
 from jointfmu.joints import MODELS
-from jointfmu.parameters import ParameterFile, default, entries, read_document
-from jointfmu.quantity import flat_fields, problem, quantity
+from jointfmu.parameters import ParameterFile, load_default, read_document, read_entries
+from jointfmu.quantity import find_problem, flat_fields, quantity_field
 
 from .arm import arm_parts
 from .system_joint import KEYS, joint_file
@@ -34,8 +34,8 @@ from .system_joint import KEYS, joint_file
 GROUND = "ground"
 """What holds a flange of a joint."""
 _EXPERIMENT = {
-    "stop_time": quantity("s", "end of the simulation", gt=0.0),
-    "interval": quantity("s", "between two points of the result", gt=0.0),
+    "stop_time": quantity_field("s", "end of the simulation", gt=0.0),
+    "interval": quantity_field("s", "between two points of the result", gt=0.0),
 }
 _HEAD = ("schema", "name", "description", "connect", "experiment", "arm")
 
@@ -149,22 +149,22 @@ def system(name: str) -> System:
         return _shipped(name)
     if not name.endswith(".toml"):
         raise ValueError(f"system {name!r}: allowed are {', '.join(names())}, or a file .toml")
-    return read(Path(name))
+    return read_system(Path(name))
 
 
 @cache
 def _shipped(name: str) -> System:
-    return read(Path(str(files("jointfmu_models") / "systems" / f"{name}.toml")))
+    return read_system(Path(str(files("jointfmu_models") / "systems" / f"{name}.toml")))
 
 
-def read(path: Path) -> System:
+def read_system(path: Path) -> System:
     """Read and check a system's file, each component for itself; flanges are the builders' matter.
 
     Raises ValueError with one line that names the file, the entry and what is allowed.
     """
     document = read_document(path, "a system's file")
     if not is_identifier(path.stem):
-        raise ValueError(f"{path}: the file's name is the system's; allowed are {ALLOWED}")
+        raise ValueError(f"{path}: the file's name is the system's; allowed are {NAME_RULE}")
     try:
         return _system(path, document)
     except ValueError as error:
@@ -175,9 +175,9 @@ def _system(path: Path, document: Mapping[str, Any]) -> System:
     if "experiment" not in document:
         own = f"; it is of a {document['joint']}" if "joint" in document else ""
         raise ValueError(f"has no section [experiment], expected a system's file{own}")
-    experiment, _, times = entries(path, _EXPERIMENT, document["experiment"])
+    experiment, _, times = read_entries(path, _EXPERIMENT, document["experiment"])
     for name, item in _EXPERIMENT.items():
-        if text := problem(name, experiment.get(name), item):
+        if text := find_problem(name, experiment.get(name), item):
             raise ValueError(f"experiment.{text}")
     sections = {key: value for key, value in document.items() if key not in _HEAD}
     connections = _pairs(document.get("connect", []))
@@ -207,9 +207,9 @@ def _system(path: Path, document: Mapping[str, Any]) -> System:
     )
 
 
-def _pairs(given: Any) -> list[tuple[str, str]]:
+def _pairs(value: Any) -> list[tuple[str, str]]:
     pairs = []
-    for pair in given if isinstance(given, list) else [given]:
+    for pair in value if isinstance(value, list) else [value]:
         if not (isinstance(pair, list) and len(pair) == 2 and all(isinstance(end, str) for end in pair)):
             raise ValueError(f'connect = {pair!r}, expected pairs of ends ["load", "motor.flange_a"]')
         pairs.append((pair[0], pair[1]))
@@ -221,7 +221,7 @@ def _component(path: Path, name: str, section: Any) -> Component:
     if not isinstance(section, Mapping):
         raise ValueError(f"{name} = {section!r}, expected a section [{name}] with its model")
     if not is_identifier(name) or name == GROUND:
-        raise ValueError(f"component {name!r}: allowed are {ALLOWED}, and not {GROUND!r}")
+        raise ValueError(f"component {name!r}: allowed are {NAME_RULE}, and not {GROUND!r}")
     model = section.get("model")
     if not isinstance(model, str) or model not in models:
         raise ValueError(f"{name}.model = {model!r}, allowed are {', '.join(models)}")
@@ -241,18 +241,18 @@ def _component(path: Path, name: str, section: Any) -> Component:
     else:
         joint = MODELS[model].joint
         given = joint_file(path.parent, name, joint, section)
-        file = given or default(joint)
-        declared = {key: item for key, item in flat_fields(type(file.values)) if key in file.flat}
-        inputs = {v.name: quantity(v.unit, v.doc, ge=v.low) for v in MODELS[model].inputs}
+        file = given or load_default(joint)
+        declared = {key: item for key, item in flat_fields(type(file.values)) if key in file.values_by_name}
+        inputs = {v.name: quantity_field(v.unit, v.doc, ge=v.minimum) for v in MODELS[model].inputs}
         declared |= inputs
     try:
-        values, _, sources = entries(path, declared, body)
+        values, _, sources = read_entries(path, declared, body)
     except ValueError as error:
         raise ValueError(f"{name}.{str(error).removeprefix(f'{path}: ')}") from None
     for key, value in values.items():
         if key not in declared:
             raise ValueError(f"{name}: unknown name {key!r}, allowed are {', '.join(declared)}")
-        if text := problem(key, value, declared[key]):
+        if text := find_problem(key, value, declared[key]):
             raise ValueError(f"{name}.{text}")
         values[key] = float(value) if isinstance(value, int) and not isinstance(value, bool) else value
     own, base = given is not None, file
@@ -268,4 +268,4 @@ def _exposed(model: str, file: ParameterFile | None) -> dict[str, Any]:
     """Fields of the parameters that an FMU has."""
     if file is None:
         return dict(flat_fields(PARTNERS[model].parameters))
-    return MODELS[model].of(file.joint, file.values).parameter_fields()
+    return MODELS[model].with_parameters(file.joint, file.values).parameter_fields()

@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import Any
 
 from jointfmu.joints import KINDS
-from jointfmu.parameters import ParameterFile, load
+from jointfmu.parameters import ParameterFile, load_parameter_file
 
-from ..joint_parts import part
+from ..joint_parts import load_tool_module
 
 KEYS = {"parameters", "catalogue"}
 """Entries that name them: a parameter file beside the system's, or the joint's name in its catalogue."""
@@ -29,12 +29,12 @@ def joint_file(folder: Path, name: str, joint: str, section: Mapping[str, Any]) 
             raise ValueError(f"{name}.{key} = {value!r}, expected a text")
     if "catalogue" in given:
         return _bought(name, joint, given["catalogue"])
-    return load(folder / given["parameters"], joint) if given else None
+    return load_parameter_file(folder / given["parameters"], joint) if given else None
 
 
 def _bought(name: str, joint: str, wanted: str) -> ParameterFile:
     """As `jointfmu new` makes it."""
-    found = part(KINDS[joint], "new")
+    found = load_tool_module(KINDS[joint], "new")
     if found is None or "catalogue" not in {option.name for option in found.NEW.options}:
         raise ValueError(f"{name}.catalogue = {wanted!r}, expected none of a {joint}: it has no catalogue")
     try:
@@ -46,7 +46,7 @@ def _bought(name: str, joint: str, wanted: str) -> ParameterFile:
 @cache
 def _catalogue_file(joint: str, wanted: str) -> ParameterFile:
     """Parameters of a joint in its catalogue; an arm asks for them twice, for the ratio first."""
-    found = part(KINDS[joint], "new")
+    found = load_tool_module(KINDS[joint], "new")
     assert found is not None
     file = found.NEW.run({option.name: None for option in found.NEW.options} | {"catalogue": wanted}).file
     assert isinstance(file, ParameterFile)

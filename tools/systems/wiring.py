@@ -56,7 +56,7 @@ def model_of(component: Component) -> Model:
     """What it is exported as."""
     if component.file is None:
         return PARTNERS[component.model]
-    return MODELS[component.model].of(component.file.joint, component.file.values)
+    return MODELS[component.model].with_parameters(component.file.joint, component.file.values)
 
 
 def ends(system: System) -> list[tuple[End, End]]:
@@ -142,21 +142,23 @@ def _end(system: System, text: str) -> End:
     return End(text, component, known[flange], {key: variable for key, (variable, _) in members.items()})
 
 
-def _check_pair(one: End, other: End) -> None:
+def _check_pair(first: End, second: End) -> None:
     """Refuse ends that do not fit."""
-    said = f"{one.text} and {other.text} do not fit"
-    if other.component is None:
-        if not one.joint:
+    said = f"{first.text} and {second.text} do not fit"
+    if second.component is None:
+        if not first.joint:
             raise ValueError(f'{said}; allowed on "{GROUND}" are flanges of joints')
-    elif one.load:
-        takes = {other.flow} if other.body else {*other.members} - ({other.flow} if other.flange else set())
-        if other.load or {*one.members} != takes:
+    elif first.load:
+        takes = (
+            {second.flow} if second.body else {*second.members} - ({second.flow} if second.flange else set())
+        )
+        if second.load or {*first.members} != takes:
             raise ValueError(
                 f"{said}; allowed are a force or torque on a body's flange, an angle on a joint's flange"
             )
-    elif one.joint == other.joint:
+    elif first.joint == second.joint:
         raise ValueError(f"{said}; allowed is a joint's flange on a body's")
-    elif one.members.keys() != other.members.keys():
+    elif first.members.keys() != second.members.keys():
         raise ValueError(f"{said}; allowed are two that turn or two that shift")
 
 

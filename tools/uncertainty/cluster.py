@@ -9,20 +9,20 @@ from pathlib import Path
 from typing import Any
 from uuid import uuid4
 
-from .worker import KILLED, LoadRamp
+from .worker import KILLED_MESSAGE, LoadRamp
 
-AHEAD = 4
+RUNS_PER_WORKER = 4
 """Runs submitted at once for each worker thread [1]: enough to keep the workers busy."""
-MOST_LOST = 3
+MAX_LOSSES = 3
 """Maximum number of restarts of a run whose result was lost with its worker [1]."""
 
 
-def cluster_runs(
+def run_on_cluster(
     scheduler: str,
     fmu: Path,
-    drive: LoadRamp,
+    load_ramp: LoadRamp,
     runs: Sequence[Mapping[str, Any]],
-    todo: Sequence[int],
+    pending: Sequence[int],
 ) -> Generator[dict[str, object]]:
     """Run the ramps on a dask cluster, and yield the journal entry of each run when it ends.
 
@@ -44,7 +44,7 @@ def cluster_runs(
         key = f"jointfmu-{uuid4()}"
         client.register_plugin(FmuDistribution(key, fmu.name, fmu.read_bytes()), name=key)
         try:
-            yield from _as_completed(client, key, drive, runs, todo)
+            yield from _submit_runs(client, key, load_ramp, runs, pending)
         finally:
             with suppress(Exception):  # the scheduler may be gone
                 client.unregister_worker_plugin(key)
@@ -71,8 +71,8 @@ def _client(scheduler: str) -> Iterator[Any]:
         yield client
 
 
-def _as_completed(
-    client: Any, key: str, drive: LoadRamp, runs: Sequence[Mapping[str, Any]], todo: Sequence[int]
+def _submit_runs(
+    client: Any, key: str, load_ramp: LoadRamp, runs: Sequence[Mapping[str, Any]], pending: Sequence[int]
 ) -> Iterator[dict[str, object]]:
     """Submit runs to a dask client, and yield the journal entry of each run when it ends.
 
@@ -80,26 +80,26 @@ def _as_completed(
     """
     from distributed import KilledWorker, as_completed
 
-    from .plugin import distributed_run
+    from .plugin import run_on_dask_worker
 
-    waiting, indices, lost = iter(todo), {}, Counter[int]()
+    waiting, indices, lost = iter(pending), {}, Counter[int]()
 
     def submit(index: int) -> object:
-        future = client.submit(distributed_run, key, drive, index, runs[index], pure=False)
+        future = client.submit(run_on_dask_worker, key, load_ramp, index, runs[index], pure=False)
         indices[future.key] = index
         return future
 
-    ahead = AHEAD * max(sum(client.nthreads().values()), 1)
+    ahead = RUNS_PER_WORKER * max(sum(client.nthreads().values()), 1)
     queue = as_completed([submit(i) for i in islice(waiting, ahead)])
     for future in queue:
         index = indices.pop(future.key)
         try:
             yield future.result()
         except KilledWorker:
-            yield {"run": index, "parameters": dict(runs[index]), "error": KILLED}
+            yield {"run": index, "parameters": dict(runs[index]), "error": KILLED_MESSAGE}
         except Exception as error:
             lost[index] += 1
-            if not isinstance(error, CancelledError) or lost[index] > MOST_LOST:
+            if not isinstance(error, CancelledError) or lost[index] > MAX_LOSSES:
                 text = " ".join(str(error).split())[:200]
                 error_name = type(error).__name__
                 raise RuntimeError(f"run {index}: the worker failed: {error_name}: {text}") from None

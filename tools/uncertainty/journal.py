@@ -18,15 +18,15 @@ from types import TracebackType
 from typing import Any
 
 from jointfmu.files.reading import check_regular, read_bytes
-from jointfmu.files.text import check_text, printable
-from jointfmu.files.writing import made_folder, write_text
+from jointfmu.files.text import check_text, replace_unprintable
+from jointfmu.files.writing import existing_folder, write_text
 
 STUDY, RUNS, BANDS = "study.json", "runs.jsonl", "bands.csv"
-FAR = 1 << 40
+LOCK_POSITION = 1 << 40
 """Position of the locked byte in the file of runs [byte], beyond all runs."""
 
 
-def digest(data: bytes) -> str:
+def sha256_text(data: bytes) -> str:
     """SHA-256 of data, as hexadecimal text."""
     return hashlib.sha256(data).hexdigest()
 
@@ -54,19 +54,19 @@ def claim(folder: Path, study: Mapping[str, object]) -> None:
     changed = sorted(key for key in {*present, *study} if present.get(key) != study.get(key))
     old, new = (json.dumps(record.get(changed[0])) for record in (present, study))
     raise ValueError(
-        f"{folder}: holds another study ({printable(changed[0])[:60]} = {old[:60]}, now {new[:60]}); "
+        f"{folder}: holds another study ({replace_unprintable(changed[0])[:60]} = {old[:60]}, now {new[:60]}); "
         "expected the same study or another folder"
     )
 
 
 @contextmanager
-def claimed(folder: Path, study: Mapping[str, object]) -> Iterator[None]:
+def claimed_folder(folder: Path, study: Mapping[str, object]) -> Iterator[None]:
     """Context of a claimed folder, see `claim`.
 
     If the context raises ValueError before a run is finished, a new folder is removed again.
     """
     new = not (folder / STUDY).exists()
-    with made_folder(folder):
+    with existing_folder(folder):
         claim(folder, study)
         try:
             yield
@@ -109,10 +109,12 @@ class Journal:
             ) from None
         end = 0
         try:
-            for row, (entry, end) in enumerate(_lines(self.path), 1):  # noqa: B007
+            for row, (entry, end) in enumerate(_read_lines(self.path), 1):  # noqa: B007
                 if entry["run"] >= self.count:
-                    raise _no_run(self.path, row, f"the study has {self.count} runs, no run {entry['run']}")
-                self._note(entry)
+                    raise _row_error(
+                        self.path, row, f"the study has {self.count} runs, no run {entry['run']}"
+                    )
+                self._count_entry(entry)
             self.file.truncate(end)
         except BaseException:
             self.file.close()
@@ -131,9 +133,9 @@ class Journal:
         self.file.write(json.dumps(entry).encode() + b"\n")
         self.file.flush()
         os.fsync(self.file.fileno())
-        self._note(entry)
+        self._count_entry(entry)
 
-    def _note(self, entry: Mapping[str, Any]) -> None:
+    def _count_entry(self, entry: Mapping[str, Any]) -> None:
         """Update the counts and the first failure with an entry."""
         self.finished.add(int(entry["run"]))
         if "error" in entry:
@@ -141,12 +143,12 @@ class Journal:
             self.first_failure = self.first_failure or dict(entry)
 
 
-def entries(folder: Path) -> Iterator[dict[str, Any]]:
+def read_entries(folder: Path) -> Iterator[dict[str, Any]]:
     """Entries of all finished runs of a folder. Raises ValueError, one line, for a row that is no run."""
-    return (entry for entry, _ in _lines(folder / RUNS))
+    return (entry for entry, _ in _read_lines(folder / RUNS))
 
 
-def _lines(path: Path) -> Iterator[tuple[dict[str, Any], int]]:
+def _read_lines(path: Path) -> Iterator[tuple[dict[str, Any], int]]:
     """Yield (entry, position of its end in the file [byte]) of each complete line.
 
     Raises ValueError, one line, for a row that is no run, a repeated run, or columns of another length.
@@ -159,7 +161,7 @@ def _lines(path: Path) -> Iterator[tuple[dict[str, Any], int]]:
                 return
             try:
                 entry = json.loads(line.decode())
-                _check(entry)
+                _check_entry(entry)
                 if (first_row := rows.setdefault(entry["run"], row)) != row:
                     raise ValueError(f"run {entry['run']} stands in row {first_row} already")
                 if lengths := {name: len(values) for name, values in entry.get("columns", {}).items()}:
@@ -167,51 +169,53 @@ def _lines(path: Path) -> Iterator[tuple[dict[str, Any], int]]:
                     if lengths != shape:
                         raise ValueError("its columns are not those of the other runs")
             except (ValueError, RecursionError) as error:
-                raise _no_run(path, row, str(error)) from None
+                raise _row_error(path, row, str(error)) from None
             end += len(line)
             yield entry, end
 
 
-def _no_run(path: Path, row: int, reason: str) -> ValueError:
+def _row_error(path: Path, row: int, reason: str) -> ValueError:
     """Error for a row that is no run of the study."""
     return ValueError(
-        f"{path}: row {row}: {printable(reason)[:200]}; expected a run as the sweep wrote it: delete "
+        f"{path}: row {row}: {replace_unprintable(reason)[:200]}; expected a run as the sweep wrote it: delete "
         "the row, and the same command repeats its run"
     )
 
 
-def _check(entry: object) -> None:
+def _check_entry(entry: object) -> None:
     """Raise ValueError if a JSON value is no journal entry of a run."""
     if not isinstance(entry, dict):
         raise ValueError("is no JSON object")
     run, parameters = entry.get("run"), entry.get("parameters")
     if type(run) is not int or run < 0:
-        raise ValueError(f"run = {_shown(run)} is no index")
+        raise ValueError(f"run = {_format_value(run)} is no index")
     if not isinstance(parameters, dict):
-        raise ValueError(f"parameters = {_shown(parameters)} is no JSON object")
+        raise ValueError(f"parameters = {_format_value(parameters)} is no JSON object")
     for name, value in parameters.items():
         check_text("a name in parameters", name)
         if isinstance(value, str):
             check_text(f"parameter {name}", value)
         elif type(value) is not bool and not _is_number(value):
-            raise ValueError(f"parameter {name} = {_shown(value)} is no finite number, word, true or false")
+            raise ValueError(
+                f"parameter {name} = {_format_value(value)} is no finite number, word, true or false"
+            )
     if ("columns" in entry) == ("error" in entry):
         raise ValueError("has not one of columns and error")
     if "error" in entry:
         if not isinstance(entry["error"], str):
-            raise ValueError(f"error = {_shown(entry['error'])} is no text")
+            raise ValueError(f"error = {_format_value(entry['error'])} is no text")
         check_text("error", entry["error"])
         return
     columns = entry["columns"]
     if not isinstance(columns, dict) or not columns:
-        raise ValueError(f"columns = {_shown(columns)} is no JSON object with lists of numbers")
+        raise ValueError(f"columns = {_format_value(columns)} is no JSON object with lists of numbers")
     lengths = set()
     for name, values in columns.items():
         check_text("a name in columns", name)
         if not isinstance(values, list):
-            raise ValueError(f"column {name} = {_shown(values)} is no list")
+            raise ValueError(f"column {name} = {_format_value(values)} is no list")
         if wrong := [value for value in values if not _is_number(value)]:
-            raise ValueError(f"column {name} has {_shown(wrong[0])}, which is no finite number")
+            raise ValueError(f"column {name} has {_format_value(wrong[0])}, which is no finite number")
         lengths.add(len(values))
     if len(lengths) > 1 or 0 in lengths:
         raise ValueError(f"its columns have {' and '.join(map(str, sorted(lengths)))} values")
@@ -222,7 +226,7 @@ def _is_number(value: object) -> bool:
     return type(value) is int or (type(value) is float and isfinite(value))
 
 
-def _shown(value: object) -> str:
+def _format_value(value: object) -> str:
     """Format a JSON value in at most 60 characters."""
     return json.dumps(value)[:60]
 
@@ -232,7 +236,9 @@ def _lock(handle: int) -> None:
     if sys.platform == "win32":
         import msvcrt
 
-        os.lseek(handle, FAR, os.SEEK_SET)  # locked bytes cannot be read: lock a byte beyond all runs
+        os.lseek(
+            handle, LOCK_POSITION, os.SEEK_SET
+        )  # locked bytes cannot be read: lock a byte beyond all runs
         msvcrt.locking(handle, msvcrt.LK_NBLCK, 1)
     else:
         import fcntl

@@ -8,17 +8,17 @@ from typing import Any
 
 from distributed import WorkerPlugin
 
-from .worker import LoadRamp, one_run, slim
+from .worker import LoadRamp, run_sample, write_slim_fmu
 
-FILES: dict[str, Path] = {}
+FMU_PATHS: dict[str, Path] = {}
 """{key: path} of the FMUs stored on this worker."""
 
 
-def distributed_run(
-    key: str, drive: LoadRamp, index: int, settings: Mapping[str, object]
+def run_on_dask_worker(
+    key: str, load_ramp: LoadRamp, index: int, settings: Mapping[str, object]
 ) -> dict[str, object]:
     """Run one load ramp on a dask worker, with the FMU stored there under `key`; see `run_sample`."""
-    return one_run(FILES[key], drive, index, settings)
+    return run_sample(FMU_PATHS[key], load_ramp, index, settings)
 
 
 class FmuDistribution(WorkerPlugin):  # type: ignore[misc]
@@ -35,10 +35,10 @@ class FmuDistribution(WorkerPlugin):  # type: ignore[misc]
         folder = Path(tempfile.mkdtemp(prefix="fmu-", dir=worker.local_directory))
         full = folder / f"{self.file_name}.full"
         full.write_bytes(self.data)
-        slim(full, folder / self.file_name)
+        write_slim_fmu(full, folder / self.file_name)
         full.unlink()
-        FILES[self.key] = folder / self.file_name
+        FMU_PATHS[self.key] = folder / self.file_name
 
     def teardown(self, worker: Any) -> None:
-        if path := FILES.pop(self.key, None):
+        if path := FMU_PATHS.pop(self.key, None):
             shutil.rmtree(path.parent, ignore_errors=True)

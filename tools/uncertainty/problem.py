@@ -11,21 +11,21 @@ from typing import Any
 import numpy as np
 
 from jointfmu.joints import KINDS
-from jointfmu.joints.kind import Kind
+from jointfmu.joints.kind import JointKind
 from jointfmu.joints.model import Variable
 from jointfmu.parameters import ParameterFile
-from jointfmu.quantity import Array, Interval, flat_fields, problem
-from jointfmu.quantity.refusal import Refusal
+from jointfmu.quantity import Array, Interval, find_problem, flat_fields
+from jointfmu.quantity.refusal import InputRefusal
 
-from ..joint_parts import part
-from .study import Uncertain, is_relative, samples_of, split
+from ..joint_parts import load_tool_module
+from .study import UncertainParameter, draw_samples, is_relative, split_settings
 
 Evaluate = Callable[[type[Any], Mapping[str, Any], Array, Array], dict[str, Array]]
 """Type of `ReducedCurves.evaluate`."""
 
 
 @dataclass(frozen=True, slots=True)
-class Reduced:
+class ReducedCurves:
     """Reduced curves of a joint: outputs along a load ramp, for many samples at once.
 
     load     : the ramped input
@@ -39,8 +39,8 @@ class Reduced:
 
     load: Variable
     outputs: Sequence[Variable]
-    to: Callable[[Any], float]
-    most: Callable[[Any], Any]
+    default_end: Callable[[Any], float]
+    max_load: Callable[[Any], Any]
     evaluate: Evaluate
     exact: Callable[[Any, Array], dict[str, Array]]
 
@@ -50,23 +50,23 @@ class Reduced:
         return {v.name: v.unit for v in self.outputs}
 
 
-def reduced(kind: Kind) -> Reduced:
+def reduced_curves(kind: JointKind) -> ReducedCurves:
     """Reduced curves of a kind of joint, from its module `reduced`.
 
     Raises ValueError if the joint has none.
     """
-    module = part(kind, "reduced")
+    module = load_tool_module(kind, "reduced")
     if module is None:
         raise ValueError(f"joint = {kind.name!r} has no evaluation for many samples at once")
-    curves: Reduced = module.REDUCED
+    curves: ReducedCurves = module.REDUCED
     return curves
 
 
 INTERVAL = "interval"
 """Setting that stands for the interval stated in the parameter file: its range, or the text of its source."""
-_ENDS = re.compile(r"\binterval ([-+.\de]+) to ([-+.\de]+)")
+_INTERVAL_PATTERN = re.compile(r"\binterval ([-+.\de]+) to ([-+.\de]+)")
 """Interval in the text of a source: its two ends."""
-LOAD_END = "up to the end of the tabulated law"
+LOAD_LIMIT_TEXT = "up to the end of the tabulated law"
 """Meaning of the load interval, for error messages."""
 
 
@@ -85,26 +85,30 @@ class Problem:
     joint: str
     parameters: type[object]
     values: Mapping[str, object]
-    uncertain: tuple[Uncertain, ...]
+    uncertain: tuple[UncertainParameter, ...]
     loads: Array
-    relative: bool | None = None
+    load_is_relative: bool | None = None
 
     @property
-    def reduced(self) -> Reduced:
-        return reduced(KINDS[self.joint])
+    def curves(self) -> ReducedCurves:
+        return reduced_curves(KINDS[self.joint])
 
-    def sampled(self, points: Array) -> tuple[dict[str, object], Array]:
+    def sample_values(self, points: Array) -> tuple[dict[str, object], Array]:
         """Values of all parameters, {name: value or samples (n)}, and load factors (n).
 
         points : points (n, d) of the unit cube
         """
-        samples = samples_of(self.uncertain, points)
-        load = samples.pop(self.reduced.load.name, None)
-        factor = np.ones(len(points)) if load is None else load if self.relative else load / self.loads[-1]
+        samples = draw_samples(self.uncertain, points)
+        load = samples.pop(self.curves.load.name, None)
+        factor = (
+            np.ones(len(points)) if load is None else load if self.load_is_relative else load / self.loads[-1]
+        )
         return {**self.values, **samples}, factor
 
 
-def pose(file: ParameterFile, given: Mapping[str, object], to: float | None, points: int) -> Problem:
+def state_problem(
+    file: ParameterFile, settings: Mapping[str, object], to: float | None, points: int
+) -> Problem:
     """State the problem of a parameter file and settings.
 
     settings : {name: value or text of a distribution}
@@ -117,35 +121,39 @@ def pose(file: ParameterFile, given: Mapping[str, object], to: float | None, poi
     cannot be uncertain.
     """
     kind = KINDS[file.joint]
-    curves, declared = reduced(kind), dict(flat_fields(type(file.values)))
-    base = dict(file.flat)
+    curves, declared = reduced_curves(kind), dict(flat_fields(type(file.values)))
+    base = dict(file.values_by_name)
     lists = {name for name, item in declared.items() if "series" in item.metadata}
     settable = [*(base.keys() - lists), curves.load.name]
-    if unknown := [name for name in given if name not in settable]:
+    if unknown := [name for name in settings if name not in settable]:
         allowed = ", ".join(name for name in [*declared, curves.load.name] if name in settable)
         raise ValueError(f"unknown name {unknown[0]!r}, allowed are {allowed}")
-    given = dict.fromkeys(file.ranges, INTERVAL) | dict(given)
-    given = {name: of_source(name, value, file) for name, value in given.items()}
-    load_text = given.get(curves.load.name)
+    settings = dict.fromkeys(file.ranges, INTERVAL) | dict(settings)
+    settings = {name: resolve_interval(name, value, file) for name, value in settings.items()}
+    load_text = settings.get(curves.load.name)
     relative = isinstance(load_text, str) and is_relative(load_text)
-    plain, uncertain = split(given, base | ({curves.load.name: 1.0} if relative else {}))
+    plain, uncertain = split_settings(settings, base | ({curves.load.name: 1.0} if relative else {}))
     set_load = plain.pop(curves.load.name, None)
     nominal = file.with_values(plain, "user", "set for the study")
     for parameter in uncertain:
         if parameter.name != curves.load.name:
-            _check(parameter, declared[parameter.name])
+            _check_uncertain(parameter, declared[parameter.name])
     order = tuple(sorted(uncertain, key=lambda parameter: parameter.name == curves.load.name))
     if not order:
-        raise Refusal("no parameter has a distribution; expected NAME=LOW..HIGH or a study file", "settings")
+        raise InputRefusal(
+            "no parameter has a distribution; expected NAME=LOW..HIGH or a study file", "settings"
+        )
     load = next((parameter for parameter in order if parameter.name == curves.load.name), None)
-    median = None if load is None or relative else float(load.law.median())
+    median = None if load is None or relative else float(load.distribution.median())
     single = set_load if set_load is not None else median
-    end = to if to is not None or single is not None else file.start(curves.load.name) or None
-    loads = _ramp(curves, nominal.values, single, end, points, load)
-    return Problem(file.joint, type(file.values), nominal.flat, order, loads, relative if load else None)
+    end = to if to is not None or single is not None else file.start_value(curves.load.name) or None
+    loads = _loads(curves, nominal.values, single, end, points, load)
+    return Problem(
+        file.joint, type(file.values), nominal.values_by_name, order, loads, relative if load else None
+    )
 
 
-def of_source(name: str, value: object, file: ParameterFile) -> object:
+def resolve_interval(name: str, value: object, file: ParameterFile) -> object:
     """Replace the setting INTERVAL by the text LOW..HIGH; other settings are returned unchanged.
 
     The ends are the range of the parameter in the file, else the interval stated in the text of its source.
@@ -157,14 +165,14 @@ def of_source(name: str, value: object, file: ParameterFile) -> object:
     if name in file.ranges:
         return "{!r}..{!r}".format(*file.ranges[name])
     source = file.sources.get(name, "")
-    if not (match := _ENDS.search(source)):
+    if not (match := _INTERVAL_PATTERN.search(source)):
         raise ValueError(
             f"{name} = {INTERVAL}: its source states none: {source!r}; expected '... interval LOW to HIGH'"
         )
     return f"{match[1]}..{match[2]}"
 
 
-def _check(parameter: Uncertain, item: Any) -> None:
+def _check_uncertain(parameter: UncertainParameter, item: Any) -> None:
     """Raise ValueError if a parameter cannot be uncertain, or its distribution exceeds its interval.
 
     item : dataclass field that declares the parameter
@@ -173,14 +181,22 @@ def _check(parameter: Uncertain, item: Any) -> None:
         raise ValueError(f"{parameter.name} = {parameter.text}: is a named choice and cannot be uncertain")
     if item.metadata["whole"]:
         raise ValueError(f"{parameter.name} = {parameter.text}: is a whole number and cannot be uncertain")
-    for value in (*(end for end in parameter.support if np.isfinite(end)), float(parameter.law.median())):
+    for value in (
+        *(end for end in parameter.support if np.isfinite(end)),
+        float(parameter.distribution.median()),
+    ):
         tolerated = value == 0.0 and parameter.support[0] == 0.0 and item.metadata["interval"].low == 0.0
-        if not tolerated and (text := problem(parameter.name, value, item)):
+        if not tolerated and (text := find_problem(parameter.name, value, item)):
             raise ValueError(f"{parameter.name} = {parameter.text}: {text}")
 
 
-def _ramp(
-    curves: Reduced, values: object, at: object, to: float | None, points: int, load: Uncertain | None
+def _loads(
+    curves: ReducedCurves,
+    values: object,
+    single_load: object,
+    to: float | None,
+    points: int,
+    load: UncertainParameter | None,
 ) -> Array:
     """Loads (m): a ramp from 0 to `to`, or the single load that was set.
 
@@ -190,21 +206,21 @@ def _ramp(
 
     Raises ValueError for a load outside of the tabulated law, or a wrong ramp.
     """
-    allowed = Interval.of(gt=0.0, le=curves.most(values))
-    if at is not None:
+    allowed = Interval.from_bounds(gt=0.0, le=curves.max_load(values))
+    if single_load is not None:
         if to is not None:
             raise ValueError(f"{curves.load.name} is set and cannot be ramped as well; drop to = {to:g}")
-        if not isinstance(at, int | float) or isinstance(at, bool):
-            raise ValueError(f"{curves.load.name} = {at!r} is not a number in {curves.load.unit}")
+        if not isinstance(single_load, int | float) or isinstance(single_load, bool):
+            raise ValueError(f"{curves.load.name} = {single_load!r} is not a number in {curves.load.unit}")
         ends = [end for end in load.support if np.isfinite(end) and end != 0.0] if load else []
-        for value in (float(at), *ends):
+        for value in (float(single_load), *ends):
             if not allowed.contains(value):
                 text = f"{curves.load.name} = {value:g} {curves.load.unit}"
-                raise ValueError(f"{text} is outside {allowed}: {LOAD_END}")
-        return np.array([float(at)])
-    end = curves.to(values) if to is None else to
+                raise ValueError(f"{text} is outside {allowed}: {LOAD_LIMIT_TEXT}")
+        return np.array([float(single_load)])
+    end = curves.default_end(values) if to is None else to
     if not allowed.contains(end):
-        raise ValueError(f"to = {end:g} {curves.load.unit} is outside {allowed}: {LOAD_END}")
+        raise ValueError(f"to = {end:g} {curves.load.unit} is outside {allowed}: {LOAD_LIMIT_TEXT}")
     if not 2 <= points <= 10_000:
         raise ValueError(f"points = {points} is outside [2, 10000]: points of the ramp")
     return np.linspace(0.0, end, points)

@@ -13,25 +13,25 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import sobol_indices
 
-from jointfmu.progress import track
-from jointfmu.quantity import Array, Interval, build
+from jointfmu.progress import track_progress
+from jointfmu.quantity import Array, Interval, build_parameter_set
 
 from ..batch.approach import columns, inside
-from .problem import LOAD_END, Problem
-from .study import Refused, samples_of, unit_design
+from .problem import LOAD_LIMIT_TEXT, Problem
+from .study import RefusedSamples, draw_samples, unit_design
 
 Mask = NDArray[np.bool_]
 Singles = NDArray[np.float32]
 
 QUANTILES = (0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99)
 """Probabilities of the quantiles that bands consist of."""
-BLOCK = 512
+BLOCK_SAMPLES = 512
 """Number of samples evaluated at once: they fit into the processor cache."""
-ROUND_OFF = 1e-6
+RELATIVE_ROUNDING = 1e-6
 """Relative round-off in single precision [1]."""
-CHECKED = 4
+CHECKED_SAMPLES = 4
 """Number of samples at which the reduced curves are compared with the spring model of the exported FMU."""
-ACCURACY = 1e-2
+MAX_REDUCTION_ERROR = 1e-2
 """Largest allowed relative difference between reduced curves and exported spring model [1]."""
 
 
@@ -44,25 +44,25 @@ class SampledOutputs:
     """
 
     outputs: Mapping[str, Singles]
-    good: Mask
+    accepted: Mask
 
 
-def run(task: Problem, points: Array, loads: Array, text: str) -> SampledOutputs:
+def evaluate_samples(task: Problem, points: Array, loads: Array, text: str) -> SampledOutputs:
     """Evaluate all outputs at loads (m) for points (n, d) of the unit cube.
 
     text : label of the progress bar
     """
-    values, factor = task.sampled(points)
+    values, factor = task.sample_values(points)
     n = len(points)
     joint = columns(task.parameters, values)
-    good = inside(joint, n) & (factor > 0.0) & (factor * task.loads[-1] <= task.reduced.most(joint))
+    good = inside(joint, n) & (factor > 0.0) & (factor * task.loads[-1] <= task.curves.max_load(joint))
     outputs: dict[str, Singles] = {
-        name: np.full((loads.size, n), np.nan, np.float32) for name in task.reduced.units
+        name: np.full((loads.size, n), np.nan, np.float32) for name in task.curves.units
     }
     index = np.flatnonzero(good)
-    blocks = [index[i : i + BLOCK] for i in range(0, index.size, BLOCK)]
-    for block in track(blocks, text, len(blocks)):
-        for part_indices, results in _evaluated(task, values, factor, block, loads):
+    blocks = [index[i : i + BLOCK_SAMPLES] for i in range(0, index.size, BLOCK_SAMPLES)]
+    for block in track_progress(blocks, text, len(blocks)):
+        for part_indices, results in _evaluate_block(task, values, factor, block, loads):
             for name, value in results.items():
                 outputs[name][:, part_indices] = value.T
     for column in outputs.values():
@@ -70,7 +70,7 @@ def run(task: Problem, points: Array, loads: Array, text: str) -> SampledOutputs
     return SampledOutputs(outputs, good)
 
 
-def _evaluated(
+def _evaluate_block(
     task: Problem, values: Mapping[str, Any], factor: Array, block: Any, loads: Array
 ) -> Iterator[tuple[Any, dict[str, Array]]]:
     """Evaluate a block of samples: yield (indices of samples, {output: (samples, m)}).
@@ -80,11 +80,11 @@ def _evaluated(
     block_values = {k: v[block] if isinstance(v, np.ndarray) else v for k, v in values.items()}
     try:
         with np.errstate(all="ignore"):
-            results = task.reduced.evaluate(task.parameters, block_values, loads, factor[block][:, None])
+            results = task.curves.evaluate(task.parameters, block_values, loads, factor[block][:, None])
     except (ValueError, RuntimeError):
         halves = (block[: block.size // 2], block[block.size // 2 :]) if block.size > 1 else ()
         for half in halves:
-            yield from _evaluated(task, values, factor, half, loads)
+            yield from _evaluate_block(task, values, factor, half, loads)
     else:
         yield block, results
 
@@ -110,35 +110,37 @@ class Bands:
     sd: Mapping[str, Array]
     nominal: Mapping[str, Array]
     samples: int
-    refused: Refused
-    error: float
+    refusals: RefusedSamples
+    reduction_error: float
     units: Mapping[str, str] = field(default_factory=dict)
 
     @property
-    def shown(self) -> list[str]:
+    def nonzero_outputs(self) -> list[str]:
         """Names of the outputs that are not zero at all loads."""
         return [name for name in self.units if np.any(self.quantiles[name]) or np.any(self.nominal[name])]
 
     @property
-    def moved(self) -> bool:
+    def has_scatter(self) -> bool:
         """Whether any output differs between samples by more than the round-off of single precision."""
-        return any(np.any(np.ptp(q, axis=0) > ROUND_OFF * np.abs(q[0])) for q in self.quantiles.values())
+        return any(
+            np.any(np.ptp(q, axis=0) > RELATIVE_ROUNDING * np.abs(q[0])) for q in self.quantiles.values()
+        )
 
 
-def bands(task: Problem, points: Array) -> Bands:
+def compute_bands(task: Problem, points: Array) -> Bands:
     """Bands of all outputs, from points (n, d) of the unit cube.
 
     Raises RuntimeError if the law refuses all samples, or if the reduced curves differ from the exported
     spring model by more than MAX_REDUCTION_ERROR.
     """
-    outcome = run(task, points, task.loads, "samples")
-    refused = refusals(task, points, outcome.good)
-    if not np.any(outcome.good):
+    outcome = evaluate_samples(task, points, task.loads, "samples")
+    refused = summarise_refusals(task, points, outcome.accepted)
+    if not np.any(outcome.accepted):
         raise RuntimeError(f"all {len(points)} samples are refused, the first: {refused.reason}")
-    error = check(task, points, outcome)
-    nominal = task.reduced.evaluate(task.parameters, task.values, task.loads, np.ones((1, 1)))
+    error = check_reduction(task, points, outcome)
+    nominal = task.curves.evaluate(task.parameters, task.values, task.loads, np.ones((1, 1)))
     statistics = {
-        name: np.stack([_spread(row, outcome.good) for row in value], axis=1)
+        name: np.stack([_statistics(row, outcome.accepted) for row in value], axis=1)
         for name, value in outcome.outputs.items()
     }
     return Bands(
@@ -148,52 +150,52 @@ def bands(task: Problem, points: Array) -> Bands:
         sd={name: value[1] for name, value in statistics.items()},
         nominal={name: value[0] for name, value in nominal.items()},
         samples=len(points),
-        refused=refused,
-        error=error,
-        units=task.reduced.units,
+        refusals=refused,
+        reduction_error=error,
+        units=task.curves.units,
     )
 
 
-def _spread(row: Singles, good: Mask) -> Array:
+def _statistics(row: Singles, accepted: Mask) -> Array:
     """Mean, standard deviation and quantiles (linear between samples) of one output at one load.
 
     row, accepted : output (n), and mask (n) of the samples to be used
     """
-    values = np.sort(row[good]).astype(np.float64)
+    values = np.sort(row[accepted]).astype(np.float64)
     positions = np.array(QUANTILES) * (values.size - 1)
     return np.array([values.mean(), values.std(), *np.interp(positions, np.arange(values.size), values)])
 
 
 def one_sample(task: Problem, points: Array, i: int) -> tuple[dict[str, object], float, dict[str, float]]:
     """Sample i: values of all parameters, load factor, and values of the uncertain parameters alone."""
-    values, factor = task.sampled(points[i : i + 1])
+    values, factor = task.sample_values(points[i : i + 1])
     single = {k: float(v[0]) if isinstance(v, np.ndarray) else v for k, v in values.items()}
-    uncertain = {name: float(v[0]) for name, v in samples_of(task.uncertain, points[i : i + 1]).items()}
+    uncertain = {name: float(v[0]) for name, v in draw_samples(task.uncertain, points[i : i + 1]).items()}
     return single, float(factor[0]), uncertain
 
 
-def refusals(task: Problem, points: Array, good: Mask) -> Refused:
+def summarise_refusals(task: Problem, points: Array, accepted: Mask) -> RefusedSamples:
     """Refused samples: their number, and the first one with the error message of the law.
 
     accepted : mask (n) of the accepted samples
     """
-    refused = np.flatnonzero(~good)
+    refused = np.flatnonzero(~accepted)
     if not refused.size:
-        return Refused(0, {}, "")
+        return RefusedSamples(0, {}, "")
     values, factor, sample = one_sample(task, points, int(refused[0]))
     reason = "the law gives no finite value"
-    load, ramped = factor * float(task.loads[-1]), task.reduced.load
-    allowed = Interval.of(gt=0.0, le=task.reduced.most(columns(task.parameters, values)))
+    load, ramped = factor * float(task.loads[-1]), task.curves.load
+    allowed = Interval.from_bounds(gt=0.0, le=task.curves.max_load(columns(task.parameters, values)))
     if not allowed.contains(load):
-        reason = f"{ramped.name} = {load:g} {ramped.unit} is outside {allowed}: {LOAD_END}"
+        reason = f"{ramped.name} = {load:g} {ramped.unit} is outside {allowed}: {LOAD_LIMIT_TEXT}"
     try:
-        task.reduced.exact(build(task.parameters, values), load * np.ones(1))
+        task.curves.exact(build_parameter_set(task.parameters, values), load * np.ones(1))
     except (ValueError, RuntimeError) as error:
         reason = str(error)
-    return Refused(int(refused.size), sample, reason)
+    return RefusedSamples(int(refused.size), sample, reason)
 
 
-def check(task: Problem, points: Array, outcome: SampledOutputs) -> float:
+def check_reduction(task: Problem, points: Array, outcome: SampledOutputs) -> float:
     """Largest relative difference [1] between reduced curves and exported spring model.
 
     It is computed at CHECKED_SAMPLES samples and at most 6 loads.
@@ -203,30 +205,32 @@ def check(task: Problem, points: Array, outcome: SampledOutputs) -> float:
     load_indices = np.unique(np.linspace(0, task.loads.size - 1, 6).astype(int))
     load_indices = load_indices[task.loads[load_indices] > 0.0]
     largest = 0.0
-    for i in np.flatnonzero(outcome.good)[:CHECKED]:
+    for i in np.flatnonzero(outcome.accepted)[:CHECKED_SAMPLES]:
         values, factor, uncertain = one_sample(task, points, int(i))
-        exact = task.reduced.exact(build(task.parameters, values), factor * task.loads[load_indices])
+        exact = task.curves.exact(
+            build_parameter_set(task.parameters, values), factor * task.loads[load_indices]
+        )
         for name, value in exact.items():
             scale = np.where(value == 0.0, 1.0, np.abs(value))
             error = float(np.max(np.abs(outcome.outputs[name][load_indices, i] - value) / scale))
-            if not error <= ACCURACY:
+            if not error <= MAX_REDUCTION_ERROR:
                 sample = ", ".join(f"{k} = {v:g}" for k, v in uncertain.items())
                 raise RuntimeError(
                     f"{name} of the reduced evaluation misses the joint's own by {error:.2g} at {sample}, "
-                    f"allowed is {ACCURACY:g}: take `jointfmu sweep` for such a study"
+                    f"allowed is {MAX_REDUCTION_ERROR:g}: take `jointfmu sweep` for such a study"
                 )
             largest = max(largest, error)
     return largest
 
 
-def design(task: Problem, count: int, seed: int) -> tuple[Array, Array]:
+def sample_designs(task: Problem, count: int, seed: int) -> tuple[Array, Array]:
     """Two independent sets of points (count, d) of the unit cube: for bands and indices, for indices only."""
     d = len(task.uncertain)
     both = unit_design(count, 2 * d, seed)
     return both[:, :d], both[:, d:]
 
 
-LOADS = 21
+MAX_INDEX_LOADS = 21
 """Maximum number of loads along the ramp at which Sobol' indices are computed."""
 
 
@@ -259,7 +263,7 @@ class Sensitivity:
     rows: int
 
 
-def indices(f_A: Array, f_B: Array, f_AB: Array) -> Indices:
+def sobol_indices_of(f_A: Array, f_B: Array, f_AB: Array) -> Indices:
     """Sobol' indices of s outputs from n base samples.
 
     f_A, f_B : outputs (s, n) at two independent sets of points A and B
@@ -287,13 +291,13 @@ def indices(f_A: Array, f_B: Array, f_AB: Array) -> Indices:
     return Indices(first, half(b * (ab - a), first), total, half(0.5 * (a - ab) ** 2, total))
 
 
-def sensitivity(task: Problem, A: Array, B: Array) -> Sensitivity:
+def compute_sensitivity(task: Problem, A: Array, B: Array) -> Sensitivity:
     """Sobol' indices of all outputs along the load ramp.
 
     A, B : two independent sets of points (n, d) of the unit cube, n a power of two
     """
     n, d = A.shape
-    load_indices = np.unique(np.linspace(0, task.loads.size - 1, LOADS).astype(int))
+    load_indices = np.unique(np.linspace(0, task.loads.size - 1, MAX_INDEX_LOADS).astype(int))
     loads = task.loads[load_indices]
     loads = loads[loads > 0.0]
     sets = [A, B]
@@ -301,9 +305,9 @@ def sensitivity(task: Problem, A: Array, B: Array) -> Sensitivity:
         mixed = A.copy()
         mixed[:, i] = B[:, i]
         sets.append(mixed)
-    outputs = run(task, np.concatenate(sets), loads, "indices").outputs
+    outputs = evaluate_samples(task, np.concatenate(sets), loads, "indices").outputs
     by_output = {}
     for name, value in outputs.items():
         f = value.astype(np.float64).reshape(loads.size, d + 2, n)
-        by_output[name] = indices(f[:, 0], f[:, 1], np.moveaxis(f[:, 2:], 1, 0))
+        by_output[name] = sobol_indices_of(f[:, 0], f[:, 1], np.moveaxis(f[:, 2:], 1, 0))
     return Sensitivity(loads, tuple(parameter.name for parameter in task.uncertain), by_output, n)

@@ -14,18 +14,18 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-SHOWN = 6
+TABLE_ROWS = 6
 """Maximum number of loads in the printed table."""
 
 
-def loads(task: Problem) -> list[float]:
+def table_loads(task: Problem) -> list[float]:
     """Loads above zero in the printed table."""
-    return [float(load) for load in task.loads[_shown(task.loads)] if load > 0.0]
+    return [float(load) for load in task.loads[_table_indices(task.loads)] if load > 0.0]
 
 
-def _shown(values: Any) -> Any:
+def _table_indices(values: Any) -> Any:
     """Indices of at most TABLE_ROWS equally spaced values of a ramp."""
-    return np.unique(np.linspace(0, values.size - 1, SHOWN).astype(int))
+    return np.unique(np.linspace(0, values.size - 1, TABLE_ROWS).astype(int))
 
 
 def bands_csv(task: Problem, bands: Bands) -> str:
@@ -33,7 +33,7 @@ def bands_csv(task: Problem, bands: Bands) -> str:
 
     Numbers are written without rounding.
     """
-    load = task.reduced.load
+    load = task.curves.load
     heads, values = [(load.name, load.unit)], [bands.loads]
     for name, unit in bands.units.items():
         statistics = (("nominal", bands.nominal), ("mean", bands.mean), ("sd", bands.sd))
@@ -42,7 +42,7 @@ def bands_csv(task: Problem, bands: Bands) -> str:
             values.append(by_output[name])
         heads += [(f"{name} {100 * q:g} %", unit) for q in QUANTILES]
         values += list(bands.quantiles[name])
-    return columns.text(heads, values)
+    return columns.format_table(heads, values)
 
 
 def as_json(task: Problem, bands: Bands, sensitivity: Sensitivity | None) -> dict[str, object]:
@@ -59,14 +59,14 @@ def as_json(task: Problem, bands: Bands, sensitivity: Sensitivity | None) -> dic
         }
         for name, unit in bands.units.items()
     }
-    refused, load = bands.refused, task.reduced.load
+    refused, load = bands.refusals, task.curves.load
     return {
         "joint": task.joint,
         "parameters": {parameter.name: parameter.text for parameter in task.uncertain},
         "load": {"name": load.name, "unit": load.unit, "values": bands.loads.tolist()},
         "samples": bands.samples,
         "refused": {"count": refused.count, "example": dict(refused.example), "reason": refused.reason},
-        "reduction_error": bands.error,
+        "reduction_error": bands.reduction_error,
         "outputs": outputs,
         "indices": None if sensitivity is None else _indices_json(sensitivity),
     }
@@ -90,10 +90,10 @@ def _indices_json(sensitivity: Sensitivity) -> dict[str, object]:
 def table(task: Problem, bands: Bands, sensitivity: Sensitivity | None) -> str:
     """Printed table: bands at a few loads, and Sobol' indices at the end of the ramp."""
     lines = []
-    load_indices = _shown(bands.loads)
+    load_indices = _table_indices(bands.loads)
     quantile_indices = {q: QUANTILES.index(q) for q in (0.05, 0.5, 0.95)}
-    for name in bands.shown:
-        head = f"{task.reduced.load.name} [{task.reduced.load.unit}]"
+    for name in bands.nonzero_outputs:
+        head = f"{task.curves.load.name} [{task.curves.load.unit}]"
         lines.append(f"{name} [{bands.units[name]}]")
         lines.append("".join(f"{x:>16}" for x in (head, "parameter file", "5 %", "50 %", "95 %")))
         for j in load_indices:
@@ -102,25 +102,25 @@ def table(task: Problem, bands: Bands, sensitivity: Sensitivity | None) -> str:
             lines.append("".join(f"{x:16.5g}" for x in row))
         lines.append("")
     if sensitivity is not None:
-        lines += _indices_table(task, sensitivity, bands.shown)
+        lines += _indices_table(task, sensitivity, bands.nonzero_outputs)
     varied = ", ".join(f"{parameter.name} = {parameter.text}" for parameter in task.uncertain)
-    lines.append(f"over {task.reduced.load.name}: {task.reduced.load.doc}")
-    lines.append(f"varied: {varied}{'' if bands.moved else ': no output depends on that'}")
-    if zero := [name for name in bands.units if name not in bands.shown]:
+    lines.append(f"over {task.curves.load.name}: {task.curves.load.doc}")
+    lines.append(f"varied: {varied}{'' if bands.has_scatter else ': no output depends on that'}")
+    if zero := [name for name in bands.units if name not in bands.nonzero_outputs]:
         lines.append(f"zero throughout: {', '.join(zero)}")
-    lines.append(f"{bands.samples} samples, {bands.refused.count} refused by the law")
-    if bands.refused.count:
-        example = ", ".join(f"{k} = {v:.6g}" for k, v in bands.refused.example.items())
-        lines.append(f"the first refused: {example}: {bands.refused.reason}")
+    lines.append(f"{bands.samples} samples, {bands.refusals.count} refused by the law")
+    if bands.refusals.count:
+        example = ", ".join(f"{k} = {v:.6g}" for k, v in bands.refusals.example.items())
+        lines.append(f"the first refused: {example}: {bands.refusals.reason}")
     lines.append(
-        f"reduced evaluation beside the exported spring: largest relative difference {bands.error:.1e}"
+        f"reduced evaluation beside the exported spring: largest relative difference {bands.reduction_error:.1e}"
     )
     return "\n".join(lines)
 
 
 def _indices_table(task: Problem, sensitivity: Sensitivity, outputs: Sequence[str]) -> list[str]:
     """Lines of a table: Sobol' indices at the end of the load ramp."""
-    load = f"{task.reduced.load.name} = {sensitivity.loads[-1]:g} {task.reduced.load.unit}"
+    load = f"{task.curves.load.name} = {sensitivity.loads[-1]:g} {task.curves.load.unit}"
     lines = [f"Sobol' indices at {load}, first order / total, +- 95 % interval"]
     width = max(len(name) for name in sensitivity.names) + 2
     lines.append(" " * width + "".join(f"{name:>32}" for name in outputs))
@@ -142,21 +142,21 @@ def draw(path: Path, bands: Bands, sensitivity: Sensitivity | None, load: str) -
 
     Solid lines are total indices, dashed lines first-order indices.
     """
-    names = bands.shown
+    names = bands.nonzero_outputs
     rows = 1 if sensitivity is None or bands.loads.size == 1 else 2
-    with plots.drawing(path, (4.2 * len(names), 3.6 * rows)) as figure:
+    with plots.open_figure(path, (4.2 * len(names), 3.6 * rows)) as figure:
         grid = figure.subplots(rows, len(names), squeeze=False)
         for column, name in enumerate(names):
             label = f"{name} [{bands.units[name]}]"
             if bands.loads.size == 1:
-                _spread(grid[0, column], bands, name, label)
+                _draw_distribution(grid[0, column], bands, name, label)
                 continue
-            _bands(grid[0, column], bands, name, label, load)
+            _draw_bands(grid[0, column], bands, name, label, load)
             if sensitivity is not None:
-                _indices(grid[1, column], sensitivity, name, load, legend=column == 0)
+                _draw_indices(grid[1, column], sensitivity, name, load, legend=column == 0)
 
 
-def _bands(axes: "Axes", bands: Bands, name: str, label: str, load: str) -> None:
+def _draw_bands(axes: "Axes", bands: Bands, name: str, label: str, load: str) -> None:
     """Draw median and quantile bands of an output over the load."""
     q = dict(zip(QUANTILES, bands.quantiles[name], strict=True))
     for low, high, shade in ((0.01, 0.99, 0.12), (0.05, 0.95, 0.2), (0.25, 0.75, 0.3)):
@@ -170,7 +170,7 @@ def _bands(axes: "Axes", bands: Bands, name: str, label: str, load: str) -> None
     axes.legend(fontsize=8)
 
 
-def _spread(axes: "Axes", bands: Bands, name: str, label: str) -> None:
+def _draw_distribution(axes: "Axes", bands: Bands, name: str, label: str) -> None:
     """Draw the cumulative distribution of an output at a single load."""
     axes.plot(bands.quantiles[name][:, 0], 100.0 * np.array(QUANTILES), "o-", color=plots.BLUE)
     axes.axvline(bands.nominal[name][0], color=plots.RED, linestyle="--", label="parameter file")
@@ -178,7 +178,7 @@ def _spread(axes: "Axes", bands: Bands, name: str, label: str) -> None:
     axes.legend(fontsize=8)
 
 
-def _indices(axes: "Axes", sensitivity: Sensitivity, name: str, load: str, legend: bool) -> None:
+def _draw_indices(axes: "Axes", sensitivity: Sensitivity, name: str, load: str, legend: bool) -> None:
     """Draw the Sobol' indices of an output over the load."""
     indices = sensitivity.outputs[name]
     for i, parameter in enumerate(sensitivity.names):

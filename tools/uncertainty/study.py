@@ -30,18 +30,18 @@ import numpy as np
 from scipy import stats
 from scipy.stats import qmc
 
-from jointfmu.parameters import leaves, read_document
+from jointfmu.parameters import list_entries, read_document
 from jointfmu.quantity import Array
 
-FORMS = (
+DISTRIBUTION_FORMS = (
     "VALUE, LOW..HIGH, VALUE+-PERCENT%, loguniform(LOW, HIGH), normal(MEAN, SD), "
     "lognormal(MEDIAN, FACTOR), triangular(LOW, MODE, HIGH)"
 )
-_CALL = re.compile(r"(\w+)\((.*)\)")
+_CALL_PATTERN = re.compile(r"(\w+)\((.*)\)")
 
 
 @dataclass(frozen=True, slots=True)
-class Uncertain:
+class UncertainParameter:
     """Uncertain parameter: name and distribution.
 
     text : text of the distribution, as the user wrote it
@@ -50,16 +50,16 @@ class Uncertain:
 
     name: str
     text: str
-    law: Any
+    distribution: Any
 
     @property
     def support(self) -> tuple[float, float]:
         """Ends of the support of the distribution."""
-        low, high = self.law.support()
+        low, high = self.distribution.support()
         return float(low), float(high)
 
 
-def parse(name: str, text: str, base: float | None) -> Uncertain | None:
+def parse_distribution(name: str, text: str, base: float | None) -> UncertainParameter | None:
     """Parse the text of a distribution; None if the text is a plain value or word.
 
     base : value of the parameter file, to which a percentage without a value refers; None if there is none
@@ -67,52 +67,54 @@ def parse(name: str, text: str, base: float | None) -> Uncertain | None:
     Raises ValueError that names the parameter, the text and the allowed forms.
     """
     try:
-        law = _law(text.strip(), base)
+        law = _parse_distribution(text.strip(), base)
     except ValueError as error:
-        raise ValueError(f"{name} = {text}: {error or 'is no distribution'}; allowed are {FORMS}") from None
-    return law and Uncertain(name, text, law)
+        raise ValueError(
+            f"{name} = {text}: {error or 'is no distribution'}; allowed are {DISTRIBUTION_FORMS}"
+        ) from None
+    return law and UncertainParameter(name, text, law)
 
 
-def _law(text: str, base: float | None) -> Any:
+def _parse_distribution(text: str, base: float | None) -> Any:
     """Parse a distribution of scipy.stats; None if the text is a plain value or word. See `parse`."""
     if ".." in text:
-        return _uniform(*_numbers(text.split(".."), 2))
+        return _uniform(*_parse_numbers(text.split(".."), 2))
     if "+-" in text:
         middle, _, spread = text.partition("+-")
-        m = _number(middle) if middle.strip() else _base(base)
-        half_width = abs(m) * _percent(spread) if _is_percent(spread) else _number(spread)
+        m = _parse_number(middle) if middle.strip() else _require_base(base)
+        half_width = abs(m) * _parse_percent(spread) if _is_percent(spread) else _parse_number(spread)
         return _uniform(m - half_width, m + half_width)
-    if call := _CALL.fullmatch(text):
-        if call[1] not in _CALLS:
+    if call := _CALL_PATTERN.fullmatch(text):
+        if call[1] not in _DISTRIBUTIONS:
             raise ValueError(f"there is no distribution {call[1]!r}")
-        return _CALLS[call[1]]([argument.strip() for argument in call[2].split(",")], base)
+        return _DISTRIBUTIONS[call[1]]([argument.strip() for argument in call[2].split(",")], base)
     return None
 
 
 def _uniform(low: float, high: float) -> object:
-    _ascending(low, high)
+    _check_ascending(low, high)
     return stats.uniform(low, high - low)
 
 
-def _loguniform(parts: list[str], base: float | None) -> object:
-    low, high = _numbers(parts, 2)
+def _loguniform(texts: list[str], base: float | None) -> object:
+    low, high = _parse_numbers(texts, 2)
     if low <= 0.0:
         raise ValueError(f"low = {low:g} is outside (0, inf)")
-    _ascending(low, high)
+    _check_ascending(low, high)
     return stats.loguniform(low, high)
 
 
-def _normal(parts: list[str], base: float | None) -> object:
-    mean, spread = _about(parts, base)
-    sd = abs(mean) * _percent(spread) if _is_percent(spread) else _number(spread)
+def _normal(texts: list[str], base: float | None) -> object:
+    mean, spread = _centre_and_spread(texts, base)
+    sd = abs(mean) * _parse_percent(spread) if _is_percent(spread) else _parse_number(spread)
     if sd <= 0.0:
         raise ValueError(f"standard deviation = {sd:g} is outside (0, inf)")
     return stats.norm(mean, sd)
 
 
-def _lognormal(parts: list[str], base: float | None) -> object:
-    median, spread = _about(parts, base)
-    factor = 1.0 + _percent(spread) if _is_percent(spread) else _number(spread)
+def _lognormal(texts: list[str], base: float | None) -> object:
+    median, spread = _centre_and_spread(texts, base)
+    factor = 1.0 + _parse_percent(spread) if _is_percent(spread) else _parse_number(spread)
     if median <= 0.0:
         raise ValueError(f"median = {median:g} is outside (0, inf)")
     if factor <= 1.0:
@@ -120,16 +122,16 @@ def _lognormal(parts: list[str], base: float | None) -> object:
     return stats.lognorm(math.log(factor), scale=median)
 
 
-def _triangular(parts: list[str], base: float | None) -> object:
-    low, mode, high = _numbers(parts, 3)
-    _ascending(low, high)
+def _triangular(texts: list[str], base: float | None) -> object:
+    low, mode, high = _parse_numbers(texts, 3)
+    _check_ascending(low, high)
     if not low <= mode <= high:
         raise ValueError(f"mode = {mode:g} is outside [{low:g}, {high:g}]")
     return stats.triang((mode - low) / (high - low), low, high - low)
 
 
-_CALLS = {
-    "uniform": lambda parts, base: _uniform(*_numbers(parts, 2)),
+_DISTRIBUTIONS = {
+    "uniform": lambda parts, base: _uniform(*_parse_numbers(parts, 2)),
     "loguniform": _loguniform,
     "normal": _normal,
     "lognormal": _lognormal,
@@ -137,29 +139,29 @@ _CALLS = {
 }
 
 
-def _about(parts: list[str], base: float | None) -> tuple[float, str]:
+def _centre_and_spread(texts: list[str], base: float | None) -> tuple[float, str]:
     """Centre, and text of the spread, from one or two arguments; one percentage: about the file's value."""
-    if len(parts) == 1 and _is_percent(parts[0]):
-        return _base(base), parts[0]
-    if len(parts) != 2:
-        raise ValueError(f"has {len(parts)} numbers, expected 2")
-    return _number(parts[0]), parts[1]
+    if len(texts) == 1 and _is_percent(texts[0]):
+        return _require_base(base), texts[0]
+    if len(texts) != 2:
+        raise ValueError(f"has {len(texts)} numbers, expected 2")
+    return _parse_number(texts[0]), texts[1]
 
 
-def _ascending(low: float, high: float) -> None:
+def _check_ascending(low: float, high: float) -> None:
     """Raise ValueError unless low < high."""
     if not low < high:
         raise ValueError(f"low = {low:g} is not below high = {high:g}")
 
 
-def _numbers(parts: list[str], count: int) -> list[float]:
+def _parse_numbers(texts: list[str], count: int) -> list[float]:
     """Parse exactly `count` finite numbers; ValueError if the texts are none, or more or less."""
-    if len(parts) != count:
-        raise ValueError(f"has {len(parts)} numbers, expected {count}")
-    return [_number(text) for text in parts]
+    if len(texts) != count:
+        raise ValueError(f"has {len(texts)} numbers, expected {count}")
+    return [_parse_number(text) for text in texts]
 
 
-def _number(text: str) -> float:
+def _parse_number(text: str) -> float:
     """Parse a finite number; ValueError if the text is none."""
     try:
         value = float(text)
@@ -174,15 +176,15 @@ def _is_percent(text: str) -> bool:
     return text.strip().endswith("%")
 
 
-def _percent(text: str) -> float:
+def _parse_percent(text: str) -> float:
     """Parse a positive percentage, as a fraction [1]."""
-    value = _number(text.strip()[:-1])
+    value = _parse_number(text.strip()[:-1])
     if value <= 0.0:
         raise ValueError(f"{value:g} % is outside (0, inf)")
     return value / 100.0
 
 
-def _base(base: float | None) -> float:
+def _require_base(base: float | None) -> float:
     """Return the value of the parameter file; ValueError if there is none."""
     if base is None:
         raise ValueError("a percentage needs a value before it here")
@@ -192,15 +194,15 @@ def _base(base: float | None) -> float:
 def is_relative(text: str) -> bool:
     """Whether the text of a distribution is a percentage without a value, relative to another value."""
     text = text.strip()
-    call = _CALL.fullmatch(text)
+    call = _CALL_PATTERN.fullmatch(text)
     return text.startswith("+-") or bool(call and "," not in call[2] and _is_percent(call[2]))
 
 
-MOST_SAMPLES = 2**24
+MAX_SAMPLES = 2**24
 """Maximum number of samples of a study."""
 
 
-def read(path: str | Path) -> dict[str, object]:
+def read_study(path: str | Path) -> dict[str, object]:
     """Read a study file: {name: number, true, false or text}.
 
     Raises ValueError with one line that names the file, the entry and the allowed values.
@@ -212,21 +214,21 @@ def read(path: str | Path) -> dict[str, object]:
     table = document.get("parameters")
     if not isinstance(table, dict) or not table:
         raise ValueError(f"{path}: parameters = {table!r}, expected a table of NAME = VALUE or DISTRIBUTION")
-    entries = dict(leaves(table))
+    entries = dict(list_entries(table))
     for name, value in entries.items():
         if not isinstance(value, str | bool | int | float):
             raise ValueError(f"{path}: {name} = {value!r}, expected a number or a text")
     return {name: float(value) if type(value) is int else value for name, value in entries.items()}
 
 
-def settings(path: Path | None, given: Sequence[tuple[str, object]]) -> dict[str, object]:
+def merge_settings(path: Path | None, stated_settings: Sequence[tuple[str, object]]) -> dict[str, object]:
     """Settings of a study file, if there is one, overridden by the stated settings (name, value)."""
-    return (read(path) if path else {}) | dict(given)
+    return (read_study(path) if path else {}) | dict(stated_settings)
 
 
-def split(
-    given: Mapping[str, object], base: Mapping[str, object]
-) -> tuple[dict[str, object], tuple[Uncertain, ...]]:
+def split_settings(
+    settings: Mapping[str, object], base: Mapping[str, object]
+) -> tuple[dict[str, object], tuple[UncertainParameter, ...]]:
     """Split settings into plain values, {name: value}, and uncertain parameters.
 
     base : {name: value} to which percentages refer
@@ -235,10 +237,10 @@ def split(
     """
     plain: dict[str, object] = {}
     uncertain = []
-    for name, value in given.items():
+    for name, value in settings.items():
         centre = base.get(name)
         centre = float(centre) if isinstance(centre, int | float) and not isinstance(centre, bool) else None
-        parameter = parse(name, value, centre) if isinstance(value, str) else None
+        parameter = parse_distribution(name, value, centre) if isinstance(value, str) else None
         if parameter is None:
             plain[name] = value
         else:
@@ -246,13 +248,13 @@ def split(
     return plain, tuple(uncertain)
 
 
-def power_of_two(samples: int) -> int:
+def round_up_to_power_of_two(samples: int) -> int:
     """Round a number of samples up to a power of two, for which a Sobol' sequence is balanced.
 
     Raises ValueError outside [2, MAX_SAMPLES].
     """
-    if not 2 <= samples <= MOST_SAMPLES:
-        raise ValueError(f"samples = {samples} is outside [2, {MOST_SAMPLES}]")
+    if not 2 <= samples <= MAX_SAMPLES:
+        raise ValueError(f"samples = {samples} is outside [2, {MAX_SAMPLES}]")
     return int(2 ** math.ceil(math.log2(samples)))
 
 
@@ -269,15 +271,16 @@ def unit_design(count: int, dimensions: int, seed: int) -> Array:
     return np.asarray(np.clip(points, 2.0**-40, 1.0 - 2.0**-40))
 
 
-def samples_of(uncertain: Sequence[Uncertain], points: Array) -> dict[str, Array]:
+def draw_samples(uncertain: Sequence[UncertainParameter], points: Array) -> dict[str, Array]:
     """Map points (n, d) of the unit cube to samples, {name: (n)}, by the inverse distribution functions."""
     return {
-        parameter.name: np.asarray(parameter.law.ppf(points[:, i])) for i, parameter in enumerate(uncertain)
+        parameter.name: np.asarray(parameter.distribution.ppf(points[:, i]))
+        for i, parameter in enumerate(uncertain)
     }
 
 
 @dataclass(frozen=True, slots=True)
-class Refused:
+class RefusedSamples:
     """Samples that the law refuses.
 
     count   : number of refused samples

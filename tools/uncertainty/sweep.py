@@ -14,20 +14,20 @@ from jointfmu_fmu_src.proof.standard import FOLDER
 from jointfmu.files import archives
 from jointfmu.files.reading import read_bytes
 from jointfmu.files.writing import write_text
-from jointfmu.parameters import ParameterFile, load
-from jointfmu.progress import run_jobs, track
+from jointfmu.parameters import ParameterFile, load_parameter_file
+from jointfmu.progress import run_jobs, track_progress
 from jointfmu.quantity import Array
-from jointfmu.quantity.refusal import Refusal
+from jointfmu.quantity.refusal import InputRefusal
 
 from .. import columns
-from ..host import unpacked
+from ..host import unpack_fmu
 from ..ramps import ramp
 from . import journal
 from .journal import Journal
-from .problem import INTERVAL, of_source
+from .problem import INTERVAL, resolve_interval
 from .propagate import QUANTILES
-from .study import samples_of, split, unit_design
-from .worker import KILLED, LoadRamp, local_run, slim
+from .study import draw_samples, split_settings, unit_design
+from .worker import KILLED_MESSAGE, LoadRamp, run_locally, write_slim_fmu
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,13 +41,13 @@ class Summary:
     """
 
     runs: int
-    now: int
+    new_runs: int
     failed: int
     first_failure: Mapping[str, Any] | None
 
 
-def plan(
-    fmu: Path, drive: LoadRamp, given: Mapping[str, object], count: int, seed: int
+def plan_runs(
+    fmu: Path, load_ramp: LoadRamp, settings: Mapping[str, object], count: int, seed: int
 ) -> tuple[dict[str, object], list[dict[str, object]]]:
     """Plan a sweep: the study as a JSON object for its folder, and the settings of each of `count` runs.
 
@@ -56,35 +56,37 @@ def plan(
 
     Raises ValueError for a file that is no FMU, an unknown name, a wrong distribution or ramp.
     """
-    ramp.steps(drive.to, drive.step)
-    with unpacked(fmu) as (_, description):
+    ramp.ramp_points(load_ramp.to, load_ramp.step)
+    with unpack_fmu(fmu) as (_, description):
         variables = {v.name: v for v in description.modelVariables}
     inputs = [v.name for v in variables.values() if v.causality == "input"]
     settable = [v.name for v in variables.values() if v.causality in ("input", "parameter")]
-    if drive.input not in inputs:
-        raise ValueError(f"{fmu}: unknown input {drive.input!r}, allowed are {', '.join(inputs)}")
-    for name in given:
+    if load_ramp.input not in inputs:
+        raise ValueError(f"{fmu}: unknown input {load_ramp.input!r}, allowed are {', '.join(inputs)}")
+    for name in settings:
         if name not in settable:
             raise ValueError(f"{fmu}: unknown name {name!r}, allowed are {', '.join(settable)}")
-        if name == drive.input:
+        if name == load_ramp.input:
             raise ValueError(f"{fmu}: {name} is driven by the ramp and cannot be set as well")
-    if INTERVAL in given.values():
-        file = _declared(fmu)
-        given = {name: of_source(name, value, file) for name, value in given.items()}
+    if INTERVAL in settings.values():
+        file = _parameter_file_of(fmu)
+        settings = {name: resolve_interval(name, value, file) for name, value in settings.items()}
     real = [name for name in settable if variables[name].type in ("Real", "Float64")]
-    plain, uncertain = split(given, {name: float(variables[name].start or 0.0) for name in real})
+    plain, uncertain = split_settings(settings, {name: float(variables[name].start or 0.0) for name in real})
     if not uncertain:
-        raise Refusal("no parameter has a distribution; expected NAME=LOW..HIGH or a study file", "settings")
+        raise InputRefusal(
+            "no parameter has a distribution; expected NAME=LOW..HIGH or a study file", "settings"
+        )
     if wrong := [parameter for parameter in uncertain if parameter.name not in real]:
         raise ValueError(
             f"{fmu}: {wrong[0].name} = {wrong[0].text}: is no real number and cannot be uncertain"
         )
-    samples = samples_of(uncertain, unit_design(count, len(uncertain), seed))
+    samples = draw_samples(uncertain, unit_design(count, len(uncertain), seed))
     runs = [plain | {name: float(column[i]) for name, column in samples.items()} for i in range(count)]
     record = {
         "fmu": fmu.name,
-        "fmu_sha256": journal.digest(read_bytes(fmu, "an FMU")),
-        **asdict(drive),
+        "fmu_sha256": journal.sha256_text(read_bytes(fmu, "an FMU")),
+        **asdict(load_ramp),
         "samples": count,
         "seed": seed,
         "parameters": {parameter.name: parameter.text for parameter in uncertain} | plain,
@@ -92,7 +94,7 @@ def plan(
     return record, runs
 
 
-def _declared(fmu: Path) -> ParameterFile:
+def _parameter_file_of(fmu: Path) -> ParameterFile:
     """Load the parameter file that an FMU contains with its experiments.
 
     Raises ValueError if the FMU contains none.
@@ -102,13 +104,13 @@ def _declared(fmu: Path) -> ParameterFile:
         if parameter_files := [name for name in members if Path(name).name != "study.toml"]:
             file = Path(folder, Path(parameter_files[0]).name)
             file.write_bytes(archives.read_member(archive, parameter_files[0]))
-            return load(file)
+            return load_parameter_file(file)
     raise ValueError(f"{fmu}: carries no parameter file; expected LOW..HIGH in place of {INTERVAL}")
 
 
 def sweep(
     fmu: Path,
-    drive: LoadRamp,
+    load_ramp: LoadRamp,
     runs: Sequence[Mapping[str, object]],
     out: Path,
     scheduler: str | None = None,
@@ -131,48 +133,48 @@ def sweep(
         todo = [i for i in range(len(runs)) if i not in runs_file.finished]
         if todo:
             if scheduler is None:
-                entries = _local_runs(fmu, drive, runs, todo, workers)
+                entries = _run_locally(fmu, load_ramp, runs, todo, workers)
             else:
-                from .cluster import cluster_runs
+                from .cluster import run_on_cluster
 
-                entries = cluster_runs(scheduler, fmu, drive, runs, todo)
+                entries = run_on_cluster(scheduler, fmu, load_ramp, runs, todo)
             with closing(entries) as finished:
-                for entry in track(finished, "sweep", len(todo)):
+                for entry in track_progress(finished, "sweep", len(todo)):
                     runs_file.add(entry)
         new_runs = len(runs_file.finished) - count_before
         summary = Summary(len(runs), new_runs, runs_file.failed, runs_file.first_failure)
     if summary.failed < summary.runs:
-        write_text(out / journal.BANDS, bands_csv(out, ramp.units(fmu)))
+        write_text(out / journal.BANDS, bands_csv(out, ramp.variable_units(fmu)))
     return summary
 
 
-def _local_runs(
+def _run_locally(
     fmu: Path,
-    drive: LoadRamp,
+    load_ramp: LoadRamp,
     runs: Sequence[Mapping[str, object]],
-    todo: Sequence[int],
+    pending: Sequence[int],
     workers: int | None,
 ) -> Generator[dict[str, object]]:
     """Execute runs in processes of this machine, and yield the journal entry of each run when it ends."""
     with TemporaryDirectory(prefix="sweep-") as folder:
         small = Path(folder, fmu.name)
-        slim(fmu, small)
-        jobs = [(small, drive, i, runs[i]) for i in todo]
-        with closing(run_jobs(local_run, jobs, workers)) as finished:
+        write_slim_fmu(fmu, small)
+        jobs = [(small, load_ramp, i, runs[i]) for i in pending]
+        with closing(run_jobs(run_locally, jobs, workers)) as finished:
             for (_, _, i, settings), entry in finished:
-                yield entry or {"run": i, "parameters": dict(settings), "error": KILLED}
+                yield entry or {"run": i, "parameters": dict(settings), "error": KILLED_MESSAGE}
 
 
 def bands_csv(folder: Path, units: Mapping[str, str]) -> str:
     """CSV text: quantiles of each output at each point of the ramp, over all runs that did not fail."""
     runs: dict[str, list[Array]] = {}
-    for entry in journal.entries(folder):
+    for entry in journal.read_entries(folder):
         for name, values in entry.get("columns", {}).items():
             runs.setdefault(name, []).append(np.asarray(values, dtype=np.float64))
     driven, *outputs = runs
-    heads: list[columns.Head] = [(driven, units[driven])]
+    heads: list[columns.ColumnHead] = [(driven, units[driven])]
     table = [runs[driven][0]]
     for name in outputs:
         heads += [(f"{name} {100 * q:g} %", units[name]) for q in QUANTILES]
         table += list(np.quantile(np.stack(runs[name]), QUANTILES, axis=0))
-    return columns.text(heads, table)
+    return columns.format_table(heads, table)

@@ -9,12 +9,12 @@ from pathlib import Path
 import numpy as np
 
 from jointfmu.files import archives
-from jointfmu.files.text import MAX_TEXT_LENGTH, printable
+from jointfmu.files.text import MAX_TEXT_LENGTH, replace_unprintable
 
-from ..host import runs
+from ..host import is_needed_to_run
 from ..ramps import ramp
 
-KILLED = "the process of the run died"
+KILLED_MESSAGE = "the process of the run died"
 """Error message in the journal for a run whose process died."""
 
 
@@ -30,7 +30,9 @@ class LoadRamp:
     step: float
 
 
-def one_run(fmu: Path, drive: LoadRamp, index: int, settings: Mapping[str, object]) -> dict[str, object]:
+def run_sample(
+    fmu: Path, load_ramp: LoadRamp, index: int, settings: Mapping[str, object]
+) -> dict[str, object]:
     """Run one load ramp, and return its journal entry: columns of results, or the error message.
 
     index    : index of the run in the study
@@ -38,27 +40,30 @@ def one_run(fmu: Path, drive: LoadRamp, index: int, settings: Mapping[str, objec
     """
     entry = {"run": index, "parameters": dict(settings)}
     try:
-        result = ramp.run(fmu, drive.input, drive.to, drive.step, settings)
+        result = ramp.run_ramp(fmu, load_ramp.input, load_ramp.to, load_ramp.step, settings)
     except (ValueError, RuntimeError) as error:
-        return {**entry, "error": printable(str(error).replace(str(fmu), fmu.name))[:MAX_TEXT_LENGTH]}
+        return {
+            **entry,
+            "error": replace_unprintable(str(error).replace(str(fmu), fmu.name))[:MAX_TEXT_LENGTH],
+        }
     columns = {key: column.tolist() for key, column in result.columns.items()}
     if not_finite := [key for key, column in result.columns.items() if not np.all(np.isfinite(column))]:
         return {**entry, "error": f"{not_finite[0]} is not finite"}
     return {**entry, "columns": columns}
 
 
-def local_run(job: tuple[Path, LoadRamp, int, Mapping[str, object]]) -> dict[str, object]:
+def run_locally(job: tuple[Path, LoadRamp, int, Mapping[str, object]]) -> dict[str, object]:
     """Run one load ramp in a process of this machine; the FMU is unpacked next to its file.
 
     job : arguments of `run_sample`
     """
     tempfile.tempdir = str(job[0].parent)
-    return one_run(*job)
+    return run_sample(*job)
 
 
-def slim(fmu: Path, small: Path) -> None:
+def write_slim_fmu(fmu: Path, small: Path) -> None:
     """Write a copy `small` of an FMU without sources, documentation and binaries of other platforms."""
     with archives.open_archive(fmu) as full, zipfile.ZipFile(small, "w") as reduced:
         for item in full.infolist():
-            if runs(item.filename) and not item.is_dir():
+            if is_needed_to_run(item.filename) and not item.is_dir():
                 reduced.writestr(item, archives.read_member(full, item.filename))

@@ -6,29 +6,29 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..quantity import Array, Number
-from .powerlaw import Spots
+from .powerlaw import SpotDistribution
 
-TOLERANCE = 1e-13
+LOAD_TOLERANCE = 1e-13
 """Relative residual of the load at which the inversion stops [1]."""
 RATIOS = ("eta_n", "eta_t", "elastic_fraction")
 """Quantities that are ratios, not sums over the nominal area."""
-LEAST, MOST = -600.0, 300.0
+MIN_LOG_AREA, MAX_LOG_AREA = -600.0, 300.0
 """Range of log-areas u [1] in which laws are evaluated: 260 decades below the reference area, 130 above."""
-NOTHING = 1e-200
+MIN_PRESSURE = 1e-200
 """Pressure [Pa] below which the load counts as zero."""
-FLATTEST, STEEPEST = 0.5, 2.5
+MIN_LOAD_SLOPE, MAX_LOAD_SLOPE = 0.5, 2.5
 """Bounds of d(ln F)/du [1] used in the inversion; the lower one is divided by m."""
-CLOSE = 1e-8
+NEWTON_TOLERANCE = 1e-8
 """Relative residual or step [1] below which one more Newton step reaches round-off."""
-MOST_STEPS = 200
+MAX_ITERATIONS = 200
 """Largest number of iterations of an inversion [1], far above the usual number."""
-SIDE = 1e-9
+ONE_SIDED_OFFSET = 1e-9
 """Distance in log-area [1] from the end of a regime at which its one-sided derivative is evaluated."""
-_NOT_REPRESENTABLE = (
+_NOT_REPRESENTABLE_TEXT = (
     "the parameters give a reference area of {} m2 or a load that is not representable; "
     "is D close to the end of its interval, or G, h or another one extreme?"
 )
-_BLOCK = 16384
+_BLOCK_SIZE = 16384
 
 
 class InterfaceLaw(Protocol):
@@ -42,7 +42,7 @@ class InterfaceLaw(Protocol):
     def hardness(self) -> Number:
         """Hardness of the softer body [Pa]."""
 
-    def spots(self) -> Spots:
+    def spots(self) -> SpotDistribution:
         """Regimes of a single spot, with the size distribution of the spots."""
 
     def state(self, u: Number) -> dict[str, Number]:
@@ -50,14 +50,16 @@ class InterfaceLaw(Protocol):
 
 
 @runtime_checkable
-class Bounded(Protocol):
+class ValidatedLaw(Protocol):
     """Interface law with a range of pressures in which it was validated."""
 
-    def unproven(self, least: float, most: float) -> list[str]:
+    def find_range_violations(self, lowest: float, highest: float) -> list[str]:
         """Messages, one line each, if pressures from `lowest` to `highest` [Pa] leave the validated range."""
 
 
-def newton_step(spots: Spots, u: Number, log_load: Number) -> tuple[Number, Number, Number, Number]:
+def newton_step(
+    spots: SpotDistribution, u: Number, log_load: Number
+) -> tuple[Number, Number, Number, Number]:
     """One safeguarded Newton step for ln F(u) = log_load.
 
     Returns step, lower and upper bound of the root (all relative to u), and residual [1]. The slope of ln F
@@ -65,13 +67,13 @@ def newton_step(spots: Spots, u: Number, log_load: Number) -> tuple[Number, Numb
     """
     value, slope = spots.log_total("load", u)
     residual = log_load - value
-    a, b = residual / (FLATTEST * spots.m), residual / STEEPEST
+    a, b = residual / (MIN_LOAD_SLOPE * spots.m), residual / MAX_LOAD_SLOPE
     lower, upper = np.minimum(a, b), np.maximum(a, b)
     step = np.minimum(np.maximum(residual / slope, lower), upper)
     return step, lower, upper, residual
 
 
-def largest_spot(law: InterfaceLaw, pressure: ArrayLike) -> Array:
+def solve_largest_spot(law: InterfaceLaw, pressure: ArrayLike) -> Array:
     """Log-area u = ln(a_L/a_ref) [1] of the largest spot under a nominal pressure.
 
     Parameters
@@ -95,8 +97,8 @@ def largest_spot(law: InterfaceLaw, pressure: ArrayLike) -> Array:
         raise ValueError(
             f"pressure = {p[invalid].flat[0]:g} Pa is outside [0, inf): nominal contact pressure"
         )
-    spots, (min_load, _, max_load) = _checked(law)
-    load = np.where(p < NOTHING, 0.0, p) * law.A_0
+    spots, (min_load, _, max_load) = _check_spots(law)
+    load = np.where(p < MIN_PRESSURE, 0.0, p) * law.A_0
     if np.any(invalid := (load > max_load) | ((load > 0.0) & (load < min_load))):
         raise ValueError(
             f"pressure = {np.broadcast_to(p, invalid.shape)[invalid].flat[0]:g} Pa is outside "
@@ -105,44 +107,44 @@ def largest_spot(law: InterfaceLaw, pressure: ArrayLike) -> Array:
         )
     parameters = np.shape(min_load)
     shape = np.broadcast_shapes(load.shape, parameters)
-    if load.size > _BLOCK and parameters == ():
+    if load.size > _BLOCK_SIZE and parameters == ():
         flat = load.ravel()
-        blocks = [_solve(spots, flat[i : i + _BLOCK]) for i in range(0, flat.size, _BLOCK)]
+        blocks = [_solve_log_area(spots, flat[i : i + _BLOCK_SIZE]) for i in range(0, flat.size, _BLOCK_SIZE)]
         return np.concatenate(blocks).reshape(shape)
-    return _solve(spots, np.broadcast_to(load, shape))
+    return _solve_log_area(spots, np.broadcast_to(load, shape))
 
 
-def checked_spots(law: InterfaceLaw) -> Spots:
+def find_checked_spots(law: InterfaceLaw) -> SpotDistribution:
     """Spots of a law. Raises ValueError if their reference area or load over- or underflows (D near 1)."""
-    return _checked(law)[0]
+    return _check_spots(law)[0]
 
 
-def _checked(law: InterfaceLaw) -> tuple[Spots, list[Number]]:
+def _check_spots(law: InterfaceLaw) -> tuple[SpotDistribution, list[Number]]:
     """Spots as from `find_checked_spots`, and their loads [N] at MIN_LOG_AREA, 0 and MAX_LOG_AREA."""
-    ends = (LEAST, 0.0, MOST)
+    ends = (MIN_LOG_AREA, 0.0, MAX_LOG_AREA)
     with np.errstate(all="ignore"):
         try:
             spots = law.spots()
         except (OverflowError, ZeroDivisionError):
-            raise ValueError(_NOT_REPRESENTABLE.format("inf")) from None
+            raise ValueError(_NOT_REPRESENTABLE_TEXT.format("inf")) from None
         logs = [spots.log_total("load", u) for u in ends]
         loads = [np.exp(log) for log, _ in logs]
         values = [*loads, *(x for log in logs for x in log), *(np.exp(spots.m * u) for u in ends)]
         representable = np.all([np.all(np.isfinite(x)) for x in values])
         positive = np.all((spots.reference > 0.0) & np.isfinite(1.0 / spots.reference))
     if not (representable and positive):
-        raise ValueError(_NOT_REPRESENTABLE.format(f"{np.max(spots.reference):g}"))
+        raise ValueError(_NOT_REPRESENTABLE_TEXT.format(f"{np.max(spots.reference):g}"))
     return spots, loads
 
 
-def _solve(spots: Spots, load: Array) -> Array:
+def _solve_log_area(spots: SpotDistribution, load: Array) -> Array:
     empty = load <= 0.0
     target = np.log(np.where(empty, 1.0, load))
     u = np.zeros_like(target)
     low, high = np.full_like(target, -np.inf), np.full_like(target, np.inf)
-    for _ in range(MOST_STEPS):
+    for _ in range(MAX_ITERATIONS):
         step, lower, upper, residual = newton_step(spots, u, target)
-        if np.max(np.abs(residual), initial=0.0) <= TOLERANCE:
+        if np.max(np.abs(residual), initial=0.0) <= LOAD_TOLERANCE:
             break
         low, high = np.maximum(low, u + lower), np.minimum(high, u + upper)
         u = np.minimum(np.maximum(u + step, low), high)
@@ -161,17 +163,17 @@ def evaluate(law: InterfaceLaw, u: Number) -> dict[str, Number]:
     infinity) sums are zero and ratios have their limit.
     """
     empty = np.isneginf(u)
-    state = law.state(np.where(empty, LEAST, u))
+    state = law.state(np.where(empty, MIN_LOG_AREA, u))
     zero = np.where(empty, 0.0, 1.0)
     state = {name: value if name in RATIOS else zero * value for name, value in state.items()}
     spots = law.spots()
-    spot = spots.reference * np.exp(u) if spots.sized else np.nan * u
+    spot = spots.reference * np.exp(u) if spots.has_spot_area else np.nan * u
     return {"largest_spot": spot, "pressure": state["F"] / law.A_0, **state}
 
 
 def at_pressure(law: InterfaceLaw, pressure: ArrayLike) -> dict[str, Number]:
     """Contact quantities of the nominal area A_0 at nominal pressures (...) [Pa], see `evaluate`."""
-    return evaluate(law, largest_spot(law, pressure))
+    return evaluate(law, solve_largest_spot(law, pressure))
 
 
 def at_largest_spot(law: InterfaceLaw, area: ArrayLike) -> dict[str, Number]:
@@ -181,14 +183,14 @@ def at_largest_spot(law: InterfaceLaw, area: ArrayLike) -> dict[str, Number]:
     for a law without spot areas, and for an area that is not positive, or outside the representable range.
     """
     a = np.asarray(area, dtype=np.float64)
-    spots = checked_spots(law)
-    if not spots.sized:
+    spots = find_checked_spots(law)
+    if not spots.has_spot_area:
         raise ValueError("the law knows no largest spot; expected a pressure")
     bad = ~(np.isfinite(a) & (a > 0.0))
     if np.any(bad):
         raise ValueError(f"largest spot = {a[bad].flat[0]:g} m2 is outside (0, inf): area of a spot")
     u = np.log(a) - np.log(spots.reference)
-    if np.any(bad := (u < LEAST) | (u > MOST)):
+    if np.any(bad := (u < MIN_LOG_AREA) | (u > MAX_LOG_AREA)):
         raise ValueError(
             f"largest spot = {np.broadcast_to(a, bad.shape)[bad].flat[0]:g} m2 is not representable beside "
             f"the critical area {np.max(spots.reference):g} m2, allowed are 260 decades below to 130 above"
@@ -204,12 +206,12 @@ def stiffness_curve(law: InterfaceLaw, pressure: ArrayLike, name: str = "normal"
     The derivative is exact: (dK/du)/(dF/du) from the same integrals.
     """
     spots = law.spots()
-    u = largest_spot(law, pressure)
+    u = solve_largest_spot(law, pressure)
     k = spots.total(name, u) / law.A_0
-    return k, spots.slope(name, u) / spots.slope("load", u)
+    return k, spots.total_derivative(name, u) / spots.total_derivative("load", u)
 
 
-def beyond(law: InterfaceLaw, pressure: float, least: float | None = None) -> list[str]:
+def find_validity_violations(law: InterfaceLaw, pressure: float, lowest: float | None = None) -> list[str]:
     """Messages, one line each, if a law is outside its validity at a nominal pressure [Pa]; usually none.
 
     lowest : [Pa] smallest pressure of interest, for laws that are validated from a smallest load on; None:
@@ -225,18 +227,18 @@ def beyond(law: InterfaceLaw, pressure: float, least: float | None = None) -> li
             f"a pressure of {pressure:.4g} Pa is above the hardness of the softer body, {hardness:.4g} Pa, "
             "where the interface law ends: the contact yields as a whole, the numbers are an extrapolation"
         )
-    limit = _full_contact(law, pressure)
+    limit = _full_contact_pressure(law, pressure)
     if limit is not None:
         messages.append(
             f"a pressure of {pressure:.4g} Pa gives a real area beyond the nominal one, {law.A_0:.4g} m2, "
             f"which the interface law reaches at {limit:.3g} Pa"
         )
-    if isinstance(law, Bounded):
-        messages += law.unproven(pressure if least is None else least, pressure)
+    if isinstance(law, ValidatedLaw):
+        messages += law.find_range_violations(pressure if lowest is None else lowest, pressure)
     return messages
 
 
-def _full_contact(law: InterfaceLaw, pressure: float) -> float | None:
+def _full_contact_pressure(law: InterfaceLaw, pressure: float) -> float | None:
     """Pressure [Pa] at which the real area reaches A_0; None if it is smaller at `pressure`."""
     with np.errstate(over="ignore"):
         if not float(at_pressure(law, pressure)["A_r"]) > law.A_0:

@@ -19,8 +19,8 @@ import numpy as np
 
 from ..quantity import Number
 
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(32)
-_FEW = 1024
+_GAUSS_NODES, _GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(32)
+_MAX_BATCH_SIZE = 1024
 """Array size [1] up to which all quadrature nodes are evaluated at once, within the cache."""
 
 
@@ -42,23 +42,23 @@ def exp_integral(x: Number, lower: Number, upper: Number) -> Number:
     return np.exp(x * lower) * span * exprel(x * span)
 
 
-def gauss(function: Callable[[Number], Number], lower: Number, upper: Number) -> Number:
+def integrate_gauss(function: Callable[[Number], Number], lower: Number, upper: Number) -> Number:
     """Integral of a smooth function over [lower, upper] by 32 Gauss-Legendre nodes.
 
     The function is called once per node, or for small arrays once with all remaining nodes.
     """
     middle, half = 0.5 * (lower + upper), 0.5 * (upper - lower)
-    total = _WEIGHTS[0] * function(middle + half * _NODES[0])
-    if isinstance(total, float | np.ndarray) and np.size(total) <= _FEW:
+    total = _GAUSS_WEIGHTS[0] * function(middle + half * _GAUSS_NODES[0])
+    if isinstance(total, float | np.ndarray) and np.size(total) <= _MAX_BATCH_SIZE:
         column = (-1, *(1 for _ in np.shape(total)))
-        rest = _WEIGHTS[1:].reshape(column) * function(middle + half * _NODES[1:].reshape(column))
+        rest = _GAUSS_WEIGHTS[1:].reshape(column) * function(middle + half * _GAUSS_NODES[1:].reshape(column))
         return half * (total + np.sum(rest, axis=0))
-    for node, weight in zip(_NODES[1:], _WEIGHTS[1:], strict=True):
+    for node, weight in zip(_GAUSS_NODES[1:], _GAUSS_WEIGHTS[1:], strict=True):
         total = total + weight * function(middle + half * node)
     return half * total
 
 
-class Term(Protocol):
+class RegimeTerm(Protocol):
     """One regime of a spot law, between two log-areas [1]; an end None is infinite."""
 
     @property
@@ -66,7 +66,7 @@ class Term(Protocol):
     @property
     def upper(self) -> Number: ...
 
-    def spot(self, t: Number) -> Number:
+    def spot_value(self, t: Number) -> Number:
         """Quantity of a single spot of log-area t; zero outside the regime."""
 
     def integral(self, m: Number, u: Number) -> Number:
@@ -74,7 +74,7 @@ class Term(Protocol):
 
 
 @dataclass(frozen=True, slots=True)
-class Power:
+class PowerTerm:
     """Power law `c exp(p t)` for `lower < t <= upper`; an end None is infinite."""
 
     c: Number
@@ -82,25 +82,25 @@ class Power:
     lower: Number = None
     upper: Number = None
 
-    def spot(self, t: Number) -> Number:
-        return within(t, self.lower, self.upper) * self.c * np.exp(self.p * t)
+    def spot_value(self, t: Number) -> Number:
+        return regime_indicator(t, self.lower, self.upper) * self.c * np.exp(self.p * t)
 
     def integral(self, m: Number, u: Number) -> Number:
-        lower, upper = clip(self.lower, u), clip(self.upper, u, open_end=u)
+        lower, upper = clip_limit(self.lower, u), clip_limit(self.upper, u, open_end=u)
         return self.c * exp_integral(self.p - m, lower, upper)
 
 
 @dataclass(frozen=True, slots=True)
-class Smooth:
+class SmoothTerm:
     """Smooth function of the log-area on `[lower, upper]`, integrated by Gauss-Legendre quadrature."""
 
     function: Callable[[Number], Number]
     lower: Number
     upper: Number
 
-    def spot(self, t: Number) -> Number:
+    def spot_value(self, t: Number) -> Number:
         inside = np.minimum(np.maximum(t, self.lower), self.upper)
-        return within(t, self.lower, self.upper) * self.function(inside)
+        return regime_indicator(t, self.lower, self.upper) * self.function(inside)
 
     def integral(self, m: Number, u: Number) -> Number:
         def integrand(t: Number) -> Number:
@@ -108,11 +108,11 @@ class Smooth:
 
         if isinstance(u, np.ndarray) and isinstance(self.upper, float) and np.all(u >= self.upper):
             u = self.upper  # the integral is the same for all points
-        return gauss(integrand, clip(self.lower, u), clip(self.upper, u))
+        return integrate_gauss(integrand, clip_limit(self.lower, u), clip_limit(self.upper, u))
 
 
 @dataclass(frozen=True, slots=True)
-class Slip:
+class SlipTerm:
     """Tangential stiffness in partial slip, `c exp(p t) (1 - h exp(-q t))^(1/3)`; 0 in full slip.
 
     Full slip is where the bracket is negative.
@@ -127,14 +127,16 @@ class Slip:
     lower: Number
     upper: Number
 
-    def spot(self, t: Number) -> Number:
+    def spot_value(self, t: Number) -> Number:
         stick = np.maximum(1.0 - self.h * np.exp(-self.q * t), 0.0)
-        return within(t, self.lower, self.upper) * self.c * np.exp(self.p * t) * stick ** (1.0 / 3.0)
+        return (
+            regime_indicator(t, self.lower, self.upper) * self.c * np.exp(self.p * t) * stick ** (1.0 / 3.0)
+        )
 
     def integral(self, m: Number, u: Number) -> Number:
         onset = np.log(self.h) / self.q
-        lower = np.maximum(clip(self.lower, u), np.minimum(onset, clip(self.upper, u)))
-        upper = np.maximum(clip(self.upper, u), lower)
+        lower = np.maximum(clip_limit(self.lower, u), np.minimum(onset, clip_limit(self.upper, u)))
+        upper = np.maximum(clip_limit(self.upper, u), lower)
 
         def integrand(r: Number) -> Number:
             t = onset + r**3
@@ -143,15 +145,15 @@ class Slip:
 
         start = np.maximum(lower - onset, 0.0) ** (1.0 / 3.0)
         end = np.maximum(upper - onset, 0.0) ** (1.0 / 3.0)
-        return self.c * gauss(integrand, start, end)
+        return self.c * integrate_gauss(integrand, start, end)
 
 
-def clip(bound: Number, u: Number, open_end: Number = None) -> Number:
+def clip_limit(limit: Number, u: Number, open_end: Number = None) -> Number:
     """Smaller of a bound of a regime and u; `open_end` if the bound is None (infinite)."""
-    return open_end if bound is None else np.minimum(bound, u)
+    return open_end if limit is None else np.minimum(limit, u)
 
 
-def within(t: Number, lower: Number, upper: Number) -> Number:
+def regime_indicator(t: Number, lower: Number, upper: Number) -> Number:
     """1 where `lower < t <= upper`, else 0 [1]."""
     is_above = 1.0 if lower is None else np.where(t > lower, 1.0, 0.0)
     is_below = 1.0 if upper is None else np.where(t <= upper, 1.0, 0.0)
@@ -159,7 +161,7 @@ def within(t: Number, lower: Number, upper: Number) -> Number:
 
 
 @dataclass(frozen=True, slots=True)
-class Spots:
+class SpotDistribution:
     """Spot law with the size distribution of the spots.
 
     reference : [m2] area at t = 0
@@ -173,41 +175,41 @@ class Spots:
     reference: Number
     m: Number
     weight: Number
-    terms: Mapping[str, tuple[Term, ...]]
-    onset: Number = None
-    sized: bool = True
+    terms: Mapping[str, tuple[RegimeTerm, ...]]
+    onset_log_area: Number = None
+    has_spot_area: bool = True
 
     def total(self, name: str, u: Number) -> Number:
         """Sum Q(u) of a quantity over all spots, if the largest spot has the log-area u."""
         return self.m * self.weight * np.exp(self.m * u) * self._integral(name, u)
 
-    def slope(self, name: str, u: Number) -> Number:
+    def total_derivative(self, name: str, u: Number) -> Number:
         """Derivative of `total` with respect to u: m Q + m w q(a_L)."""
-        largest = sum(term.spot(u) for term in self.terms[name])
+        largest = sum(term.spot_value(u) for term in self.terms[name])
         return self.m * self.total(name, u) + self.m * self.weight * largest
 
     @property
-    def stiff_onset(self) -> Number:
+    def stiffness_onset(self) -> Number:
         """Log-area [1] of the largest spot up to which all spots are plastic and the stiffness is zero."""
-        if self.onset is not None:
-            return self.onset
+        if self.onset_log_area is not None:
+            return self.onset_log_area
         return reduce(np.minimum, (term.lower for term in self.terms["normal"]))
 
     @property
-    def breaks(self) -> list[float]:
+    def sorted_regime_ends(self) -> list[float]:
         """Log-areas [1], ascending, of the ends of the stiffness regimes: its derivative jumps there."""
-        return sorted({float(end) for end in self.ends})
+        return sorted({float(end) for end in self.regime_ends})
 
     @property
-    def ends(self) -> list[Number]:
+    def regime_ends(self) -> list[Number]:
         """Log-areas [1] of the ends of the stiffness regimes: numbers or symbols, unsorted, repeated."""
         ends = [end for term in self.terms["normal"] for end in (term.lower, term.upper) if end is not None]
-        return ends if self.onset is None else [*ends, self.onset]
+        return ends if self.onset_log_area is None else [*ends, self.onset_log_area]
 
     def log_total(self, name: str, u: Number) -> tuple[Number, Number]:
         """Logarithm ln Q of the sum, and its derivative with respect to u; from one evaluation."""
         integral = self._integral(name, u)
-        largest = sum(term.spot(u) for term in self.terms[name])
+        largest = sum(term.spot_value(u) for term in self.terms[name])
         growth = largest * np.exp(-self.m * u) / integral
         return np.log(self.m * self.weight * integral) + self.m * u, self.m + growth
 

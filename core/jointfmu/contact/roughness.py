@@ -12,44 +12,44 @@ from typing import Any
 
 import numpy as np
 
-from ..quantity import Number, problems, quantity
+from ..quantity import Number, find_problems, quantity_field
 
 GAMMA = 0.45
 """Approach over which the pressure grows e-fold, over the rms height [1]: p ~ exp(approach/(GAMMA h)) in
 elastic contact of many spots. Boundary elements give 0.40 to 0.48 (docs/validity.md)."""
-FACTOR = (pi / 2.0) ** 0.5
+RQ_OVER_RA = (pi / 2.0) ** 0.5
 """R_q/R_a [1] of a Gaussian surface, 1.25."""
 
 
-ROUGHEST = 1e-4
+MAX_HEIGHT = 1e-4
 """Largest accepted height of a surface [m]: cast and flame-cut faces have 50 um."""
 
 
-def _height(doc: str) -> Any:
-    return quantity("m", f"{doc} over the longest wave that machining leaves", gt=0.0, le=ROUGHEST)
+def _height_field(doc: str) -> Any:
+    return quantity_field("m", f"{doc} over the longest wave that machining leaves", gt=0.0, le=MAX_HEIGHT)
 
 
-DECLARED: dict[str, Field[Any]] = {
-    "Ra1": _height("arithmetic mean height of the first surface"),
-    "Ra2": _height("arithmetic mean height of the second surface"),
-    "Rq1": _height("rms height of the first surface"),
-    "Rq2": _height("rms height of the second surface"),
-    "h": _height("rms height of both surfaces together"),
+HEIGHT_FIELDS: dict[str, Field[Any]] = {
+    "Ra1": _height_field("arithmetic mean height of the first surface"),
+    "Ra2": _height_field("arithmetic mean height of the second surface"),
+    "Rq1": _height_field("rms height of the first surface"),
+    "Rq2": _height_field("rms height of the second surface"),
+    "h": _height_field("rms height of both surfaces together"),
 }
 """{name: field} of the heights that a parameter file may state."""
 
 
-def rms_of_mean(Ra: Number) -> Number:
+def rms_height(Ra: Number) -> Number:
     """Rms height R_q [m] of a Gaussian surface with the arithmetic mean height Ra [m]: sqrt(pi/2) Ra."""
-    return FACTOR * Ra
+    return RQ_OVER_RA * Ra
 
 
-def together(first: Number, second: Number) -> Number:
+def combine_heights(first: Number, second: Number) -> Number:
     """Combined rms height h [m] of two statistically independent surfaces with rms heights [m]."""
     return np.sqrt(first**2 + second**2)
 
 
-def level(pressure: Number, h: Number) -> Number:
+def predicted_stiffness(pressure: Number, h: Number) -> Number:
     """Normal stiffness per area k [N/m3] at a nominal pressure p [Pa]: k = p/(GAMMA h).
 
     Elastic contact of many spots (Persson 2007; Akarapu, Sharp and Robbins 2011). h [m] is the combined rms
@@ -58,38 +58,38 @@ def level(pressure: Number, h: Number) -> Number:
     return pressure / (GAMMA * h)
 
 
-def excluded(name: str) -> tuple[str, ...]:
+def conflicting_heights(name: str) -> tuple[str, ...]:
     """Names of heights that exclude the height `name`: another height of the same surface, and `h`."""
     if name == "h":
-        return tuple(other for other in DECLARED if other != "h")
+        return tuple(other for other in HEIGHT_FIELDS if other != "h")
     return ({"a": "Rq", "q": "Ra"}[name[1]] + name[2], "h")
 
 
-def check(stated: Mapping[str, Any], prefix: str = "") -> dict[str, Number]:
+def check_heights(heights: Mapping[str, Any], prefix: str = "") -> dict[str, Number]:
     """Check {name: height [m]}, floats or arrays; return it with floats. `prefix` precedes names in errors.
 
     Raises ValueError, one line, for an unknown name, a value that is no number or outside its interval, or
     two heights of one surface.
     """
-    declared = {prefix + name: item for name, item in DECLARED.items()}
-    texts = problems({prefix + name: value for name, value in stated.items()}, declared)
-    for name in (name for name in stated if name in DECLARED):
-        conflicts = [other for other in excluded(name) if other in stated]
+    declared = {prefix + name: item for name, item in HEIGHT_FIELDS.items()}
+    texts = find_problems({prefix + name: value for name, value in heights.items()}, declared)
+    for name in (name for name in heights if name in HEIGHT_FIELDS):
+        conflicts = [other for other in conflicting_heights(name) if other in heights]
         if conflicts:
             others = ", ".join(prefix + other for other in conflicts)
             texts.append(f"{prefix}{name} beside {others}: expected one height of each side, or h alone")
             break
     if texts:
         raise ValueError("; ".join(texts))
-    return {name: value if np.ndim(value) else float(value) for name, value in stated.items()}
+    return {name: value if np.ndim(value) else float(value) for name, value in heights.items()}
 
 
-def height(stated: Mapping[str, Number]) -> Number | None:
+def combined_height(heights: Mapping[str, Number]) -> Number | None:
     """Combined rms height h [m] of both surfaces; None if no height is stated."""
-    if not stated:
+    if not heights:
         return None
-    if "h" in stated:
-        return stated["h"]
-    sides = (stated.get(f"Rq{side}", rms_of_mean(stated.get(f"Ra{side}", 0.0))) for side in (1, 2))
-    h = together(*sides)
+    if "h" in heights:
+        return heights["h"]
+    sides = (heights.get(f"Rq{side}", rms_height(heights.get(f"Ra{side}", 0.0))) for side in (1, 2))
+    h = combine_heights(*sides)
     return h if np.ndim(h) else float(h)

@@ -4,55 +4,55 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..quantity import Checked, Number, quantity
+from ..quantity import CheckedParameters, Number, quantity_field
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class FlankSurface(Checked):
+class FlankSurface(CheckedParameters):
     """Fractal parameters of one tooth flank or one direction of a surface texture (Yu 2022)."""
 
-    D: float = quantity("1", "fractal dimension of the profile", gt=1.0, lt=2.0)
-    G: float = quantity("m", "fractal roughness", gt=0.0)
+    D: float = quantity_field("1", "fractal dimension of the profile", gt=1.0, lt=2.0)
+    G: float = quantity_field("m", "fractal roughness", gt=0.0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ProfileSurface(FlankSurface):
     """Self-affine surface, with the fractal parameters of a profile (Zhao 2018, Yu 2022)."""
 
-    gamma: float = quantity("1", "frequency ratio of the Weierstrass-Mandelbrot function", gt=1.0)
+    gamma: float = quantity_field("1", "frequency ratio of the Weierstrass-Mandelbrot function", gt=1.0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ArealSurface(Checked):
+class ArealSurface(CheckedParameters):
     """Self-affine surface, with the fractal parameters of the surface (Hu 2023); D = 1 + D of a profile."""
 
-    D: float = quantity("1", "fractal dimension of the surface", gt=2.0, lt=3.0)
-    G: float = quantity("m", "fractal roughness", gt=0.0)
-    gamma: float = quantity("1", "frequency ratio of the Weierstrass-Mandelbrot function", gt=1.0)
-    r_m: float = quantity("m", "base radius of an asperity", gt=0.0)
-    s_min: float = quantity("m2", "area of the smallest spot", gt=0.0)
+    D: float = quantity_field("1", "fractal dimension of the surface", gt=2.0, lt=3.0)
+    G: float = quantity_field("m", "fractal roughness", gt=0.0)
+    gamma: float = quantity_field("1", "frequency ratio of the Weierstrass-Mandelbrot function", gt=1.0)
+    r_m: float = quantity_field("m", "base radius of an asperity", gt=0.0)
+    s_min: float = quantity_field("m2", "area of the smallest spot", gt=0.0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Spectrum(Checked):
+class Spectrum(CheckedParameters):
     """Parameter of the Weierstrass-Mandelbrot function common to both flanks."""
 
-    gamma: float = quantity("1", "frequency ratio of the Weierstrass-Mandelbrot function", gt=1.0)
+    gamma: float = quantity_field("1", "frequency ratio of the Weierstrass-Mandelbrot function", gt=1.0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Elastic(Checked):
+class Elastic(CheckedParameters):
     """Isotropic linear elastic constants of one body."""
 
-    E: float = quantity("Pa", "Young's modulus", gt=0.0)
-    nu: float = quantity("1", "Poisson ratio", gt=-1.0, le=0.5)
+    E: float = quantity_field("Pa", "Young's modulus", gt=0.0)
+    nu: float = quantity_field("1", "Poisson ratio", gt=-1.0, le=0.5)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ElasticPlastic(Elastic):
     """Isotropic linear elastic constants and yield strength of one body."""
 
-    sigma_y: float = quantity("Pa", "yield strength", gt=0.0)
+    sigma_y: float = quantity_field("Pa", "yield strength", gt=0.0)
 
 
 def contact_modulus(side1: Elastic, side2: Elastic) -> Number:

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from .reading import check_regular
 
-DESCRIPTION = "modelDescription.xml"
+DESCRIPTION_NAME = "modelDescription.xml"
 """Name of the member that every FMU has."""
 MAX_MEMBERS = 20_000
 """Largest number of members of an archive [1]."""
@@ -25,9 +25,9 @@ MAX_RATIO = 100
 """Largest ratio [1] of the unpacked size of all members to the size of the archive, above SMALL_SIZE."""
 SMALL_SIZE = 1 << 26
 """Unpacked size [byte] up to which MAX_RATIO does not apply."""
-_METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
+_COMPRESSION_METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
 """Compression methods that FMI allows. Python ignores the declared size when it unpacks other methods."""
-_BROKEN = (
+_ARCHIVE_ERRORS = (
     zipfile.BadZipFile,
     zlib.error,
     struct.error,
@@ -46,19 +46,19 @@ def open_archive(path: str | Path) -> Iterator[zipfile.ZipFile]:
     Raises ValueError, one line, if the file does not exist, is a pipe or device, is no zip file or a corrupt
     one, has no model description, or fails `check_members`.
     """
-    expected = f"a zip with {DESCRIPTION}"
+    expected = f"a zip with {DESCRIPTION_NAME}"
     if not os.path.exists(path):
         raise ValueError(f"{path}: there is no such file; expected an FMU")
     check_regular(path, "an FMU")
     try:
         with zipfile.ZipFile(path) as archive:
-            if DESCRIPTION not in archive.namelist():
-                raise ValueError(f"{path}: is no FMU (it has no {DESCRIPTION}); expected {expected}")
+            if DESCRIPTION_NAME not in archive.namelist():
+                raise ValueError(f"{path}: is no FMU (it has no {DESCRIPTION_NAME}); expected {expected}")
             check_members(path, archive)
             yield archive
     except OSError as error:
         raise ValueError(f"{path}: cannot be read ({error.strerror or error}); expected an FMU") from None
-    except _BROKEN as error:
+    except _ARCHIVE_ERRORS as error:
         reason = " ".join(str(error).split()) or type(error).__name__
         raise ValueError(f"{path}: is no FMU ({reason}); expected {expected}") from None
 
@@ -76,7 +76,7 @@ def check_members(path: str | Path, archive: zipfile.ZipFile) -> None:
         name = member.filename
         if "\\" in name or ":" in name or name.startswith("/") or ".." in name.split("/"):
             raise ValueError(f"{path}: has a member {name[:80]!r}; expected names inside of the archive")
-        if member.flag_bits & 1 or member.compress_type not in _METHODS:
+        if member.flag_bits & 1 or member.compress_type not in _COMPRESSION_METHODS:
             raise ValueError(
                 f"{path}: {name[:80]!r} is encrypted or compressed otherwise; expected deflate or none"
             )
@@ -94,7 +94,7 @@ def check_members(path: str | Path, archive: zipfile.ZipFile) -> None:
 
 def check_zip(path: str | Path) -> None:
     """Check the members of a file that another package will unpack (X3P); a file that is no zip passes."""
-    with suppress(*_BROKEN), zipfile.ZipFile(path) as archive:
+    with suppress(*_ARCHIVE_ERRORS), zipfile.ZipFile(path) as archive:
         check_members(path, archive)
 
 
@@ -106,7 +106,7 @@ def read_member(archive: zipfile.ZipFile, name: str) -> bytes:
         return stream.read(member.file_size)
 
 
-class Members(Mapping[str, bytes]):
+class FmuMembers(Mapping[str, bytes]):
     """Mapping {name: content} of the members of an FMU, read on access.
 
     Raises ValueError as `open_archive` does.
@@ -151,6 +151,6 @@ def _check_text_size(path: str | Path, member: zipfile.ZipInfo) -> None:
         )
 
 
-def extract(archive: zipfile.ZipFile, folder: str | Path, include: Callable[[str], bool]) -> None:
+def extract_members(archive: zipfile.ZipFile, folder: str | Path, include: Callable[[str], bool]) -> None:
     """Unpack the members of a checked archive for whose names `include` is true."""
     archive.extractall(folder, [name for name in archive.namelist() if include(name)])

@@ -12,17 +12,19 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..quantity.refusal import Refusal
-from .writing import check_place, is_stream, write_text
+from ..quantity.refusal import InputRefusal
+from .writing import check_writable, is_stream, write_text
 
-MARK = "written by jointfmu"
+PROGRAM_MARK = "written by jointfmu"
 """Text in a comment in the first lines of all text files that the program writes."""
-_MARK = re.compile(rb'(written|generated) by jointfmu|(generationTool|content)="jointfmu', re.IGNORECASE)
-_HEAD = 65536
+_MARK_PATTERN = re.compile(
+    rb'(written|generated) by jointfmu|(generationTool|content)="jointfmu', re.IGNORECASE
+)
+_HEAD_SIZE = 65536
 """Number of bytes [1] at the start of a file in which the mark is searched."""
-_ARCHIVE = re.compile(r"modelDescription\.xml|SystemStructure\.ssd")
-_CHECKSUM = re.compile(rf"# {MARK}; checksum ([0-9a-f]{{8}})\n")
-_OTHER_ENDING = re.compile(
+_DESCRIPTION_PATTERN = re.compile(r"modelDescription\.xml|SystemStructure\.ssd")
+_CHECKSUM_PATTERN = re.compile(rf"# {PROGRAM_MARK}; checksum ([0-9a-f]{{8}})\n")
+_FOREIGN_ENDINGS = re.compile(
     r"\.(7z|bat|c|cpp|dll|docx|dylib|exe|frd|gz|h|ipynb|jpg|json|jsonl|m|mat|md|npy|npz|odb|pdf"
     r"|ps1|py|pyi|rst|sh|so|ssd|ssv|tar|vtk|xls|xlsx|yaml|yml|zip)"
 )
@@ -32,16 +34,16 @@ _OTHER_ENDING = re.compile(
 def _is_marked(path: Path) -> bool:
     """Whether the head of a file, or of the description in an FMU or SSP archive, contains the mark."""
     with path.open("rb") as file:
-        head = file.read(_HEAD)
+        head = file.read(_HEAD_SIZE)
     if head.startswith(b"PK"):
         try:
             with zipfile.ZipFile(path) as archive:
-                member = next(filter(_ARCHIVE.fullmatch, archive.namelist()))
+                member = next(filter(_DESCRIPTION_PATTERN.fullmatch, archive.namelist()))
                 with archive.open(member) as text:
-                    head = text.read(_HEAD)
+                    head = text.read(_HEAD_SIZE)
         except (zipfile.BadZipFile, zlib.error, NotImplementedError, RuntimeError, StopIteration):
             return False
-    return _MARK.search(head) is not None
+    return _MARK_PATTERN.search(head) is not None
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +63,7 @@ class FileKind:
 def _is_unedited(path: Path) -> bool:
     """Whether a parameter file is unchanged since the program wrote it; an edited file is the user's."""
     text = path.read_bytes().decode("utf-8", "replace").replace("\r\n", "\n")
-    match = _CHECKSUM.match(text)
+    match = _CHECKSUM_PATTERN.match(text)
     return match is not None and match[1] == _checksum(text[match.end() :])
 
 
@@ -69,14 +71,18 @@ def _checksum(text: str) -> str:
     return f"{zlib.crc32(text.encode()):08x}"
 
 
-PARAMETERS = FileKind("parameter file", (".toml",), _is_unedited)
-PAGE = FileKind("page", (".html", ".htm"))
+PARAMETER_FILE = FileKind("parameter file", (".toml",), _is_unedited)
+HTML_PAGE = FileKind("page", (".html", ".htm"))
 PICTURE = FileKind("picture", (".png", ".svg"))
 ARCHIVE = FileKind("FMU or SSP archive", (".fmu", ".ssp"))
-TEXT = FileKind("text for another tool", (".cdb", ".csv", ".inp", ".mac", ".mo", ".mjcf", ".urdf", ".xml"))
+EXCHANGE_TEXT = FileKind(
+    "text for another tool", (".cdb", ".csv", ".inp", ".mac", ".mo", ".mjcf", ".urdf", ".xml")
+)
 MESH = FileKind("mesh", (".vtu",))
 FOLDER = FileKind("folder", ())
-_ENDINGS = {end for kind in (PARAMETERS, PAGE, PICTURE, ARCHIVE, TEXT, MESH) for end in kind.endings}
+_ENDINGS = {
+    end for kind in (PARAMETER_FILE, HTML_PAGE, PICTURE, ARCHIVE, EXCHANGE_TEXT, MESH) for end in kind.endings
+}
 
 
 def write_parameter_text(path: str | Path, text: str) -> None:
@@ -84,7 +90,7 @@ def write_parameter_text(path: str | Path, text: str) -> None:
 
     Raises ValueError as `write_text` does.
     """
-    write_text(path, f"# {MARK}; checksum {_checksum(text)}\n{text}")
+    write_text(path, f"# {PROGRAM_MARK}; checksum {_checksum(text)}\n{text}")
 
 
 def check_output(path: str | Path, kind: FileKind, force: bool = False) -> None:
@@ -96,7 +102,7 @@ def check_output(path: str | Path, kind: FileKind, force: bool = False) -> None:
     """
     path = Path(path)
     if kind is FOLDER:
-        check_place(path, path)
+        check_writable(path, path)
         return
     if path.is_dir():
         raise ValueError(f"{path}: is a folder; expected a file to write")
@@ -106,7 +112,7 @@ def check_output(path: str | Path, kind: FileKind, force: bool = False) -> None:
         return
     target = Path(os.path.realpath(path))
     for ending in (path.suffix.lower(), target.suffix.lower()):
-        known = ending in _ENDINGS or _OTHER_ENDING.fullmatch(ending)
+        known = ending in _ENDINGS or _FOREIGN_ENDINGS.fullmatch(ending)
         if known and ending not in kind.endings:
             allowed = " or ".join(kind.endings)
             raise ValueError(f"{path}: {ending} is the ending of another kind of file; expected {allowed}")
@@ -115,14 +121,14 @@ def check_output(path: str | Path, kind: FileKind, force: bool = False) -> None:
             if not os.access(target, os.W_OK):
                 raise ValueError(f"{path}: is write-protected; expected another file")
             if not force and target.stat().st_size and not kind.is_own(target):
-                raise Refusal(
+                raise InputRefusal(
                     f"{path}: exists, and jointfmu did not write it as this {kind.noun}; expected another "
                     "file, or force to replace it",
                     "force",
                 )
     except OSError as error:
         raise ValueError(f"{path}: cannot be read ({error.strerror}); expected another file") from None
-    check_place(path, target.parent)
+    check_writable(path, target.parent)
 
 
 def check_outputs(paths: Iterable[Path], kind: FileKind, force: bool = False) -> None:
@@ -131,12 +137,12 @@ def check_outputs(paths: Iterable[Path], kind: FileKind, force: bool = False) ->
         check_output(path, kind, force)
 
 
-def is_same_file(one: Path, other: Path) -> bool:
+def is_same_file(path1: Path, path2: Path) -> bool:
     """Whether two paths lead to the same file, also through links.
 
     If one of them does not exist, names are compared without regard to case.
     """
     try:
-        return os.path.samefile(one, other)
+        return os.path.samefile(path1, path2)
     except OSError:  # one of them does not exist yet
-        return os.path.realpath(one).casefold() == os.path.realpath(other).casefold()
+        return os.path.realpath(path1).casefold() == os.path.realpath(path2).casefold()

@@ -12,49 +12,49 @@ _FORBIDDEN = re.compile("[\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ud800-\ud
 """Control characters, line separators, marks of the writing direction, and characters invalid in XML."""
 
 
-def check_text(what: str, text: str, max_length: int = MAX_TEXT_LENGTH) -> None:
+def check_text(subject: str, text: str, max_length: int = MAX_TEXT_LENGTH) -> None:
     """Raise ValueError, one line, if a text is too long or has a control character.
 
     subject : what the text is, for the error
     """
     if len(text) > max_length:
-        raise ValueError(f"{what} has {len(text)} characters; allowed are at most {max_length}")
+        raise ValueError(f"{subject} has {len(text)} characters; allowed are at most {max_length}")
     if found := _FORBIDDEN.search(text):
         raise ValueError(
-            f"{what} has the control character U+{ord(found[0]):04X} at position {found.start() + 1}; "
+            f"{subject} has the control character U+{ord(found[0]):04X} at position {found.start() + 1}; "
             "expected one line of printable text"
         )
 
 
-def printable(text: str) -> str:
+def replace_unprintable(text: str) -> str:
     """Replace characters that `check_text` does not allow by question marks: for texts of other programs."""
     return _FORBIDDEN.sub("?", text)
 
 
 def check_document(document: Mapping[str, object]) -> None:
     """Raise ValueError if `check_text` does not allow a key or a text of a TOML document."""
-    for name, key, value in _items(document, ""):
+    for name, key, value in _walk_items(document, ""):
         check_text(f"a key of {name or 'the file'}", key, MAX_NAME_LENGTH)
         if isinstance(value, str):
             full_name = f"{name}.{key}" if name else key
             check_text(full_name, value, MAX_NAME_LENGTH if full_name == "name" else MAX_TEXT_LENGTH)
 
 
-def toml_string(text: str) -> str:
+def format_toml_string(text: str) -> str:
     """Format a text as a basic string of TOML: with the escapes of JSON, and DEL escaped."""
     return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
-def _items(value: object, name: str) -> Iterator[tuple[str, str, object]]:
+def _walk_items(value: object, name: str) -> Iterator[tuple[str, str, object]]:
     """(name of the table, key, value) of every item of a document; items of a list have its key."""
     if isinstance(value, Mapping):
         for key, item in value.items():
             yield name, key, item
-            yield from _items(item, f"{name}.{key}" if name else key)
+            yield from _walk_items(item, f"{name}.{key}" if name else key)
     elif isinstance(value, list):
         head, _, key = name.rpartition(".")
         for item in value:
             if isinstance(item, str):
                 yield head, key, item
             elif isinstance(item, Mapping | list):
-                yield from _items(item, name)
+                yield from _walk_items(item, name)

@@ -31,13 +31,13 @@ def write_bytes(path: str | Path, data: bytes) -> None:
         _write_stream(path, data)
         return
     target = Path(os.path.realpath(path))
-    temporary = _beside(path, target)
+    temporary = _create_temporary_file(path, target)
     try:
         temporary.write_bytes(data)
         temporary.chmod(0o644)
         temporary.replace(target)
     except OSError as error:
-        raise _unwritable(path, error) from None
+        raise _write_error(path, error) from None
     finally:
         temporary.unlink(missing_ok=True)
 
@@ -49,7 +49,8 @@ def is_stream(path: str | Path) -> bool:
     except OSError:
         return False
     return (
-        not (stat.S_ISREG(status.st_mode) or stat.S_ISDIR(status.st_mode)) or _own_output(status) is not None
+        not (stat.S_ISREG(status.st_mode) or stat.S_ISDIR(status.st_mode))
+        or _output_descriptor(status) is not None
     )
 
 
@@ -57,16 +58,16 @@ def is_standard_output(path: str | Path) -> bool:
     """Whether a path leads to the standard output of this process; False for the null device."""
     try:
         status = os.stat(path)
-        return _own_output(status) == 1 and not os.path.samestat(status, os.stat(os.devnull))
+        return _output_descriptor(status) == 1 and not os.path.samestat(status, os.stat(os.devnull))
     except OSError:
         return False
 
 
-def _own_output(found: os.stat_result) -> int | None:
+def _output_descriptor(status: os.stat_result) -> int | None:
     """File descriptor, 1 or 2, of this process whose file has the status `status`; None if neither has."""
     for descriptor in (1, 2):
         with suppress(OSError):  # this process has closed it
-            if os.path.samestat(found, os.fstat(descriptor)):
+            if os.path.samestat(status, os.fstat(descriptor)):
                 return descriptor
     return None
 
@@ -76,7 +77,7 @@ def _write_stream(path: str | Path, data: bytes) -> None:
 
     Raises BrokenPipeError if standard output is a pipe whose reader has ended.
     """
-    descriptor = _own_output(os.stat(path))
+    descriptor = _output_descriptor(os.stat(path))
     try:
         if descriptor is None:
             with open(path, "wb") as stream:
@@ -89,11 +90,11 @@ def _write_stream(path: str | Path, data: bytes) -> None:
     except OSError as error:
         if descriptor is not None and isinstance(error, BrokenPipeError):
             raise
-        raise _unwritable(path, error) from None
+        raise _write_error(path, error) from None
 
 
 @contextmanager
-def made_folder(path: Path) -> Iterator[None]:
+def existing_folder(path: Path) -> Iterator[None]:
     """Context in which a folder exists; it is created, with its parents, if necessary.
 
     On an exception the new folders are removed again, if they are empty. Raises ValueError, which names the
@@ -103,7 +104,7 @@ def made_folder(path: Path) -> Iterator[None]:
     try:
         path.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise _unwritable(path, error) from None
+        raise _write_error(path, error) from None
     try:
         yield
     except BaseException:
@@ -119,7 +120,7 @@ def write_files(folder: Path, files: Mapping[str, str]) -> list[Path]:
     Raises ValueError, which names the folder, if they cannot be written; a new folder is removed again.
     Returns the paths of the files.
     """
-    with made_folder(folder.parent):
+    with existing_folder(folder.parent):
         try:
             with tempfile.TemporaryDirectory(dir=folder.parent, prefix=f".{folder.name}.") as work:
                 for name, text in files.items():
@@ -131,11 +132,11 @@ def write_files(folder: Path, files: Mapping[str, str]) -> list[Path]:
                     target.parent.mkdir(parents=True, exist_ok=True)
                     (Path(work) / name).replace(target)
         except OSError as error:
-            raise _unwritable(folder, error) from None
+            raise _write_error(folder, error) from None
     return [folder / name for name in files]
 
 
-def check_place(path: Path, folder: Path) -> None:
+def check_writable(path: Path, folder: Path) -> None:
     """Raise ValueError, which names the path, if no file can be created in a folder.
 
     If the folder does not exist, its nearest existing parent is checked. Call it before long work; it leaves
@@ -154,7 +155,7 @@ def check_place(path: Path, folder: Path) -> None:
         ) from None
 
 
-def _beside(path: str | Path, target: Path) -> Path:
+def _create_temporary_file(path: str | Path, target: Path) -> Path:
     """Create an empty temporary file in the folder of `target`, and this folder if necessary.
 
     Raises ValueError, which names `path`.
@@ -163,10 +164,10 @@ def _beside(path: str | Path, target: Path) -> Path:
         target.parent.mkdir(parents=True, exist_ok=True)
         handle, name = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.")
     except OSError as error:
-        raise _unwritable(path, error) from None
+        raise _write_error(path, error) from None
     os.close(handle)
     return Path(name)
 
 
-def _unwritable(path: str | Path, error: OSError) -> ValueError:
+def _write_error(path: str | Path, error: OSError) -> ValueError:
     return ValueError(f"{path}: cannot be written ({error.strerror}); expected a writable place")

@@ -2,22 +2,22 @@
 
 from importlib import import_module
 
-from .kind import Kind
+from .kind import JointKind
 from .model import Model
 
-_FOLDERS = (
+_JOINT_PACKAGES = (
     "harmonic_drive",
     "bolted_joint",
     "gear_contact",
     "gear_mesh",
 )
-KINDS: dict[str, Kind] = {name: import_module(f".{name}", __name__).KIND for name in _FOLDERS}
+KINDS: dict[str, JointKind] = {name: import_module(f".{name}", __name__).KIND for name in _JOINT_PACKAGES}
 """{name of the joint: its description}, in the order of all listings."""
 MODELS: dict[str, Model] = {model.name: model for kind in KINDS.values() for model in kind.models}
 """{name of the FMU: its model} for all joints."""
 
 
-def register(kind: Kind) -> None:
+def register_joint(kind: JointKind) -> None:
     """Add a joint of another package, for this process: it is built, checked and listed like the others.
 
     Raises ValueError if its name, or the name of one of its models, is already in use.

@@ -22,18 +22,18 @@ class RoughSurface:
     direction: str | None = None
 
 
-def itself(parameters: object) -> object:
+def use_as_law(parameters: object) -> object:
     """Return the parameter set: for a joint whose parameter set is itself the interface law."""
     return parameters
 
 
-def none(parameters: object) -> Iterable[str]:
+def find_no_contradictions(parameters: object) -> Iterable[str]:
     """Return no contradictions: for a joint with independent parameters."""
     return ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Kind:
+class JointKind:
     """Description of one kind of joint.
 
     name          : name of its folders, and `joint = NAME` in parameter files
@@ -52,13 +52,13 @@ class Kind:
 
     name: str
     package: str
-    default: str
+    default_stem: str
     laws: Mapping[str, type[object]]
-    law_of: Callable[[Any], Any] = itself
+    extract_law: Callable[[Any], Any] = use_as_law
     models: Sequence[Model]
     surfaces: Sequence[RoughSurface] = ()
     working_point: Sequence[str] = ()
-    contradictions: Callable[..., Iterable[str]] = none
+    find_contradictions: Callable[..., Iterable[str]] = find_no_contradictions
 
     @property
     def title(self) -> str:
@@ -70,11 +70,11 @@ class Kind:
         """Class of the parameter set with the default law."""
         return next(iter(self.laws.values()))
 
-    def law(self, parameters: object) -> str:
+    def law_name(self, parameters: object) -> str:
         """Name of the law of a parameter set, a key of `laws`."""
         return next(name for name, cls in self.laws.items() if type(parameters) is cls)
 
-    def model(self, name: str | None = None) -> Model:
+    def find_model(self, name: str | None = None) -> Model:
         """Model with the name of an FMU; None: the first model. Raises ValueError if there is none."""
         models = {model.name: model for model in self.models}
         if name is not None and name not in models:
@@ -87,19 +87,19 @@ class Kind:
         return {v.name: v for model in self.models for v in (*model.inputs, *model.outputs)}
 
     @property
-    def own(self) -> bool:
+    def is_builtin(self) -> bool:
         """Whether the joint is part of jointfmu, not of another package."""
         return self.package.startswith(f"{__package__}.")
 
-    def spring(self, parameters: object) -> object:
+    def tabulate(self, parameters: object) -> object:
         """Tabulate a parameter set, as the first model does."""
-        return self.models[0].spring(parameters)
+        return self.models[0].tabulate(parameters)
 
     def default_file(self, law: str | None = None) -> Path:
         """Path of the default parameter file: models/NAME/DEFAULT.toml, or DEFAULT_LAW.toml for another law.
 
         A joint of another package has its files in the folder models/ of that package.
         """
-        stem = self.default if law in (None, next(iter(self.laws))) else f"{self.default}_{law}"
-        folder = files("jointfmu_models") / self.name if self.own else files(self.package) / "models"
+        stem = self.default_stem if law in (None, next(iter(self.laws))) else f"{self.default_stem}_{law}"
+        folder = files("jointfmu_models") / self.name if self.is_builtin else files(self.package) / "models"
         return Path(str(folder / f"{stem}.toml"))

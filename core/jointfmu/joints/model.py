@@ -15,10 +15,10 @@ from ..quantity import Interval, Number, flat_fields
 
 Values = Mapping[str, float]
 Outputs = Mapping[str, Number]
-Memory = NDArray[np.float64]
+History = NDArray[np.float64]
 
 
-class Tabulated(Protocol):
+class TabulatedLaw(Protocol):
     """Tabulated law, load over displacement, that ends at a largest displacement."""
 
     @property
@@ -26,7 +26,7 @@ class Tabulated(Protocol):
         """Largest displacement and load of the table."""
 
 
-class Spring(Protocol):
+class TabulatedJoint(Protocol):
     """Tabulated joint: a parameter set with the table computed from it.
 
     The functions of `Model` take it as their argument; C code is generated from its parameter set. A joint
@@ -38,7 +38,7 @@ class Spring(Protocol):
         """Parameter set, a frozen dataclass of quantities."""
 
     @property
-    def curve(self) -> Tabulated:
+    def curve(self) -> TabulatedLaw:
         """Table from which the outputs are interpolated."""
 
 
@@ -55,17 +55,17 @@ class Variable:
     unit: str
     doc: str
     nominal: float = 1.0
-    low: float = -math.inf
+    minimum: float = -math.inf
     start: float = 0.0
 
     @property
     def interval(self) -> Interval:
         """Allowed values of an input: finite, and at least `minimum`."""
-        return Interval.of(ge=self.low)
+        return Interval.from_bounds(ge=self.minimum)
 
 
 @dataclass(frozen=True, slots=True)
-class Ramp:
+class LoadRamp:
     """Load ramp of one input, the default experiment: the input grows by `step` every `interval` [s].
 
     end, step  : largest value and increment of the input for the default parameters
@@ -80,18 +80,18 @@ class Ramp:
     step: float
     interval: float = 1.0
     settings: Mapping[str, float] = field(default_factory=dict)
-    reach: Callable[..., tuple[float, float]] | None = None
-    begin: float = 0.0
+    find_range: Callable[..., tuple[float, float]] | None = None
+    onset: float = 0.0
 
-    def points(self, count: int) -> NDArray[np.float64]:
+    def sample_inputs(self, count: int) -> NDArray[np.float64]:
         """Values (count) of the input: 0, then from `onset` to `end`, dense near `onset`."""
-        points = self.begin + (self.end - self.begin) * np.linspace(0.0, 1.0, count) ** 2
+        points = self.onset + (self.end - self.onset) * np.linspace(0.0, 1.0, count) ** 2
         points[0] = 0.0
         return points
 
 
 @dataclass(frozen=True, slots=True)
-class Loop:
+class LoadCycle:
     """Load cycle that shows hysteresis: the input oscillates about its start value, from the virgin state.
 
     settings : {parameter or input: value} for which the loop encloses an area
@@ -103,7 +103,7 @@ class Loop:
 
 
 @dataclass(frozen=True, slots=True)
-class Outside:
+class ValidityLimit:
     """Validity limit: a warning if a variable leaves an interval, for example the end of the table.
 
     variable : name of the input or output
@@ -152,28 +152,28 @@ class Model:
     joint: str
     doc: str
     parameters: type[object]
-    spring: Callable[..., Spring]
+    tabulate: Callable[..., TabulatedJoint]
     inputs: Sequence[Variable]
     outputs: Sequence[Variable]
     evaluate: Callable[..., Outputs]
-    outside: Sequence[Outside]
-    ramp: Ramp
+    validity_limits: Sequence[ValidityLimit]
+    ramp: LoadRamp
     dependencies: Mapping[str, Sequence[str]]
-    linear: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
-    hidden: Sequence[str] = ()
-    states: int = 0
-    moves: bool = False
-    events: Callable[..., Sequence[Number]] | None = None
-    rest: Callable[..., Memory] | None = None
-    evolve: Callable[..., tuple[Outputs, Memory]] | None = None
-    loop: Loop | None = None
-    variant: "Callable[[Model, Any], Model] | None" = None
+    linear_factors: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+    fixed_parameters: Sequence[str] = ()
+    state_count: int = 0
+    is_time_dependent: bool = False
+    find_event_times: Callable[..., Sequence[Number]] | None = None
+    initial_history: Callable[..., History] | None = None
+    advance: Callable[..., tuple[Outputs, History]] | None = None
+    loop: LoadCycle | None = None
+    make_variant: "Callable[[Model, Any], Model] | None" = None
     alias: str = ""
 
     def __post_init__(self) -> None:
-        if (self.rest is None) != (self.evolve is None):
+        if (self.initial_history is None) != (self.advance is None):
             raise ValueError(f"{self.name}: one of rest, evolve is given, expected both or none")
-        if self.loop and self.evolve is None:
+        if self.loop and self.advance is None:
             raise ValueError(f"{self.name}: a loop is given without a memory, expected one with evolve")
 
     @property
@@ -181,21 +181,21 @@ class Model:
         """Displayed name: the alias, if there is one, else the name."""
         return self.alias or self.name
 
-    def rate(self, output: int) -> bool:
+    def is_rate(self, output: int) -> bool:
         """Whether the output with this index is the time derivative of a state."""
-        bodies = self.states // 2
-        return bodies <= output < self.states + bodies
+        bodies = self.state_count // 2
+        return bodies <= output < self.state_count + bodies
 
     def parameter_fields(self) -> dict[str, Any]:
         """{structured name: field} of the numbers and booleans that the FMU exposes as parameters."""
         return {
             name: item
             for name, item in flat_fields(self.parameters)
-            if not any(name == h or name.startswith(f"{h}.") for h in self.hidden)
+            if not any(name == h or name.startswith(f"{h}.") for h in self.fixed_parameters)
             and not isinstance(item.metadata.get("allowed", (0,))[0], str)
         }
 
-    def of(self, joint: str, parameters: object) -> "Model":
+    def with_parameters(self, joint: str, parameters: object) -> "Model":
         """Model for a parameter set, which may have another law, and additional outputs.
 
         joint : kind of the joint that the parameter set belongs to; raises ValueError if it is another one
@@ -203,14 +203,14 @@ class Model:
         if joint != self.joint:
             raise ValueError(f"{self.name}: the parameter file is of a {joint!r}, expected a {self.joint!r}")
         model = replace(self, parameters=type(parameters))
-        return self.variant(model, parameters) if self.variant else model
+        return self.make_variant(model, parameters) if self.make_variant else model
 
-    def loaded(self, spring: Spring, start: Values) -> "Model":
+    def with_load_range(self, spring: TabulatedJoint, start: Values) -> "Model":
         """Model whose load ramp, and load cycle of the same input, are scaled to a joint and start values."""
         ramp, loop = self.ramp, self.loop
-        if ramp.reach is None:
+        if ramp.find_range is None:
             return self
-        onset, end = (float(x) for x in ramp.reach(spring, start))
+        onset, end = (float(x) for x in ramp.find_range(spring, start))
         end = max(end, start[ramp.input])
         scale = end / ramp.end
         if loop and loop.input == ramp.input:
@@ -218,22 +218,22 @@ class Model:
         ramp = replace(ramp, begin=max(onset, 0.0), end=end, step=scale * ramp.step)
         return replace(self, ramp=ramp, loop=loop)
 
-    def warnings(self, spring: Spring, values: Values) -> dict[int, str]:
+    def find_warnings(self, spring: TabulatedJoint, values: Values) -> dict[int, str]:
         """{index of the validity limit: warning} for values of inputs and outputs outside their intervals."""
         units = {v.name: "" if v.unit == "1" else f" {v.unit}" for v in (*self.inputs, *self.outputs)}
         messages = {}
-        for i, o in enumerate(self.outside):
+        for i, o in enumerate(self.validity_limits):
             value, unit = values[o.variable], units[o.variable]
             low, high = (float(end) for end in o.interval(spring.joint, spring.curve.end, values))
-            inside = Interval.of(ge=low, le=high)
+            inside = Interval.from_bounds(ge=low, le=high)
             if not inside.contains(value):
                 messages[i] = f"{o.variable} = {value:.6g}{unit} is outside {inside}{unit}: {o.doc}"
         return messages
 
-    def depends(self, output: str) -> Sequence[str]:
+    def list_dependencies(self, output: str) -> Sequence[str]:
         """Names of the inputs and states on which an output depends."""
         return self.dependencies.get(output, [v.name for v in self.inputs])
 
 
-BEYOND = "beyond the tabulated law the last tangent is continued"
+EXTRAPOLATION_WARNING = "beyond the tabulated law the last tangent is continued"
 """Text of the warning for a state beyond the end of the table."""

@@ -12,21 +12,28 @@ from math import factorial
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..contact.interface import CLOSE, MOST_STEPS, SIDE, InterfaceLaw, checked_spots, largest_spot
-from ..contact.powerlaw import Spots
+from ..contact.interface import (
+    MAX_ITERATIONS,
+    NEWTON_TOLERANCE,
+    ONE_SIDED_OFFSET,
+    InterfaceLaw,
+    find_checked_spots,
+    solve_largest_spot,
+)
+from ..contact.powerlaw import SpotDistribution
 from ..quantity import Array, Number
 
 MAX_ERROR = 1e-8
 """Largest allowed relative interpolation error of load and stiffness in a table [1]."""
-MOST_NODES = 2600
+MAX_NODES = 2600
 """Largest number of nodes of a table [1], limited by the memory of an FMU instance."""
-FINEST = 16
+MAX_REFINEMENT = 16
 """Largest refinement factor of the number of steps of a table [1]; factors are 1, 2, 4, ..."""
-STEPS = 12
+MIN_STEPS_PER_LOG_AREA = 12
 """Initial number of steps of the approach curve per unit of log-area [1], doubled until it is accurate."""
 CLOSING_STEPS = 48
 """Steps of the table over the closing of the contact [1]."""
-GAUSS = np.polynomial.legendre.leggauss(5)
+GAUSS_RULE = np.polynomial.legendre.leggauss(5)
 _TO_POLYNOMIAL = np.array(  # (y0, s0, c0, y1, s1, c1) on [0, 1] -> coefficients of 1, t, ... t^5
     [
         [1, 0, 0, 0, 0, 0],
@@ -37,7 +44,7 @@ _TO_POLYNOMIAL = np.array(  # (y0, s0, c0, y1, s1, c1) on [0, 1] -> coefficients
         [-6, -3, -0.5, 6, -3, 0.5],
     ]
 )
-_MEANS = 1.0 / np.arange(1.0, 7.0)
+_MONOMIAL_MEANS = 1.0 / np.arange(1.0, 7.0)
 """Means of 1, t, ... t^5 over [0, 1]."""
 
 
@@ -53,8 +60,8 @@ class Curve:
     displacement: Array
     load: Array
     stiffness: Array
-    bend_start: Array
-    bend_end: Array
+    slope_start: Array
+    slope_end: Array
     error: float = 0.0
     _coefficients: Array = field(init=False, repr=False)
     _energies: Array = field(init=False, repr=False)
@@ -62,13 +69,15 @@ class Curve:
     def __post_init__(self) -> None:
         h = np.diff(self.displacement)
         y, s = self.load, self.stiffness
-        data = np.stack([y[:-1], s[:-1] * h, self.bend_start * h**2, y[1:], s[1:] * h, self.bend_end * h**2])
+        data = np.stack(
+            [y[:-1], s[:-1] * h, self.slope_start * h**2, y[1:], s[1:] * h, self.slope_end * h**2]
+        )
         object.__setattr__(self, "_coefficients", _TO_POLYNOMIAL @ data)
-        areas = h * (_MEANS @ self._coefficients)
+        areas = h * (_MONOMIAL_MEANS @ self._coefficients)
         object.__setattr__(self, "_energies", np.concatenate([[0.0], np.cumsum(areas)]))
 
     @property
-    def closed(self) -> float:
+    def closing_end_load(self) -> float:
         """Load at zero displacement, which is the end of the closing of the contact."""
         return float(self.load[np.searchsorted(self.displacement, 0.0)])
 
@@ -81,7 +90,7 @@ class Curve:
         """Load and its derivatives up to `order` at displacements x (...): order + 1 arrays (...)."""
         x = np.asarray(x, dtype=np.float64)
         nodes = self.displacement
-        i = _segment(nodes, x)
+        i = _find_segment(nodes, x)
         inside = np.minimum(np.maximum(x, nodes[0]), nodes[-1])
         first = nodes[i]
         h = nodes[i + 1] - first
@@ -104,12 +113,14 @@ class Curve:
         """Integral (...) of the load from the first node to displacements x (...)."""
         x = np.asarray(x, dtype=np.float64)
         nodes = self.displacement
-        i = _segment(nodes, x)
+        i = _find_segment(nodes, x)
         inside = np.minimum(np.maximum(x, nodes[0]), nodes[-1])
         step = inside - nodes[i]
         t = step / (nodes[i + 1] - nodes[i])
         mean = np.zeros_like(t)
-        for monomial_mean, coefficient in zip(_MEANS[::-1], self._coefficients[::-1, i], strict=True):
+        for monomial_mean, coefficient in zip(
+            _MONOMIAL_MEANS[::-1], self._coefficients[::-1, i], strict=True
+        ):
             mean = mean * t + monomial_mean * coefficient
         energy = np.asarray(self._energies[i] + step * mean)
         excess = x - inside
@@ -131,13 +142,13 @@ class Curve:
         """
         y = np.asarray(load, dtype=np.float64)
         nodes, displacements = self.load, self.displacement
-        i = _segment(nodes, y)
+        i = _find_segment(nodes, y)
         inside = np.minimum(np.maximum(y, nodes[0]), nodes[-1])
         first, h = displacements[i], displacements[i + 1] - displacements[i]
         low, high = np.zeros(y.shape), np.ones(y.shape)
         t = (inside - nodes[i]) / (nodes[i + 1] - nodes[i])
         top, *rest = self._coefficients[::-1, i]
-        for _ in range(MOST_STEPS):
+        for _ in range(MAX_ITERATIONS):
             value, slope = top, np.zeros(y.shape)
             for coefficient in rest:
                 slope = slope * t + value
@@ -149,7 +160,7 @@ class Curve:
                 step = t + residual / slope
             newton = (step >= low) & (step <= high)
             new = np.where(newton, step, 0.5 * (low + high))
-            is_converged = np.all(np.abs(new - t) <= np.where(newton, CLOSE, 4e-16) * t)
+            is_converged = np.all(np.abs(new - t) <= np.where(newton, NEWTON_TOLERANCE, 4e-16) * t)
             t = new
             if is_converged:
                 break
@@ -160,12 +171,12 @@ class Curve:
         return np.asarray(x + np.where(flat, 0.0, (y - inside) / np.where(flat, 1.0, edge)))
 
 
-def _segment(nodes: Array, x: Array) -> NDArray[np.intp]:
+def _find_segment(nodes: Array, x: Array) -> NDArray[np.intp]:
     """Index (...) of the segment of the nodes (n) that contains x (...), or of the nearest segment."""
     return np.minimum(np.maximum(np.searchsorted(nodes, x, side="right") - 1, 0), nodes.size - 2)
 
 
-def assemble(pieces: list[tuple[Array, Array, Array, Array]], error: float = 0.0) -> Curve:
+def assemble_curve(pieces: list[tuple[Array, Array, Array, Array]], error: float = 0.0) -> Curve:
     """Join pieces of a curve; estimate the interpolation error.
 
     pieces : (displacement, load, stiffness, derivative of the stiffness), arrays of an odd number of nodes.
@@ -176,17 +187,20 @@ def assemble(pieces: list[tuple[Array, Array, Array, Array]], error: float = 0.0
     convergence is at least one, also at a kink. It is measured at the quarter points of the segments, because
     the spline is more accurate at their middle.
     """
-    fine, coarse = _join(pieces), _join([tuple(column[::2] for column in piece) for piece in pieces])  # type: ignore[misc]
+    fine, coarse = (
+        _join_pieces(pieces),
+        _join_pieces([tuple(column[::2] for column in piece) for piece in pieces]),
+    )  # type: ignore[misc]
     nodes = fine.displacement
     points = np.concatenate([nodes[:-1] + fraction * np.diff(nodes) for fraction in (0.25, 0.5, 0.75)])
     worst = error
     for value, coarse_value in zip(fine.derivatives(points), coarse.derivatives(points), strict=True):
         loaded = value > 0.0
         worst = max(worst, float(np.max(np.abs(coarse_value - value)[loaded] / value[loaded])) / 2.0)
-    return Curve(nodes, fine.load, fine.stiffness, fine.bend_start, fine.bend_end, worst)
+    return Curve(nodes, fine.load, fine.stiffness, fine.slope_start, fine.slope_end, worst)
 
 
-def refined(tabulate: Callable[[int], Curve], steps: int) -> Curve:
+def refine_curve(tabulate: Callable[[int], Curve], steps: int) -> Curve:
     """Refine a table until its error is at most MAX_ERROR.
 
     tabulate : function, number of steps -> table
@@ -195,12 +209,12 @@ def refined(tabulate: Callable[[int], Curve], steps: int) -> Curve:
     Raises RuntimeError if the table then is still inaccurate, or has more than MAX_NODES nodes.
     """
     factor = 1
-    while factor <= FINEST:
+    while factor <= MAX_REFINEMENT:
         curve = tabulate(steps * factor)
         factor *= 2
-        if curve.load.size > MOST_NODES:
+        if curve.load.size > MAX_NODES:
             raise RuntimeError(
-                f"the table needs more than {MOST_NODES} nodes: "
+                f"the table needs more than {MAX_NODES} nodes: "
                 "the law is not smooth enough with these parameters"
             )
         if curve.error <= MAX_ERROR:
@@ -211,7 +225,7 @@ def refined(tabulate: Callable[[int], Curve], steps: int) -> Curve:
     )
 
 
-def _join(pieces: list[tuple[Array, Array, Array, Array]]) -> Curve:
+def _join_pieces(pieces: list[tuple[Array, Array, Array, Array]]) -> Curve:
     x, y, s = (np.concatenate([piece[k][bool(i) :] for i, piece in enumerate(pieces)]) for k in range(3))
     start = np.concatenate([piece[3][:-1] for piece in pieces])
     end = np.concatenate([piece[3][1:] for piece in pieces])
@@ -222,7 +236,7 @@ CLOSING_RATIO = 20.0
 """Area of the largest spot over that of the largest plastic spot [1] at the end of the closing."""
 
 
-def closing(p: Number, k: Number, bend: Number, z: Number) -> tuple[Number, Number, Number, Number]:
+def closing_pressure(p: Number, k: Number, d2p: Number, z: Number) -> tuple[Number, Number, Number, Number]:
     """Closing of the contact: pressure from first contact (p = 0, k = 0) up to a point (p, k, dk/d delta).
 
     p, k, d2p : pressure [Pa], stiffness [N/m3] and its derivative [N/m4] at the end of the closing
@@ -236,9 +250,9 @@ def closing(p: Number, k: Number, bend: Number, z: Number) -> tuple[Number, Numb
     over a length n p/k, twice continuously differentiable at both ends. n is 4. If k grows with a power of p
     below 0.75, this length would make the pressure negative; n is then the largest value that does not.
     """
-    reach = closing_reach(p, k, bend)
+    reach = closing_length_ratio(p, k, d2p)
     length = reach * p / k
-    c = 0.5 * bend * length**2 / p - 3.0 * reach + 6.0
+    c = 0.5 * d2p * length**2 / p - 3.0 * reach + 6.0
     a, b = 4.0 - reach + c, reach - 3.0 - 2.0 * c
     load = p * z**3 * (a + b * z + c * z**2)
     stiffness = p / length * z**2 * (3.0 * a + 4.0 * b * z + 5.0 * c * z**2)
@@ -246,12 +260,12 @@ def closing(p: Number, k: Number, bend: Number, z: Number) -> tuple[Number, Numb
     return (z - 1.0) * length, load, stiffness, slope
 
 
-def closing_reach(p: Number, k: Number, bend: Number) -> Number:
+def closing_length_ratio(p: Number, k: Number, d2p: Number) -> Number:
     """Length n of the closing over p/k [1], see `closing_pressure`."""
-    return 40.0 / (8.0 + np.sqrt(np.maximum(64.0 - 80.0 * bend * p / k**2, 4.0)))
+    return 40.0 / (8.0 + np.sqrt(np.maximum(64.0 - 80.0 * d2p * p / k**2, 4.0)))
 
 
-def approach_curve(law: InterfaceLaw) -> Curve:
+def tabulate_approach(law: InterfaceLaw) -> Curve:
     """Table of the pressure [Pa] over the approach [m] of an interface; the approach is the integral of dp/k.
 
     Zero approach is the end of the closing of the contact; the closing has negative approaches. Beyond, the
@@ -264,33 +278,41 @@ def approach_curve(law: InterfaceLaw) -> Curve:
     ValueError   : all spots are plastic (no stiffness) at every pressure up to the hardness
     RuntimeError : the table does not reach the accuracy, see `refine_curve`
     """
-    spots, area = checked_spots(law), law.A_0
-    first = float(spots.stiff_onset + np.log(CLOSING_RATIO))
-    last = float(largest_spot(law, law.hardness))
+    spots, area = find_checked_spots(law), law.A_0
+    first = float(spots.stiffness_onset + np.log(CLOSING_RATIO))
+    last = float(solve_largest_spot(law, law.hardness))
     if not last > first:
         p = float(spots.total("load", first)) / area
         raise ValueError(
             f"the law has no stiffness below {p:.3g} Pa, above the hardness {float(law.hardness):.3g} Pa: "
             "the surface (D, G) leaves only plastic spots"
         )
-    return refined(lambda steps: _approach(spots, area, first, last, steps), STEPS)
+    return refine_curve(
+        lambda steps: _tabulate_log_areas(spots, area, first, last, steps), MIN_STEPS_PER_LOG_AREA
+    )
 
 
-def _approach(spots: Spots, area: float, first: float, last: float, steps: int) -> Curve:
+def _tabulate_log_areas(
+    spots: SpotDistribution, area: float, first: float, end_log_area: float, steps: int
+) -> Curve:
     """Table with the closing, and `steps` per unit of log-area from `first` to `end_log_area`."""
-    ends = [first, *(b for b in spots.breaks if first < b < last), last]
+    ends = [first, *(b for b in spots.sorted_regime_ends if first < b < end_log_area), end_log_area]
     pieces, offset = [], 0.0
     for start, end in pairwise(ends):
         n = max(2 * int(np.ceil(0.5 * steps * (end - start))), 2)
         u = np.linspace(start, end, n + 1)
         half = 0.5 * (u[1] - u[0])
-        inner = u[:-1, None] + half * (1.0 + GAUSS[0])
-        increments = half * (spots.slope("load", inner) / spots.total("normal", inner)) @ GAUSS[1]
+        inner = u[:-1, None] + half * (1.0 + GAUSS_RULE[0])
+        increments = (
+            half * (spots.total_derivative("load", inner) / spots.total("normal", inner)) @ GAUSS_RULE[1]
+        )
         x = offset + np.concatenate([[0.0], np.cumsum(increments)])
         offset = x[-1]
-        side = np.clip(u, start + SIDE, end - SIDE)  # one-sided derivative where a regime ends
+        side = np.clip(
+            u, start + ONE_SIDED_OFFSET, end - ONE_SIDED_OFFSET
+        )  # one-sided derivative where a regime ends
         k = spots.total("normal", u) / area
-        bend = k * spots.slope("normal", side) / spots.slope("load", side)
+        bend = k * spots.total_derivative("normal", side) / spots.total_derivative("load", side)
         pieces.append((x, spots.total("load", u) / area, k, bend))
     _, p, k, bend = (float(column[0]) for column in pieces[0])
-    return assemble([closing(p, k, bend, np.linspace(0.0, 1.0, CLOSING_STEPS + 1)), *pieces])
+    return assemble_curve([closing_pressure(p, k, bend, np.linspace(0.0, 1.0, CLOSING_STEPS + 1)), *pieces])

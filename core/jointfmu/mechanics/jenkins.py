@@ -11,21 +11,23 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..quantity import Array, Number, where
+from ..quantity import Array, Number, select
 
 Vector = Sequence[Number]
-ROUND_OFF = 1e-14
+ROUND_OFF_TOLERANCE = 1e-14
 """Relative excess over the limit [1] at which a slider still sticks: round-off of a return mapping."""
-AT_LIMIT = 1e-12
+AT_LIMIT_TOLERANCE = 1e-12
 """Relative distance below the limit [1] at which a force counts as at the limit."""
-NOTHING = 1e-200
+MIN_DENOMINATOR = 1e-200
 """Smallest denominator: replaces 0 in divisions by powers of forces and squared displacements."""
-TWELFTH = 1.0 / 12.0
-LARGEST = 1e30
+ONE_TWELFTH = 1.0 / 12.0
+MAX_INVERSE_LIMIT = 1e30
 """Largest value of 1/limit, for limits near zero."""
 
 
-def trial(force: Vector, keeps: Number, carries: Number, shift: Vector) -> Vector:
+def elastic_predictor(
+    force: Vector, retention: Number, secant_stiffness: Number, displacement: Vector
+) -> Vector:
     """Elastic predictor of the friction force, for a slider that sticks: retention q + secant_stiffness u.
 
     force            : q, one or two components, at the start of the increment
@@ -33,36 +35,36 @@ def trial(force: Vector, keeps: Number, carries: Number, shift: Vector) -> Vecto
     secant_stiffness : stiffness for the increment
     displacement     : u, displacement increment, as many components as q
     """
-    return [keeps * q + carries * u for q, u in zip(force, shift, strict=True)]
+    return [retention * q + secant_stiffness * u for q, u in zip(force, displacement, strict=True)]
 
 
-def beyond(force: Vector, limit: Number) -> Number:
+def yield_function(force: Vector, limit: Number) -> Number:
     """Yield function: positive if the force exceeds the limit.
 
     |q| - limit along one direction; |q|^2 - (1 + ROUND_OFF_TOLERANCE) limit^2 in a plane.
     """
     if len(force) == 1:
         return np.abs(force[0]) - limit
-    return force[0] * force[0] + force[1] * force[1] - (1.0 + ROUND_OFF) * (limit * limit)
+    return force[0] * force[0] + force[1] * force[1] - (1.0 + ROUND_OFF_TOLERANCE) * (limit * limit)
 
 
-def reaches(force: Vector, limit: Number) -> Number:
+def limit_function(force: Vector, limit: Number) -> Number:
     """Positive if the force is at its limit or above; a further motion in its direction causes slip.
 
     |q| - limit along one direction; |q|^2 - limit^2 in a plane, with the limit reduced by AT_LIMIT_TOLERANCE.
     """
-    reduced_limit = (1.0 - AT_LIMIT) * limit
+    reduced_limit = (1.0 - AT_LIMIT_TOLERANCE) * limit
     if len(force) == 1:
         return np.abs(force[0]) - reduced_limit
     return force[0] * force[0] + force[1] * force[1] - reduced_limit * reduced_limit
 
 
-_Returned = tuple[Vector, Vector, Number, Number]
+_MappingResult = tuple[Vector, Vector, Number, Number]
 """Result of a return mapping: forces, tangent stiffness, slip force, mean limit during the slip."""
 
 
 @dataclass(frozen=True, slots=True)
-class Slid:
+class ReturnMapping:
     """Update of one slider, or many, for a displacement increment.
 
     force   : friction force, one or two components
@@ -78,16 +80,16 @@ class Slid:
     slip: Number
 
 
-def slide(
+def return_map(
     force: Vector,
-    keeps: Number,
-    carries: Number,
-    shift: Vector,
-    before: Number,
-    after: Number,
+    retention: Number,
+    secant_stiffness: Number,
+    displacement: Vector,
+    limit_start: Number,
+    limit_end: Number,
     stiffness: Number,
     compliance: Number,
-) -> Slid:
+) -> ReturnMapping:
     """Return mapping of a slider for one displacement increment.
 
     force                  : friction force at the start
@@ -101,34 +103,41 @@ def slide(
     Under constant load tan(angle/2) between both decreases as exp(-K distance/limit) (Krieg and Krieg 1977).
     Angle and loss are accurate to third order in the distance, and exact if the force does not turn.
     """
-    predictor = trial(force, keeps, carries, shift)
+    predictor = elastic_predictor(force, retention, secant_stiffness, displacement)
     if len(predictor) == 1:
-        new_force, tangent, slip, mean = _along(force, predictor, before, after, stiffness)
+        new_force, tangent, slip, mean = _return_map_1d(force, predictor, limit_start, limit_end, stiffness)
     else:
-        new_force, tangent, slip, mean = _in_a_plane(
-            force, predictor, shift, carries, (before, after), stiffness
+        new_force, tangent, slip, mean = _return_map_2d(
+            force, predictor, displacement, secant_stiffness, (limit_start, limit_end), stiffness
         )
-    return Slid(new_force, tangent, mean * (slip * compliance), slip)
+    return ReturnMapping(new_force, tangent, mean * (slip * compliance), slip)
 
 
-def returned(force: Number, limit: Number) -> Number:
+def project_to_limit(force: Number, limit: Number) -> Number:
     """Clip a force along one direction to the range from -limit to limit."""
     return np.minimum(np.maximum(force, -limit), limit)
 
 
-def _along(force: Vector, tried: Vector, before: Number, limit: Number, stiffness: Number) -> _Returned:
-    new_force = returned(tried[0], limit)
-    slip = np.abs(tried[0] - new_force)
+def _return_map_1d(
+    force: Vector, predictor: Vector, limit_start: Number, limit_end: Number, stiffness: Number
+) -> _MappingResult:
+    new_force = project_to_limit(predictor[0], limit_end)
+    slip = np.abs(predictor[0] - new_force)
     slips = slip > 0.0
-    margin = np.maximum(before - where(tried[0] < 0.0, -force[0], force[0]), 0.0)
-    onset = margin / np.maximum(margin + slip, NOTHING)
-    mean = 0.5 * (limit + before + onset * (limit - before))
-    return [new_force], [where(slips, 0.0, stiffness), stiffness], slip, mean
+    margin = np.maximum(limit_start - select(predictor[0] < 0.0, -force[0], force[0]), 0.0)
+    onset = margin / np.maximum(margin + slip, MIN_DENOMINATOR)
+    mean = 0.5 * (limit_end + limit_start + onset * (limit_end - limit_start))
+    return [new_force], [select(slips, 0.0, stiffness), stiffness], slip, mean
 
 
-def _in_a_plane(
-    force: Vector, tried: Vector, shift: Vector, carries: Number, limits: Vector, stiffness: Number
-) -> _Returned:
+def _return_map_2d(
+    force: Vector,
+    predictor: Vector,
+    displacement: Vector,
+    secant_stiffness: Number,
+    limits: Vector,
+    stiffness: Number,
+) -> _MappingResult:
     """Return mapping in a plane: radial return of the predictor, corrected for the rotation of the force.
 
     Before the radial return, half of K distance slip/limit is added to the predictor in the direction of the
@@ -138,48 +147,53 @@ def _in_a_plane(
     limit g^2 (sin^2 start - sin^2 end)/12 by Hermite's rule, of the angle between force and displacement.
     """
     limit_start, limit = limits
-    distance = np.sqrt(np.maximum(shift[0] * shift[0] + shift[1] * shift[1], NOTHING))
-    e_x, e_y = shift[0] / distance, shift[1] / distance
-    square, squared = tried[0] * tried[0] + tried[1] * tried[1], limit * limit
-    largest = np.maximum(np.maximum(squared, square), NOTHING)
+    distance = np.sqrt(
+        np.maximum(displacement[0] * displacement[0] + displacement[1] * displacement[1], MIN_DENOMINATOR)
+    )
+    e_x, e_y = displacement[0] / distance, displacement[1] / distance
+    square, squared = predictor[0] * predictor[0] + predictor[1] * predictor[1], limit * limit
+    largest = np.maximum(np.maximum(squared, square), MIN_DENOMINATOR)
     size = np.sqrt(largest)
-    slips, out = beyond(tried, limit) > 0.0, size - limit
-    margin = np.maximum(limit_start * size - (force[0] * tried[0] + force[1] * tried[1]), 0.0)
+    slips, out = yield_function(predictor, limit) > 0.0, size - limit
+    margin = np.maximum(limit_start * size - (force[0] * predictor[0] + force[1] * predictor[1]), 0.0)
     sum_ = margin + out * size
-    inverse = 1.0 / np.maximum(limit * sum_, NOTHING)
-    per_limit, share = np.minimum(inverse * sum_, LARGEST), inverse * (limit * (out * size))
-    slip_angle = share * (carries * distance)
+    inverse = 1.0 / np.maximum(limit * sum_, MIN_DENOMINATOR)
+    per_limit, share = np.minimum(inverse * sum_, MAX_INVERSE_LIMIT), inverse * (limit * (out * size))
+    slip_angle = share * (secant_stiffness * distance)
     start_square = np.minimum(np.maximum(limit_start * limit_start, squared), largest)
     decrease = start_square - squared  # the limit decreased: slip starts from the reduced limit
     shrinks = squared * squared + decrease * decrease / 16.0
-    per_shrinks = 1.0 / np.maximum(shrinks * start_square, NOTHING)
+    per_shrinks = 1.0 / np.maximum(shrinks * start_square, MIN_DENOMINATOR)
     turn_factor = (
         0.25 * (decrease * squared * start_square + (largest - start_square) * shrinks) * per_shrinks
     )
-    correction_factor = turn_factor - TWELFTH * shrinks * per_shrinks * (slip_angle * slip_angle)
-    correction = where(slips, slip_angle * correction_factor, 0.0)
-    corrected = [q + correction * e for q, e in zip(tried, (e_x, e_y), strict=True)]
-    size2 = np.maximum(corrected[0] * corrected[0] + corrected[1] * corrected[1], NOTHING)
+    correction_factor = turn_factor - ONE_TWELFTH * shrinks * per_shrinks * (slip_angle * slip_angle)
+    correction = select(slips, slip_angle * correction_factor, 0.0)
+    corrected = [q + correction * e for q, e in zip(predictor, (e_x, e_y), strict=True)]
+    size2 = np.maximum(corrected[0] * corrected[0] + corrected[1] * corrected[1], MIN_DENOMINATOR)
     per_size = np.sqrt(size2) / size2
     n = [per_size * q for q in corrected]
     across = n[0] * e_y - n[1] * e_x
     rotation = slip_angle * across
     hermite = (
-        rotation * rotation * np.maximum(1.0 - squared * (per_size * per_size), 0.0) * (TWELFTH * per_limit)
+        rotation
+        * rotation
+        * np.maximum(1.0 - squared * (per_size * per_size), 0.0)
+        * (ONE_TWELFTH * per_limit)
     )
-    slip_stiffness = where(reaches(tried, limit) > 0.0, stiffness, 0.0)
+    slip_stiffness = select(limit_function(predictor, limit) > 0.0, stiffness, 0.0)
     tangent = [
         stiffness - slip_stiffness * n[0] * n[0],
         -slip_stiffness * n[0] * n[1],
         stiffness - slip_stiffness * n[1] * n[1],
     ]
-    new_force = [where(slips, limit * m, q) for m, q in zip(n, tried, strict=True)]
+    new_force = [select(slips, limit * m, q) for m, q in zip(n, predictor, strict=True)]
     mean = 0.5 * (limit_start + limit + (1.0 - share) * (limit - limit_start))
-    return new_force, tangent, where(slips, out + hermite, 0.0), mean
+    return new_force, tangent, select(slips, out + hermite, 0.0), mean
 
 
 @dataclass(frozen=True, slots=True)
-class Moved:
+class SliderUpdate:
     """Update of parallel sliders for a displacement increment, in any consistent units (also per area).
 
     force   : (..., n) friction force of each slider along one direction, (..., 2, n) in a plane
@@ -205,7 +219,7 @@ class Sliders:
     stiffness: Array
 
     @property
-    def acts(self) -> bool:
+    def is_active(self) -> bool:
         """Whether any slider has stiffness."""
         return bool(np.any(self.stiffness > 0.0))
 
@@ -214,28 +228,30 @@ class Sliders:
         """Compliance (..., n) of the springs; 0 for a slider without stiffness."""
         return np.asarray(compliance(self.stiffness))
 
-    def along(self, force: Array, shift: ArrayLike, before: Array, after: Array) -> Moved:
+    def advance_1d(
+        self, force: Array, displacement: ArrayLike, limit_start: Array, limit_end: Array
+    ) -> SliderUpdate:
         """Update the sliders for displacements (...) along one direction.
 
         force                  : (..., n) at the start
         limit_start, limit_end : (..., n) friction limits
         """
-        increment = [np.asarray(shift)[..., None]]
-        mapping = slide(
-            [force], 1.0, self.stiffness, increment, before, after, self.stiffness, self.compliance
+        increment = [np.asarray(displacement)[..., None]]
+        mapping = return_map(
+            [force], 1.0, self.stiffness, increment, limit_start, limit_end, self.stiffness, self.compliance
         )
-        return Moved(
+        return SliderUpdate(
             np.asarray(mapping.force[0]), np.sum(mapping.loss, axis=-1), np.sum(mapping.tangent[0], axis=-1)
         )
 
-    def path(self, ways: Array, limit: Array) -> Array:
+    def follow_increments(self, increments: Array, limit: Array) -> Array:
         """Total force (m) after each of m displacement increments along one direction, from the virgin state.
 
         limit : (n) constant friction limits
         """
-        force, totals = np.zeros_like(limit), np.empty(ways.size)
-        for n, increment in enumerate(ways):
-            force = returned(trial([force], 1.0, self.stiffness, [increment])[0], limit)
+        force, totals = np.zeros_like(limit), np.empty(increments.size)
+        for n, increment in enumerate(increments):
+            force = project_to_limit(elastic_predictor([force], 1.0, self.stiffness, [increment])[0], limit)
             totals[n] = np.add.reduce(force)
         return totals
 
@@ -243,4 +259,4 @@ class Sliders:
 def compliance(stiffness: Number) -> Number:
     """Compliance 1/stiffness; 0 where the stiffness is zero."""
     has_spring = stiffness > 0.0
-    return where(has_spring, 1.0 / where(has_spring, stiffness, 1.0), 0.0)
+    return select(has_spring, 1.0 / select(has_spring, stiffness, 1.0), 0.0)

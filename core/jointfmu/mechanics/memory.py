@@ -12,7 +12,7 @@ from ..quantity import Array
 
 
 @dataclass(frozen=True, slots=True)
-class Layout:
+class HistoryLayout:
     """Order and shapes of history variables that are stored one after the other in an array.
 
     shapes : {name: shape}; the shape of a single number is ()
@@ -20,8 +20,8 @@ class Layout:
 
     shapes: Mapping[str, tuple[int, ...]]
 
-    def __or__(self, other: "Layout") -> "Layout":
-        return Layout({**self.shapes, **other.shapes})
+    def __or__(self, right: "HistoryLayout") -> "HistoryLayout":
+        return HistoryLayout({**self.shapes, **right.shapes})
 
     @property
     def size(self) -> int:
@@ -29,24 +29,24 @@ class Layout:
         return sum(map(prod, self.shapes.values()))
 
     @property
-    def places(self) -> dict[str, int]:
+    def offsets(self) -> dict[str, int]:
         """{name: index of its first value in the array}."""
         return dict(zip(self.shapes, accumulate(map(prod, self.shapes.values()), initial=0), strict=False))
 
-    def rest(self) -> Array:
+    def virgin_history(self) -> Array:
         """Array (n) of history variables in the virgin state: zeros."""
         return np.zeros(self.size)
 
-    def split(self, memory: Array) -> dict[str, Array]:
+    def split(self, history: Array) -> dict[str, Array]:
         """Views {name: variable (..., *shape)} into arrays of history variables (..., n)."""
         return {
-            name: memory[..., start : start + prod(shape)].reshape(memory.shape[:-1] + shape)
-            for (name, shape), start in zip(self.shapes.items(), self.places.values(), strict=True)
+            name: history[..., start : start + prod(shape)].reshape(history.shape[:-1] + shape)
+            for (name, shape), start in zip(self.shapes.items(), self.offsets.values(), strict=True)
         }
 
-    def joined(self, parts: Mapping[str, ArrayLike], *shape: int) -> Array:
+    def join(self, variables: Mapping[str, ArrayLike], *shape: int) -> Array:
         """Array (*shape, n) of history variables from {name: variable (..., *its shape)}."""
         memory = np.empty((*shape, self.size))
         for name, view in self.split(memory).items():
-            view[...] = parts[name]
+            view[...] = variables[name]
         return memory

@@ -19,42 +19,42 @@ from functools import cache, cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..quantity import Array, Number, where
+from ..quantity import Array, Number, select
 from .curve import Curve
-from .footprint.reproducible import ranks, to_digits
-from .jenkins import Moved, Slid, Vector, compliance, slide
+from .footprint.reproducible import rank_descending, round_to_digits
+from .jenkins import ReturnMapping, SliderUpdate, Vector, compliance, return_map
 
-SMALL = 1e-3
+SMALL_CHANGE_RATIO = 1e-3
 """Change of the approach over the range of heights of a slider [1] below which its mean stiffness is computed
 from the derivatives at both ends (fourth order): the difference of its limits would cancel."""
-SHORT = 3e-2
+SMALL_CYCLE_RATIO = 3e-2
 """Stiffness times displacement over the load [1] below which the energies of a cycle are computed from
 derivatives of the curve: differences of its loads would cancel."""
 GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
 """Golden ratio conjugate (sqrt(5) - 1)/2 [1]."""
-SPREAD = 1.0 / np.sqrt(12.0)
+UNIFORM_DEVIATION = 1.0 / np.sqrt(12.0)
 """Standard deviation of a uniform distribution over its range [1]."""
 
 
-BELOW, ABOVE = 10, 7
+HEIGHTS_BELOW, HEIGHTS_ABOVE = 10, 7
 """Number of slider heights below the reference approach, and between it and the end of the curve [1]."""
-SLIDERS = 2 * (BELOW + ABOVE + 2)
+FOUNDATION_SLIDERS = 2 * (HEIGHTS_BELOW + HEIGHTS_ABOVE + 2)
 """Number of sliders of a foundation with the heights of `slider_heights` [1]."""
-LOWEST, HIGHEST, USUAL = 1e-5, 0.1, 1e-3
+MIN_REFERENCE_RATIO, MAX_REFERENCE_RATIO, DEFAULT_REFERENCE_RATIO = 1e-5, 0.1, 1e-3
 """Smallest and largest load at the reference approach, and load that replaces a smaller one, over the load at
 the end of the curve [1]."""
 
 
-def offsets(load: Array) -> Array:
+def height_offsets(load: Array) -> Array:
     """Offsets (n) [1] of the slider heights of n parallel foundations, for which their errors cancel.
 
     load : (n) loads of the foundations, any unit. The offsets are multiples of the golden ratio modulo 1, in
         descending order of the loads; equal loads keep their order.
     """
-    return np.asarray((ranks(load) * GOLDEN + 0.5) % 1.0)
+    return np.asarray((rank_descending(load) * GOLDEN + 0.5) % 1.0)
 
 
-def around(curve: Curve, reference: ArrayLike, offset: ArrayLike) -> Array:
+def slider_heights(curve: Curve, reference: ArrayLike, offset: ArrayLike) -> Array:
     """Heights (..., n) [m] that separate the sliders of foundations near a reference approach.
 
     They are dense just below the reference approach, where the first springs slip, and near the first
@@ -71,21 +71,25 @@ def around(curve: Curve, reference: ArrayLike, offset: ArrayLike) -> Array:
     )
     end = curve.end[1]
     load = curve.derivatives(reference_approach, 0)[0]
-    touches = load > LOWEST * end
-    load = np.where(touches, np.minimum(load, HIGHEST * end), USUAL * end)[..., None]
-    position_below = (np.arange(BELOW)[::-1] + offset_column) / BELOW
-    position_above = (np.arange(ABOVE) + offset_column) / ABOVE
+    touches = load > MIN_REFERENCE_RATIO * end
+    load = np.where(touches, np.minimum(load, MAX_REFERENCE_RATIO * end), DEFAULT_REFERENCE_RATIO * end)[
+        ..., None
+    ]
+    position_below = (np.arange(HEIGHTS_BELOW)[::-1] + offset_column) / HEIGHTS_BELOW
+    position_above = (np.arange(HEIGHTS_ABOVE) + offset_column) / HEIGHTS_ABOVE
     loads_below = load * (1.0 - position_below) ** 2 / (position_below**2 + (1.0 - position_below) ** 2)
     loads_above = load * np.exp(np.log(end / load) * position_above**2)
     lowest, highest = (np.full_like(load, x) for x in curve.displacement[[0, -1]])
     inner_heights = curve.inverse(np.concatenate([loads_below, load, loads_above], axis=-1))
-    inner_heights[..., BELOW] = np.where(
-        touches & (load[..., 0] < HIGHEST * end), reference_approach, inner_heights[..., BELOW]
+    inner_heights[..., HEIGHTS_BELOW] = np.where(
+        touches & (load[..., 0] < MAX_REFERENCE_RATIO * end),
+        reference_approach,
+        inner_heights[..., HEIGHTS_BELOW],
     )
     return np.concatenate([lowest, inner_heights, highest], axis=-1)
 
 
-def lowered(height: Array, lowest: ArrayLike) -> Array:
+def heights_after_liftoff(heights: Array, min_approach: ArrayLike) -> Array:
     """Slider heights after partial lift-off: the first height above the smallest approach moves down to it.
 
     heights      : (..., n) [m]
@@ -94,15 +98,15 @@ def lowered(height: Array, lowest: ArrayLike) -> Array:
     Springs above min_approach have lifted off and have no force, so this height can be changed. Springs that
     touch and lift off periodically are then in another range than springs that stay in contact.
     """
-    smallest = np.asarray(lowest, dtype=np.float64)[..., None]
-    is_below = height < smallest
+    smallest = np.asarray(min_approach, dtype=np.float64)[..., None]
+    is_below = heights < smallest
     next_above = is_below[..., :-1] & ~is_below[..., 1:]
     next_above[..., -1] = False  # no springs are beyond the last height
-    return np.concatenate([height[..., :1], np.where(next_above, smallest, height[..., 1:])], axis=-1)
+    return np.concatenate([heights[..., :1], np.where(next_above, smallest, heights[..., 1:])], axis=-1)
 
 
 @cache
-def turning(sliders: int) -> Array:
+def torsion_directions(sliders: int) -> Array:
     """Tangential unit vectors (2, n) [1] of the sliders on the circle of a patch.
 
     A rotation theta [rad] of a patch with the circle radius r [m] displaces a slider by r theta times this
@@ -111,25 +115,25 @@ def turning(sliders: int) -> Array:
     degrees.
     """
     angle = np.pi * (GOLDEN * np.arange(sliders // 2) % 1.0)
-    unit = to_digits(np.stack([-np.sin(angle), np.cos(angle)]))
+    unit = round_to_digits(np.stack([-np.sin(angle), np.cos(angle)]))
     unit /= np.sqrt(unit[0] * unit[0] + unit[1] * unit[1])
     directions = np.asarray(np.stack([unit, -unit], axis=-1).reshape(2, -1))
     directions.flags.writeable = False
     return directions
 
 
-def together(each: Array) -> Array:
+def resultant(slider_forces: Array) -> Array:
     """Resultant (..., 3) of slider forces (..., 2, n): along x, along y, around the centre of the patch."""
-    around_it = np.sum(turning(each.shape[-1]) * each, axis=(-2, -1))
-    return np.concatenate([np.sum(each, axis=-1), around_it[..., None]], axis=-1)
+    around_it = np.sum(torsion_directions(slider_forces.shape[-1]) * slider_forces, axis=(-2, -1))
+    return np.concatenate([np.sum(slider_forces, axis=-1), around_it[..., None]], axis=-1)
 
 
-HARDLY = 1e-3
+FULL_STICK_RATIO = 1e-3
 """Displacement over that of gross slip [1] below which a foundation counts as in full stick."""
 
 
 @dataclass(frozen=True, slots=True)
-class Carried:
+class SliderProperties:
     """Properties (..., n) of sliders at an approach, per area.
 
     stiffness : [Pa/m] tangential; 0 without contact
@@ -156,28 +160,28 @@ class Foundation:
     """
 
     curve: Curve
-    ratio: float
-    friction: float
-    height: Array
+    stiffness_ratio: float
+    friction_coefficient: float
+    heights: Array
 
     @property
-    def sliders(self) -> int:
+    def slider_count(self) -> int:
         """Number n of sliders [1]."""
-        return 2 * int(self.height.shape[-1] - 1)
+        return 2 * int(self.heights.shape[-1] - 1)
 
-    def at_rest(self, *shape: int) -> Array:
+    def virgin_forces(self, *shape: int) -> Array:
         """Slider forces (*shape, 2, n) of the virgin state: zeros."""
-        return np.zeros((*shape, 2, self.sliders))
+        return np.zeros((*shape, 2, self.slider_count))
 
-    def stick(self, approach: ArrayLike) -> Array:
+    def stick_stiffness(self, approach: ArrayLike) -> Array:
         """Tangential stiffness (...) [Pa/m] in full stick at approaches (...) [m]."""
         slope_here, slope_at_first = (
-            self.curve.derivatives(x, 1)[1] for x in (approach, self.height[..., 0])
+            self.curve.derivatives(x, 1)[1] for x in (approach, self.heights[..., 0])
         )
-        return np.asarray(self.ratio * np.maximum(slope_here - slope_at_first, 0.0))
+        return np.asarray(self.stiffness_ratio * np.maximum(slope_here - slope_at_first, 0.0))
 
-    def rested(
-        self, force: Array, before: ArrayLike, after: ArrayLike, shift: ArrayLike
+    def full_stick_update(
+        self, force: Array, start: ArrayLike, end: ArrayLike, tangential_displacement: ArrayLike
     ) -> tuple[Array, Array]:
         """Update in full stick: traction (..., 3) [Pa] after an increment, and whether (...) it holds.
 
@@ -185,33 +189,39 @@ class Foundation:
         start, end : (...) [m] approaches
         tangential_displacement : (..., 3) [m] of the other side along x, y and around the centre
         """
-        stiffness_start, stiffness_end = self.stick(before), self.stick(after)
-        is_unloading = np.asarray(after) < np.asarray(before)
-        rule = rest_rule(stiffness_start, stiffness_end, is_unloading)
+        stiffness_start, stiffness_end = self.stick_stiffness(start), self.stick_stiffness(end)
+        is_unloading = np.asarray(end) < np.asarray(start)
+        rule = stick_retention(stiffness_start, stiffness_end, is_unloading)
         retention, secant_stiffness = (np.asarray(factor)[..., None] for factor in rule)
-        traction = retention * force + secant_stiffness * np.asarray(shift)
+        traction = retention * force + secant_stiffness * np.asarray(tangential_displacement)
         max_traction = (
-            HARDLY * self.friction / self.ratio * stiffness_end * (np.asarray(after) - self.height[..., 0])
+            FULL_STICK_RATIO
+            * self.friction_coefficient
+            / self.stiffness_ratio
+            * stiffness_end
+            * (np.asarray(end) - self.heights[..., 0])
         )
         return traction, np.sqrt(np.sum(traction**2, axis=-1)) <= max_traction
 
-    def spread(self, force: Array, approach: ArrayLike) -> Array:
+    def distribute_stick_force(self, force: Array, approach: ArrayLike) -> Array:
         """Distribute a traction (..., 3) of full stick to sliders, by stiffness: forces (..., 2, n) [Pa]."""
-        stiffness = self.carried(approach).stiffness
+        stiffness = self.slider_properties(approach).stiffness
         total = np.sum(stiffness, axis=-1, keepdims=True)
         share = np.divide(stiffness, total, out=np.zeros_like(stiffness), where=total > 0.0)
-        unit_forces = force[..., :2, None] + force[..., 2:, None] * turning(self.sliders)
+        unit_forces = force[..., :2, None] + force[..., 2:, None] * torsion_directions(self.slider_count)
         return np.asarray(unit_forces * share[..., None, :])
 
-    def backbone(self, approach: ArrayLike, shift: ArrayLike) -> Array:
+    def virgin_traction(self, approach: ArrayLike, tangential_displacement: ArrayLike) -> Array:
         """Virgin curve: traction (...) [Pa] at displacements u (...) >= 0 [m], constant approach (...) [m].
 
         mu [p(delta) - p(delta - kappa u/mu)], the sum over all springs, without discretisation by sliders.
         """
-        load, slipped_load, _ = self.slipped(approach, shift)
-        return np.asarray(self.friction * (load - slipped_load))
+        load, slipped_load, _ = self.slipped_pressure(approach, tangential_displacement)
+        return np.asarray(self.friction_coefficient * (load - slipped_load))
 
-    def slipped(self, approach: ArrayLike, shift: ArrayLike) -> tuple[Array, Array, Array]:
+    def slipped_pressure(
+        self, approach: ArrayLike, tangential_displacement: ArrayLike
+    ) -> tuple[Array, Array, Array]:
         """Pressures (...) [Pa] at the approach delta and at delta - kappa u/mu, and the energy in between.
 
         Springs between both heights have slipped. The energy (...) [J/m2] is the integral of the pressure
@@ -220,40 +230,43 @@ class Foundation:
         approach                : delta (...) [m]
         tangential_displacement : u (...) >= 0 [m] from the virgin state
         """
-        upper, displacement = np.asarray(approach, dtype=np.float64), np.asarray(shift, dtype=np.float64)
-        lower = np.asarray(upper - displacement / (self.friction / self.ratio))
+        upper, displacement = (
+            np.asarray(approach, dtype=np.float64),
+            np.asarray(tangential_displacement, dtype=np.float64),
+        )
+        lower = np.asarray(upper - displacement / (self.friction_coefficient / self.stiffness_ratio))
         load, slipped_load = (self.curve.derivatives(x, 0)[0] for x in (upper, lower))
         return load, slipped_load, self.curve.energy(upper) - self.curve.energy(lower)
 
-    def loop(self, approach: ArrayLike, size: ArrayLike) -> tuple[Array, Array]:
+    def cycle_energies(self, approach: ArrayLike, amplitude: ArrayLike) -> tuple[Array, Array]:
         """Loss (...) [J/m2] of a cycle with amplitudes (...) [m], elastic energy (...) [J/m2] at its ends.
 
         At constant approaches (...) [m]. The relative accuracy is full also for amplitudes near zero.
         """
-        upper_approach, a = np.asarray(approach, dtype=np.float64), np.asarray(size, dtype=np.float64)
-        law = self.friction, self.ratio, a
+        upper_approach, a = np.asarray(approach, dtype=np.float64), np.asarray(amplitude, dtype=np.float64)
+        law = self.friction_coefficient, self.stiffness_ratio, a
         (load, *upper), (_, *lower) = (
             self.curve.derivatives(x, 3)
-            for x in (upper_approach, upper_approach - a / (self.friction / self.ratio))
+            for x in (upper_approach, upper_approach - a / (self.friction_coefficient / self.stiffness_ratio))
         )
         general, small_amplitude = (
-            loop(*law, *self.slipped(upper_approach, a)),
-            short_loop(*law, upper, lower),
+            cycle_energies(*law, *self.slipped_pressure(upper_approach, a)),
+            small_cycle_energies(*law, upper, lower),
         )
-        is_small = short(*law, load, upper[0])
+        is_small = is_small_amplitude(*law, load, upper[0])
         loss, stored = (np.where(is_small, *each) for each in zip(small_amplitude, general, strict=True))
         return loss, stored
 
     @cached_property
-    def _ends(self) -> list[Array]:
+    def _height_loads(self) -> list[Array]:
         """Pressure [Pa] and stiffness [Pa/m] of the curve at the heights."""
-        return self.curve.derivatives(self.height, 1)
+        return self.curve.derivatives(self.heights, 1)
 
-    def carried(self, approach: ArrayLike) -> Carried:
+    def slider_properties(self, approach: ArrayLike) -> SliderProperties:
         """Stiffness, friction limit and slope of the sliders at approaches (...) [m]."""
         delta = np.asarray(approach, dtype=np.float64)[..., None]
         (low, p_low, k_low), (high, p_high, k_high) = (
-            [slider_stiffness[..., part] for slider_stiffness in (self.height, *self._ends)]
+            [slider_stiffness[..., part] for slider_stiffness in (self.heights, *self._height_loads)]
             for part in (slice(-1), slice(1, None))
         )
         is_touching, is_full = delta >= low, delta >= high
@@ -262,16 +275,23 @@ class Foundation:
         load = np.where(is_touching, np.where(is_full, p_high, p) - p_low - k_low * width, 0.0)
         springs = np.where(is_touching, np.where(is_full, k_high, k) - k_low, 0.0)
         bend = np.where(is_touching & ~is_full, slope, 0.0)
-        slider_stiffness, rate, limit_early, limit_late = touching(
-            load, springs, bend, width, self.ratio, self.friction
+        slider_stiffness, rate, limit_early, limit_late = partial_contact(
+            load, springs, bend, width, self.stiffness_ratio, self.friction_coefficient
         )
-        grown = self.friction / self.ratio * slider_stiffness * np.where(is_full, delta - high, 0.0)
+        grown = (
+            self.friction_coefficient
+            / self.stiffness_ratio
+            * slider_stiffness
+            * np.where(is_full, delta - high, 0.0)
+        )
         limit = np.stack([limit_early + grown, limit_late + grown], axis=-1).reshape(
             *slider_stiffness.shape[:-1], -1
         )
-        return Carried(np.repeat(slider_stiffness, 2, axis=-1), limit, np.repeat(rate, 2, axis=-1))
+        return SliderProperties(np.repeat(slider_stiffness, 2, axis=-1), limit, np.repeat(rate, 2, axis=-1))
 
-    def moved(self, force: Array, before: ArrayLike, after: ArrayLike, shift: ArrayLike) -> Moved:
+    def advance(
+        self, force: Array, start: ArrayLike, end: ArrayLike, tangential_displacement: ArrayLike
+    ) -> SliderUpdate:
         """Return-map all sliders for one increment, see `return_map`.
 
         force      : (..., 2, n) [Pa] slider forces at the start
@@ -281,115 +301,144 @@ class Foundation:
 
         The loss is exact for sliders of constant stiffness, else accurate to third order in the increment.
         """
-        path, properties_end = _Path.of(before, after, self._along(shift)), self.carried(after)
-        properties_start = self.carried(before) if np.any(path.change) else properties_end
-        update = self._slid(force, properties_start, properties_end, path)
+        path, properties_end = (
+            _Increment.from_ends(start, end, self._slider_displacements(tangential_displacement)),
+            self.slider_properties(end),
+        )
+        properties_start = self.slider_properties(start) if np.any(path.approach_change) else properties_end
+        update = self._return_map(force, properties_start, properties_end, path)
         stiffness = properties_start.stiffness, properties_end.stiffness
         loss, is_constant = update.loss, stiffness[0] == stiffness[1]
         if not np.all(is_constant):
-            changes = ~self._touches_alike(path)
-            middle = self._halfway(force, properties_start, path) if np.any(changes) else [0.0, 0.0]
-            varying = changing_loss(
-                _parts(force), update.force, path.parts, stiffness, update.slip, changes, middle
+            changes = ~self._keeps_contact_state(path)
+            middle = self._middle_forces(force, properties_start, path) if np.any(changes) else [0.0, 0.0]
+            varying = varying_stiffness_loss(
+                _components(force), update.force, path.components, stiffness, update.slip, changes, middle
             )
             loss = np.where(is_constant, loss, varying)
-        return Moved(np.stack(update.force, axis=-2), np.sum(loss, axis=-1), self._tangent(*update.tangent))
-
-    def _along(self, shift: ArrayLike) -> Array:
-        """Displacements of the sliders [m]: (..., 2, 1) without rotation, (..., 2, n) with rotation."""
-        column = np.asarray(shift, dtype=np.float64)[..., None]
-        has_rotation = column.shape[-2] > 2
-        return np.asarray(
-            column[..., :2, :] + column[..., 2:, :] * turning(self.sliders) if has_rotation else column
+        return SliderUpdate(
+            np.stack(update.force, axis=-2), np.sum(loss, axis=-1), self._foundation_tangent(*update.tangent)
         )
 
-    def _tangent(self, xx: Array, xy: Array, yy: Array) -> Array:
+    def _slider_displacements(self, tangential_displacement: ArrayLike) -> Array:
+        """Displacements of the sliders [m]: (..., 2, 1) without rotation, (..., 2, n) with rotation."""
+        column = np.asarray(tangential_displacement, dtype=np.float64)[..., None]
+        has_rotation = column.shape[-2] > 2
+        return np.asarray(
+            column[..., :2, :] + column[..., 2:, :] * torsion_directions(self.slider_count)
+            if has_rotation
+            else column
+        )
+
+    def _foundation_tangent(self, xx: Array, xy: Array, yy: Array) -> Array:
         """Tangent stiffness (..., 6) [Pa/m] of the foundation: xx, xy, yy, and xt, yt, tt with the rotation.
 
         xx, xy, yy : (..., n) tangent stiffness of the sliders
         """
-        e_x, e_y = turning(self.sliders)
+        e_x, e_y = torsion_directions(self.slider_count)
         x_t, y_t = xx * e_x + xy * e_y, xy * e_x + yy * e_y
         components = np.stack([xx, xy, yy, x_t, y_t, x_t * e_x + y_t * e_y])
         return np.asarray(np.moveaxis(np.sum(components, axis=-1), 0, -1))
 
-    def _slid(self, force: Array, start: Carried, end: Carried, path: "_Path") -> Slid:
+    def _return_map(
+        self, force: Array, start: SliderProperties, end: SliderProperties, path: "_Increment"
+    ) -> ReturnMapping:
         """Return mapping of sliders (..., n); its loss is valid for constant stiffness, see `advance`."""
-        change: Number = path.change
+        change: Number = path.approach_change
         rise: Number = 0.0
         small: Number = True
         if start is not end:
-            steps = np.repeat(np.diff(self.height), 2, axis=-1)
-            small = (self._touches_alike(path) & (np.abs(change) < SMALL * steps)) | (change == 0.0)
+            steps = np.repeat(np.diff(self.heights), 2, axis=-1)
+            small = (self._keeps_contact_state(path) & (np.abs(change) < SMALL_CHANGE_RATIO * steps)) | (
+                change == 0.0
+            )
             limits = (end.limit - start.limit).reshape(*end.limit.shape[:-1], -1, 2)
-            rise = 0.5 * self.ratio / self.friction * np.repeat(np.sum(limits, axis=-1), 2, axis=-1)
+            rise = (
+                0.5
+                * self.stiffness_ratio
+                / self.friction_coefficient
+                * np.repeat(np.sum(limits, axis=-1), 2, axis=-1)
+            )
         ends = (start.stiffness, start.slope), (end.stiffness, end.slope)
-        keeps, carries = carrying(*ends, change, rise, small)
+        keeps, carries = retention_and_stiffness(*ends, change, rise, small)
         springs = end.stiffness, compliance(end.stiffness)
-        return slide(_parts(force), keeps, carries, path.parts, start.limit, end.limit, *springs)
+        return return_map(
+            _components(force), keeps, carries, path.components, start.limit, end.limit, *springs
+        )
 
-    def _halfway(self, force: Array, start: Carried, path: "_Path") -> Vector:
+    def _middle_forces(self, force: Array, start: SliderProperties, path: "_Increment") -> Vector:
         """Slider forces in the middle of an increment."""
-        half = path.part(0.5)
-        return self._slid(force, start, self.carried(half.last[..., 0]), half).force
+        half = path.scale(0.5)
+        return self._return_map(force, start, self.slider_properties(half.end[..., 0]), half).force
 
-    def _touches_alike(self, path: "_Path") -> NDArray[np.bool_]:
+    def _keeps_contact_state(self, path: "_Increment") -> NDArray[np.bool_]:
         """Whether each slider (..., n) has the same contact state (full, partial, open) at both ends."""
-        low, high = (np.repeat(h, 2, axis=-1) for h in (self.height[..., :-1], self.height[..., 1:]))
-        first, last = path.first, path.last
+        low, high = (np.repeat(h, 2, axis=-1) for h in (self.heights[..., :-1], self.heights[..., 1:]))
+        first, last = path.start, path.end
         return np.asarray(((first > low) == (last > low)) & ((first >= high) == (last >= high)))
 
 
 @dataclass(frozen=True, slots=True)
-class _Path:
+class _Increment:
     """Increment of the relative displacement.
 
     start, end              : (..., 1) [m] approaches at its ends
     tangential_displacement : (..., 2, 1) or (..., 2, n) [m]
     """
 
-    first: Array
-    last: Array
-    along: Array
+    start: Array
+    end: Array
+    tangential_displacement: Array
 
     @classmethod
-    def of(cls, before: ArrayLike, after: ArrayLike, shift: Array) -> "_Path":
-        first_approach, last_approach = (np.asarray(x, dtype=np.float64)[..., None] for x in (before, after))
-        return cls(first_approach, last_approach, shift)
+    def from_ends(cls, start: ArrayLike, end: ArrayLike, tangential_displacement: Array) -> "_Increment":
+        first_approach, last_approach = (np.asarray(x, dtype=np.float64)[..., None] for x in (start, end))
+        return cls(first_approach, last_approach, tangential_displacement)
 
     @property
-    def change(self) -> Array:
+    def approach_change(self) -> Array:
         """Change of the approach (..., 1) [m]."""
-        return np.asarray(self.last - self.first)
+        return np.asarray(self.end - self.start)
 
     @property
-    def parts(self) -> tuple[Array, Array]:
+    def components(self) -> tuple[Array, Array]:
         """Tangential displacements (..., 1) or (..., n) [m] along x and along y."""
-        return _parts(self.along)
+        return _components(self.tangential_displacement)
 
-    def part(self, part: float) -> "_Path":
+    def scale(self, load_factor: float) -> "_Increment":
         """First part of the increment; load_factor [1] from 0 to 1."""
-        return _Path(self.first, self.first + part * self.change, part * self.along)
+        return _Increment(
+            self.start,
+            self.start + load_factor * self.approach_change,
+            load_factor * self.tangential_displacement,
+        )
 
 
-def _parts(vector: Array) -> tuple[Array, Array]:
+def _components(vector: Array) -> tuple[Array, Array]:
     """Components x, y (..., n) of vectors (..., 2, n)."""
     return vector[..., 0, :], vector[..., 1, :]
 
 
-def _cycle(
-    friction: Number, ratio: Number, size: Number, fall: Number, excess: Number
+def _cycle_energies(
+    friction_coefficient: Number, stiffness_ratio: Number, amplitude: Number, fall: Number, excess: Number
 ) -> tuple[Number, Number]:
     """Loss and elastic energy [J/m2] of a cycle, see `cycle_energies`.
 
     fall   : [Pa] difference of the pressures at the approach and at the lowest slipped height
     excess : [J/m2] trapezoidal rule minus exact integral of the pressure between both
     """
-    return 8.0 * friction**2 / ratio * np.maximum(excess, 0.0), 0.5 * friction * fall * size
+    return 8.0 * friction_coefficient**2 / stiffness_ratio * np.maximum(
+        excess, 0.0
+    ), 0.5 * friction_coefficient * fall * amplitude
 
 
-def loop(
-    friction: Number, ratio: Number, size: Number, load: Number, then: Number, energy: Number
+def cycle_energies(
+    friction_coefficient: Number,
+    stiffness_ratio: Number,
+    amplitude: Number,
+    load: Number,
+    slipped_load: Number,
+    energy: Number,
 ) -> tuple[Number, Number]:
     """Loss [J/m2] of a cycle at constant approach, and elastic energy [J/m2] at its ends.
 
@@ -399,34 +448,47 @@ def loop(
     friction_coefficient, stiffness_ratio, amplitude : mu [1], kappa = K_T/K_N [1], a [m]
     load, slipped_load, energy : result of `Foundation.slipped_pressure`
     """
-    reach = size * (ratio / friction)
-    return _cycle(friction, ratio, size, load - then, 0.5 * reach * (load + then) - energy)
+    reach = amplitude * (stiffness_ratio / friction_coefficient)
+    return _cycle_energies(
+        friction_coefficient,
+        stiffness_ratio,
+        amplitude,
+        load - slipped_load,
+        0.5 * reach * (load + slipped_load) - energy,
+    )
 
 
-def short_loop(
-    friction: Number, ratio: Number, size: Number, now: Vector, then: Vector
+def small_cycle_energies(
+    friction_coefficient: Number, stiffness_ratio: Number, amplitude: Number, upper: Vector, lower: Vector
 ) -> tuple[Number, Number]:
     """Energies of `cycle_energies` for small amplitudes, exact within one segment of the curve.
 
     upper, lower : first three derivatives of the pressure at delta and at delta - kappa a/mu
     """
     reach, (upper_stiffness, upper_d2p, upper_d3p), (lower_stiffness, lower_d2p, lower_d3p) = (
-        size * (ratio / friction),
-        now,
-        then,
+        amplitude * (stiffness_ratio / friction_coefficient),
+        upper,
+        lower,
     )
     fall = reach * (0.5 * (upper_stiffness + lower_stiffness) - reach * (upper_d2p - lower_d2p) / 12.0)
     excess = reach**3 * ((upper_d2p + lower_d2p) / 24.0 - reach * (upper_d3p - lower_d3p) / 120.0)
-    return _cycle(friction, ratio, size, fall, excess)
+    return _cycle_energies(friction_coefficient, stiffness_ratio, amplitude, fall, excess)
 
 
-def short(friction: Number, ratio: Number, size: Number, load: Number, stiffness: Number) -> Number:
+def is_small_amplitude(
+    friction_coefficient: Number, stiffness_ratio: Number, amplitude: Number, load: Number, stiffness: Number
+) -> Number:
     """Whether `small_cycle_energies` holds for an amplitude [m], at a load [Pa] and stiffness [Pa/m]."""
-    return size * (ratio / friction) * stiffness < SHORT * load
+    return amplitude * (stiffness_ratio / friction_coefficient) * stiffness < SMALL_CYCLE_RATIO * load
 
 
-def touching(
-    load: Number, stiffness: Number, bend: Number, width: Number, ratio: Number, friction: Number
+def partial_contact(
+    load: Number,
+    stiffness: Number,
+    d2p: Number,
+    width: Number,
+    stiffness_ratio: Number,
+    friction_coefficient: Number,
 ) -> tuple[Number, ...]:
     """Partial contact of a range of springs: the approach exceeds its lower height by `width` [m].
 
@@ -437,29 +499,40 @@ def touching(
     approach [Pa/m2], and the friction limits [Pa] of the slider that slips first and of the other one.
     """
     normal = np.maximum(load, 0.0)
-    springs = where(load > 0.0, np.maximum(stiffness, 0.0), 0.0)  # round-off may make the load negative
-    apart = np.minimum(springs * (SPREAD * width), normal)  # the first spring has no load
-    half = 0.5 * friction
-    return 0.5 * ratio * springs, 0.5 * ratio * bend, half * (normal - apart), half * (normal + apart)
+    springs = select(load > 0.0, np.maximum(stiffness, 0.0), 0.0)  # round-off may make the load negative
+    apart = np.minimum(springs * (UNIFORM_DEVIATION * width), normal)  # the first spring has no load
+    half = 0.5 * friction_coefficient
+    return (
+        0.5 * stiffness_ratio * springs,
+        0.5 * stiffness_ratio * d2p,
+        half * (normal - apart),
+        half * (normal + apart),
+    )
 
 
-def rest_rule(stiff: Number, now: Number, falls: Number) -> tuple[Number, Number]:
+def stick_retention(
+    stiffness_start: Number, stiffness_end: Number, is_unloading: Number
+) -> tuple[Number, Number]:
     """Retention [1] and secant stiffness [Pa/m] of a foundation in full stick, see `retention_and_stiffness`.
 
     stiffness_start, stiffness_end : [Pa/m] tangential stiffness
     is_unloading                   : whether the approach decreases
     """
-    has_stiffness = stiff > 0.0
-    retention = where(has_stiffness, np.minimum(now / where(has_stiffness, stiff, 1.0), 1.0), 0.0)
-    return where(falls, retention, 1.0), where(falls, now, 0.5 * (stiff + now))
+    has_stiffness = stiffness_start > 0.0
+    retention = select(
+        has_stiffness, np.minimum(stiffness_end / select(has_stiffness, stiffness_start, 1.0), 1.0), 0.0
+    )
+    return select(is_unloading, retention, 1.0), select(
+        is_unloading, stiffness_end, 0.5 * (stiffness_start + stiffness_end)
+    )
 
 
-def carrying(
+def retention_and_stiffness(
     start: tuple[Number, Number],
     end: tuple[Number, Number],
     change: Number,
-    rise: Number,
-    small: Number,
+    stiffness_integral: Number,
+    is_small: Number,
 ) -> tuple[Number, Number]:
     """Fraction of the friction force retained [1], and secant stiffness [Pa/m], if the normal load changes.
 
@@ -475,21 +548,27 @@ def carrying(
     """
     (stiffness_start, slope_start), (stiffness_end, slope_end) = start, end
     touches, is_unloading = stiffness_start > 0.0, change < 0.0
-    retention = where(touches, np.minimum(stiffness_end / where(touches, stiffness_start, 1.0), 1.0), 0.0)
+    retention = select(touches, np.minimum(stiffness_end / select(touches, stiffness_start, 1.0), 1.0), 0.0)
     ends = 0.5 * (stiffness_start + stiffness_end) + change * (slope_start - slope_end) / 12.0
-    mean = where(
-        small, ends, where(stiffness_start == stiffness_end, stiffness_end, rise / where(small, 1.0, change))
+    mean = select(
+        is_small,
+        ends,
+        select(
+            stiffness_start == stiffness_end,
+            stiffness_end,
+            stiffness_integral / select(is_small, 1.0, change),
+        ),
     )
-    return where(is_unloading, retention, 1.0), where(is_unloading, stiffness_end, mean)
+    return select(is_unloading, retention, 1.0), select(is_unloading, stiffness_end, mean)
 
 
-def changing_loss(
+def varying_stiffness_loss(
     force: Vector,
-    moved: Vector,
-    shift: Vector,
+    new_force: Vector,
+    tangential_displacement: Vector,
     stiffness: tuple[Number, Number],
     slip: Number,
-    across: Number,
+    contact_changes: Number,
     middle: Vector,
 ) -> Number:
     """Loss [J/m2] of a slider whose stiffness changes in the increment: work minus change of elastic energy.
@@ -502,19 +581,27 @@ def changing_loss(
         force `middle` in the middle of the increment, else by Hermite's rule from both ends.
     """
     stiffness_start, stiffness_end = stiffness
-    ends = (force[0] + moved[0]) * shift[0] + (force[1] + moved[1]) * shift[1]
-    half = middle[0] * shift[0] + middle[1] * shift[1]
-    hermite_term = where(
+    ends = (force[0] + new_force[0]) * tangential_displacement[0] + (
+        force[1] + new_force[1]
+    ) * tangential_displacement[1]
+    half = middle[0] * tangential_displacement[0] + middle[1] * tangential_displacement[1]
+    hermite_term = select(
         slip > 0.0,
         0.0,
-        (shift[0] * shift[0] + shift[1] * shift[1]) * ((stiffness_start - stiffness_end) / 12.0),
+        (
+            tangential_displacement[0] * tangential_displacement[0]
+            + tangential_displacement[1] * tangential_displacement[1]
+        )
+        * ((stiffness_start - stiffness_end) / 12.0),
     )
-    work = where(across, ends / 6.0 + 2.0 / 3.0 * half, 0.5 * ends + hermite_term)
-    return np.maximum(work - (_elastic(moved, stiffness_end) - _elastic(force, stiffness_start)), 0.0)
+    work = select(contact_changes, ends / 6.0 + 2.0 / 3.0 * half, 0.5 * ends + hermite_term)
+    return np.maximum(
+        work - (_elastic_energy(new_force, stiffness_end) - _elastic_energy(force, stiffness_start)), 0.0
+    )
 
 
-def _elastic(force: Vector, stiffness: Number) -> Number:
+def _elastic_energy(force: Vector, stiffness: Number) -> Number:
     """Elastic energy [J/m2] of a slider: force^2/(2 stiffness); 0 without stiffness."""
     has_stiffness = stiffness > 0.0
     square = force[0] * force[0] + force[1] * force[1]
-    return where(has_stiffness, square / (2.0 * where(has_stiffness, stiffness, 1.0)), 0.0)
+    return select(has_stiffness, square / (2.0 * select(has_stiffness, stiffness, 1.0)), 0.0)

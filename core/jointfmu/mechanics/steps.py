@@ -7,11 +7,11 @@ its last change (step_side_by_side).
 
 import numpy as np
 
-from ..quantity import Number, where
+from ..quantity import Number, select
 
-LONGEST = 1e3
+MAX_STEP = 1e3
 """Largest step [s]: reported if any step is stable, without stiffness or for fixed bodies."""
-STEPS = (
+STABLE_STEP_OUTPUTS = (
     ("step_at_once", "largest stable step if the master passes the new force on before the body steps"),
     (
         "step_side_by_side",
@@ -19,17 +19,17 @@ STEPS = (
     ),
 )
 """Names and meanings of the outputs of a joint with the largest stable steps."""
-_DAMPED = 0.39
+_DAMPED_STEP = 0.39
 """Largest stable step times d/J [1] with a damper alone and a force one step late; fit to eigenvalues."""
 
 
 def mobility(inertia: Number, lever: Number = 1.0) -> Number:
     """Mobility lever^2/J of a body with inertia J at a lever arm [1 or m]; 0 for inertia 0: a fixed body."""
     is_free = inertia > 0.0
-    return where(is_free, lever**2 / where(is_free, inertia, 1.0), 0.0 * inertia)
+    return select(is_free, lever**2 / select(is_free, inertia, 1.0), 0.0 * inertia)
 
 
-def stable_steps(stiffness: Number, damping: Number, mobility: Number) -> tuple[Number, Number]:
+def largest_stable_steps(stiffness: Number, damping: Number, mobility: Number) -> tuple[Number, Number]:
     """Largest stable steps [s] with a force without delay, and with a force one step late (parallel master).
 
     stiffness K, damping d : at the present state, in SI
@@ -43,11 +43,11 @@ def stable_steps(stiffness: Number, damping: Number, mobility: Number) -> tuple[
     zeta = 4. For small damping they are 2/omega and (2 zeta)^(1/3)/omega. With a late force and no damping no
     step is stable: the second is 0.
     """
-    square = where(stiffness > 0.0, stiffness, 0.0 * stiffness) * mobility + (2.0 / LONGEST) ** 2
+    square = select(stiffness > 0.0, stiffness, 0.0 * stiffness) * mobility + (2.0 / MAX_STEP) ** 2
     damping_rate = damping * mobility
     is_damped = damping_rate > 0.0
-    safe_rate = where(is_damped, damping_rate, 1.0)
-    late_step = (safe_rate / (square**2 + safe_rate**4 / _DAMPED**3)) ** (1.0 / 3.0)
-    return 2.0 / (np.sqrt(square + damping_rate**2) + damping_rate), where(
-        is_damped, late_step, where(mobility > 0.0, 0.0 * damping_rate, LONGEST)
+    safe_rate = select(is_damped, damping_rate, 1.0)
+    late_step = (safe_rate / (square**2 + safe_rate**4 / _DAMPED_STEP**3)) ** (1.0 / 3.0)
+    return 2.0 / (np.sqrt(square + damping_rate**2) + damping_rate), select(
+        is_damped, late_step, select(mobility > 0.0, 0.0 * damping_rate, MAX_STEP)
     )

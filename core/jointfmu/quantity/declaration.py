@@ -9,12 +9,12 @@ import numpy as np
 from .interval import Interval, is_symbol
 
 
-def quantity(
+def quantity_field(
     unit: str,
     doc: str,
     *,
     calibration: bool = False,
-    whole: bool = False,
+    is_integer: bool = False,
     default: float | None = None,
     **ends: float,
 ) -> Any:
@@ -27,32 +27,32 @@ def quantity(
     default     : value of a parameter set that does not state one; None: the value is required
     ends        : gt, ge, lt, le, see `Interval.of`
     """
-    meta = {"unit": unit, "doc": doc, "interval": Interval.of(**ends)}
-    meta |= {"calibration": calibration, "whole": whole}
+    meta = {"unit": unit, "doc": doc, "interval": Interval.from_bounds(**ends)}
+    meta |= {"calibration": calibration, "whole": is_integer}
     return field(metadata=meta, default=MISSING if default is None else default)
 
 
-def series(unit: str, doc: str, *, optional: bool = False, **ends: float) -> Any:
+def series_field(unit: str, doc: str, *, optional: bool = False, **ends: float) -> Any:
     """Dataclass field for a tuple of numbers, all inside the interval; arguments as in `quantity_field`.
 
     optional : the tuple may be empty, which is the default
     """
-    meta = {"unit": unit, "doc": doc, "interval": Interval.of(**ends)}
+    meta = {"unit": unit, "doc": doc, "interval": Interval.from_bounds(**ends)}
     default: Any = () if optional else MISSING
     return field(default=default, metadata={**meta, "calibration": False, "whole": False, "series": True})
 
 
-def span(values: Sequence[float]) -> str:
+def describe_range(values: Sequence[float]) -> str:
     """Text with the count, the smallest and the largest of some numbers: "3 numbers from 1 to 5"."""
     return f"{len(values)} numbers from {min(values):.6g} to {max(values):.6g}" if len(values) else "none"
 
 
-def choice(*allowed: str | bool, doc: str) -> Any:
+def choice_field(*allowed: str | bool, doc: str) -> Any:
     """Dataclass field for one of some allowed names or booleans; the first is the default."""
     return field(default=allowed[0], metadata={"allowed": allowed, "doc": doc})
 
 
-def group(doc: str, **alternatives: type[Any]) -> Any:
+def group_field(doc: str, **alternatives: type[Any]) -> Any:
     """Dataclass field for a nested group of quantities (`surface`, `side1`, ...).
 
     alternatives : {section name: class}; a parameter set has exactly one of these sections. Without
@@ -66,12 +66,12 @@ def group(doc: str, **alternatives: type[Any]) -> Any:
     return field(metadata=metadata, default_factory=first)
 
 
-def label(item: Field[Any]) -> str:
+def file_name(item: Field[Any]) -> str:
     """Name of a field in parameter files: without the underscore that avoids a Python keyword (`lambda_`)."""
     return item.name.rstrip("_")
 
 
-def problem(name: str, value: object, item: Field[object]) -> str | None:
+def find_problem(name: str, value: object, item: Field[object]) -> str | None:
     """Error message, one line with name, value, unit and allowed values; None if the value is valid."""
     meta = item.metadata
     if is_symbol(value):
@@ -81,7 +81,7 @@ def problem(name: str, value: object, item: Field[object]) -> str | None:
             return None
         return f"{name} = {value!r} is not one of {', '.join(str(a).lower() for a in meta['allowed'])}"
     if "series" in meta:
-        return _series_problem(name, value, item)
+        return _find_series_problem(name, value, item)
     if type(value) is float and not meta["whole"] and meta["interval"].contains(value):
         return None
     unit = "" if meta["unit"] == "1" else f" {meta['unit']}"
@@ -89,7 +89,7 @@ def problem(name: str, value: object, item: Field[object]) -> str | None:
     array = np.asarray(value)
     if not number or array.dtype.kind not in "fiu":
         expected = "real number" if number else "number"
-        return f"{name} = {_shown(value)} is not a {expected}{unit and f' in{unit}'}: {meta['doc']}"
+        return f"{name} = {_shorten_repr(value)} is not a {expected}{unit and f' in{unit}'}: {meta['doc']}"
     inside = meta["interval"].contains(array)
     if not np.all(inside):
         first = array[~inside].flat[0]
@@ -99,7 +99,7 @@ def problem(name: str, value: object, item: Field[object]) -> str | None:
     return None
 
 
-def problems(
+def find_problems(
     values: Mapping[str, object], declared: Mapping[str, Field[Any]], missing: Collection[str] = ()
 ) -> list[str]:
     """Error messages for {name: value}: unknown names, missing names, and those of `find_problem`."""
@@ -108,41 +108,43 @@ def problems(
         texts.append(f"allowed are {', '.join(declared)}")
     if missing:
         texts.append(f"missing {', '.join(missing)}")
-    messages = (problem(name, value, declared[name]) for name, value in values.items() if name in declared)
+    messages = (
+        find_problem(name, value, declared[name]) for name, value in values.items() if name in declared
+    )
     return texts + [text for text in messages if text]
 
 
-def _series_problem(name: str, values: object, item: Field[object]) -> str | None:
+def _find_series_problem(name: str, values: object, item: Field[object]) -> str | None:
     """Error message for the first invalid number of a series, see `find_problem`; None if all are valid."""
     if values == () and item.default == ():
         return None
     if not isinstance(values, list | tuple) or not values:
-        return f"{name} = {_shown(values)} is no list of numbers: {item.metadata['doc']}"
+        return f"{name} = {_shorten_repr(values)} is no list of numbers: {item.metadata['doc']}"
     if all(type(value) is float for value in values) and np.all(
         item.metadata["interval"].contains(np.array(values))
     ):
         return None
     number = field(metadata={key: value for key, value in item.metadata.items() if key != "series"})
-    texts = (problem(f"{name}[{i}]", value, number) for i, value in enumerate(values))
+    texts = (find_problem(f"{name}[{i}]", value, number) for i, value in enumerate(values))
     return next((text for text in texts if text), None)
 
 
-def _shown(value: object) -> str:
+def _shorten_repr(value: object) -> str:
     """`repr` of a value on one line, cut to 80 characters, for error messages."""
     return " ".join(repr(value).split())[:80]
 
 
-def check(obj: Any) -> None:
+def check_fields(obj: Any) -> None:
     """Raise ValueError that names every field of `obj` outside its interval; NaN and infinity are outside."""
-    declared = {label(item): item for item in fields(obj) if "group" not in item.metadata}
-    if texts := problems({name: getattr(obj, item.name) for name, item in declared.items()}, declared):
+    declared = {file_name(item): item for item in fields(obj) if "group" not in item.metadata}
+    if texts := find_problems({name: getattr(obj, item.name) for name, item in declared.items()}, declared):
         raise ValueError("; ".join(texts))
 
 
-class Checked:
+class CheckedParameters:
     """Base class of a parameter set or a group of it: checks all values on construction."""
 
     __slots__ = ()
 
     def __post_init__(self) -> None:
-        check(self)
+        check_fields(self)

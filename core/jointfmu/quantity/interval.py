@@ -34,7 +34,7 @@ class Interval:
             object.__setattr__(self, "high_open", True)
 
     @classmethod
-    def of(
+    def from_bounds(
         cls,
         *,
         gt: Number | None = None,
@@ -65,7 +65,7 @@ class Interval:
         return above & below
 
     @property
-    def empty(self) -> bool:
+    def is_empty(self) -> bool:
         """Whether the interval contains no number that a message with six digits can show.
 
         True also if an end is NaN, or the lower end is above the upper one.
@@ -75,10 +75,10 @@ class Interval:
         resolution = 1e-5 * min(abs(self.low), abs(self.high))
         return not self.low < self.high or bool(self.high - self.low <= resolution < inf)
 
-    def intersection(self, other: "Interval") -> "Interval":
+    def intersection(self, interval: "Interval") -> "Interval":
         """Intersection of two intervals; a common end is open if it is open in one of them."""
-        low, low_open = max((self.low, self.low_open), (other.low, other.low_open))
-        high, high_closed = min((self.high, not self.high_open), (other.high, not other.high_open))
+        low, low_open = max((self.low, self.low_open), (interval.low, interval.low_open))
+        high, high_closed = min((self.high, not self.high_open), (interval.high, not interval.high_open))
         return Interval(low, high, low_open, not high_closed)
 
     def closed_bounds(self) -> tuple[float, float]:
@@ -88,8 +88,8 @@ class Interval:
         """
         low, high = float(self.low), float(self.high)
         return (
-            _beside(low, inf) if self.low_open and low > -inf else low,
-            _beside(high, -inf) if self.high_open and high < inf else high,
+            _next_float(low, inf) if self.low_open and low > -inf else low,
+            _next_float(high, -inf) if self.high_open and high < inf else high,
         )
 
     def __str__(self) -> str:
@@ -97,11 +97,11 @@ class Interval:
         return f"{left}{self.low:g}, {self.high:g}{right}"
 
 
-def _beside(end: float, towards: float) -> float:
+def _next_float(start: float, towards: float) -> float:
     """Next float after `start` in the direction of `towards`; next to zero the smallest normal float."""
-    if end == 0.0:
+    if start == 0.0:
         return sys.float_info.min if towards > 0.0 else -sys.float_info.min
-    return nextafter(end, towards)
+    return nextafter(start, towards)
 
 
 def is_symbol(value: object) -> bool:
@@ -116,7 +116,7 @@ def erf(x: Number) -> Number:
     return np.vectorize(math.erf, otypes=[float])(x)
 
 
-def where(condition: Any, value: Number, otherwise: Number) -> Number:
+def select(condition: Any, value: Number, otherwise: Number) -> Number:
     """`value` where the condition holds, else `otherwise`, elementwise; types stay for a scalar condition."""
     if isinstance(condition, bool | np.bool_):
         return value if condition else otherwise

@@ -8,42 +8,42 @@ from dataclasses import MISSING, Field, dataclass, fields, is_dataclass
 from functools import cache
 from typing import Any, TypeVar, get_type_hints
 
-from .declaration import label, problems
+from .declaration import file_name, find_problems
 from .interval import Interval, Number
 
 T = TypeVar("T")
 
 
 @cache
-def _hints(cls: object) -> dict[str, object]:
+def _type_hints(cls: object) -> dict[str, object]:
     """Type hints of the fields of a class, cached."""
     return get_type_hints(cls)
 
 
 @dataclass(frozen=True, slots=True)
-class Limit:
+class ParameterLimit:
     """Allowed interval of one parameter that depends on other parameters; `doc` is the reason."""
 
     name: str
     interval: Interval
     doc: str
 
-    def problem(self, value: Number, unit: str) -> str | None:
+    def find_problem(self, value: Number, unit: str) -> str | None:
         """Error message, one line; None if the value lies inside the interval or is a symbol."""
         if self.interval.contains(value):
             return None
         unit = "" if unit == "1" else f" {unit}"
-        if self.interval.empty:
+        if self.interval.is_empty:
             return f"{self.name} = {value:g}{unit}: the other parameters leave no value for it: {self.doc}"
         return f"{self.name} = {value:g}{unit} is outside {self.interval}: {self.doc}"
 
 
-def check_limits(obj: object, limits: Iterable[Limit]) -> None:
+def check_limits(obj: object, limits: Iterable[ParameterLimit]) -> None:
     """Raise ValueError for the first parameter of `obj` that lies outside one of the limits."""
     units = {name: item.metadata["unit"] for name, item in flat_fields(type(obj)) if "unit" in item.metadata}
-    values = flatten(obj)
+    values = flatten_parameters(obj)
     for limit in limits:
-        if text := limit.problem(values[limit.name], units[limit.name]):
+        if text := limit.find_problem(values[limit.name], units[limit.name]):
             raise ValueError(text)
 
 
@@ -55,44 +55,46 @@ def flat_fields(
     names : parameter names that select one alternative of each group; None: all alternatives
     """
     if names is None:
-        yield from ((prefix + name, item) for name, item in _every_field(cls))  # type: ignore[arg-type]
+        yield from ((prefix + name, item) for name, item in _all_fields(cls))  # type: ignore[arg-type]
         return
-    hints = _hints(cls)  # type: ignore[arg-type]
+    hints = _type_hints(cls)  # type: ignore[arg-type]
     for item in fields(cls):
         if "group" in item.metadata:
             sections = _sections(item, hints[item.name])
-            section = _section(sections, prefix, names)
+            section = _select_section(sections, prefix, names)
             yield from flat_fields(sections[section], f"{prefix}{section}.", names)
         elif item.metadata:
-            yield prefix + label(item), item
+            yield prefix + file_name(item), item
 
 
 @cache
-def _every_field(cls: Any) -> tuple[tuple[str, Field[object]], ...]:
+def _all_fields(cls: Any) -> tuple[tuple[str, Field[object]], ...]:
     """Result of `flat_fields` with all alternatives of each group, cached."""
-    hints, found_fields = _hints(cls), list[tuple[str, Field[Any]]]()
+    hints, found_fields = _type_hints(cls), list[tuple[str, Field[Any]]]()
     for item in fields(cls):
         if "group" in item.metadata:
             for name, inner in _sections(item, hints[item.name]).items():
                 found_fields += flat_fields(inner, f"{name}.")
         elif item.metadata:
-            found_fields.append((label(item), item))
+            found_fields.append((file_name(item), item))
     return tuple(found_fields)
 
 
-def flatten(obj: Any) -> dict[str, Any]:
+def flatten_parameters(obj: Any) -> dict[str, Any]:
     """Convert a parameter set to {structured name: value}."""
     values: dict[str, Any] = {}
     for item in fields(obj):
         value = getattr(obj, item.name)
         if is_dataclass(value) and "group" in item.metadata:
-            values |= {f"{_present(item, value)}.{name}": v for name, v in flatten(value).items()}
+            values |= {
+                f"{_section_name(item, value)}.{name}": v for name, v in flatten_parameters(value).items()
+            }
         elif item.metadata:
-            values[label(item)] = value
+            values[file_name(item)] = value
     return values
 
 
-def build(cls: type[T], values: Mapping[str, object]) -> T:
+def build_parameter_set(cls: type[T], values: Mapping[str, object]) -> T:
     """Build and check the parameter set `cls` from {structured name: value}.
 
     Raises ValueError, one line, that names every unknown or missing name and every value that is no number
@@ -100,26 +102,29 @@ def build(cls: type[T], values: Mapping[str, object]) -> T:
     """
     declared = dict(flat_fields(cls, names=values))
     required = {name for name, item in declared.items() if item.default is MISSING}
-    if texts := problems(values, declared, sorted(required - values.keys())):
+    if texts := find_problems(values, declared, sorted(required - values.keys())):
         raise ValueError("; ".join(texts))
-    plain = {name: _plain(value) for name, value in values.items()}
-    return assemble(cls, plain, lambda part, arguments: part(**arguments))
+    plain = {name: _to_float(value) for name, value in values.items()}
+    return assemble_parameter_set(cls, plain, lambda part, arguments: part(**arguments))
 
 
-def changed(obj: T, changes: Mapping[str, object]) -> T:
+def replace_values(obj: T, new_values: Mapping[str, object]) -> T:
     """Copy of a parameter set with some values replaced, by structured name.
 
     Raises ValueError as `build_parameter_set` does, and for names of an alternative that `obj` does not have.
     """
-    values = flatten(obj)
+    values = flatten_parameters(obj)
     all_names = {name for name, _ in flat_fields(type(obj))}
-    if foreign := [name for name in changes if name in all_names and name not in values]:
-        texts = [f"{name} is no parameter of a set that has [{_instead(obj, name)}]" for name in foreign]
+    if foreign := [name for name in new_values if name in all_names and name not in values]:
+        texts = [
+            f"{name} is no parameter of a set that has [{_present_alternative(obj, name)}]"
+            for name in foreign
+        ]
         raise ValueError("; ".join([*texts, f"allowed are {', '.join(values)}"]))
-    return build(type(obj), values | dict(changes))
+    return build_parameter_set(type(obj), values | dict(new_values))
 
 
-def assemble(
+def assemble_parameter_set(
     cls: type[T],
     values: Mapping[str, object],
     make: Callable[[type[Any], dict[str, Any]], Any],
@@ -129,26 +134,28 @@ def assemble(
 
     make : (class, {field name: value}) -> instance
     """
-    hints = _hints(cls)  # type: ignore[arg-type]
+    hints = _type_hints(cls)  # type: ignore[arg-type]
     arguments: dict[str, Any] = {}
     for item in fields(cls):  # type: ignore[arg-type]
-        name = prefix + label(item)
+        name = prefix + file_name(item)
         if "group" in item.metadata:
             sections = _sections(item, hints[item.name])
-            section = _section(sections, prefix, values)
-            arguments[item.name] = assemble(sections[section], values, make, f"{prefix}{section}.")
+            section = _select_section(sections, prefix, values)
+            arguments[item.name] = assemble_parameter_set(
+                sections[section], values, make, f"{prefix}{section}."
+            )
         elif name in values:
             arguments[item.name] = values[name]
     instance: T = make(cls, arguments)
     return instance
 
 
-def _sections(item: Field[object], own: object) -> dict[str, type[object]]:
+def _sections(item: Field[object], default_type: object) -> dict[str, type[object]]:
     """{section name: class} that a group may have; `default_type` is the declared type of the field."""
-    return item.metadata["alternatives"] or {label(item): own}
+    return item.metadata["alternatives"] or {file_name(item): default_type}
 
 
-def _section(sections: Iterable[str], prefix: str, names: Collection[str]) -> str:
+def _select_section(sections: Iterable[str], prefix: str, names: Collection[str]) -> str:
     """Alternative of a group that the parameter names belong to; the first one if no name belongs to any.
 
     Raises ValueError, which lists the names, if they belong to two alternatives.
@@ -165,23 +172,23 @@ def _section(sections: Iterable[str], prefix: str, names: Collection[str]) -> st
     return (present or list(names_by_section))[0]
 
 
-def _present(item: Field[object], value: object) -> str:
+def _section_name(item: Field[object], value: object) -> str:
     """Section name of a group: that of the alternative whose class the value has."""
     alternatives = item.metadata["alternatives"].items()
-    return next((name for name, cls in alternatives if isinstance(value, cls)), label(item))
+    return next((name for name, cls in alternatives if isinstance(value, cls)), file_name(item))
 
 
-def _instead(obj: Any, name: str) -> str:
+def _present_alternative(obj: Any, name: str) -> str:
     """Section that a parameter set has instead of the alternative that a name belongs to."""
     head, _, rest = name.partition(".")
     groups = [item for item in fields(obj) if "group" in item.metadata]
-    sections = {_present(item, getattr(obj, item.name)): item for item in groups}
+    sections = {_section_name(item, getattr(obj, item.name)): item for item in groups}
     if head in sections:
-        return f"{head}.{_instead(getattr(obj, sections[head].name), rest)}"
+        return f"{head}.{_present_alternative(getattr(obj, sections[head].name), rest)}"
     return next(name for name, item in sections.items() if head in item.metadata["alternatives"])
 
 
-def _plain(value: object) -> object:
+def _to_float(value: object) -> object:
     if isinstance(value, list | tuple):
         return tuple(float(number) for number in value)
     return float(value) if type(value) is int else value

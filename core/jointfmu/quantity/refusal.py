@@ -1,7 +1,7 @@
 """ValueError that names the setting that would resolve it; a command adds the option to the message."""
 
 
-class Refusal(ValueError):
+class InputRefusal(ValueError):
     """Invalid input; `setting` is the argument that would resolve it (`rated_torque`, `error`, `unit`)."""
 
     def __init__(self, message: str, setting: str) -> None:

@@ -13,7 +13,7 @@ from functools import cache
 from math import degrees, log10, tau
 from typing import NamedTuple, TypeAlias
 
-Sizes: TypeAlias = Mapping[str, float]
+UnitSizes: TypeAlias = Mapping[str, float]
 """{unit: size in SI units}; the first key is the SI unit."""
 
 _FORCE = {"kg": 1, "m": 1, "s": -2}
@@ -40,17 +40,17 @@ _SYMBOLS: dict[str, tuple[Fraction | int, dict[str, int]]] = {
 """{symbol: (size in SI units, exponents of the SI base units)}; the radian counts as a base unit."""
 _PREFIXES = {"G": 9, "M": 6, "k": 3, "c": -2, "m": -3, "u": -6, "µ": -6, "μ": -6, "n": -9}
 """{prefix: power of ten}, for the symbols in _PREFIXED_SYMBOLS; both Unicode signs for micro."""
-_PREFIXED = ("m", "s", "rad", "Hz", "N", "Pa", "J")
+_PREFIXED_SYMBOLS = ("m", "s", "rad", "Hz", "N", "Pa", "J")
 _FACTOR = re.compile(r"([^\W\d_]+|1(?!\d))(\d*)")
 _POWER_OF_TEN = re.compile(
     r"[x\u00d7]?\s*(?:1e|10\s?\^\s?|10(?=[⁰¹²³⁴⁵⁶⁷⁸⁹⁻]))([+-]?\d+|[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)\s*[.*·⋅]?\s*(?=\D)"
 )
 """Pattern of a power of ten before a unit: `1e4`, `x10^4`, `10⁴`."""
-MOST_POWER = 12
+MAX_POWER = 12
 """Largest absolute exponent of a power of ten before a unit [1]."""
-_RAISED = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")
+_SUPERSCRIPTS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")
 
-_WRITTEN = (
+_SPELLINGS = (
     (re.compile(r"[·⋅*]"), "."),
     (re.compile(r"\^(?=\d)"), ""),
     (re.compile("²"), "2"),
@@ -76,55 +76,55 @@ class Unit(NamedTuple):
     display: Mapping[str, float]
 
 
-def size(unit: str) -> float:
+def unit_size(unit: str) -> float:
     """Size of a unit in SI units. Raises ValueError if the unit is unknown."""
-    return float(_parsed(unit)[0])
+    return float(_parse_unit(unit)[0])
 
 
-def base(unit: str) -> dict[str, int]:
+def base_exponents(unit: str) -> dict[str, int]:
     """Exponents of the SI base units of a unit, without zeros. Raises ValueError if the unit is unknown."""
-    return dict(_parsed(unit)[1])
+    return dict(_parse_unit(unit)[1])
 
 
-def factor(unit: str, to: str) -> float:
+def conversion_factor(unit: str, target: str) -> float:
     """Conversion factor from `unit` to `target`. Raises ValueError if they measure different quantities."""
-    (size, exponents), (target_size, target_exponents) = _parsed(unit), _parsed(to)
+    (size, exponents), (target_size, target_exponents) = _parse_unit(unit), _parse_unit(target)
     if exponents != target_exponents:
-        raise ValueError(f"unit {to!r} does not measure what {unit!r} does")
+        raise ValueError(f"unit {target!r} does not measure what {unit!r} does")
     return float(size / target_size)
 
 
-def sizes(unit: str, *others: str) -> Sizes:
+def unit_sizes(unit: str, *others: str) -> UnitSizes:
     """{unit: size in the first unit}: units that an input accepts, the SI unit first.
 
     Raises ValueError if the units measure different quantities.
     """
-    return {name: factor(name, unit) for name in (unit, *others)}
+    return {name: conversion_factor(name, unit) for name in (unit, *others)}
 
 
-def measured(unit: str, allowed: Sizes) -> float:
+def unit_size_in(unit: str, sizes: UnitSizes) -> float:
     """Size of a unit, in the first unit of `sizes`; any unit of the same quantity is accepted.
 
     Raises ValueError if the unit is unknown or measures another quantity.
     """
-    return allowed[unit] if unit in allowed else factor(unit, next(iter(allowed)))
+    return sizes[unit] if unit in sizes else conversion_factor(unit, next(iter(sizes)))
 
 
-def rewritten(unit: str, symbols: Mapping[str, str]) -> str:
+def replace_symbols(unit: str, symbols: Mapping[str, str]) -> str:
     """Replace symbols in a unit: `N/m3` with {"m": "mm"} becomes `N/mm3`."""
     return _FACTOR.sub(lambda match: symbols.get(match[1], match[1]) + match[2], unit)
 
 
 @cache
-def _parsed(unit: str) -> tuple[Fraction, dict[str, int]]:
+def _parse_unit(unit: str) -> tuple[Fraction, dict[str, int]]:
     """Size in SI units and exponents of the base units. Raises ValueError if the unit is unknown."""
     total, exponents = Fraction(1), dict[str, int]()
     notation_text = unit
     if ten := _POWER_OF_TEN.match(notation_text):
-        power = int(ten[1].translate(_RAISED))
-        if abs(power) <= MOST_POWER:
+        power = int(ten[1].translate(_SUPERSCRIPTS))
+        if abs(power) <= MAX_POWER:
             total, notation_text = total * Fraction(10) ** power, notation_text[ten.end() :]
-    for spelling, notation in _WRITTEN:
+    for spelling, notation in _SPELLINGS:
         notation_text = spelling.sub(notation, notation_text)
     numerator, slash, denominator = notation_text.partition("/")
     for sign, product in ((1, numerator), (-1, denominator if slash else "1")):
@@ -132,34 +132,34 @@ def _parsed(unit: str) -> tuple[Fraction, dict[str, int]]:
             if not (match := _FACTOR.fullmatch(text)):
                 raise ValueError(f"unit {unit!r} is none; expected symbols as in N.m.s/rad")
             power = sign * int(match[2] or 1)
-            symbol_size, symbol_exponents = _symbol(match[1], unit)
+            symbol_size, symbol_exponents = _parse_symbol(match[1], unit)
             total *= symbol_size**power
             for name, exponent in symbol_exponents.items():
                 exponents[name] = exponents.get(name, 0) + power * exponent
     return total, {name: exponent for name, exponent in exponents.items() if exponent}
 
 
-def _symbol(symbol: str, unit: str) -> tuple[Fraction, dict[str, int]]:
+def _parse_symbol(symbol: str, unit: str) -> tuple[Fraction, dict[str, int]]:
     """Size and exponents of one symbol, with or without a prefix; `unit` is named in the error."""
     if symbol in _SYMBOLS:
         symbol_size, symbol_exponents = _SYMBOLS[symbol]
         return Fraction(symbol_size), symbol_exponents
     exponent, rest = _PREFIXES.get(symbol[0]), symbol[1:]
-    if exponent is None or rest not in _PREFIXED:
+    if exponent is None or rest not in _PREFIXED_SYMBOLS:
         raise ValueError(f"unit {unit!r}: symbol {symbol!r} is unknown, allowed are {', '.join(_SYMBOLS)}")
     return Fraction(10) ** exponent, _SYMBOLS[rest][1]
 
 
-def _unit(name: str, quantity: str, *display: str) -> Unit:
+def _make_unit(name: str, quantity: str, *display: str) -> Unit:
     return Unit(
         quantity,
-        base(name),
-        {display_name: factor(name, display_name) for display_name in display or (name,)},
+        base_exponents(name),
+        {display_name: conversion_factor(name, display_name) for display_name in display or (name,)},
     )
 
 
 UNITS: Mapping[str, Unit] = {
-    name: _unit(name, *told)
+    name: _make_unit(name, *told)
     for name, told in {
         "1": ("Ratio",),
         "s": ("Time",),
@@ -194,7 +194,7 @@ UNITS: Mapping[str, Unit] = {
 CELSIUS = "degC"
 KELVIN_AT_ZERO = 273.15
 """Display unit of temperatures in FMUs, and its zero point [K]; files and pages use kelvin."""
-LUBRICANTS = 193.15, 473.15
+LUBRICANT_TEMPERATURES = 193.15, 473.15
 """Temperature range [K] in which lubricants work: -80 to 200 degrees C."""
 
 

@@ -58,13 +58,13 @@ def element(panels: Sequence[Panel]) -> str:
 
 def script(*names: str) -> str:
     """JavaScript that draws charts; with `figures` also those of all page elements of class `figure`."""
-    return '"use strict";\n' + "".join(_own(f"{name}.js") for name in ("text", "chart", *names))
+    return '"use strict";\n' + "".join(_read_file(f"{name}.js") for name in ("text", "chart", *names))
 
 
 def style() -> str:
     """CSS of colours, charts and tables, the same on all pages."""
-    return _own("chart.css")
+    return _read_file("chart.css")
 
 
-def _own(name: str) -> str:
+def _read_file(name: str) -> str:
     return Path(__file__).with_name(name).read_text(encoding="utf-8")

@@ -13,11 +13,16 @@ import numpy as np
 from jointfmu.joints.bolted_joint import spring
 from jointfmu.joints.bolted_joint.bodies import DIGITS, MODES, ElasticBodies, Modes, RigidBodies
 from jointfmu.joints.bolted_joint.bolts import bolt_positions, moment_lever
-from jointfmu.joints.bolted_joint.contact import MOST_PARTS, PART_DIGITS, loop_sums, parts
+from jointfmu.joints.bolted_joint.contact import (
+    MAX_PATCHES_PER_POINT,
+    TRANSFER_DECIMALS,
+    cycle_sums,
+    force_transfer,
+)
 from jointfmu.joints.bolted_joint.law import Bolted
-from jointfmu.mechanics.footprint.shape import BOLT_MEANS, PATCHES, PressureShape
-from jointfmu.mechanics.sliders import SLIDERS, offsets, turning
-from jointfmu.quantity import Array, flatten
+from jointfmu.mechanics.footprint.shape import BOLT_MEAN_NAMES, MAX_PATCHES, PressureDistribution
+from jointfmu.mechanics.sliders import FOUNDATION_SLIDERS, height_offsets, torsion_directions
+from jointfmu.quantity import Array, flatten_parameters
 
 from ...joint_parts import Parts, RampPanel, chart, native_of
 from ...joint_parts.data import DataPart, DataTable
@@ -26,15 +31,17 @@ from ...joint_parts.terminals import axis, rotation
 _SECTIONS = ("pattern.", "plate.", "field.", "bodies.")
 BOLTS = 64
 """Bolts of a joint with rigid sides that compiled parts have room for [1]; more need a compiler."""
-_ONE = {"share": (1.0,), "x": (0.0,), "y": (0.0,), "equal": (1.0,), "tilt": (0.0,)}
+_ONE_POINT_FIELD = {"share": (1.0,), "x": (0.0,), "y": (0.0,), "equal": (1.0,), "tilt": (0.0,)}
 """A field of one point."""
 
 
-def _stands(joint: Bolted) -> Mapping[str, object]:
+def _parameter_values(joint: Bolted) -> Mapping[str, object]:
     """The joint with one point, as its C is generated, and the place of its bolts."""
-    own = {name: value for name, value in flatten(joint).items() if not name.startswith(_SECTIONS)}
-    spread = dict(zip(BOLT_MEANS, joint.pattern.bolt_means, strict=True))
-    points: dict[str, object] = {f"field.{name}": value for name, value in (_ONE | spread).items()}
+    own = {name: value for name, value in flatten_parameters(joint).items() if not name.startswith(_SECTIONS)}
+    spread = dict(zip(BOLT_MEAN_NAMES, joint.pattern.bolt_means, strict=True))
+    points: dict[str, object] = {
+        f"field.{name}": value for name, value in (_ONE_POINT_FIELD | spread).items()
+    }
     return own | points | (_one_mode(round(joint.n_bolts)) if joint.elastic else {})
 
 
@@ -47,12 +54,12 @@ def _one_mode(bolts: int) -> dict[str, object]:
 
 
 def _tables(joint: Bolted) -> Mapping[str, DataTable]:
-    patches = spring.patches(joint.pattern)
+    patches = spring.friction_patches_of(joint.pattern)
     return {
-        "nodes": DataTable(_rows(spring.points(joint.pattern)), spring.POINTS),
-        "patches": DataTable(np.column_stack([_rows(patches), patches.radius]), PATCHES),
-        "turning": DataTable(turning(SLIDERS), 2),
-        "offsets": DataTable(offsets(patches.equal)[:, None], PATCHES),
+        "nodes": DataTable(_rows(spring.contact_points(joint.pattern)), spring.MAX_POINTS),
+        "patches": DataTable(np.column_stack([_rows(patches), patches.radius]), MAX_PATCHES),
+        "turning": DataTable(torsion_directions(FOUNDATION_SLIDERS), 2),
+        "offsets": DataTable(height_offsets(patches.preload_shape)[:, None], MAX_PATCHES),
         **_bodies(joint),
     }
 
@@ -66,13 +73,13 @@ def _bodies(joint: Bolted) -> Mapping[str, DataTable]:
     bolts = bolt_positions(joint)
     pressing, pairs = np.zeros((0, 4)), 1
     if joint.elastic:
-        points, patches = spring.points(joint.pattern), spring.patches(joint.pattern)
+        points, patches = spring.contact_points(joint.pattern), spring.friction_patches_of(joint.pattern)
         modes = Modes.of(joint.bodies, len(points.share), patches.position)
-        pressing = _pressing(parts(points, patches))
-        pairs = MOST_PARTS * spring.POINTS + PATCHES
-        most = MODES, spring.POINTS, PATCHES, len(modes.bolts)
-    patch = dict(zip(("patch_x", "patch_y", "patch_around"), modes.patch, strict=True))
-    moved = {"opening": modes.opening, **patch, "stretch": modes.stretch}
+        pressing = _pressure_transfer_table(force_transfer(points, patches))
+        pairs = MAX_PATCHES_PER_POINT * spring.MAX_POINTS + MAX_PATCHES
+        most = MODES, spring.MAX_POINTS, MAX_PATCHES, len(modes.bolts)
+    patch = dict(zip(("patch_x", "patch_y", "patch_around"), modes.patch_displacement, strict=True))
+    moved = {"opening": modes.opening, **patch, "stretch": modes.bolt_elongation}
     room = dict(zip(moved, (most[1], *(most[2],) * 3, most[3]), strict=True))
     return {
         "modes": DataTable(modes.stiffness[:, None], most[0]),
@@ -85,10 +92,10 @@ def _bodies(joint: Bolted) -> Mapping[str, DataTable]:
     }
 
 
-def _pressing(part: Any) -> Any:
+def _pressure_transfer_table(transfer: Any) -> Any:
     """Patch, point, and its part in units of the last digit (n, 4)."""
-    patch, point = np.nonzero(part)
-    digits = np.round(part[patch, point] * 10.0**PART_DIGITS)
+    patch, point = np.nonzero(transfer)
+    digits = np.round(transfer[patch, point] * 10.0**TRANSFER_DECIMALS)
     return np.column_stack([patch, point, digits, 0 * patch])
 
 
@@ -97,12 +104,12 @@ def _padded(rows: Any) -> Any:
     return np.pad(np.round(rows * 10.0**DIGITS), ((0, 0), (0, MODES - rows.shape[1])))
 
 
-def _rows(shape: PressureShape) -> Any:
+def _rows(shape: PressureDistribution) -> Any:
     """Share, x, y, equal, tilt (n, 5)."""
-    return np.column_stack([shape.share, shape.position, shape.equal, shape.tilt])
+    return np.column_stack([shape.share, shape.position, shape.preload_shape, shape.moment_shape])
 
 
-PART = 0.3
+LOOP_PRELOAD_RATIO = 0.3
 """Preload of the loops over the end of the load ramp [1]."""
 AMPLITUDES = (0.06, 0.12, 0.22, 0.4)
 """Of the loops that are drawn, over the shift at which the mean spot slips [1]."""
@@ -112,7 +119,7 @@ _POINTS = 13
 def _loops(spring: Any, end: float) -> list[chart.Panel]:
     """Loops of several amplitudes, and their loss factor over the amplitude; `end` of the ramp [N]."""
     left = spring.joint.embedding
-    preload = left + PART * (end - left)
+    preload = left + LOOP_PRELOAD_RATIO * (end - left)
     approach = spring.tightened(preload, 0.0)
     foundation, share = spring.foundation(), spring.shape.share
     mean = share @ np.maximum(approach - spring.curve.displacement[0], 0.0)
@@ -132,7 +139,7 @@ def _loops(spring: Any, end: float) -> list[chart.Panel]:
     u = AMPLITUDES[-1] * slips * np.linspace(0.0, 1.0, _POINTS)
     lines.append(chart.Series("first shear", u * 1e6, force(u) / 1e3, dashed=True))
     size = slips * np.geomspace(0.01, 2.0, _POINTS)
-    sums = [loop_sums(foundation, share, approach, np.full(approach.size, a)) for a in size]
+    sums = [cycle_sums(foundation, share, approach, np.full(approach.size, a)) for a in size]
     loss = [s["loop_work"] / (2.0 * np.pi * s["loop_energy"]) for s in sums]
     over = chart.Series("eta_loop", size * 1e6, loss)
     return [
@@ -149,7 +156,7 @@ _TURNS = zip("xyz", (-15.0, -45.0, -75.0), strict=True)
 PARTS = Parts(
     folder=Path(__file__).parent,
     native=native_of(__name__),
-    data=DataPart(_stands, tables=_tables),
+    data=DataPart(_parameter_values, tables=_tables),
     drawings={"BoltedJoint": {"loops": _loops}},
     panels={"BoltedJoint": (RampPanel("preload", ("K_zz", "K_xx")), RampPanel("preload", ("C_zz", "C_xx")))},
     terminals={"BoltedJoint": (*(axis(*row) for row in _AXES), *(rotation(*row) for row in _TURNS))},

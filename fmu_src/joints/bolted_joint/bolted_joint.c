@@ -22,7 +22,7 @@ _Static_assert((int)MOMENT == (int)PRELOAD + 1, "the arguments of bolt_pressures
 _Static_assert(SUM_NORMAL_X == SUM_NORMAL + 1 && SUM_NORMAL_Y == SUM_NORMAL + 2, "as Kind.sums");
 _Static_assert(SUM_TANGENT_Y == SUM_TANGENT_X + 1 && SUM_TANGENT_Z == SUM_TANGENT_X + 2, "in this order");
 _Static_assert(N_LAW_STATE == 2 && SUM_ELASTIC == SUM_PLASTIC + 1, "plastic and elastic work");
-_Static_assert((int)AT_APART == (int)AT_FORCE + MOST_PATCHES * 2 * SLIDERS, "room for all patches");
+_Static_assert((int)AT_APART == (int)AT_FORCE + MOST_PATCHES * 2 * FOUNDATION_SLIDERS, "room for all patches");
 _Static_assert((int)AT_AMPLITUDE == (int)AT_APART + 3 && (int)AT_TANGENT == (int)AT_AMPLITUDE + MODES &&
                    (int)N_MEMORY == (int)AT_TANGENT + 6 * MOST_PATCHES,
                "as the key of Kind");
@@ -441,7 +441,7 @@ static bool press_elastic(Joint *joint, const double *inputs, double *x, Text *w
 /* Heights of the patches for a way from the memory that begins at an approach. */
 static void lay_from(Kind *kind, int j, const double *memory, double start)
 {
-    const bool first = memory[AT_STATE] < (double)ALONG;
+    const bool first = memory[AT_STATE] < (double)SLIP_1D;
     const double lowest = memory[AT_LOWEST + j];
     const bool opened = lowest < kind->foundation[j].curve->first.x;
     lay(kind, j, first ? start : memory[AT_REFERENCE + j], first || opened ? start : fmin(lowest, start));
@@ -457,7 +457,7 @@ static void find_points(Joint *joint, const double *inputs, const double *memory
         Point *from = &kind->from[j], *to = &kind->to[j];
         const double end = ELASTIC ? kind->patch_now[j] : kind->patch_start[j] - apart_at(data.patches[j], inputs);
         const double start = begun ? memory[AT_APPROACH + j] : end;
-        if (kind->moved != RESTING)
+        if (kind->moved != FULL_STICK)
             lay_from(kind, j, memory, start);
         const Foundation *f = &kind->foundation[j];
         if (from->approach != start)
@@ -469,18 +469,18 @@ static void find_points(Joint *joint, const double *inputs, const double *memory
 
 static inline PatchPath path_of(const Joint *joint, int j, const double *inputs, const double *memory)
 {
-    const bool spread = joint->kind.moved != RESTING && memory[AT_STATE] < (double)ALONG;
+    const bool spread = joint->kind.moved != FULL_STICK && memory[AT_STATE] < (double)SLIP_1D;
     const double *patch = data.patches[j];
-    const double *force = spread ? joint->kind.spread[j][0] : memory + AT_FORCE + j * 2 * SLIDERS;
+    const double *force = spread ? joint->kind.spread[j][0] : memory + AT_FORCE + j * 2 * FOUNDATION_SLIDERS;
     const double turn = inputs[THETA + 2] - memory[AT_RIGID + 2];
     const double *bent = joint->kind.bent[j], *before = joint->kind.bent_before[j];
     const double u = inputs[S_REL] - memory[AT_RIGID] - turn * patch[PLACE_Y] + (bent[0] - before[0]);
     const double v = inputs[S_REL + 1] - memory[AT_RIGID + 1] + turn * patch[PLACE_X] + (bent[1] - before[1]);
-    return (PatchPath){.force = {force, force + SLIDERS},
+    return (PatchPath){.force = {force, force + FOUNDATION_SLIDERS},
                        .from = &joint->kind.from[j],
                        .to = &joint->kind.to[j],
                        .shift = {u, v, turn * patch[RADIUS] + (bent[2] - before[2])},
-                       .straight = joint->kind.moved < FREE};
+                       .straight = joint->kind.moved < SLIP_2D};
 }
 
 /* The integral of the curve from its beginning, the load and its slope. */
@@ -518,7 +518,7 @@ enum { L_MU, L_RATIO, L_SIZE, L_LOAD, L_THEN, L_ENERGY, N_LOOP, L_NOW = L_LOAD, 
 /* As `short` of the package. */
 static inline bool is_short(const Point *at, double reach)
 {
-    return reach * at->y[1] < SLIDER_SHORT * at->y[0];
+    return reach * at->y[1] < SMALL_CYCLE_RATIO * at->y[0];
 }
 
 /* Load with four derivatives at both ends of a reach. */
@@ -600,27 +600,27 @@ static void add_loop_rate(const Joint *joint, int j, const double *inputs, const
 /* How it has moved after the way to inputs, where it is no longer at rest. */
 static int moved_on(const double *inputs, const double *memory)
 {
-    bool straight = !ELASTIC && memory[AT_STATE] != (double)FREE && inputs[S_REL + 1] == memory[AT_RIGID + 1] &&
+    bool straight = !ELASTIC && memory[AT_STATE] != (double)SLIP_2D && inputs[S_REL + 1] == memory[AT_RIGID + 1] &&
                     inputs[THETA + 2] == memory[AT_RIGID + 2];
     for (int j = 0; j < n_patches() && straight; j++)
-        straight = memory[AT_FORCE + (2 * j + 1) * SLIDERS] == 0.0 && memory[AT_FORCE + (2 * j + 1) * SLIDERS + 1] == 0.0;
-    return straight ? ALONG : FREE;
+        straight = memory[AT_FORCE + (2 * j + 1) * FOUNDATION_SLIDERS] == 0.0 && memory[AT_FORCE + (2 * j + 1) * FOUNDATION_SLIDERS + 1] == 0.0;
+    return straight ? SLIP_1D : SLIP_2D;
 }
 
 /* The traction of a patch at rest, with that around its centre. */
 static inline void resting_traction(const double *memory, int j, double traction[3])
 {
-    traction[0] = memory[AT_FORCE + 2 * j * SLIDERS];
-    traction[1] = memory[AT_FORCE + (2 * j + 1) * SLIDERS];
-    traction[2] = memory[AT_FORCE + (2 * j + 1) * SLIDERS + 1];
+    traction[0] = memory[AT_FORCE + 2 * j * FOUNDATION_SLIDERS];
+    traction[1] = memory[AT_FORCE + (2 * j + 1) * FOUNDATION_SLIDERS];
+    traction[2] = memory[AT_FORCE + (2 * j + 1) * FOUNDATION_SLIDERS + 1];
 }
 
 /* All patches after the way if they stay at rest; false: one moves more than hardly. */
 static bool rest_all(Joint *joint, const double *inputs, const double *memory, Shear *shears)
 {
-    bool rests = memory[AT_STATE] < (double)ALONG;
+    bool rests = memory[AT_STATE] < (double)SLIP_1D;
     if (rests) {
-        joint->kind.moved = RESTING;
+        joint->kind.moved = FULL_STICK;
         find_points(joint, inputs, memory);
     }
     for (int j = 0; j < n_patches() && rests; j++) {
@@ -640,7 +640,7 @@ static void move_all(Joint *joint, const double *inputs, const double *memory, S
         return;
     kind->moved = moved_on(inputs, memory);
     find_points(joint, inputs, memory);
-    for (int j = 0; j < n_patches() && memory[AT_STATE] < (double)ALONG; j++) {
+    for (int j = 0; j < n_patches() && memory[AT_STATE] < (double)SLIP_1D; j++) {
         double *const spread[2] = {kind->spread[j][0], kind->spread[j][1]}, before[3];
         resting_traction(memory, j, before);
         foundation_spread(&kind->foundation[j], &kind->from[j], before, spread);
@@ -652,17 +652,17 @@ static void slide(Joint *joint, int j, const double *inputs, const double *memor
 {
     Kind *kind = &joint->kind;
     const PatchPath path = path_of(joint, j, inputs, memory);
-    const int n = 2 * touched_on(&path), n_y = kind->moved < FREE ? 0 : n;
+    const int n = 2 * touched_on(&path), n_y = kind->moved < SLIP_2D ? 0 : n;
     foundation_move(&kind->foundation[j], &path, moved, &kind->work, shear);
-    memset(moved[0] + n, 0, (size_t)(SLIDERS - n) * sizeof *moved[0]);
-    memset(moved[1] + n_y, 0, (size_t)(SLIDERS - n_y) * sizeof *moved[1]);
+    memset(moved[0] + n, 0, (size_t)(FOUNDATION_SLIDERS - n) * sizeof *moved[0]);
+    memset(moved[1] + n_y, 0, (size_t)(FOUNDATION_SLIDERS - n_y) * sizeof *moved[1]);
 }
 
 /* A patch at rest: its force stands in the place of the first slider, that around its centre in y of the second. */
 static void keep_at_rest(const Shear *shear, double *const moved[2])
 {
     for (int d = 0; d < 2; d++) {
-        memset(moved[d], 0, SLIDERS * sizeof *moved[d]);
+        memset(moved[d], 0, FOUNDATION_SLIDERS * sizeof *moved[d]);
         moved[d][0] = shear->traction[d];
     }
     moved[1][1] = shear->traction[2];
@@ -678,12 +678,12 @@ static void slide_all(Joint *joint, const double *inputs, const double *memory, 
     if (remembers(joint)) {
         move_all(joint, inputs, memory, shears);
     } else {
-        kind->moved = RESTING;
+        kind->moved = FULL_STICK;
         find_points(joint, inputs, memory);
     }
     for (int j = 0; j < n_patches() && remembers(joint); j++) {
-        double *const force = after + AT_FORCE + 2 * j * SLIDERS, *const moved[2] = {force, force + SLIDERS};
-        if (kind->moved == RESTING)
+        double *const force = after + AT_FORCE + 2 * j * FOUNDATION_SLIDERS, *const moved[2] = {force, force + FOUNDATION_SLIDERS};
+        if (kind->moved == FULL_STICK)
             keep_at_rest(&shears[j], moved);
         else
             slide(joint, j, inputs, memory, moved, &shears[j]);
@@ -696,8 +696,8 @@ static void slide_all(Joint *joint, const double *inputs, const double *memory, 
         memcpy(kind->traction[j], shear.traction, sizeof shear.traction);
         memcpy(kind->tangent[j], shear.tangent, sizeof shear.tangent);
         heat += data.patches[j][SHARE] * shear.loss;
-        after[AT_REFERENCE + j] = kind->moved == RESTING ? kind->to[j].approach : kind->foundation[j].reference;
-        after[AT_LOWEST + j] = kind->moved == RESTING ? kind->to[j].approach : kind->foundation[j].lowest;
+        after[AT_REFERENCE + j] = kind->moved == FULL_STICK ? kind->to[j].approach : kind->foundation[j].reference;
+        after[AT_LOWEST + j] = kind->moved == FULL_STICK ? kind->to[j].approach : kind->foundation[j].lowest;
         after[AT_APPROACH + j] = kind->to[j].approach;
     }
     if (remembers(joint)) {
@@ -756,7 +756,7 @@ bool joint_forces(Joint *joint, const double *inputs, const double *memory, Text
         return false;
     move_all(joint, inputs, memory, shears);
     kind->work.forces = true;
-    for (int j = 0; j < n_patches() && kind->moved != RESTING; j++) {
+    for (int j = 0; j < n_patches() && kind->moved != FULL_STICK; j++) {
         const PatchPath path = path_of(joint, j, inputs, memory);
         foundation_move(&kind->foundation[j], &path, moved, &kind->work, &shears[j]);
     }
@@ -874,10 +874,10 @@ static bool node_rates(Joint *joint, const double *inputs, const double *seed, c
  * both directions, of which sliders at their limits slip on in one and stick in the other. */
 static Shear further_rates(const Joint *joint, int j, const double *after, const double ends[2], const double shift[3])
 {
-    const double *force = after + AT_FORCE + j * 2 * SLIDERS;
+    const double *force = after + AT_FORCE + j * 2 * FOUNDATION_SLIDERS;
     const Foundation *f = &joint->kind.foundation[j];
     const Point *at = &joint->kind.to[j];
-    PatchPath path = {.force = {force, force + SLIDERS}, .from = at, .to = at};
+    PatchPath path = {.force = {force, force + FOUNDATION_SLIDERS}, .from = at, .to = at};
     Shear mean, on;
     foundation_rates(f, &path, ends, shift, &mean);
     path.onward = true;
@@ -898,7 +898,7 @@ Shear patch_rate(const Joint *joint, int j, const double *inputs, const double *
     const double ends[2] = {after || memory[AT_STATE] != (double)UNKNOWN ? 0.0 : rate, rate};
     const PatchPath path = path_of(joint, j, inputs, memory);
     Shear shear;
-    if (kind->moved == RESTING) {
+    if (kind->moved == FULL_STICK) {
         const PatchPath here = {.from = path.to, .to = path.to};
         double before[3];
         resting_traction(after ? after : memory, j, before);
@@ -915,7 +915,7 @@ void patch_slopes(Joint *joint, const double *inputs, const double *memory, doub
 {
     Kind *kind = &joint->kind;
     double *const tried[2] = {kind->tried[0], kind->tried[1]};
-    if (kind->moved == RESTING) { /* where it has hardly moved, the normal force hardly matters */
+    if (kind->moved == FULL_STICK) { /* where it has hardly moved, the normal force hardly matters */
         for (int j = 0; j < n_patches(); j++)
             slopes_of(kind->tangent[j], slope[j]);
         return;

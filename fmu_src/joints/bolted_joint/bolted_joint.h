@@ -45,7 +45,7 @@ typedef struct {
     int moved;                       /* how it has moved up to the last evaluation */
     double known[N_X];               /* arguments of `outputs` in it, for its derivative */
     double traction[MOST_PATCHES][3], along[3]; /* of the patches in it, and what `Further` has there */
-    double spread[MOST_PATCHES][2][SLIDERS]; /* forces before it of sliders that were at rest */
+    double spread[MOST_PATCHES][2][FOUNDATION_SLIDERS]; /* forces before it of sliders that were at rest */
     Work work;
 
     /* Stiffness of a bolt, bolts at each place; of each place the force at tightening, whether the moment would have
@@ -74,10 +74,10 @@ typedef struct {
      * the modes, slopes of the patches, factors of a derivative by the amplitudes, forces of a patch that is tried, steps since it. */
     double by[MOST_OPENING + MOST_STRETCH];
     double weighted[MOST_OPENING + MOST_PATCH_X + MOST_STRETCH][WIDE];
-    double by_normal[WIDE][WIDE], by_shear[WIDE][WIDE], tried[2][SLIDERS];
+    double by_normal[WIDE][WIDE], by_shear[WIDE][WIDE], tried[2][FOUNDATION_SLIDERS];
     Slopes slope[MOST_PATCHES];
     Factors factors;
-    double steps[NEWTON_STEPS][MODES], squares[NEWTON_STEPS];
+    double steps[MAX_ITERATIONS][MODES], squares[MAX_ITERATIONS];
 } Kind;
 
 #endif

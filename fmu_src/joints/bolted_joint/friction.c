@@ -27,8 +27,8 @@ static void lay_heights(Foundation *f, double reference)
     const double end = f->curve->end.y;
     double y[2], *h = f->height;
     curve_at(f->curve, reference, 0, y);
-    const bool touches = y[0] > SLIDER_LOWEST * end, given = touches && y[0] < SLIDER_HIGHEST * end;
-    const double load = touches ? fmin(y[0], SLIDER_HIGHEST * end) : SLIDER_USUAL * end, over = same_log(end / load);
+    const bool touches = y[0] > MIN_REFERENCE_RATIO * end, given = touches && y[0] < MAX_REFERENCE_RATIO * end;
+    const double load = touches ? fmin(y[0], MAX_REFERENCE_RATIO * end) : DEFAULT_REFERENCE_RATIO * end, over = same_log(end / load);
     *h++ = f->curve->first.x;
     for (int k = N_BELOW - 1; k >= 0; k--) {
         const double part = (k + f->offset) / (double)N_BELOW, rest = (1.0 - part) * (1.0 - part);
@@ -50,7 +50,7 @@ static void lay_range(Foundation *f, int i)
     const double width = f->height[i + 1] - f->height[i];
     f->springs[i] = fmax(f->stiffness[i + 1] - f->stiffness[i], 0.0);
     f->normal[i] = fmax(f->load[i + 1] - f->load[i] - f->stiffness[i] * width, 0.0);
-    f->apart[i] = fmin(f->springs[i] * (SLIDER_SPREAD * width), f->normal[i]);
+    f->apart[i] = fmin(f->springs[i] * (UNIFORM_DEVIATION * width), f->normal[i]);
     for (int late = 0; late < 2; late++) {
         const int k = 2 * i + late;
         const double first = f->normal[i] + (late ? f->apart[i] : -f->apart[i]);
@@ -185,7 +185,7 @@ static bool stays(int i, const Point *from, const Point *to)
 static inline bool small_on(const Foundation *f, int i, const Point *from, const Point *at)
 {
     const double change = at->approach - from->approach;
-    return change == 0.0 || (stays(i, from, at) && fabs(change) < SLIDER_SMALL * (f->height[i + 1] - f->height[i]));
+    return change == 0.0 || (stays(i, from, at) && fabs(change) < SMALL_CHANGE_RATIO * (f->height[i + 1] - f->height[i]));
 }
 
 /* The middle of a way, looked up when it is first needed. */
@@ -341,7 +341,7 @@ static void move_steady(int n, const PlaneSliders *s, const double *stick, bool 
     if (along)
         return;
     if (end > first) {
-        double rows[N_SLID - 2][SLIDERS], *slid[N_SLID] = {moved[0], moved[1]};
+        double rows[N_SLID - 2][FOUNDATION_SLIDERS], *slid[N_SLID] = {moved[0], moved[1]};
         for (int r = 2; r < N_SLID; r++)
             slid[r] = rows[r - 2];
         sliders_slide(fours, first, end, s, slid, work->forces);
@@ -363,7 +363,7 @@ static void move_steady(int n, const PlaneSliders *s, const double *stick, bool 
 static const double all_kept[] = {
     1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0,
     1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
-_Static_assert(sizeof all_kept == SLIDERS * sizeof *all_kept, "of each");
+_Static_assert(sizeof all_kept == FOUNDATION_SLIDERS * sizeof *all_kept, "of each");
 
 /* Those from one on. */
 static inline PlaneSliders sliders_on(const Foundation *f, const PatchPath *path, int k)
@@ -579,7 +579,7 @@ bool foundation_rest(const Foundation *f, const PatchPath *path, const double be
 {
     const Point *from = path->from, *to = path->to;
     const double x[N_REST] = {to->approach < from->approach, foundation_stick(f, from), foundation_stick(f, to)};
-    const double most = SLIDER_HARDLY * f->mu / f->ratio * x[R_AFTER] * (to->approach - f->height[0]);
+    const double most = FULL_STICK_RATIO * f->mu / f->ratio * x[R_AFTER] * (to->approach - f->height[0]);
     double rule[2], *t = shear->traction;
     rest_rule(x, NULL, rule);
     *shear = (Shear){.tangent = {x[R_AFTER], 0.0, x[R_AFTER], 0.0, 0.0, x[R_AFTER]}};
@@ -613,7 +613,7 @@ void foundation_spread(const Foundation *f, const Point *at, const double tracti
                 force[d][k] = part * shift_of(f->turning, k, traction, d);
     }
     for (int d = 0; d < 2; d++)
-        memset(force[d] + 2 * at->touched, 0, (size_t)(SLIDERS - 2 * at->touched) * sizeof *force[d]);
+        memset(force[d] + 2 * at->touched, 0, (size_t)(FOUNDATION_SLIDERS - 2 * at->touched) * sizeof *force[d]);
 }
 
 COLD

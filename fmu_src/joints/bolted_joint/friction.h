@@ -8,10 +8,10 @@
 enum {
     N_HEIGHTS = N_BELOW + N_ABOVE + 3,
     HEIGHTS = N_HEIGHTS - 1, /* ranges of heights, whose springs two sliders stand for */
-    SLIDERS = 2 * HEIGHTS   /* from the lowest heights on, of each range first the one that slips earlier */
+    FOUNDATION_SLIDERS = 2 * HEIGHTS   /* from the lowest heights on, of each range first the one that slips earlier */
 };
 
-_Static_assert((int)SLIDERS <= (int)MOST_SLIDERS, "in one call");
+_Static_assert((int)FOUNDATION_SLIDERS <= (int)MOST_SLIDERS, "in one call");
 
 typedef struct {
     const Curve *curve;
@@ -29,7 +29,7 @@ typedef struct {
     double apart[HEIGHTS];   /* normal force by which the two sliders differ from then on */
     /* Of the sliders of ranges whose springs all touch: K, 1/K, and the limit at no approach, from which it grows
      * by K mu/ratio. */
-    double K[SLIDERS], per_K[SLIDERS], limit[SLIDERS];
+    double K[FOUNDATION_SLIDERS], per_K[FOUNDATION_SLIDERS], limit[FOUNDATION_SLIDERS];
     double stick[HEIGHTS]; /* sum of K of all sliders up to a range */
 } Foundation;
 

@@ -5,7 +5,7 @@ import casadi as ca
 from jointfmu.joints.bolted_joint import bodies, bolts, contact, law, memory, outputs, trials, whole
 from jointfmu.joints.model import Model
 from jointfmu.mechanics import jenkins, sliders
-from jointfmu.mechanics.footprint.shape import PATCHES
+from jointfmu.mechanics.footprint.shape import MAX_PATCHES
 
 from ...joint_parts.graph import Graph, add_closing, law_functions, symbols
 from ...joint_parts.native import APPROACH, Definitions, NativePart
@@ -26,7 +26,7 @@ def _functions(g: Graph, model: Model) -> None:
     sums = dict(zip(outputs.SUMS, symbols("sum", len(outputs.SUMS)), strict=True))
     shift, turn, rates = symbols("s", 3), symbols("t", 3), symbols("v", 6)
     p_max = ca.SX.sym("p_max")
-    out = outputs.outputs(joint, sums, shift, turn, rates, p_max)
+    out = outputs.joint_outputs(joint, sums, shift, turn, rates, p_max)
     doc = f"sums ({', '.join(sums)}), s_rel, theta, v_rel, omega, largest pressure -> outputs"
     y = [out[o.name] for o in model.outputs if o.name in out]  # forces of bolts come from the modes
     g.add_with_seed("outputs", doc, [*sums.values(), *shift, *turn, *rates, p_max], y)
@@ -41,7 +41,7 @@ def _tightening(g: Graph) -> None:
     g.add_with_seed("working_preload", doc, [preload], [law.working_preload(g.joint, preload)])
     doc = "equal, tilt, bolt_pressures -> pressure of a node at tightening"
     pressure = law.shaped_pressure(equal, tilt, mean, shift)
-    g.add_with_seed("shaped_pressure", doc, [equal, tilt, mean, shift], [pressure], fixed=2)
+    g.add_with_seed("shaped_pressure", doc, [equal, tilt, mean, shift], [pressure], constant_count=2)
 
 
 def _shear(g: Graph) -> None:
@@ -55,60 +55,77 @@ def _shear(g: Graph) -> None:
     load, stiffness, bend, width, ratio, friction = symbols("x", 6)
     doc = "load, stiffness, its slope, width -> stiffness, its slope, limits of the two"
     x = [ratio, friction, load, stiffness, bend, width]
-    y = sliders.touching(load, stiffness, bend, width, ratio, friction)
-    g.add_with_seed("touching", f"K_T/K_N, mu, {doc}", x, y, fixed=2)
+    y = sliders.partial_contact(load, stiffness, bend, width, ratio, friction)
+    g.add_with_seed("touching", f"K_T/K_N, mu, {doc}", x, y, constant_count=2)
     small, first, slope, last, then, change, rise = symbols("x", 7)
     doc = "whether small, stiffness and slope at both ends, change, rise -> part kept, gain"
-    kept = sliders.carrying((first, slope), (last, then), change, rise, small)
-    g.add_with_seed("carrying", doc, [small, first, slope, last, then, change, rise], kept, fixed=1)
+    kept = sliders.retention_and_stiffness((first, slope), (last, then), change, rise, small)
+    g.add_with_seed("carrying", doc, [small, first, slope, last, then, change, rise], kept, constant_count=1)
     across, slip = symbols("x", 2)
     force, moved, shift, ends, middle = (symbols(name, 2) for name in "qfukm")
     doc = "whether across, force before, after, shift, stiffness at both ends, slip, middle -> loss"
-    loss = sliders.changing_loss(force, moved, shift, (ends[0], ends[1]), slip, across, middle)
+    loss = sliders.varying_stiffness_loss(force, moved, shift, (ends[0], ends[1]), slip, across, middle)
     x = [across, *force, *moved, *shift, *ends, slip, *middle]
-    g.add_with_seed("changing_loss", doc, x, [loss], fixed=3)
+    g.add_with_seed("changing_loss", doc, x, [loss], constant_count=3)
 
 
 def _rest(g: Graph) -> None:
     """A foundation at rest."""
     stiff, now, falls = symbols("x", 3)
     doc = "whether the load falls; stiffness before and after -> part kept, gain"
-    g.add_with_seed("rest_rule", doc, [falls, stiff, now], sliders.rest_rule(stiff, now, falls), fixed=1)
+    g.add_with_seed(
+        "rest_rule", doc, [falls, stiff, now], sliders.stick_retention(stiff, now, falls), constant_count=1
+    )
 
 
 def _loops(g: Graph) -> None:
     """Loss and energy of loops at constant load."""
     x = symbols("x", 6)
     doc = "mu, K_T/K_N, amplitude, loads now and where springs have slipped, energy between -> loss, energy"
-    g.add_with_seed("loop", doc, x, sliders.loop(*x), fixed=2)
+    g.add_with_seed("loop", doc, x, sliders.cycle_energies(*x), constant_count=2)
     (mu, ratio, size), now, then = symbols("x", 3), symbols("n", 3), symbols("t", 3)
     doc = "mu, K_T/K_N, amplitude, three derivatives of the load now and there -> loss, energy"
-    y = sliders.short_loop(mu, ratio, size, now, then)
-    g.add_with_seed("short_loop", doc, [mu, ratio, size, *now, *then], y, fixed=2)
+    y = sliders.small_cycle_energies(mu, ratio, size, now, then)
+    g.add_with_seed("short_loop", doc, [mu, ratio, size, *now, *then], y, constant_count=2)
 
 
 def _definitions(g: Graph, model: Model) -> Definitions:
     counts = {f"SUM_{name.upper()}": k for k, name in enumerate(outputs.SUMS)} | {"N_SUMS": len(outputs.SUMS)}
     counts |= {name: k for k, name in enumerate(("SHARE", "PLACE_X", "PLACE_Y", "EQUAL", "TILT", "RADIUS"))}
-    names = ("SMALL", "SHORT", "HARDLY", "SPREAD", "LOWEST", "HIGHEST", "USUAL")
-    numbers = {f"SLIDER_{name}": float(getattr(sliders, name)) for name in names}
-    numbers["SLIDER_AT_LIMIT"] = jenkins.AT_LIMIT
-    counts |= {"N_BELOW": sliders.BELOW, "N_ABOVE": sliders.ABOVE}
-    counts |= {name: getattr(memory, name) for name in ("UNKNOWN", "RESTING", "ALONG", "FREE")}
+    names = (
+        "SMALL_CHANGE_RATIO",
+        "SMALL_CYCLE_RATIO",
+        "FULL_STICK_RATIO",
+        "UNIFORM_DEVIATION",
+        "MIN_REFERENCE_RATIO",
+        "MAX_REFERENCE_RATIO",
+        "DEFAULT_REFERENCE_RATIO",
+    )
+    numbers = {name: float(getattr(sliders, name)) for name in names}
+    numbers["SLIDER_AT_LIMIT"] = jenkins.AT_LIMIT_TOLERANCE
+    counts |= {"N_BELOW": sliders.HEIGHTS_BELOW, "N_ABOVE": sliders.HEIGHTS_ABOVE}
+    counts |= {name: getattr(memory, name) for name in ("UNKNOWN", "FULL_STICK", "SLIP_1D", "SLIP_2D")}
     counts |= {
         "MODES": bodies.MODES,
         "ELASTIC": int(g.joint.elastic),
-        "NEWTON_STEPS": whole.STEPS,
-        "NEWTON_PARTS": whole.PARTS,
+        "MAX_ITERATIONS": whole.MAX_ITERATIONS,
+        "MAX_LINE_SEARCH": whole.MAX_LINE_SEARCH,
     }
     counts["N_INTERFACE_OUTPUTS"] = len([o for o in model.outputs if not o.name.startswith("F_bolt")])
-    numbers["MODE_DIGITS"], numbers["PART_DIGITS"] = 10.0**bodies.DIGITS, 10.0**contact.PART_DIGITS
+    numbers["MODE_DIGITS"], numbers["TRANSFER_SCALE"] = 10.0**bodies.DIGITS, 10.0**contact.TRANSFER_DECIMALS
     numbers |= {
-        f"WHOLE_{name}": getattr(whole, name) for name in ("CLOSE", "CANCELS", "ROUGH", "LEAST_PART", "CHORD")
+        name: getattr(whole, name)
+        for name in (
+            "RELATIVE_TOLERANCE",
+            "CANCELLATION_RATIO",
+            "INTERMEDIATE_TOLERANCE_FACTOR",
+            "MIN_LOAD_STEP",
+            "TANGENT_REUSE_RATIO",
+        )
     }
-    numbers["WHOLE_DIFFERENCE"] = trials.DIFFERENCE
+    numbers["DIFFERENCE_STEP"] = trials.DIFFERENCE_STEP
     numbers |= {"BOLT_LIFT_OFF_RATIO": bolts.LIFT_OFF_RATIO, "BOLT_AT_LIFT_OFF": bolts.AT_LIFT_OFF}
     return Definitions(counts, numbers)
 
 
-PART = NativePart(_functions, (*APPROACH, *SLIDERS), _definitions, memory.memory_of(PATCHES))
+PART = NativePart(_functions, (*APPROACH, *SLIDERS), _definitions, memory.history_layout(MAX_PATCHES))

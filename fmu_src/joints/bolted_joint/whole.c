@@ -101,7 +101,7 @@ void whole_begin(Kind *kind)
         lay_row(data.stretch[b], 1.0, data.bolts[b][BOLT_Y], -data.bolts[b][BOLT_X], kind->stretch[b]);
     for (int e = 0; e < (int)data.n_pressing; e++) {
         const int16_t *pair = data.pressing[e];
-        kind->presses[e] = pair[PAIR_PART] / PART_DIGITS * data.nodes[pair[PAIR_POINT]][SHARE] / data.patches[pair[PAIR_PATCH]][SHARE];
+        kind->presses[e] = pair[PAIR_PART] / TRANSFER_SCALE * data.nodes[pair[PAIR_POINT]][SHARE] / data.patches[pair[PAIR_PATCH]][SHARE];
         kind->press_end[pair[PAIR_PATCH]] = e + 1;
     }
 }
@@ -222,7 +222,7 @@ static double residual(const Joint *joint, const double *inputs, const double *a
     for (int d = 0; d < 3; d++)
         dense_add_rows(fours, (int)data.n_patches, shear[d], (const double(*)[WIDE])kind->patch[d], r);
     dense_add_rows(fours, (int)data.n_stretch, bolts, (const double(*)[WIDE])kind->stretch, r);
-    return WHOLE_CLOSE * (forces + stiffness * apart * WHOLE_CANCELS + kind->area * kind->approach.closed);
+    return RELATIVE_TOLERANCE * (forces + stiffness * apart * CANCELLATION_RATIO + kind->area * kind->approach.closed);
 }
 
 /* The derivative by what the memory says; in a further motion where that after it is given. */
@@ -246,7 +246,7 @@ static void jacobian(Joint *joint, const double *inputs, const double *memory)
     double deepest = -joint->curve.first.x; /* where the contact has closed */
     for (int j = 0; j < (int)data.n_patches; j++)
         deepest = fmax(deepest, kind->patch_start[j] - joint->curve.first.x);
-    patch_slopes(joint, inputs, memory, WHOLE_DIFFERENCE * deepest, kind->slope);
+    patch_slopes(joint, inputs, memory, DIFFERENCE_STEP * deepest, kind->slope);
     open_patches(kind);
     differentiate(kind, MODES, true, &kind->factors);
 }
@@ -371,7 +371,7 @@ static void broyden(Kind *kind, int kept)
 static Newton newton(Joint *joint, Way *way, double part, double *amplitude, double *missed, Text *why)
 {
     Kind *kind = &joint->kind;
-    const double close = part == 1.0 ? 1.0 : WHOLE_ROUGH;
+    const double close = part == 1.0 ? 1.0 : INTERMEDIATE_TOLERANCE_FACTOR;
     double at[N_INPUTS], r[MODES], least;
     place(way->inputs, way->memory, part, at);
     if (!try_at(joint, way, at, amplitude, false, why))
@@ -380,17 +380,17 @@ static Newton newton(Joint *joint, Way *way, double part, double *amplitude, dou
     const Factors *with = &kind->begin.factors; /* of the derivative: at first that at the beginning of the way */
     double before = INFINITY;
     bool own = false; /* the derivative is that at the amplitudes */
-    for (int n = 0, kept = 0; n < NEWTON_STEPS; n++) {
+    for (int n = 0, kept = 0; n < MAX_ITERATIONS; n++) {
         const double left = largest(r);
         if (left <= close * least)
             return FOUND;
-        if (!(left < WHOLE_CHORD * before)) { /* else the last derivative is still good */
+        if (!(left < TANGENT_REUSE_RATIO * before)) { /* else the last derivative is still good */
             jacobian(joint, at, way->memory);
             with = &kind->factors;
             kept = 0;
             own = true;
         }
-        const bool last = part == 1.0 && n > 0 && left < WHOLE_CHORD * before && left * left < before * least;
+        const bool last = part == 1.0 && n > 0 && left < TANGENT_REUSE_RATIO * before && left * left < before * least;
         before = left;
         double begin[MODES], size = 1.0, *step = kind->steps[kept];
         for (int k = 0; k < MODES; k++)
@@ -399,7 +399,7 @@ static Newton newton(Joint *joint, Way *way, double part, double *amplitude, dou
         broyden(kind, kept++);
         memcpy(begin, amplitude, sizeof begin);
         const double falls = dense_dot(r, step);
-        for (int p = 0; p < NEWTON_PARTS; p++) {
+        for (int p = 0; p < MAX_LINE_SEARCH; p++) {
             for (int k = 0; k < MODES; k++)
                 amplitude[k] = begin[k] + size * step[k];
             if (!try_at(joint, way, at, amplitude, last, why))
@@ -457,7 +457,7 @@ bool whole_evaluate(Joint *joint, const double *inputs, const double *memory, do
             return false;
         if (found == LOST) {
             step *= 0.5;
-            if (step < WHOLE_LEAST_PART) {
+            if (step < MIN_LOAD_STEP) {
                 tell(inputs, done, missed, why);
                 return false;
             }

@@ -47,7 +47,7 @@ static bool look_up(const Joint *joint, double pressure, double *x, double *slop
     for (int q = 0; q < N_LAW_STATE; q++)
         x[2 + q] = slopes[2 + q] = 0.0;
     const double u = delta < 0.0 ? kind->approach.first : kind->approach.last;
-    return !(pressure >= NOTHING) ||
+    return !(pressure >= MIN_PRESSURE) ||
            approach_exact(&kind->spots, joint->c, pressure, u, x + 2, slopes + 2, why);
 }
 

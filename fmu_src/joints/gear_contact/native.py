@@ -19,11 +19,11 @@ def _functions(g: Graph, model: Model) -> None:
     x = [f, approach, stiffness]
     if isinstance(joint, spring.RoughGearContact):
         law_functions(g, joint, ("normal",), lambda spots, u: [])
-        area, elastic = joint.areas(pressure)
+        area, elastic = joint.real_area(pressure)
     else:
-        law_functions(g, joint, ("normal",), yu2022.areas)
+        law_functions(g, joint, ("normal",), yu2022.real_area)
         x += [area, elastic]
-    out = spring.contact(joint, f, approach, stiffness, area, elastic)
+    out = spring.contact_outputs(joint, f, approach, stiffness, area, elastic)
     add_closing(g)
     doc = "inputs, approach, stiffness of the curve, areas where the law sums them over spots -> outputs"
     g.add_with_seed("outputs", doc, x, [out[o.name] for o in model.outputs])

@@ -17,15 +17,15 @@ def _functions(g: Graph, model: Model) -> None:
     add_closing(g)
     flanks = symbols("flanks", 4)
     doc = "approach of the flanks, pressure, its two derivatives -> deflection, load, K, dK/ds of a pair"
-    g.add("in_series", doc, flanks, spring.in_series(mesh, *flanks))
+    g.add("in_series", doc, flanks, spring.combine_in_series(mesh, *flanks))
     motion = [ca.SX.sym(v.name) for v in model.inputs]
     argument = np.abs(spring.deflection(mesh, motion))
     g.add_with_seed("argument", "inputs -> argument of the curve", motion, [argument])
     closing, load, stiffness, energy = symbols("pair", 4)
-    out = spring.torques(mesh, motion, load, stiffness, energy, closing)
+    out = spring.mesh_outputs(mesh, motion, load, stiffness, energy, closing)
     doc = "deflection at which the closing ends, inputs, load, K and energy of a pair -> outputs"
     x = [closing, *motion, load, stiffness, energy]
-    g.add_with_seed("outputs", doc, x, [out[o.name] for o in model.outputs], fixed=1)
+    g.add_with_seed("outputs", doc, x, [out[o.name] for o in model.outputs], constant_count=1)
 
 
 PART = NativePart(

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from jointfmu.joints.harmonic_drive.drive import Drive
-from jointfmu.joints.harmonic_drive.given import MOST_POINTS, Measured, Node, TableDrive
-from jointfmu.quantity import Number, flatten, quantity
+from jointfmu.joints.harmonic_drive.given import MAX_POINTS, MeasuredDrive, SplineNode, TableDrive
+from jointfmu.quantity import Number, flatten_parameters, quantity_field
 
 from ...joint_parts import Parts, RampPanel, native_of
 from ...joint_parts.data import NO_TABLES, DataPart, DataTable
@@ -17,14 +17,14 @@ from ...joint_parts.terminals import ROTATIONAL, Terminal, shaft
 
 
 @dataclass(frozen=True, kw_only=True)
-class MidlineDrive(Measured):
+class MidlineDrive(MeasuredDrive):
     """Harmonic drive with a measured midline (torque against wind-up) whose nodes are data."""
 
-    end: float = quantity("N.m", "torque at the last point", gt=0.0)
-    stiffest: float = quantity("N.m/rad", "twice the largest stiffness of the midline", gt=0.0)
+    end: float = quantity_field("N.m", "torque at the last point", gt=0.0)
+    stiffest: float = quantity_field("N.m/rad", "twice the largest stiffness of the midline", gt=0.0)
 
     @property
-    def reach(self) -> Number:
+    def max_table_torque(self) -> Number:
         """Torque [N.m] at the last node of the midline."""
         return self.end
 
@@ -33,7 +33,7 @@ class MidlineDrive(Measured):
         """Twice the largest stiffness of the midline [N.m/rad]."""
         return self.stiffest
 
-    def nodes(self) -> list[Node]:
+    def make_nodes(self) -> list[SplineNode]:
         """Empty list: the nodes are read from the data block at run time."""
         return []
 
@@ -43,12 +43,12 @@ def _of(drive: Drive) -> type[Drive]:
     return MidlineDrive if isinstance(drive, TableDrive) else type(drive)
 
 
-def _stands(drive: Drive) -> Mapping[str, Any]:
+def _parameter_values(drive: Drive) -> Mapping[str, Any]:
     """{name: value} of the parameter set with which the C code of a drive is generated."""
-    values = flatten(drive)
+    values = flatten_parameters(drive)
     if not isinstance(drive, TableDrive):
         return values
-    midline = {"end": drive.reach, "stiffest": drive.K_FTS}
+    midline = {"end": drive.max_table_torque, "stiffest": drive.K_FTS}
     return {name: value for name, value in values.items() if not name.startswith("table.")} | midline
 
 
@@ -56,7 +56,7 @@ def _tables(drive: Drive) -> Mapping[str, DataTable]:
     """{"midline": nodes of a measured midline}; empty for other drives."""
     if not isinstance(drive, TableDrive):
         return NO_TABLES
-    return {"midline": DataTable(np.array(drive.nodes(), dtype=np.float64), MOST_POINTS + 1)}
+    return {"midline": DataTable(np.array(drive.make_nodes(), dtype=np.float64), MAX_POINTS + 1)}
 
 
 _STIFFNESS = RampPanel("tau", ("K_WTS", "K_TS"))
@@ -65,7 +65,7 @@ _LOCKED = {"phi": ("phi_rel", "signal"), "tau": ("tau", "inflow")}
 PARTS = Parts(
     folder=Path(__file__).parent,
     native=native_of(__name__),
-    data=DataPart(_stands, _of, _tables),
+    data=DataPart(_parameter_values, _of, _tables),
     panels={
         "HarmonicDriveSpring": (RampPanel("phi_rel", ("tau",)), _STIFFNESS),
         "HarmonicDriveCompliance": (RampPanel("tau", ("phi_rel",)), _STIFFNESS),

@@ -58,12 +58,12 @@ static bool windup(Joint *joint, int steps, Text *why)
     for (int k = 0; k <= steps; k++) {
         const double xi = k * step, torque = smoothing * same_sinh(xi);
         stiffness(&torque, joint->c, K);
-        if (!(K[0] > SOFTEST && K[0] < (1.0 - STIFFEST) * head[K_FTS0])) {
+        if (!(K[0] > MIN_STIFFNESS && K[0] < (1.0 - MIN_STIFFNESS_MARGIN) * head[K_FTS0])) {
             stiffness(&head[MAX_TORQUE], joint->c, K);
             text_print(why,
                        "K_FTS0 = %g N.m/rad and the contact pair give K_WTS = %g N.m/rad, allowed is (%g, %g) "
                        "N.m/rad with K_TS at most %g times K_FTS0",
-                       head[K_FTS0], K[0], SOFTEST, head[K_FTS0], 1.0 / STIFFEST);
+                       head[K_FTS0], K[0], MIN_STIFFNESS, head[K_FTS0], 1.0 / MIN_STIFFNESS_MARGIN);
             return false;
         }
         const Node node = {.x = phi, .y = torque, .s = K[0], .bend = K[0] * K[1]};
@@ -92,7 +92,7 @@ static bool midline_of(Joint *joint, Text *why)
 bool kind_tabulate(Joint *joint, Text *why)
 {
     Kind *kind = &joint->kind;
-    double head[3], share[2 * SLIDERS], amplitudes[N_HARMONICS], stiffness;
+    double head[3], share[2 * HYSTERESIS_SLIDERS], amplitudes[N_HARMONICS], stiffness;
     *kind = (Kind){.errs = false};
     error_amplitudes(0, joint->c, amplitudes);
     for (int i = 0; i < N_HARMONICS; i++)

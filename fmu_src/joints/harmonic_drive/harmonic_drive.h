@@ -18,7 +18,7 @@ typedef struct {
     bool acts;
     double most;            /* friction of all */
     double length;          /* wind-up over which the sliders begin to slip */
-    double K[SLIDERS], per_K[SLIDERS], limit[SLIDERS]; /* of each slider */
+    double K[HYSTERESIS_SLIDERS], per_K[HYSTERESIS_SLIDERS], limit[HYSTERESIS_SLIDERS]; /* of each slider */
 } Hysteresis;
 
 /* Numbers of a drive and of its sliders, and its midline; false: refused. */
@@ -34,7 +34,7 @@ double hysteresis_wind_up(const Hysteresis *hysteresis, const Curve *curve, cons
 
 typedef struct {
     bool acts;
-    double K[BRAKES], per_K[BRAKES]; /* of each slider */
+    double K[FRICTION_SLIDERS], per_K[FRICTION_SLIDERS]; /* of each slider */
 } Friction;
 
 /* Angle and speed of the wave generator, and the limits of its friction; or rates of them. */

@@ -3,9 +3,9 @@
 import casadi as ca
 
 from jointfmu.joints.harmonic_drive import friction, hysteresis, spring
-from jointfmu.joints.harmonic_drive.drive import HARMONICS, amplitudes, kinematic_error
-from jointfmu.joints.harmonic_drive.given import CatalogueDrive, Measured, Node
-from jointfmu.joints.harmonic_drive.law import PairDrive, stiffness_with_play
+from jointfmu.joints.harmonic_drive.drive import HARMONICS, error_amplitudes, kinematic_error
+from jointfmu.joints.harmonic_drive.given import CatalogueDrive, MeasuredDrive, SplineNode
+from jointfmu.joints.harmonic_drive.law import ContactPairDrive, stiffness_with_play
 from jointfmu.joints.model import Model
 
 from ...joint_parts.graph import Graph, Symbols, symbols
@@ -19,8 +19,8 @@ def _functions(g: Graph, model: Model) -> None:
     add_sliders(g)
     if isinstance(drive, CatalogueDrive):
         doc = "-> nodes of the midline: wind-up, torque, stiffness, its derivative before and after"
-        g.add("given_nodes", doc, [], [number for node in drive.nodes() for number in node])
-    elif isinstance(drive, PairDrive):
+        g.add("given_nodes", doc, [], [number for node in drive.make_nodes() for number in node])
+    elif isinstance(drive, ContactPairDrive):
         (torque,) = symbols("x", 1)
         doc = "torque -> K_WTS, its slope"
         g.add("stiffness", doc, [torque], stiffness_with_play(drive, torque))
@@ -28,26 +28,26 @@ def _functions(g: Graph, model: Model) -> None:
         g.add("pair_head", "-> T_s, largest torque, K_FTS0", [], head)
     head = [drive.hysteresis_loss, drive.hysteresis_stiffness, drive.rated_torque]
     g.add("hysteresis_head", "-> loss, stiffness, rated torque", [], head)
-    springs, limits = hysteresis.shares(hysteresis.exponent(drive))
+    springs, limits = hysteresis.slider_shares(hysteresis.stiffness_exponent(drive))
     g.add("slider_shares", "-> springs over K_h, friction over M_f", [], [*springs, *limits])
     inputs = [ca.SX.sym(i.name) for i in model.inputs]
     locked = _given_torque(model)
     waves = [0.0] * 3 if locked else kinematic_error(drive, inputs[0])
     g.add("kinematic_error", "inputs -> kinematic error, its derivatives in phi1", inputs, waves)
-    errors = [0.0 * a if locked else a for a in amplitudes(drive)]
+    errors = [0.0 * a if locked else a for a in error_amplitudes(drive)]
     g.add("error_amplitudes", "-> of the kinematic error", [], errors)
     x, load, stiffness, slid, loss, error, slope, dry = symbols("found", 8)
     turn: Symbols
     if locked:
         argument, brake, turn = inputs[0], 0.0, [0.0, 0.0, 0.0, 0.0]
-        out = {"phi_rel": x, **spring.parts(drive, load, stiffness)}
+        out = {"phi_rel": x, **spring.stiffness_outputs(drive, load, stiffness)}
     else:
-        state = spring.State(x, load, stiffness, slid, error, slope)
+        state = spring.SpringState(x, load, stiffness, slid, error, slope)
         *motion, temperature = inputs
-        argument, brake = spring.wind_up(drive, motion, error), friction.stiffness(drive)
-        tau = spring.transmitted(drive, motion, state)
-        turn = [*motion[:2], *friction.limits(drive, motion[1], tau, temperature)]
-        out = spring.exported(drive, motion, temperature, state, dry)
+        argument, brake = spring.wind_up(drive, motion, error), friction.sticking_stiffness(drive)
+        tau = spring.transmitted_torque(drive, motion, state)
+        turn = [*motion[:2], *friction.friction_limits(drive, motion[1], tau, temperature)]
+        out = spring.motion_outputs(drive, motion, temperature, state, dry)
     doc = "inputs, kinematic error -> argument of the curve"
     g.add_with_seed("argument", doc, [*inputs, error], [argument])
     g.add("brake", "-> stiffness of the friction while all stick", [], [brake])
@@ -68,26 +68,26 @@ def _given_torque(model: Model) -> bool:
 
 
 NUMBERS: Named = {
-    spring: ("SOFTEST", "STIFFEST"),
-    hysteresis: ("NEAREST", "REVERSAL", "SETTLED"),
-    friction: ("TURNED",),
+    spring: ("MIN_STIFFNESS", "MIN_STIFFNESS_MARGIN"),
+    hysteresis: ("WIND_UP_TOLERANCE", "MIN_REVERSAL_RATIO", "LIMIT_TOLERANCE"),
+    friction: ("PRIOR_ROTATION_TIME",),
 }
-COUNTS: Named = {hysteresis: ("MOST_CORRECTIONS", "SLIDERS"), friction: ("BRAKES",)}
+COUNTS: Named = {hysteresis: ("MAX_LIMIT_ITERATIONS", "HYSTERESIS_SLIDERS"), friction: ("FRICTION_SLIDERS",)}
 """Python constants of the drive that have the same names in C: integers (NUMBERS: real numbers)."""
 
 
 def _definitions(g: Graph, model: Model) -> Definitions:
     """Constants of the C of the harmonic drive."""
-    counts = {"ARGUMENT_IS_LOAD": int(_given_torque(model)), "DRIVE_STEPS": spring.STEPS}
+    counts = {"ARGUMENT_IS_LOAD": int(_given_torque(model)), "DRIVE_STEPS": spring.MIN_TABLE_STEPS}
     counts["N_HARMONICS"] = len(HARMONICS)
-    sliders = column("BRAKE_SPRINGS", "N_BRAKE_SPRINGS", friction.SPRINGS)
-    sliders |= column("BRAKE_LIMITS", "N_BRAKE_LIMITS", friction.LIMITS)
+    sliders = column("BRAKE_SPRINGS", "N_BRAKE_SPRINGS", friction.STIFFNESS_SHARES)
+    sliders |= column("BRAKE_LIMITS", "N_BRAKE_LIMITS", friction.LIMIT_SHARES)
     constants = named(NUMBERS, COUNTS) | Definitions(counts) | sliders
-    constants |= quadrature("DRIVE_GAUSS", spring.GAUSS)
-    if isinstance(g.joint, Measured):
+    constants |= quadrature("DRIVE_GAUSS", spring.GAUSS_RULE)
+    if isinstance(g.joint, MeasuredDrive):
         return constants | Definitions({}, {"MIDLINE_IS_DATA": 1})
-    nodes = sum(len(f.y) for f in g.functions if f.name == "given_nodes") // len(Node._fields)
+    nodes = sum(len(f.y) for f in g.functions if f.name == "given_nodes") // len(SplineNode._fields)
     return constants | Definitions({}, {"GIVEN_NODES": nodes} if nodes else {})
 
 
-PART = NativePart(_functions, (*CURVE, *SLIDERS), _definitions, spring.MEMORY)
+PART = NativePart(_functions, (*CURVE, *SLIDERS), _definitions, spring.HISTORY_LAYOUT)

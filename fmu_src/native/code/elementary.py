@@ -11,7 +11,7 @@ PLACES = 32
 """Number of intervals in the tables of exponential and logarithm [1]."""
 LOG_BEGIN = 0x3FE6AAAA00000000
 """Bit pattern of the double at which the table of the logarithm begins; 1 lies inside an interval."""
-_ONE = 0x3FF0000000000000
+_BITS_OF_ONE = 0x3FF0000000000000
 LOG_BITS = 47
 """Mantissa bits below the interval index: 52 - log2(PLACES)."""
 _DIGITS = 60
@@ -37,7 +37,7 @@ def tables() -> str:
             "TURNS": float(1 / quarter),
         }
         arrays = {
-            "QUARTER[4]": [[value] for value in _parts(quarter)],
+            "QUARTER[4]": [[value] for value in _split_number(quarter)],
             f"POWERS[{PLACES}][2]": [_pair((k * per_place).exp()) for k in range(PLACES)],
             f"LOGS[{PLACES}][3]": list(_logs()),
             f"EXPM1[{_N_EXPM1}]": [[1 / factorial(n + 2)] for n in range(_N_EXPM1)],
@@ -73,7 +73,7 @@ def _pair(value: Decimal) -> list[float]:
     return [high, float(value / Decimal(high) - 1)]
 
 
-def _parts(value: Decimal) -> Iterator[float]:
+def _split_number(value: Decimal) -> Iterator[float]:
     """Split a number into three doubles of 33 bits, whose products with 20 bits are exact, and the rest."""
     for bits in (32, 65, 98):
         yield (leading := _first(value, bits))
@@ -89,7 +89,7 @@ def _logs() -> Iterator[list[float]]:
     for interval in range(PLACES):
         begin, end = (LOG_BEGIN + (k << LOG_BITS) for k in (interval, interval + 1))
         middle = 0.5 * (_double(begin) + _double(end))
-        inverse = 1.0 if begin <= _ONE < end else round(2.0**16 / middle) * 2.0**-16
+        inverse = 1.0 if begin <= _BITS_OF_ONE < end else round(2.0**16 / middle) * 2.0**-16
         log = -Decimal(inverse).ln()
         high = _first(log, 42)
         yield [inverse, high, float(log - Decimal(high))]

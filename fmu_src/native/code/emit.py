@@ -115,58 +115,58 @@ def function(name: str, doc: str, x: ca.SX, c: ca.SX, y: Sequence[ca.SX], deriva
             operations[f"t{k}"] = (ca.OP_LE if code == ca.OP_DIV and simpler else code), names
     unused = [name for name in inputs if name not in used_inputs] + ([] if y else ["y"])
     body += [f"(void){name};" for name in unused]
-    used_lines = _used(body)
+    used_lines = _drop_unused_lines(body)
     lines = "\n".join(f"    {line}" for line in (used_lines if derivative else _shared_divisors(used_lines)))
     return f"/* {doc} */\nvoid {name}(const double *x, const double *c, double *y)\n{{\n{lines}\n}}\n"
 
 
-_Made = Mapping[str, tuple[int, list[str]]]
+_Operations = Mapping[str, tuple[int, list[str]]]
 """{name of a value: (CasADi operation, names of its operands)}."""
 
 
-def _first_of_equal(names: Sequence[str], made: _Made) -> str | None:
+def _first_of_equal(names: Sequence[str], operations: _Operations) -> str | None:
     """C expression for (a <= b)/((a <= b) + (b <= a)), CasADi's derivative of min(a, b) or max(a, b).
 
     CasADi gives 1/2 if a equals b; here the first argument gets all of it. None: another quotient.
     """
     numerator, denominator = names
-    code, terms = made.get(denominator, (None, [""]))
+    code, terms = operations.get(denominator, (None, [""]))
     if code != ca.OP_ADD or numerator not in terms:
         return None
     first = terms[0]
-    (first_code, ends), (second_code, others) = (made.get(name, (None, [])) for name in terms)
+    (first_code, ends), (second_code, others) = (operations.get(name, (None, [])) for name in terms)
     if (first_code, second_code) != (ca.OP_LE, ca.OP_LE) or ends != others[::-1]:
         return None
     return first if numerator == first else f"{first} == 0.0 ? 1.0 : 0.0"
 
 
-def _where(names: Sequence[str], made: _Made) -> str | None:
+def _conditional_product(names: Sequence[str], operations: _Operations) -> str | None:
     """C conditional expression for the product of a value and a condition (1 or 0); None: another product."""
     for condition, value in (names, names[::-1]):
-        if made.get(condition, (None, []))[0] in _CONDITIONS:
+        if operations.get(condition, (None, []))[0] in _CONDITIONS:
             return f"{condition} != 0.0 ? {value} : 0.0"
     return None
 
 
-def _choice(names: Sequence[str], made: _Made) -> str | None:
+def _choice(names: Sequence[str], operations: _Operations) -> str | None:
     """C conditional expression for CasADi's form of `condition ? a : b`: a sum with one term equal to 0.
 
     None: another sum.
     """
-    (code, first), (other, second) = (made.get(name, (None, [])) for name in names)
+    (code, first), (other, second) = (operations.get(name, (None, [])) for name in names)
     if code != ca.OP_IF_ELSE_ZERO or other != ca.OP_IF_ELSE_ZERO:
         return None
     for (yes, a), (no, b) in ((first, second), (second, first)):
-        if made.get(no) == (ca.OP_NOT, [yes]):
+        if operations.get(no) == (ca.OP_NOT, [yes]):
             return f"{yes} != 0.0 ? {a} : {b}"
     return None
 
 
-_SIMPLER = {ca.OP_ADD: _choice, ca.OP_DIV: _first_of_equal, ca.OP_MUL: _where}
+_SIMPLER = {ca.OP_ADD: _choice, ca.OP_DIV: _first_of_equal, ca.OP_MUL: _conditional_product}
 _CONDITIONS = (ca.OP_LT, ca.OP_LE, ca.OP_EQ, ca.OP_NE, ca.OP_AND, ca.OP_OR, ca.OP_NOT)
 
 
-def _used(body: Sequence[str]) -> list[str]:
+def _drop_unused_lines(body: Sequence[str]) -> list[str]:
     """Remove the lines whose value no later line uses."""
     lines, used_values = list[str](), set[str]()
     for line in reversed(body):

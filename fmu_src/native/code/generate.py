@@ -34,17 +34,17 @@ def sources(name: str, parameters: ParameterFile) -> dict[str, str]:
 
     Raises ValueError if the parameters are of another joint.
     """
-    model = (MODELS | PARTNERS)[name].of(parameters.joint, parameters.values)
+    model = (MODELS | PARTNERS)[name].with_parameters(parameters.joint, parameters.values)
     parameter_split = split(model, parameters)
     files = code(model, parameters, parameter_split)
     return files | {"data.c": data_of(model, parameters, parameter_split, files).source()}
 
 
-def code(model: Model, parameters: ParameterFile, given: Split) -> dict[str, str]:
+def code(model: Model, parameters: ParameterFile, split: Split) -> dict[str, str]:
     """{file name: text} of all C sources but data.c, the same for all parameter files of one structure."""
     native = native_part(model)
     files = _handwritten(model, native)
-    files["law.h"], files["law.c"] = _law(model, given, native)
+    files["law.h"], files["law.c"] = _law(model, split, native)
     files |= {
         "variables.c": variables_c(model),
         "model.h": _model(model, parameters.values, native.memory.size),
@@ -52,14 +52,14 @@ def code(model: Model, parameters: ParameterFile, given: Split) -> dict[str, str
     files |= {"elementary_tables.h": tables()}
     head = GENERATED.format(version=__version__, of="")
     files |= {n: head + files[n] for n in _GENERATED}
-    return dict(sorted((files | {"data.h": placeholder(model, given).header()}).items()))
+    return dict(sorted((files | {"data.h": placeholder(model, split).header()}).items()))
 
 
-def _law(model: Model, given: Split, native: NativePart) -> tuple[str, str]:
+def _law(model: Model, split: Split, native: NativePart) -> tuple[str, str]:
     """Texts of law.h and law.c, generated once for all parameter files of one structure."""
-    key = model.name, model.parameters, given.of, given.structure
+    key = model.name, model.parameters, split.of, split.structure
     if key not in _laws:
-        _laws[key] = law_c(graph(model, given, native.functions, native.tabulated), model, native)
+        _laws[key] = law_c(graph(model, split, native.functions, native.tabulated), model, native)
     return _laws[key]
 
 
@@ -79,7 +79,7 @@ def native_part(model: Model) -> NativePart:
     if load is None:
         raise ValueError(f"{model.name}: the joint {model.joint!r} has no part `native`; expected its C")
     native = load()
-    if (model.rest is None) != (native.memory.size == 0):
+    if (model.initial_history is None) != (native.memory.size == 0):
         raise ValueError(f"{model.name}: one of `rest` and the memory in C is given, expected both or none")
     return native
 
@@ -95,13 +95,13 @@ def _handwritten(model: Model, native: NativePart) -> dict[str, str]:
 
 def _model(model: Model, parameters: object, memory: int) -> str:
     """Text of model.h: sizes of the model and indices of its inputs."""
-    macros = f"#define N_STATES {model.states}\n#define MOVES 1\n" if model.moves else ""
+    macros = f"#define N_STATES {model.state_count}\n#define MOVES 1\n" if model.is_time_dependent else ""
     fields = list(model.parameter_fields())
     if "lag_a" in fields:
         first = 1 + len(model.inputs) + len(model.outputs)
         macros += f"#define LAGS {first + fields.index('lag_a')}\n"
-    if model.events:
-        macros += f"#define N_EVENTS {len(model.events(parameters))}\n"
+    if model.find_event_times:
+        macros += f"#define N_EVENTS {len(model.find_event_times(parameters))}\n"
     input_names = ", ".join(f"INPUT_{v.name.upper()}" for v in model.inputs)
     if memory:
         macros += f"#define N_MEMORY {memory}\n"
@@ -129,12 +129,14 @@ def variables_c(model: Model) -> str:
     for name, item in model.parameter_fields().items():
         meta = item.metadata
         if "allowed" in meta:
-            rows.append(_row(name, "1", meta["doc"], Interval.of(ge=0.0, le=1.0), boolean=True))
+            rows.append(_row(name, "1", meta["doc"], Interval.from_bounds(ge=0.0, le=1.0), boolean=True))
         else:
             rows.append(_row(name, meta["unit"], meta["doc"], meta["interval"], meta["whole"]))
-    states = model.outputs[: model.states]
+    states = model.outputs[: model.state_count]
     links = [
-        "{" + ", ".join(str(int(i.name in model.depends(o.name))) for i in (*model.inputs, *states)) + "}"
+        "{"
+        + ", ".join(str(int(i.name in model.list_dependencies(o.name))) for i in (*model.inputs, *states))
+        + "}"
         for o in model.outputs
     ]
     nominals = array("const double nominals[N_STATES]", [number(v.nominal) for v in states])
@@ -151,13 +153,13 @@ def _row(
     name: str,
     unit: str,
     doc: str,
-    allowed: Interval,
+    interval: Interval,
     whole: bool = False,
     boolean: bool = False,
 ) -> str:
     """C initializer of one variable."""
-    flags = ", ".join(str(int(flag)) for flag in (allowed.low_open, allowed.high_open, whole, boolean))
-    numbers = ", ".join(number(x) for x in (allowed.low, allowed.high))
-    interval = "" if boolean else str(allowed)
+    flags = ", ".join(str(int(flag)) for flag in (interval.low_open, interval.high_open, whole, boolean))
+    numbers = ", ".join(number(x) for x in (interval.low, interval.high))
+    interval = "" if boolean else str(interval)
     texts = ", ".join(string(x) for x in (name, "" if unit == "1" else unit, doc, interval))
     return f"{{{texts}, {numbers}, {flags}}}"

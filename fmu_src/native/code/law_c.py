@@ -19,7 +19,7 @@ _SERIES = ("law_load", "law_table", "law_state")
 """Name prefixes of functions that exist once for each regime of the contact law."""
 
 
-def law_c(g: Graph, model: Model, part: NativePart) -> tuple[str, str]:
+def law_c(g: Graph, model: Model, native_part: NativePart) -> tuple[str, str]:
     """Format law.h and law.c of a graph."""
     count = {f.name: len(f.y) for f in g.functions}
     series = {name: [f for f in count if f.rsplit("_", 1)[0] == name] for name in _SERIES}
@@ -29,19 +29,23 @@ def law_c(g: Graph, model: Model, part: NativePart) -> tuple[str, str]:
     for name, text in _functions(g).items():
         if name.rsplit("_", 1)[0] in series:
             bodies.append(text.replace("\nvoid ", "\nstatic void ", 1))
-        elif part.tabulated and name != "law_constants" and (name in looped or text.count("\n") <= _SHORT):
+        elif (
+            native_part.tabulated
+            and name != "law_constants"
+            and (name in looped or text.count("\n") <= _SHORT)
+        ):
             inline.append(text.replace("\nvoid ", "\nstatic inline void ", 1))
         else:
             bodies.append(text)
             prototypes.append(name)
     bodies += [array(f"Law *const {name}[N_LAW_SWITCHES + 1]", rows) for name, rows in series.items()]
-    definitions = shared_definitions(part.shared) | part.definitions(g, model)
+    definitions = shared_definitions(native_part.shared) | native_part.definitions(g, model)
     variables = [v.name for v in (*model.inputs, *model.outputs)]
-    warnings = [f"{{{variables.index(o.variable)}, {string(o.doc)}}}" for o in model.outside]
+    warnings = [f"{{{variables.index(o.variable)}, {string(o.doc)}}}" for o in model.validity_limits]
     header = template(Path(__file__).with_name("law.h")).render(
-        counts={**_counts(g, model, part, count), **definitions.counts},
+        counts={**_counts(g, model, native_part, count), **definitions.counts},
         macros={name: number(value) for name, value in definitions.macros.items()},
-        tabulated=part.tabulated,
+        tabulated=native_part.tabulated,
         warnings=array("static const Warning warnings[N_WARNINGS]", warnings),
         arrays=definitions.arrays,
         prototypes=prototypes,
@@ -49,7 +53,7 @@ def law_c(g: Graph, model: Model, part: NativePart) -> tuple[str, str]:
         helpers=HELPERS,
         inline=inline,
     )
-    bodies += [_limits(g)] if part.tabulated else []
+    bodies += [_limits(g)] if native_part.tabulated else []
     bodies += [array(f"const double {declared}", rows) for declared, rows in definitions.arrays.items()]
     return header + "\n", '#include "law.h"\n\n' + "\n".join(bodies)
 
@@ -68,15 +72,15 @@ def _functions(g: Graph) -> dict[str, str]:
     return texts
 
 
-def _counts(g: Graph, model: Model, part: NativePart, count: Mapping[str, int]) -> dict[str, int]:
+def _counts(g: Graph, model: Model, native_part: NativePart, count: Mapping[str, int]) -> dict[str, int]:
     """{name: integer} of array sizes in C and of offsets in the history variables.
 
     output_counts : {function: number of its outputs}
     """
     sizes = {"N_CONSTANTS": len(g.theta) + len(g.constants)}
-    if not part.tabulated:
+    if not native_part.tabulated:
         return sizes
-    sizes |= {"N_LIMITS": len(g.limits), "N_WARNINGS": len(model.outside)}
+    sizes |= {"N_LIMITS": len(g.limits), "N_WARNINGS": len(model.validity_limits)}
     if "law_head" in count:
         sizes |= {
             "N_LAW_HEAD": count["law_head"],
@@ -85,7 +89,7 @@ def _counts(g: Graph, model: Model, part: NativePart, count: Mapping[str, int]) 
             "N_LAW_TABLE": count["law_table_0"],
             "N_LAW_STATE": count.get("law_state_0", 0) // 3,
         }
-    return sizes | {f"AT_{name.upper()}": place for name, place in part.memory.places.items()}
+    return sizes | {f"AT_{name.upper()}": place for name, place in native_part.memory.offsets.items()}
 
 
 def _limits(g: Graph) -> str:

@@ -6,14 +6,14 @@ from pathlib import Path
 
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.joints.model import Model
-from jointfmu.parameters import ParameterFile, default
-from jointfmu.progress import track
+from jointfmu.parameters import ParameterFile, load_default
+from jointfmu.progress import track_progress
 from jointfmu.quantity import flat_fields
 
 from ...partners import PARTNERS
 from ...partners import parameters as partner_parameters
 from ..data import split
-from .kept import part_of, shipped_name, written
+from .kept import compiled_model, pack_model, shipped_name
 
 
 def compile_ahead(names: Sequence[str], out: Path) -> list[Path]:
@@ -29,11 +29,11 @@ def compile_ahead(names: Sequence[str], out: Path) -> list[Path]:
     jobs = [job for name in names or models for job in structures(models[name])]
     out.mkdir(parents=True, exist_ok=True)
     written_files = []
-    for model, parameters in track(jobs, "compile", len(jobs)):
+    for model, parameters in track_progress(jobs, "compile", len(jobs)):
         parameter_split = split(model, parameters)
-        compiled_model = part_of(model, parameters, parameter_split)
+        compiled_model = compiled_model(model, parameters, parameter_split)
         file = out / shipped_name(model, parameter_split)
-        file.write_bytes(written(compiled_model))
+        file.write_bytes(pack_model(compiled_model))
         written_files.append(file)
     for old_file in set(out.iterdir()) - set(written_files):
         old_file.unlink()
@@ -46,8 +46,8 @@ def structures(model: Model) -> Iterator[tuple[Model, ParameterFile]]:
         yield model, partner_parameters(model.name)
         return
     for law in KINDS[model.joint].laws:
-        file = default(model.joint, law)
-        law_model = model.of(file.joint, file.values)
+        file = load_default(model.joint, law)
+        law_model = model.with_parameters(file.joint, file.values)
         for choices in _choices(law_model, file):
             try:
                 chosen = file.with_values(choices, "user", "compiled ahead")

@@ -18,7 +18,7 @@ _DIGEST = 32
 """Size of a SHA-256 digest [bytes]."""
 
 
-def finished(library: bytes, before: Data, after: Data, name: str) -> bytes:
+def fill_library(library: bytes, placeholder: Data, data: Data, name: str) -> bytes:
     """Insert data and name of an FMU into a compiled library.
 
     library          : compiled with the placeholder data and the placeholder name
@@ -27,12 +27,12 @@ def finished(library: bytes, before: Data, after: Data, name: str) -> bytes:
 
     Raises ValueError if the library does not contain the placeholder data exactly once.
     """
-    if library.count(before.content) != 1 or len(before.content) != len(after.content):
+    if library.count(placeholder.content) != 1 or len(placeholder.content) != len(data.content):
         raise ValueError(f"{name}: the compiled part is not that of these data; remove it")
-    image = bytearray(library.replace(before.content, after.content))
+    image = bytearray(library.replace(placeholder.content, data.content))
     _rename(image, name.encode())
     if image.startswith(_MACHO):
-        _identify(image, UUID(after.token))
+        _identify(image, UUID(data.token))
         _sign(image)
     return bytes(image)
 

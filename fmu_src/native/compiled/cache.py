@@ -27,7 +27,7 @@ def cache_folder() -> Path:
     return Path(home).expanduser() / "jointfmu"
 
 
-def parts() -> Path:
+def parts_folder() -> Path:
     """Folder of the compiled models."""
     return cache_folder() / "parts"
 
@@ -69,10 +69,10 @@ def make_folder(folder: Path) -> None:
         missing.mkdir(mode=0o700, exist_ok=True)
 
 
-def content() -> tuple[int, int]:
+def count_files() -> tuple[int, int]:
     """Number of files in the cache and their total size [bytes], without files that vanish meanwhile."""
     sizes = []
-    for folder, _, names in (entry for root in _own() for entry in os.walk(root)):
+    for folder, _, names in (entry for root in _own_folders() for entry in os.walk(root)):
         for name in names:
             with suppress(FileNotFoundError):
                 sizes.append(os.stat(os.path.join(folder, name)).st_size)
@@ -84,7 +84,7 @@ def clear() -> None:
 
     Raises ValueError if it cannot be removed.
     """
-    for folder in _own():
+    for folder in _own_folders():
         try:
             shutil.rmtree(folder)
         except FileNotFoundError:
@@ -93,6 +93,6 @@ def clear() -> None:
             raise ValueError(f"{folder}: cannot be removed ({error.strerror})") from None
 
 
-def _own() -> tuple[Path, Path]:
+def _own_folders() -> tuple[Path, Path]:
     """Folders that jointfmu fills: compiled models, and the compiler's default cache."""
-    return parts(), cache_folder() / "zig"
+    return parts_folder(), cache_folder() / "zig"

@@ -67,7 +67,9 @@ def libraries(
     def library(platform: str) -> bytes:
         with tempfile.TemporaryDirectory() as out:
             file = Path(out) / file_name(stem or name, platform)
-            _run(f"{name} for {platform}", folder, "cc", *options[platform], *units, *linked, "-o", str(file))
+            _run_zig(
+                f"{name} for {platform}", folder, "cc", *options[platform], *units, *linked, "-o", str(file)
+            )
             return file.read_bytes()
 
     with ThreadPoolExecutor(cpu_count()) as pool:
@@ -86,7 +88,7 @@ def webassembly(name: str, sources: Mapping[str, str], units: Sequence[str]) -> 
     folder = _folder({**_headers(), **sources})
     with tempfile.TemporaryDirectory() as out:
         file = Path(out) / f"{name}.wasm"
-        _run(f"{name} for WebAssembly", folder, "cc", *_WEB, *units, "-o", str(file))
+        _run_zig(f"{name} for WebAssembly", folder, "cc", *_WEB, *units, "-o", str(file))
         return file.read_bytes()
 
 
@@ -158,7 +160,7 @@ def _folder(files: Mapping[str, str]) -> Path:
     return folder
 
 
-def _run(what: str, folder: Path, *arguments: str) -> str:
+def _run_zig(target: str, folder: Path, *arguments: str) -> str:
     """Run zig in a folder and return its output; `target` names the result in the RuntimeError."""
     process = subprocess.run(
         [sys.executable, "-m", "ziglang", *arguments],
@@ -173,5 +175,5 @@ def _run(what: str, folder: Path, *arguments: str) -> str:
     if process.returncode:
         lines = process.stderr.splitlines()
         first = next((line for line in lines if "error" in line), process.stderr.strip() or "no message")
-        raise RuntimeError(f"{what}: {first}")
+        raise RuntimeError(f"{target}: {first}")
     return process.stdout

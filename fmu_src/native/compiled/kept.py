@@ -23,12 +23,12 @@ from typing import NamedTuple
 from jointfmu.joints import KINDS
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
-from jointfmu.progress import step
+from jointfmu.progress import set_step
 
 from ...folders import own_folder
 from ...joint_parts.data import Split
 from ..data import PLACEHOLDER, placeholder
-from .cache import check_access, make_folder, parts
+from .cache import check_access, make_folder, parts_folder
 from .compiler import exported, libraries
 
 SHIPPED = Path(__file__).parent.with_name("parts")
@@ -37,14 +37,14 @@ VERSIONS = ("2", "3")
 """Versions of FMI."""
 MOST_KEPT = 200
 """Largest number of files in a cache folder [1]; the oldest are deleted."""
-_SUFFIX, _KEPT = ".tar.xz", ".kept.xz"
+_SUFFIX, _RESULT_SUFFIX = ".tar.xz", ".kept.xz"
 _COMPILERS = ("casadi", "ziglang")
 _SOURCES = (".py", ".c", ".h")
 _MEMBER = re.compile(r"sources/\w[\w.-]*|\d/[\w-]+")
 """Pattern of member names in the file of a compiled model: C files, and libraries as FMI version/platform."""
 
 
-class Part(NamedTuple):
+class CompiledModel(NamedTuple):
     """C sources and libraries that all FMUs of one structure share.
 
     sources   : {file name: text} of all C files but data.c
@@ -55,31 +55,31 @@ class Part(NamedTuple):
     libraries: dict[str, dict[str, bytes]]
 
 
-def part_of(model: Model, parameters: ParameterFile, given: Split) -> Part:
+def compiled_model(model: Model, parameters: ParameterFile, split: Split) -> CompiledModel:
     """Get the compiled model of an FMU from the wheel or the cache, or compile and cache it.
 
     Raises ImportError if it must be compiled and a package is missing, ValueError if other users may write
     to the cache, ValueError and RuntimeError as `compiler.compile_libraries`.
     """
-    paths = _places(shipped_name(model, given))
+    paths = _places(shipped_name(model, split))
     for content in filter(None, map(_content, paths)):
         with suppress(lzma.LZMAError, tarfile.TarError, ValueError, EOFError):
-            return read(content)
-    compiled_model = compiled(model, parameters, given)
+            return unpack_model(content)
+    compiled_model = compile_model(model, parameters, split)
     with suppress(OSError):  # without cache the next build compiles again
-        _keep(paths[-1], written(compiled_model))
+        _keep(paths[-1], pack_model(compiled_model))
     return compiled_model
 
 
-def keeping(what: str, model: Model, make: Callable[[], bytes]) -> bytes:
+def cached_result(dependency: str, model: Model, make: Callable[[], bytes]) -> bytes:
     """Bytes that `make` computes from a model, read from the cache if the sources are unchanged.
 
     dependency : text of everything else on which the result depends
 
     Raises ValueError if other users may write to the cache, and what `make` raises.
     """
-    name = sha256(f"{what} {_sources_of(model)}".encode()).hexdigest()[:32]
-    file = _places(f"{model.name}-{name}{_KEPT}")[-1]
+    name = sha256(f"{dependency} {_sources_of(model)}".encode()).hexdigest()[:32]
+    file = _places(f"{model.name}-{name}{_RESULT_SUFFIX}")[-1]
     if content := _content(file):
         with suppress(lzma.LZMAError):
             return lzma.decompress(content)
@@ -113,25 +113,25 @@ def _interrupt_after() -> Iterator[None]:
         raise KeyboardInterrupt
 
 
-def compiled(model: Model, parameters: ParameterFile, given: Split) -> Part:
+def compile_model(model: Model, parameters: ParameterFile, split: Split) -> CompiledModel:
     """Compile the model of an FMU for all platforms and FMI versions."""
-    step(f"compile {model.name}")
+    set_step(f"compile {model.name}")
     from ..code.generate import code
 
     with _interrupt_after():
-        sources = code(model, parameters, given)
-    all_sources = sources | {"data.c": placeholder(model, given).source()}
+        sources = code(model, parameters, split)
+    all_sources = sources | {"data.c": placeholder(model, split).source()}
     libraries_by_version = {
         fmi: libraries(model.name, all_sources, exported(all_sources, fmi), stem=PLACEHOLDER)
         for fmi in VERSIONS
     }
-    return Part(sources, libraries_by_version)
+    return CompiledModel(sources, libraries_by_version)
 
 
-def shipped_name(model: Model, given: Split) -> str:
+def shipped_name(model: Model, split: Split) -> str:
     """File name of a compiled model, with a digest of structure and sources."""
     law = model.parameters
-    text = f"{model.name} {law.__module__}.{law.__qualname__} {given.structure} {_sources_of(model)}"
+    text = f"{model.name} {law.__module__}.{law.__qualname__} {split.structure} {_sources_of(model)}"
     return f"{model.name}-{sha256(text.encode()).hexdigest()[:32]}{_SUFFIX}"
 
 
@@ -141,7 +141,7 @@ def _places(name: str) -> tuple[Path, Path]:
     for package in _COMPILERS:
         with suppress(PackageNotFoundError):
             compilers.append(f"{package}-{version(package)}")
-    return SHIPPED / name, parts() / "_".join(compilers or ["none"]) / name
+    return SHIPPED / name, parts_folder() / "_".join(compilers or ["none"]) / name
 
 
 def _sources_of(model: Model) -> str:
@@ -172,11 +172,11 @@ def _files(folder: Path) -> Iterator[tuple[str, bytes]]:
         yield name, paths[name].read_bytes()
 
 
-def written(made: Part) -> bytes:
+def pack_model(model: CompiledModel) -> bytes:
     """Encode a compiled model as an archive; equal models give equal bytes."""
-    members = {f"sources/{name}": text.encode() for name, text in made.sources.items()}
-    for platform in made.libraries[VERSIONS[0]]:  # similar content is adjacent, for better compression
-        members |= {f"{v}/{platform}": made.libraries[v][platform] for v in VERSIONS}
+    members = {f"sources/{name}": text.encode() for name, text in model.sources.items()}
+    for platform in model.libraries[VERSIONS[0]]:  # similar content is adjacent, for better compression
+        members |= {f"{v}/{platform}": model.libraries[v][platform] for v in VERSIONS}
     buffer = io.BytesIO()
     with tarfile.open(fileobj=buffer, mode="w:xz", preset=9) as archive:
         for name, content in members.items():
@@ -186,7 +186,7 @@ def written(made: Part) -> bytes:
     return buffer.getvalue()
 
 
-def read(content: bytes) -> Part:
+def unpack_model(content: bytes) -> CompiledModel:
     """Decode a compiled model from an archive.
 
     Raises ValueError, LZMAError or TarError if the archive is invalid or has a member of another name.
@@ -206,7 +206,7 @@ def read(content: bytes) -> Part:
                 libraries_by_version.setdefault(folder, {})[name] = member
     if not sources or not libraries_by_version.keys() >= {*VERSIONS}:
         raise ValueError("no part")
-    return Part(sources, libraries_by_version)
+    return CompiledModel(sources, libraries_by_version)
 
 
 def _keep(file: Path, content: bytes) -> None:

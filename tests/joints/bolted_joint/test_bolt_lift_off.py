@@ -8,18 +8,18 @@ from clients import needs
 from conftest import Fmu, here_alone
 from jointfmu_fmu_src.building import build
 from jointfmu_tools import cli
-from jointfmu_tools.joints.bolted_joint.export import pull_table
+from jointfmu_tools.joints.bolted_joint.export import tabulate_normal_force
 from jointfmu_tools.joints.bolted_joint.fit.preload import joint_stiffness
 from jointfmu_tools.joints.bolted_joint.pull import bolt_forces
 from natives import jacobian
 
 from jointfmu.joints.bolted_joint import bolts as bolt_law
 from jointfmu.joints.bolted_joint.bolts import BoltSprings
-from jointfmu.joints.bolted_joint.contact import Place
+from jointfmu.joints.bolted_joint.contact import RelativeDisplacement
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.mechanics.footprint.plate import BoltedPlate
-from jointfmu.mechanics.footprint.shape import NodalField, means
-from jointfmu.parameters import default, load
+from jointfmu.mechanics.footprint.shape import NodalField, position_means
+from jointfmu.parameters import load_default, load_parameter_file
 
 PRELOAD, EMBEDDING = 15e3, 800.0
 STIFFNESS = 1.28e10
@@ -38,8 +38,8 @@ def plate(x=(-0.08, 0.08, -0.08), y=(-0.03, -0.03, 0.03)):
 
 def rigid_file(**changes):
     """Three bolts on a plate, between rigid sides: nothing about them is symmetric."""
-    file, pattern = default("bolted_joint"), plate()
-    row_bolts, row_distance = pattern.rows
+    file, pattern = load_default("bolted_joint"), plate()
+    row_bolts, row_distance = pattern.equivalent_rows
     numbers = {
         "pattern": pattern, "n_bolts": 3.0, "A_0": pattern.area, "row_bolts": row_bolts,
         "row_distance": row_distance, "bolt_stiffness": STIFFNESS, "embedding": EMBEDDING,
@@ -54,7 +54,7 @@ def elastic_file(tmp_path_factory):
     drawing = ["--plate", "80x80", "--bolts", "4xM8", "--at", "50x50", "--grip", "20", "--material", "steel"]
     stated = ["--Ra", "0.8", "--embedding", str(EMBEDDING), "--preload", str(PRELOAD), "--out", str(path)]
     assert cli.main(["new", "bolted-joint", *drawing, *stated]) == 0
-    return load(path).with_values({"bolt_stiffness": STIFFNESS}, "user", "test")
+    return load_parameter_file(path).with_values({"bolt_stiffness": STIFFNESS}, "user", "test")
 
 
 @pytest.fixture(
@@ -71,7 +71,7 @@ def spring_of_sides(file):
 
 def at(spring, *six, memory=None, preload=PRELOAD, moment=0.0):
     start = spring.at_rest() if memory is None else memory
-    return spring.evolve(preload, moment, Place(np.array(six)), STILL, start)
+    return spring.evolve(preload, moment, RelativeDisplacement(np.array(six)), STILL, start)
 
 
 def forces_of_bolts(spring, out, six, preload=PRELOAD, moment=0.0):
@@ -106,8 +106,8 @@ def test_a_field_without_a_list_of_bolts_has_places_with_its_means(positions):
     """Those of one bolt, of two, and of four on a rectangle are the places themselves."""
     rectangle = [[x, y] for x in (-0.07, 0.09) for y in (-0.03, 0.04)]
     places = np.array(positions or rectangle)
-    found = bolt_law._rectangle(*means(places))
-    np.testing.assert_allclose(means(found), means(places), atol=1e-15)
+    found = bolt_law._rectangle(*position_means(places))
+    np.testing.assert_allclose(position_means(found), position_means(places), atol=1e-15)
     apart = np.abs(found[:, None] - places).sum(axis=-1)
     np.testing.assert_allclose(apart.min(axis=1), 0.0, atol=1e-9)
     np.testing.assert_allclose(apart.min(axis=0), 0.0, atol=1e-9)
@@ -145,7 +145,7 @@ MIXED = np.array([0.0, 0.0, -1.0, 4.0, -8.0, 0.0])
 def test_no_bolt_pushes(spring, sweep):
     """What the bolts add to the forces is what they pull at their places."""
     memory, lifted, free = spring.at_rest(), False, without_bolts(spring)
-    bare, x, y = free.at_rest(), *spring.bolts.position.T
+    bare, x, y = free.initial_history(), *spring.bolts.position.T
     for part in np.linspace(0.0, 1.0, 9):
         six = part * LIFT_OFF * SWEEPS[sweep]
         out, memory = at(spring, *six, memory=memory)
@@ -202,7 +202,7 @@ def test_a_closed_elastic_cycle_through_lift_off_has_no_work(file):
     way[:, 2] = -0.5 * depth * (1.0 - np.cos(angle))
     way[:, 3] = 2.0 * depth * np.sin(angle)
     way[:, 4] = depth * np.sin(2.0 * angle)
-    memory, rows = spring.at_rest(), []
+    memory, rows = spring.initial_history(), []
     for six in way:
         out, memory = at(spring, *six, memory=memory)
         lifted |= bool(np.any(forces_of_bolts(spring, out, six) == 0.0))
@@ -265,14 +265,14 @@ def test_the_fmu_lifts_its_bolts_as_the_package(file, spring, tmp_path, flavour)
     for preload, moment, six in random_motions(np.random.default_rng(7), 24):
         expected, memory = at(spring, *six, memory=memory, preload=preload, moment=moment)
         given = {"preload": preload, "moment": moment, **dict(zip(MOTIONS, six, strict=True))}
-        fmu.set({name: float(value) for name, value in given.items()})
+        fmu.set_values({name: float(value) for name, value in given.items()})
         fmu.step()
         size = 1e-9 * (abs(expected["f_z"]) + PRELOAD)
         for name, found in fmu.get(*expected).items():
             least = {"f": size, "m": size, "F": size, "K": 1e3, "C": 1e-2}.get(name[0], 1e-9)
             wanted = pytest.approx(float(expected[name]), rel=1e-7, abs=least)
             assert found == wanted, (name, preload, moment, six)
-    fmu.free()
+    fmu.free_instance()
 
 
 def test_derivatives_are_those_of_the_forces_on_both_sides(file, tmp_path):
@@ -290,9 +290,9 @@ def test_derivatives_are_those_of_the_forces_on_both_sides(file, tmp_path):
             exact = [jacobian(fmu)[name, moved] for name in names]
             sides = []
             for sign in (1.0, -1.0):
-                fmu.set({**start, moved: start[moved] + sign * step})
+                fmu.set_values({**start, moved: start[moved] + sign * step})
                 sides.append(np.array([fmu.get(*names)[name] for name in names]))
-            fmu.free()
+            fmu.free_instance()
             size = {"preload": 1e-3, "moment": 1e-1}.get(moved, 1e-3 * STIFFNESS)
             slope = (sides[0] - sides[1]) / (2.0 * step)
             np.testing.assert_allclose(exact, slope, rtol=1e-3, atol=size, err_msg=f"{moved}, {part}")
@@ -303,7 +303,7 @@ def test_derivatives_are_those_of_the_forces_on_both_sides(file, tmp_path):
 
 def test_the_pull_curve_is_that_of_bolts_that_lift_off():
     spring = BoltedJointSpring.of_nodes(rigid_file(bolt_stiffness=2e10).values)
-    table = pull_table(spring, PRELOAD, 0.0, 1e-3)
+    table = tabulate_normal_force(spring, PRELOAD, 0.0, 1e-3)
     s, force, k = table.rows.T
     lift_off = (PRELOAD - EMBEDDING) / 2e10
     assert s[0] < -2.0 * lift_off

@@ -22,17 +22,17 @@ from numpy.typing import NDArray
 from scipy.linalg import eigh
 from scipy.optimize import brentq
 
-from jointfmu.joints.bolted_joint.contact import Place
+from jointfmu.joints.bolted_joint.contact import RelativeDisplacement
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
-from jointfmu.parameters import default
-from jointfmu.quantity import flatten
+from jointfmu.parameters import load_default
+from jointfmu.quantity import flatten_parameters
 
 pytestmark = pytest.mark.slow
 
 Array = NDArray[np.float64]
 Force = Callable[[Array, bool], Array]
 
-JOINT = default("bolted_joint").values
+JOINT = load_default("bolted_joint").values
 PRELOAD, MOMENT = 9e3, 1500.0
 AXES = ("s_rel_x", "s_rel_y", "s_rel_z", "theta_x", "theta_y", "theta_z")
 FORCES = ("f_x", "f_y", "f_z", "m_x", "m_y", "m_z")
@@ -43,7 +43,7 @@ def all_nodes(preload: float, moment: float) -> Array:
     """Stiffness (6, 6) of all nodes in full stick, each with the law's own stiffness."""
     nodes = BoltedJointSpring.of_nodes(JOINT)
     shape = nodes.shape
-    k = JOINT.A_0 * shape.share * nodes.curve.derivatives(nodes.tightened(preload, moment), 1)[1]
+    k = JOINT.A_0 * shape.share * nodes.curve.derivatives(nodes.preloaded_approach(preload, moment), 1)[1]
     x, y = shape.position.T
     none, one = np.zeros_like(x), np.ones_like(x)
     normal = np.array([none, none, one, y, -x, none])
@@ -98,7 +98,7 @@ def test_six_frequencies_of_a_block(native: Path, exchange: bool) -> None:
         places = leapfrog(force_of(fmu), MASS, 0.0 * shape, omega * size * shape, step, 1600)
         found = peak(places @ MASS @ shape, step)
         assert 2.0 / step * np.sin(0.5 * found * step) == pytest.approx(omega, rel=2e-3)
-        fmu.free()
+        fmu.free_instance()
 
 
 @pytest.mark.parametrize("degrees", [10.0, 90.0])
@@ -107,11 +107,11 @@ def test_frames_that_are_turned_about_the_normal(degrees: float) -> None:
     c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
     turned = np.array([[c, -s], [s, c]])
     spring = BoltedJointSpring.of(JOINT)
-    rates, rest = (0.0,) * 6, spring.at_rest()
+    rates, rest = (0.0,) * 6, spring.initial_history()
 
     def shear(u: Array) -> Array:
-        place = Place(np.array([*u[:2], -1e-7, 0.0, 0.0, 0.0]))
-        found, _ = spring.evolve(PRELOAD, 0.0, place, rates, rest)
+        place = RelativeDisplacement(np.array([*u[:2], -1e-7, 0.0, 0.0, 0.0]))
+        found, _ = spring.advance(PRELOAD, 0.0, place, rates, rest)
         return np.array([found["f_x"], found["f_y"]], dtype=float)
 
     push = np.array([1e-6, 0.0])
@@ -177,11 +177,11 @@ def test_co_simulation_and_cvode_agree(native: Path) -> None:
     for per_period in (2000, 4000):
         fmu = started(native, "3", False)
         ends.append(ring_down(force_of(fmu), per_period, 2.25)[-1])
-        fmu.free()
+        fmu.free_instance()
     limit = (4.0 * ends[1] - ends[0]) / 3.0
     exchange = started(native, "3", True)
     assert cvode(exchange, 2.25 * PERIOD) == pytest.approx(limit, abs=1e-6 * FIRST)
-    exchange.free()
+    exchange.free_instance()
 
 
 def gone_on(fmu: Fmu, places: list[float]) -> list[float]:
@@ -223,7 +223,7 @@ def test_a_state_goes_on_in_another_process(native: Path, tmp_path: Path) -> Non
     assert done.returncode == 0, done.stderr[-2000:]
     assert done.stdout == f"{gone_on(fmu, places[30:])}\n"
     fmu.fmu.freeFMUState(saved)
-    fmu.free()
+    fmu.free_instance()
 
 
 def test_flavours_agree(native: Path, fmus: Path) -> None:
@@ -233,10 +233,10 @@ def test_flavours_agree(native: Path, fmus: Path) -> None:
         for exchange in (False, True):
             fmu = started(native, version, exchange)
             places[version, exchange] = ring_down(force_of(fmu), 40, 3.0)
-            fmu.free()
+            fmu.free_instance()
     fmu = Fmu(fmus / "BoltedJoint.fmu").start({"preload": PRELOAD})
     places["python", False] = ring_down(force_of(fmu), 40, 3.0)
-    fmu.free()
+    fmu.free_instance()
     reference = places["3", False]
     for found in places.values():
         np.testing.assert_allclose(found, reference, rtol=0.0, atol=1e-9 * FIRST)
@@ -251,14 +251,16 @@ def swings(first: float, least: float) -> Array:
     force there is q - 2 B(s).
     """
     nodes = BoltedJointSpring.of_nodes(JOINT)
-    approach, law = nodes.tightened(PRELOAD, 0.0), nodes.foundation()
+    approach, law = nodes.preloaded_approach(PRELOAD, 0.0), nodes.foundation()
     share, limit = nodes.shape.share, JOINT.mu * PRELOAD * JOINT.n_bolts / JOINT.A_0
 
     def force(u: float) -> float:
-        return float(share @ law.backbone(approach, u))
+        return float(share @ law.virgin_traction(approach, u))
 
     def idle(s: float, q: float) -> float:
-        return (q - force(s)) * s - 0.25 * float(share @ law.loop(approach, s)[0])  # which is 8 I - 4 B s
+        return (q - force(s)) * s - 0.25 * float(
+            share @ law.cycle_energies(approach, s)[0]
+        )  # which is 8 I - 4 B s
 
     found, s, q = [], first, force(first)
     while q > least * limit:
@@ -272,7 +274,7 @@ def test_a_ring_down_loses_what_the_loop_does(native: Path) -> None:
     """From 0.63 to 0.1 of the friction: by how much less far it swings a period later, within 2 %."""
     fmu = started(native, "3", False)
     place = ring_down(force_of(fmu), 400, 16.0)
-    fmu.free()
+    fmu.free_instance()
     turns = np.diff(place)[:-1] * np.diff(place)[1:] <= 0.0
     seen = np.abs(np.diff([FIRST, *place[1:-1][turns]]))
     expected = swings(FIRST, 0.1)
@@ -290,7 +292,7 @@ COARSE = 0.2
 
 def ringing(lengths, **options):
     assembly = box.specimen(box.shipped(), lengths)
-    joint = default("bolted_joint").values
+    joint = load_default("bolted_joint").values
     return box.frequencies(assembly, joint, [(9e3, 0.0)], refinement=COARSE, **options)[0]
 
 
@@ -318,7 +320,9 @@ def test_lengths_are_those_of_the_file():
     shipped = box.shipped()
     again = box.specimen(shipped, box.lengths_of(shipped).tolist())
     for one, other in ((again.side2, shipped.side2), (again.bolts, shipped.bolts)):
-        assert flatten(one) == pytest.approx(flatten(other), rel=1e-12)  # sums of decimals
+        assert flatten_parameters(one) == pytest.approx(
+            flatten_parameters(other), rel=1e-12
+        )  # sums of decimals
 
 
 def test_what_is_no_box_is_refused():
@@ -349,7 +353,7 @@ def test_identification_finds_the_lengths_of_a_known_box(monkeypatch):
     known = lengths * np.array([1.03, 1.0, 1.0, 1.0, 0.97])
     target = ringing(known.tolist())
     start = ringing(lengths.tolist()) / target - 1.0
-    joint = default("bolted_joint").values
+    joint = load_default("bolted_joint").values
     found = box.identify(box.shipped(), joint, 9e3, target, COARSE, trials=2)
     assert np.max(np.abs(start)) > 0.03
     # from 6 %: the square of that by curvature, and what a new mesh changes at random, 0.2 % together

@@ -8,12 +8,12 @@ import pytest
 from scipy.optimize import brentq
 
 from jointfmu.joints import MODELS
-from jointfmu.joints.bolted_joint.contact import parts
-from jointfmu.joints.bolted_joint.law import pressures
+from jointfmu.joints.bolted_joint.contact import force_transfer
+from jointfmu.joints.bolted_joint.law import preload_pressure
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
-from jointfmu.parameters import default
+from jointfmu.parameters import load_default
 
-JOINT = default("bolted_joint").values
+JOINT = load_default("bolted_joint").values
 MODEL = MODELS["BoltedJoint"]
 MOTION = ("s_rel_x", "s_rel_y", "s_rel_z", "theta_x", "theta_y", "theta_z")
 FORCE = ("f_x", "f_y", "f_z", "m_x", "m_y", "m_z")
@@ -53,7 +53,7 @@ def walk(spring, path, memory=None, **inputs):
     """Outputs along a path (n, 6)."""
     memory, found = spring.at_rest() if memory is None else memory, []
     for place in path:
-        out, memory = MODEL.evolve(spring, at(place, **inputs), memory)
+        out, memory = MODEL.advance(spring, at(place, **inputs), memory)
         found.append(out)
     return found
 
@@ -81,7 +81,7 @@ def test_points_press_on_the_patches_around_them_with_all_their_force(spring):
     """To the decimals that are kept; each patch has its own force within 2 % of the mean one, as points and
     patches that do not touch have their parts, too."""
     points, patches = spring.shape, spring.patches
-    part = parts(points, patches)
+    part = force_transfer(points, patches)
     np.testing.assert_allclose(part.sum(axis=0), 1.0, rtol=1e-3)
     assert np.all(part.max(axis=1) > 0.0)
     force = part @ (points.share * points.equal)
@@ -92,7 +92,7 @@ def test_points_press_on_the_patches_around_them_with_all_their_force(spring):
     one = replace(
         patches, **{name: getattr(patches, name)[:1] for name in ("share", "position", "equal", "tilt")}
     )
-    np.testing.assert_array_equal(parts(points, one), np.ones((1, points.share.size)))
+    np.testing.assert_array_equal(force_transfer(points, one), np.ones((1, points.share.size)))
 
 
 def test_shear_does_not_lift(spring):
@@ -165,7 +165,7 @@ def test_the_loss_factor_falls_with_the_amplitude_down_to_none(spring):
 
     Of second order is some half of the amplitude over that of gross slip, 1e-6 m.
     """
-    approach = spring.curve.inverse(pressures(JOINT, spring.patches, 9e3, 0.0))
+    approach = spring.curve.inverse(preload_pressure(JOINT, spring.patches, 9e3, 0.0))
     _, k, bend = (spring.patches.share @ each for each in spring.curve.derivatives(approach, 2))
     slope = 2.0 / (3.0 * np.pi) * JOINT.shear_ratio() * bend / (JOINT.mu * k)
     for u in (1e-9, 1e-10, 1e-12, 1e-14, 1e-16, 1e-18, -1e-16):
@@ -182,13 +182,13 @@ def test_noise_while_it_is_tightened_leaves_no_trace(spring, part):
     rng, memory = np.random.default_rng(45), spring.at_rest()
     for preload in np.linspace(0.0, 3e4, 31):
         place = 1e-12 * (preload > 1e3) * rng.normal(size=6) * np.array([1.0, 1.0, 0.0, 0.0, 0.0, 1.0])
-        _, memory = MODEL.evolve(spring, at(place, preload=preload), memory)
-    approach = spring.curve.inverse(pressures(JOINT, spring.patches, 3e4, 0.0))
+        _, memory = MODEL.advance(spring, at(place, preload=preload), memory)
+    approach = spring.curve.inverse(preload_pressure(JOINT, spring.patches, 3e4, 0.0))
     law = spring.foundation()
     gross = law.friction / law.ratio * float(spring.patches.share @ (approach - spring.curve.displacement[0]))
     amplitude, losses = part * gross, []
     for u in amplitude * np.concatenate([np.linspace(0, 1, 5), np.linspace(1, -1, 9), np.linspace(-1, 1, 9)]):
-        out, memory = MODEL.evolve(spring, at([u, 0, 0, 0, 0, 0], preload=3e4), memory)
+        out, memory = MODEL.advance(spring, at([u, 0, 0, 0, 0, 0], preload=3e4), memory)
         losses.append(float(out["E_loss"]))
     theory = JOINT.A_0 * float(
         spring.patches.share @ law.loop(approach, np.full(approach.size, amplitude))[0]
@@ -251,16 +251,16 @@ def missing(spring, steps, taken):
     memory, total, turned, lost = spring.at_rest(), 0.0, 0.0, 0.0
     for k in range(80):  # a quarter more than an oscillation, so that all have slipped
         wave = sizes * np.sin(2.0 * np.pi * rates * k / 64.0)
-        _, memory = MODEL.evolve(spring, inputs(wave), memory)
-    heat, energy = MODEL.evolve(spring, inputs(wave), memory)[0]["E_loss"], stored(spring, memory)
+        _, memory = MODEL.advance(spring, inputs(wave), memory)
+    heat, energy = MODEL.advance(spring, inputs(wave), memory)[0]["E_loss"], stored(spring, memory)
     for k in range(1, taken + 1):
         next_wave = sizes * np.sin(2.0 * np.pi * rates * (79.0 / 64.0 + k / steps))
         change = (next_wave - wave)[[0, 1, 5]]
         for part, weight in zip(parts, np.tile(0.5 * w / 6.0, 6), strict=True):
-            out = MODEL.evolve(spring, inputs(wave + part * (next_wave - wave)), memory)[0]
+            out = MODEL.advance(spring, inputs(wave + part * (next_wave - wave)), memory)[0]
             work = -weight * change @ np.array([float(out[name]) for name in ("f_x", "f_y", "m_z")])
             total, turned = total + work, turned + abs(work)
-        out, memory = MODEL.evolve(spring, inputs(next_wave), memory)
+        out, memory = MODEL.advance(spring, inputs(next_wave), memory)
         lost += abs(total - (out["E_loss"] - heat) - (stored(spring, memory) - energy))
         wave, heat, energy, total = next_wave, out["E_loss"], stored(spring, memory), 0.0
     return lost / (turned + energy)
@@ -284,7 +284,7 @@ def test_heat_never_falls(spring):
     rng, memory, before = np.random.default_rng(41), spring.at_rest(), 0.0
     for _ in range(60):
         loads = {"preload": 9e3 * rng.random(), "moment": 900.0 * rng.normal()}
-        out, memory = MODEL.evolve(spring, at(2.0 * SIZE * rng.normal(size=6), **loads), memory)
+        out, memory = MODEL.advance(spring, at(2.0 * SIZE * rng.normal(size=6), **loads), memory)
         assert out["E_loss"] >= before
         before = out["E_loss"]
 
@@ -309,7 +309,7 @@ def test_elastic_joint_warns_beyond_its_friction():
     for u in (5e-7, 2e-6):
         inputs = at(u * np.eye(6)[0])
         out = MODEL.evaluate(spring, inputs)
-        slips[float(out["slip"])] = MODEL.warnings(spring, inputs | out)
+        slips[float(out["slip"])] = MODEL.find_warnings(spring, inputs | out)
     (low, quiet), (high, said) = sorted(slips.items())
     assert low < 0.5**0.5 < high < 1.0
     assert not quiet
@@ -318,7 +318,7 @@ def test_elastic_joint_warns_beyond_its_friction():
     assert "beyond what friction holds" in text
     assert "elastic" not in text
     remembers = BoltedJointSpring.of(JOINT)
-    assert not MODEL.warnings(remembers, inputs | MODEL.evaluate(remembers, inputs))
+    assert not MODEL.find_warnings(remembers, inputs | MODEL.evaluate(remembers, inputs))
 
 
 # Six degrees of freedom

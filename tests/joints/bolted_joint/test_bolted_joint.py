@@ -10,12 +10,12 @@ from hypothesis import strategies as st
 
 from jointfmu.contact.interface import at_pressure
 from jointfmu.contact.laws import mindlin
-from jointfmu.joints.bolted_joint.law import BoltedJoint, pressures
+from jointfmu.joints.bolted_joint.law import BoltedJoint, preload_pressure
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.mechanics.curve import MAX_ERROR
-from jointfmu.mechanics.footprint.bolts import PressureShape
-from jointfmu.parameters import default
-from jointfmu.quantity import build, flatten
+from jointfmu.mechanics.footprint.bolts import PressureDistribution
+from jointfmu.parameters import load_default
+from jointfmu.quantity import build_parameter_set, flatten_parameters
 
 EPS = np.finfo(float).eps
 STENCIL = np.array([1.0, -8.0, 0.0, 8.0, -1.0]) / 12.0
@@ -29,14 +29,14 @@ K = 2e10 N/m."""
 SLOPE = 1e-8
 """Relative tolerance of such a difference [1]."""
 
-JOINT = replace(default("bolted_joint").values, memory=False, damping=True)
+JOINT = replace(load_default("bolted_joint").values, memory=False, damping=True)
 STILL = (0.0, 0.0, 0.0)
 LOADS = [(9e3, 0.0), (15e3, 4500.0), (500.0, -100.0)]
 each_load = pytest.mark.parametrize(("preload", "moment"), LOADS)
 
 
 def changed(**values):
-    return build(BoltedJoint, flatten(JOINT) | values)
+    return build_parameter_set(BoltedJoint, flatten_parameters(JOINT) | values)
 
 
 @pytest.fixture(scope="module")
@@ -55,7 +55,7 @@ def even(spring):
     """The same joint under a uniform pressure: three nodes of unequal share."""
     position = np.array([[0.1, 0.02], [-0.05, 0.1], [-0.025, -0.2]])
     share = np.array([0.4, 0.4, 0.2])
-    shape = PressureShape(share, position, np.ones(3), np.zeros(3))
+    shape = PressureDistribution(share, position, np.ones(3), np.zeros(3))
     return replace(spring.on(shape), joint=replace(JOINT, plastic_damping=True))
 
 
@@ -71,7 +71,7 @@ def test_no_force_when_tightened(spring, preload, moment):
     out = spring.motion(preload, moment, STILL, STILL)
     assert (out["f_x"], out["f_y"]) == (0.0, 0.0)
     assert out["f_z"] == pytest.approx(0.0, abs=1e2 * EPS * total(preload))  # round-off of a thousand nodes
-    p = pressures(JOINT, spring.shape, preload, moment)
+    p = preload_pressure(JOINT, spring.shape, preload, moment)
     # the inverse of the table is exact to round-off; where p is small the approach's own counts
     assert out["p_mean"] == pytest.approx(total(preload) / JOINT.A_0, rel=1e-12)
     assert out["p_max"] == pytest.approx(np.max(p), rel=1e-12)
@@ -98,7 +98,7 @@ def test_uniform_pressure_is_the_law(even):
 @each_load
 def test_stiffness_is_the_sum_of_the_nodes_own_laws(spring, preload, moment):
     """The law at every node's pressure for the whole area A_0, scaled by the node's share."""
-    p = pressures(JOINT, spring.shape, preload, moment)
+    p = preload_pressure(JOINT, spring.shape, preload, moment)
     assert (
         np.min(p) > spring.curve.load[np.searchsorted(spring.curve.displacement, 0.0)]
     )  # outside the closing
@@ -267,10 +267,10 @@ def test_loss_factors_and_damping(plastic, preload, moment):
     """eta_n: plastic over elastic work of all nodes; eta_t: of the traction ratio; C = eta sqrt(M K)."""
     spring = plastic
     out = spring.motion(preload, moment, STILL, STILL)
-    law = at_pressure(JOINT, pressures(JOINT, spring.shape, preload, moment))
+    law = at_pressure(JOINT, preload_pressure(JOINT, spring.shape, preload, moment))
     plastic, elastic = (spring.shape.share @ law[name] for name in ("W_NP", "W_NE"))
     assert out["eta_n"] == pytest.approx(plastic / elastic, rel=MAX_ERROR)
-    ratio = 12.0 * mindlin.loop(0.1) / (5.0 * np.pi * mindlin.storage(0.1))
+    ratio = 12.0 * mindlin.dissipation_function(0.1) / (5.0 * np.pi * mindlin.storage_function(0.1))
     assert out["eta_t"] == pytest.approx(ratio / (1.0 - ratio), rel=1e-13)  # round-off
     assert out["eta_t"] == pytest.approx(2.0 * 0.1 / (9.0 * np.pi), rel=0.1)  # its limit for small x
     for axis, eta in (("xx", "eta_t"), ("yy", "eta_t"), ("zz", "eta_n")):
@@ -317,7 +317,7 @@ def test_loss_factor_while_closing(even):
 def test_rotational_stiffness_about_the_centroid(spring, preload, moment):
     """sum A k y^2, sum A k x^2, and rho sum A k (x^2 + y^2), written out."""
     out = spring.motion(preload, moment, STILL, STILL)
-    law = at_pressure(JOINT, pressures(JOINT, spring.shape, preload, moment))
+    law = at_pressure(JOINT, preload_pressure(JOINT, spring.shape, preload, moment))
     x, y = spring.shape.position.T
     share = spring.shape.share
     assert share @ x == pytest.approx(0.0, abs=1e-15)  # m, the origin is the centroid
@@ -369,9 +369,9 @@ def test_an_open_row(spring, moment):
     """A moment that asks for more than the preload: no pull in any node, and no force when tightened."""
     preload = 9e3
     assert abs(moment) / (JOINT.row_distance * JOINT.row_bolts) > preload
-    p = pressures(JOINT, spring.shape, preload, moment)
+    p = preload_pressure(JOINT, spring.shape, preload, moment)
     assert np.min(p) == 0.0
-    assert np.max(p) > np.max(pressures(JOINT, spring.shape, preload, 0.0))
+    assert np.max(p) > np.max(preload_pressure(JOINT, spring.shape, preload, 0.0))
     open_side = np.sign(spring.shape.position[p == 0.0, 1])
     assert np.all(open_side == -np.sign(moment))
     out = spring.motion(preload, moment, STILL, STILL)

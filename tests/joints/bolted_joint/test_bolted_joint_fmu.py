@@ -15,11 +15,11 @@ from conftest import here_alone
 from joint_cases import RANGES, SAME, STATE, TABLE, parameters, random_inputs
 from jointfmu_fmu_src.building import build
 from jointfmu_tools.joints.bolted_joint.field import PlaneLayout
-from jointfmu_tools.joints.bolted_joint.picture import SEAM, _cells, plan
-from jointfmu_tools.joints.bolted_joint.report import pictured
-from jointfmu_tools.laboratory.describe import modules
+from jointfmu_tools.joints.bolted_joint.picture import CELL_OVERLAP, _cell_sizes, draw_plan
+from jointfmu_tools.joints.bolted_joint.report import picture_figure
+from jointfmu_tools.laboratory.describe import list_modules
 from jointfmu_tools.ramps import ramp
-from jointfmu_tools.report.course import Course
+from jointfmu_tools.report.course import LoadHistory
 from natives import SAME as SAME_FLAVOURS
 from natives import Host, close, jacobian, near, package
 from scipy.integrate import cumulative_simpson
@@ -27,11 +27,11 @@ from webassembly import Instance
 
 from jointfmu.contact.interface import stiffness_curve
 from jointfmu.joints import MODELS
-from jointfmu.joints.bolted_joint.law import pressures
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring, points
+from jointfmu.joints.bolted_joint.law import preload_pressure
+from jointfmu.joints.bolted_joint.spring import BoltedJointSpring, contact_points
 from jointfmu.mechanics.footprint.plate import BoltedPlate
-from jointfmu.mechanics.footprint.shape import NodalField, as_lists
-from jointfmu.parameters import default, load
+from jointfmu.mechanics.footprint.shape import NodalField, field_entries
+from jointfmu.parameters import load_default, load_parameter_file
 
 MOVED = ("s_rel_x", "s_rel_y", "s_rel_z", "theta_x", "theta_y", "theta_z")
 
@@ -41,7 +41,7 @@ def test_bolted_joint_at_rest_follows_the_law_without_a_table(fmu: Host) -> None
     spring = BoltedJointSpring.of(joint)
     for preload, moment in ((5e3, 0.0), (9e3, 600.0), (2e4, -1500.0)):
         found = instance.at({"preload": preload, "moment": moment})
-        node = pressures(joint, spring.shape, preload, moment)
+        node = preload_pressure(joint, spring.shape, preload, moment)
         k = stiffness_curve(joint, node)[0]
         K_zz = joint.A_0 * float(spring.shape.share @ k)
         expected = {"K_zz": K_zz, "p_max": float(node.max())}
@@ -77,12 +77,12 @@ def test_springs_that_just_touch_have_a_friction(host: Host, tmp_path: Path) -> 
     none: after some hundred steps of this way forces were no numbers, whatever came then."""
     file = Path(str(files("jointfmu_models"))) / "bolted_joint/box_specimen_roughness.toml"
     with here_alone("3"):
-        build(["BoltedJoint"], ["fmi3"], load(file), tmp_path)
+        build(["BoltedJoint"], ["fmi3"], load_parameter_file(file), tmp_path)
     joint, heat = host("BoltedJoint", folder=tmp_path).start({"preload": 1e4}), 0.0
     most = dict(zip(MOVED, (2.6e-6, 8.4e-7, 6.8e-7, 4.6e-5, 6.8e-6, 7.6e-6), strict=True))
     for k in range(1200):
         waves = np.sin(np.pi / 32.0 * k * (1.0 + 0.1 * np.arange(6)))
-        joint.set({name: float(x * wave) for (name, x), wave in zip(most.items(), waves, strict=True)})
+        joint.set_values({name: float(x * wave) for (name, x), wave in zip(most.items(), waves, strict=True)})
         joint.step()
         before, heat = heat, joint.get("E_loss")["E_loss"]
         assert heat >= before
@@ -120,12 +120,12 @@ def relative(found: Any, expected: Any) -> float:
 
 def test_the_preload_ramp_agrees_with_scipy(fmus: Path) -> None:
     path = fmus / "BoltedJoint.fmu"
-    c = ramp.run(path, "preload", 3e4, 100.0).columns
+    c = ramp.run_ramp(path, "preload", 3e4, 100.0).columns
     assert len(c["preload"]) == 301
     assert np.all(np.diff(c["K_zz"]) > 0.0)
     assert not np.any([c["f_x"], c["f_y"], c["f_z"]])
     assert relative(c["p_mean"], c["preload"] * 8.0 / 0.0382) < 1e-9  # equilibrium, 8 bolts on A_0
-    pulled = ramp.run(path, "s_rel_z", 5e-6, 1e-8, {"preload": 9e3}).columns
+    pulled = ramp.run_ramp(path, "s_rel_z", 5e-6, 1e-8, {"preload": 9e3}).columns
     force = -cumulative_simpson(pulled["K_zz"], x=pulled["s_rel_z"], initial=0.0)
     assert relative(pulled["f_z"], force) < 1e-6  # Simpson's rule at 500 steps
 
@@ -299,11 +299,11 @@ COMPILED = 1e-9
 @pytest.mark.slow
 @pytest.mark.parametrize("law", ["zhao2018", "roughness"])
 def test_the_map_is_the_pressure_at_the_points(law):
-    module = next(m for m in modules() if m.model.name == "BoltedJoint" and m.files[0].law == law)
+    module = next(m for m in list_modules() if m.model.name == "BoltedJoint" and m.files[0].law == law)
     joint = module.files[0].values
-    shape = points(joint.pattern)
+    shape = contact_points(joint.pattern)
     spring = BoltedJointSpring.of_nodes(joint, shape)
-    instance = Instance(module, module.compiled())
+    instance = Instance(module, module.compile_module())
     for moment, apart, turn in ((0.0, 0.0, 0.0), (1500.0, 2e-7, 1e-6)):
         given = {"preload": 12e3, "moment": moment, "s_rel_z": apart, "theta_x": turn, "theta_y": -turn}
         assert instance.start(given)
@@ -311,7 +311,7 @@ def test_the_map_is_the_pressure_at_the_points(law):
         assert found[:, :2] == pytest.approx(shape.position, rel=1e-12, abs=1e-15)
         assert found[:, 2] == pytest.approx(shape.share, rel=1e-15)
         x, y = shape.position.T
-        approach = spring.tightened(12e3, moment) - (apart + turn * y + turn * x)
+        approach = spring.preloaded_approach(12e3, moment) - (apart + turn * y + turn * x)
         expected = spring.curve.derivatives(approach, 0)[0]
         assert found[:, 3] == pytest.approx(expected, rel=COMPILED, abs=COMPILED * float(np.max(expected)))
         assert float(found[:, 3].max()) == instance.get()["p_max"]
@@ -329,14 +329,16 @@ YELLOW = "#fde725"
 @pytest.mark.parametrize("mu", [0.15, 0.0015])
 def test_loops_show_partial_slip_whatever_the_friction(mu: float) -> None:
     """The smallest keeps part of its stiffness, the largest stays below the friction and loses."""
-    file = default("bolted_joint").with_values({"mu": mu, "memory": True}, "user", "friction")
+    file = load_default("bolted_joint").with_values({"mu": mu, "memory": True}, "user", "friction")
     model = MODELS["BoltedJoint"]
-    course = Course(model, file)
-    small, *_, large = course.loops().rows()
-    point = {**course.about, "s_rel_x": 0.0}
+    course = LoadHistory(model, file)
+    small, *_, large = course.compute_loops().rows()
+    point = {**course.loop_inputs, "s_rel_x": 0.0}
     stiff = model.evaluate(course.spring, point)["K_xx"]
     assert small["secant_stiffness"] > 0.25 * stiff
-    assert large["force"] <= mu * course.about["preload"] * file.flat["n_bolts"] * (1.0 + 1e-9)
+    assert large["force"] <= mu * course.loop_inputs["preload"] * file.values_by_name["n_bolts"] * (
+        1.0 + 1e-9
+    )
     if mu < 0.1:
         assert large["motion"] < 0.5 * model.loop.amplitude
         # slides freely over more than a third of the way back
@@ -345,11 +347,11 @@ def test_loops_show_partial_slip_whatever_the_friction(mu: float) -> None:
 
 def test_the_picture_shows_pressure_and_bolts_where_they_are() -> None:
     """Cells make up the frame, the brightest lies at a bolt, numbers run as the bolts do."""
-    joint = default("bolted_joint").values
+    joint = load_default("bolted_joint").values
     shape = joint.pattern.shape()
-    drawn = ElementTree.fromstring(plan(joint, 9e3, 0.0))
+    drawn = ElementTree.fromstring(draw_plan(joint, 9e3, 0.0))
     cells = [rect for rect in drawn.iter(f"{SVG}rect") if rect.get("fill") not in ("#fff", "none", None)]
-    sides = [[float(rect.get(side)) - SEAM for side in ("width", "height")] for rect in cells]
+    sides = [[float(rect.get(side)) - CELL_OVERLAP for side in ("width", "height")] for rect in cells]
     area = np.sum(np.prod(sides[: len(shape.share)], axis=1))
     outer = next(rect for rect in drawn.iter(f"{SVG}rect") if rect.get("fill") == "none")
     scale = float(outer.get("width")) / (joint.pattern.column_spacing + joint.pattern.flange_width)
@@ -365,22 +367,24 @@ def test_the_picture_shows_pressure_and_bolts_where_they_are() -> None:
     strip = BoltedPlate(
         length=0.15, width=0.04, x=(0.0,), y=(0.0,), hole_diameter=0.009, cone_diameter=0.02
     )  # its cells are no squares: they are as wide as its columns
-    sides = _cells(SimpleNamespace(A_0=strip.area, pattern=strip), strip.shape().share)
-    np.testing.assert_allclose(sides.max(axis=0), np.array([0.15, 0.04]) / strip.coarse, rtol=1e-4)
+    sides = _cell_sizes(SimpleNamespace(A_0=strip.area, pattern=strip), strip.pressure_distribution().share)
+    np.testing.assert_allclose(
+        sides.max(axis=0), np.array([0.15, 0.04]) / strip.coarse_cell_counts, rtol=1e-4
+    )
 
 
 @pytest.mark.slow
 def test_the_picture_of_points_without_an_outline() -> None:
     """One dot a point, where it is; no bolts, and the page says so."""
-    file = default("bolted_joint")
+    file = load_default("bolted_joint")
     shape = file.values.pattern.shape()
     half = np.flatnonzero(shape.position[:, 1] > 0.0)
     some = shape.part(half)
     share = some.share / some.share.sum()
     moved = replace(some, share=share, position=some.position - share @ some.position)
     moved = replace(moved, equal=some.equal / (share @ some.equal), tilt=some.tilt - share @ some.tilt)
-    joint = replace(file.values, pattern=NodalField(**as_lists(moved)))
-    drawn = ElementTree.fromstring(plan(joint, 9e3, 0.0))
+    joint = replace(file.values, pattern=NodalField(**field_entries(moved)))
+    drawn = ElementTree.fromstring(draw_plan(joint, 9e3, 0.0))
     discs = list(drawn.iter(f"{SVG}circle"))
     assert len(discs) == len(share)
     places = np.array([[float(disc.get("cx")), -float(disc.get("cy"))] for disc in discs])
@@ -389,7 +393,7 @@ def test_the_picture_of_points_without_an_outline() -> None:
     told = [text.text for text in drawn.iter(f"{SVG}text")]
     wide = 1e3 * np.ptp(moved.position[:, 0])
     assert f"points over {wide:.4g} mm, x to the right" in told
-    assert len(PlaneLayout.of(joint).bolts) == 0
-    figure = pictured(Course(MODELS["BoltedJoint"], replace(file, values=joint)))
+    assert len(PlaneLayout.from_joint(joint).bolt_positions) == 0
+    figure = picture_figure(LoadHistory(MODELS["BoltedJoint"], replace(file, values=joint)))
     assert "no places of the bolts" in figure.text
     assert len(figure.pictures) == 1

@@ -11,16 +11,16 @@ from clients import needs
 from conftest import Fmu, here_alone, refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.drawing import vdi2230
-from jointfmu_tools.drawing.tables import classes, threads
+from jointfmu_tools.drawing.tables import read_property_classes, read_threads
 from jointfmu_tools.fem.bolted_contact import BoltedContact
 from jointfmu_tools.joints.bolted_joint.new import computed, layout
-from jointfmu_tools.joints.bolted_joint.report import friction_band
-from jointfmu_tools.shown import stated
-from jointfmu_tools.uncertainty.problem import pose
+from jointfmu_tools.joints.bolted_joint.report import friction_results
+from jointfmu_tools.shown import list_entries
+from jointfmu_tools.uncertainty.problem import state_problem
 
-from jointfmu.contact.roughness import FACTOR, GAMMA
+from jointfmu.contact.roughness import GAMMA, RQ_OVER_RA
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
-from jointfmu.parameters import load
+from jointfmu.parameters import load_parameter_file
 
 PLATE = ["--plate", "200x100", "--bolts", "4xM12", "--at", "160x60", "--grip", "40"]
 STEEL = ["--material", "steel"]
@@ -32,7 +32,7 @@ STILL = (0.0, 0.0, 0.0)
 @pytest.fixture(autouse=True)
 def interface_alone(monkeypatch):
     """The finite elements of the whole joint take seconds; test_bolted_plate.py looks at them."""
-    monkeypatch.setattr(computed, "facts", lambda file, *arguments: computed.NewJoint(file, {}, []))
+    monkeypatch.setattr(computed, "compute_facts", lambda file, *arguments: computed.NewJoint(file, {}, []))
 
 
 def made(capsys, *words, path=None):
@@ -44,7 +44,7 @@ def made(capsys, *words, path=None):
 
 def positions(count, **given):
     everything = dict.fromkeys(("at", "circle", "grid")) | given
-    return layout.positions(everything, count) * 1e3
+    return layout.bolt_positions(everything, count) * 1e3
 
 
 # VDI 2230 against printed numbers
@@ -62,15 +62,15 @@ def positions(count, **given):
 def test_preloads_of_table_a1(name, printed):
     """VDI 2230, part 1, Table A1 (mu_G = 0.12), classes 8.8, 10.9 and 12.9 in kN."""
     found = [
-        vdi2230.assembly_preload(threads()[name], strength["yield"][0]) / 1e3
-        for strength in classes().values()
+        vdi2230.assembly_preload(read_threads()[name], strength["yield"][0]) / 1e3
+        for strength in read_property_classes().values()
     ]
     assert found == pytest.approx(printed, rel=5e-3)
 
 
 @pytest.mark.parametrize(("name", "printed"), [("M6", 20.1), ("M12", 84.3), ("M20", 245.0), ("M30", 561.0)])
 def test_stress_areas_of_iso_898(name, printed):
-    assert vdi2230.stress_area(threads()[name]) * 1e6 == pytest.approx(printed, rel=2e-3)
+    assert vdi2230.stress_area(read_threads()[name]) * 1e6 == pytest.approx(printed, rel=2e-3)
 
 
 def test_members_of_a_textbook():
@@ -79,7 +79,7 @@ def test_members_of_a_textbook():
     inch, lbf_in = 0.0254, 4.4482216 / 0.0254
     layers = [vdi2230.ClampedPart(t * inch, 30e6 * 6894.757) for t in (0.095, 0.5, 0.5)]
     d = 0.5 * inch
-    compliance = vdi2230.members_compliance(layers, 1.5 * d, d, 10.0, 0.5774, tapped=False)
+    compliance = vdi2230.members_compliance(layers, 1.5 * d, d, 10.0, 0.5774, is_tapped=False)
     assert 1.0 / compliance / lbf_in == pytest.approx(15.97e6, rel=1e-3)
 
 
@@ -106,13 +106,13 @@ def test_members_are_the_integral_over_the_cone(outer, tapped):
 
 def test_a_bolt_by_hand():
     """M12 over 40 mm, 19.35 mm of it shank: 6 + 19.35 over the nominal area, 20.65 + 6 over d_3, 4.8 nut."""
-    M12 = threads()["M12"]
-    shank = vdi2230.shank_length(M12, 0.04, "hexagon", tapped=False)
+    M12 = read_threads()["M12"]
+    shank = vdi2230.shank_length(M12, 0.04, "hexagon", is_tapped=False)
     assert shank == pytest.approx(40e-3 + 9.6e-3 + 3.5e-3 - 30e-3)
     nominal, minor = 0.25 * math.pi * 12e-3**2, 0.25 * math.pi * 9.853e-3**2
     expected = ((6e-3 + shank + 4.8e-3) / nominal + (40e-3 - shank + 6e-3) / minor) / 205e9
     assert vdi2230.bolt_compliance(M12, 0.04, shank, "hexagon") == pytest.approx(expected, rel=1e-3)
-    tapped = vdi2230.bolt_compliance(M12, 0.04, shank, "socket", tapped=70e9)
+    tapped = vdi2230.bolt_compliance(M12, 0.04, shank, "socket", thread_modulus=70e9)
     nut = 0.33 * 12e-3 / (70e9 * nominal)
     expected = ((4.8e-3 + shank) / nominal + (40e-3 - shank + 6e-3) / minor) / 205e9 + nut
     assert tapped == pytest.approx(expected, rel=1e-3)
@@ -124,7 +124,7 @@ def test_a_bolt_by_hand():
 )
 def test_embedding_of_table_5(Rz, tapped, printed):
     """VDI 2230, part 1, Table 5, load along the bolt: thread, head and nut and one interface, in um."""
-    assert vdi2230.embedding(Rz * 1e-6, 1, tapped) * 1e6 == pytest.approx(printed)
+    assert vdi2230.embedding_depth(Rz * 1e-6, 1, tapped) * 1e6 == pytest.approx(printed)
 
 
 def test_embedding_takes_of_the_preload(capsys):
@@ -169,30 +169,30 @@ def test_layouts():
 def test_any_layout_makes_a_file_that_loads(capsys, tmp_path, layouts):
     path = tmp_path / "plate.toml"
     found = made(capsys, "--plate", "200x100", *layouts, "--grip", "40", *FACES, path=path)
-    file = load(path)
+    file = load_parameter_file(path)
     assert found["written"] == [str(path)]
     assert (file.law, file.values.n_bolts) == ("roughness", len(file.values.pattern.x))
-    left = file.start("preload") - file.values.embedding
+    left = file.start_value("preload") - file.values.embedding
     K = left * file.values.n_bolts / (GAMMA * file.values.h)
     assert found["facts"]["K_zz"]["value"] == pytest.approx(K, rel=0.05)  # p/(gamma h), and few spots
     # every number says where it comes from
-    assert all(file.sources[name] for name in file.flat)
+    assert all(file.sources[name] for name in file.values_by_name)
 
 
 def test_numbers_of_the_drawing_are_in_the_file(capsys, tmp_path):
     path = tmp_path / "plate.toml"
     found = made(capsys, *PLATE, *FACES, *LOAD, path=path)
-    file = load(path)
+    file = load_parameter_file(path)
     joint, plate = file.values, file.values.pattern
     assert (plate.length, plate.width, plate.hole_diameter) == (0.2, 0.1, 0.0135)
     assert plate.bolts.tolist() == [[-0.08, -0.03], [0.08, -0.03], [-0.08, 0.03], [0.08, 0.03]]
     assert (joint.n_bolts, joint.row_bolts, joint.row_distance) == pytest.approx((4.0, 2.0, 0.06))
     assert pytest.approx(0.2 * 0.1 - 4 * math.pi / 4 * 0.0135**2) == joint.A_0
-    assert joint.h == pytest.approx(FACTOR * 0.8e-6 * math.sqrt(2.0))
-    assert file.start("preload") == 30e3
+    assert joint.h == pytest.approx(RQ_OVER_RA * 0.8e-6 * math.sqrt(2.0))
+    assert file.start_value("preload") == 30e3
     assert file.origins["inputs.preload"] == file.origins["plate.length"] == "user"
     assert (file.origins["A_0"], file.origins["H"]) == ("derived", "estimate")
-    slope = vdi2230.cone_slope(0.04, 16.63e-3, 0.04, tapped=False)
+    slope = vdi2230.cone_slope(0.04, 16.63e-3, 0.04, is_tapped=False)
     assert plate.cone_diameter == pytest.approx(16.63e-3 + 2.0 * 20e-3 * slope)
     facts = {name: fact["value"] for name, fact in found["facts"].items()}
     assert facts["load_factor"] == pytest.approx(
@@ -257,9 +257,9 @@ def test_zhao_2018_gets_the_same_height(capsys, tmp_path):
 
     path = tmp_path / "plate.toml"
     made(capsys, *PLATE, *FACES, *LOAD, "--law", "zhao2018", path=path)
-    file = load(path)
-    h = fractal.height(file.values.surface.D, file.values.surface.G, 0.8e-3)
-    assert h == pytest.approx(FACTOR * 0.8e-6 * math.sqrt(2.0), rel=1e-9)
+    file = load_parameter_file(path)
+    h = fractal.rms_height(file.values.surface.D, file.values.surface.G, 0.8e-3)
+    assert h == pytest.approx(RQ_OVER_RA * 0.8e-6 * math.sqrt(2.0), rel=1e-9)
     assert dict(file.roughness) == pytest.approx({"Ra1": 0.8e-6, "Ra2": 0.8e-6})
     assert file.values.spot_stiffness == "hertz"
 
@@ -373,7 +373,7 @@ def test_the_fmu_of_a_drawing_is_the_package(capsys, tmp_path):
     with here_alone():
         assert cli.main(command) == 0
     instance = Fmu(tmp_path / "fmi2" / "BoltedJoint.fmu")
-    spring = BoltedJointSpring.of(load(path).values)
+    spring = BoltedJointSpring.of(load_parameter_file(path).values)
     for preload, moment, s_rel in (
         (3e4, 0.0, STILL),
         (2e4, 300.0, (1e-7, -2e-7, 3e-7)),
@@ -382,7 +382,7 @@ def test_the_fmu_of_a_drawing_is_the_package(capsys, tmp_path):
         inputs = {"preload": preload, "moment": moment}
         inputs |= {f"s_rel_{axis}": value for axis, value in zip("xyz", s_rel, strict=True)}
         instance.reset()
-        found, expected = instance.start(inputs).get(), spring.motion(preload, moment, s_rel, STILL)
+        found, expected = instance.start(inputs).get(), spring.evaluate(preload, moment, s_rel, STILL)
         for name, value in expected.items():
             scale = 1e-9 * preload if name.startswith(("f_", "m_")) else 0.0
             assert found[name] == pytest.approx(float(value), rel=1e-9, abs=scale), name
@@ -392,13 +392,13 @@ def test_the_fmu_of_a_drawing_is_the_package(capsys, tmp_path):
 @pytest.mark.slow
 def test_a_computed_field_is_near_the_cones(capsys, tmp_path, monkeypatch):
     """By elements of thrice the size, whose error is far below what is asked."""
-    monkeypatch.setattr(BoltedContact, "of", partial(BoltedContact.of, refinement=0.35))
+    monkeypatch.setattr(BoltedContact, "from_assembly", partial(BoltedContact.from_assembly, refinement=0.35))
     files = {}
     for field in ("cones", "computed"):
         path = tmp_path / f"{field}.toml"
         words = ["--plate", "60x60", "--bolts", "M16", "--grip", "30", *FACES, "--preload", "60e3"]
         made(capsys, *words, "--field", field, path=path)
-        files[field] = BoltedJointSpring.of(load(path).values).motion(6e4, 0.0, STILL, STILL)
+        files[field] = BoltedJointSpring.of(load_parameter_file(path).values).evaluate(6e4, 0.0, STILL, STILL)
     for name, within in (
         ("K_zz", 0.01),
         ("K_rx", 0.25),
@@ -412,14 +412,14 @@ def test_a_computed_field_is_near_the_cones(capsys, tmp_path, monkeypatch):
 def test_a_computed_field_of_a_tapped_joint_is_near_the_cone(capsys, tmp_path, monkeypatch):
     """As wide as VDI 2230's cone for a thread, in a joint without symmetry whose rims of the holes come to
     the hardness of aluminium under moments and more preload. Of coarser elements, too."""
-    monkeypatch.setattr(BoltedContact, "of", partial(BoltedContact.of, refinement=0.7))
+    monkeypatch.setattr(BoltedContact, "from_assembly", partial(BoltedContact.from_assembly, refinement=0.7))
     files = {}
     for field in ("cones", "computed"):
         path = tmp_path / f"{field}.toml"
         words = ["--plate", "100x70", "--bolts", "3xM8", "--at", "-30,-20", "25,-10", "3,18", "--grip", "12"]
         words += ["--tapped", "--thickness", "12", "25", "--material", "steel", "aluminium", "--Ra", "0.8"]
         made(capsys, *words, "--field", field, path=path)
-        files[field] = load(path).values
+        files[field] = load_parameter_file(path).values
     sums = []
     for values in files.values():
         bolts = np.array([[-0.03, -0.02], [0.025, -0.01], [0.003, 0.018]])
@@ -439,9 +439,9 @@ def test_friction_of_which_nothing_is_said_has_a_range(capsys, tmp_path):
     facts = {
         name: fact["value"] for name, fact in made(capsys, *PLATE, *FACES, *LOAD, path=path)["facts"].items()
     }
-    file = load(path)
+    file = load_parameter_file(path)
     low, high = file.ranges["mu"]
-    assert low < file.flat["mu"] < high
+    assert low < file.values_by_name["mu"] < high
     assert "VDI 2230" in file.sources["mu"]
     left = 30e3 - facts["embedding"]
     assert facts["slip_force_low"] == pytest.approx(low * 4 * left)
@@ -451,20 +451,22 @@ def test_friction_of_which_nothing_is_said_has_a_range(capsys, tmp_path):
     assert ratio == pytest.approx(high / low, rel=0.1)
     assert facts["loss_factor_high"] < facts["loss_factor"] < facts["loss_factor_low"]
     bare = replace(file, values=replace(file.values, embedding=0.0))  # embedding takes of the preload once
-    np.testing.assert_allclose(friction_band(file, 30e3)[1], friction_band(bare, left)[1], rtol=1e-9)
-    (mu,) = (each for each in stated(file) if each.name == "mu")
+    np.testing.assert_allclose(friction_results(file, 30e3)[1], friction_results(bare, left)[1], rtol=1e-9)
+    (mu,) = (each for each in list_entries(file) if each.name == "mu")
     assert mu.source.startswith(f"{low:g} to {high:g}; ")
-    study = pose(file, {}, 30e3, 3)
+    study = state_problem(file, {}, 30e3, 3)
     assert [(each.name, each.support) for each in study.uncertain] == [("mu", (low, high))]
-    assert pose(file, {"mu": "interval"}, 30e3, 3).uncertain[0].support == (low, high)
-    assert "mu" not in {each.name for each in pose(file, {"mu": 0.2, "h": "+-10%"}, 30e3, 3).uncertain}
+    assert state_problem(file, {"mu": "interval"}, 30e3, 3).uncertain[0].support == (low, high)
+    assert "mu" not in {
+        each.name for each in state_problem(file, {"mu": 0.2, "h": "+-10%"}, 30e3, 3).uncertain
+    }
     assert not file.with_values({"mu": 0.2}, "user", "set").ranges
 
 
 def test_friction_that_is_stated_has_no_range(capsys, tmp_path):
     path = tmp_path / "plate.toml"
     facts = made(capsys, *PLATE, *FACES, *LOAD, "--mu", "0.2", path=path)["facts"]
-    assert not load(path).ranges
+    assert not load_parameter_file(path).ranges
     assert {name for name in facts if name.startswith("slip_force")} == {"slip_force"}
 
 
@@ -474,5 +476,5 @@ def test_a_range_that_does_not_hold_the_value_is_refused(capsys, tmp_path, text)
     made(capsys, *PLATE, *FACES, *LOAD, path=path)
     path.write_text(path.read_text().replace("range = [0.1, 0.3]", f"range = {text}"))
     with pytest.raises(ValueError, match=r"mu.*range =|range of mu") as refusal:
-        load(path)
+        load_parameter_file(path)
     assert "\n" not in str(refusal.value)

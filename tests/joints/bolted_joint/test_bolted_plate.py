@@ -21,10 +21,10 @@ from jointfmu_tools.joints.bolted_joint.new import computed
 from jointfmu.contact.surface import Elastic
 from jointfmu.joints import MODELS
 from jointfmu.joints.bolted_joint.compliances import DIRECTIONS, Compliances
-from jointfmu.joints.bolted_joint.law import RoughBoltedJoint, contradictions, pressures
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring, points
-from jointfmu.mechanics.footprint.plate import BoltedPlate, cells, decay, lever
-from jointfmu.parameters import default, dump, load
+from jointfmu.joints.bolted_joint.law import RoughBoltedJoint, contradictions, preload_pressure
+from jointfmu.joints.bolted_joint.spring import BoltedJointSpring, contact_points
+from jointfmu.mechanics.footprint.plate import BoltedPlate, equivalent_rows, plate_cells, pressure_decay
+from jointfmu.parameters import format_parameter_file, load_default, load_parameter_file
 
 STILL = (0.0, 0.0, 0.0)
 SUM = 1e-12
@@ -63,20 +63,22 @@ def joint(pattern, **changes):
 @pytest.mark.parametrize("name", LAYOUTS)
 def test_every_layout_balances_its_bolts(name):
     pattern = plate(*LAYOUTS[name])
-    shape, areas = pattern.shape(), cells(pattern)[0]
+    shape, areas = pattern.pressure_distribution(), plate_cells(pattern)[0]
     assert areas.sum() == pytest.approx(pattern.area, rel=5e-4)  # the edge of a hole in eighths of a cell
     assert shape.share.sum() == pytest.approx(1.0, rel=SUM)
     assert shape.share @ shape.position == pytest.approx([0.0, 0.0], abs=SUM)
-    assert shape.share @ shape.equal == pytest.approx(1.0, rel=SUM)
+    assert shape.share @ shape.preload_shape == pytest.approx(1.0, rel=SUM)
     # the centre of pressure is that of the bolts, from the centroid of plate without holes
-    _, places = cells(pattern)
+    _, places = plate_cells(pattern)
     centroid = areas @ places / areas.sum()
-    centre = shape.share @ (shape.equal[:, None] * shape.position)
+    centre = shape.share @ (shape.preload_shape[:, None] * shape.position)
     assert centre == pytest.approx(pattern.bolts.mean(axis=0) - centroid, abs=1e-12)
     # a moment about x changes no force and is balanced by the pressure
-    assert shape.share @ shape.tilt == pytest.approx(0.0, abs=1e-11)
-    assert shape.share @ (shape.tilt * shape.position[:, 1]) == pytest.approx(pattern.rows[1], rel=1e-11)
-    assert np.all(shape.equal >= 0.0)
+    assert shape.share @ shape.moment_shape == pytest.approx(0.0, abs=1e-11)
+    assert shape.share @ (shape.moment_shape * shape.position[:, 1]) == pytest.approx(
+        pattern.equivalent_rows[1], rel=1e-11
+    )
+    assert np.all(shape.preload_shape >= 0.0)
 
 
 @pytest.mark.parametrize("name", LAYOUTS)
@@ -84,37 +86,37 @@ def test_pressures_carry_preload_and_moment(name):
     pattern = plate(*LAYOUTS[name])
     one = joint(pattern)
     moment = 0.2 * 1e4 * one.row_distance * one.row_bolts
-    shape = pattern.shape()
-    p = pressures(one, shape, 1e4, moment)
+    shape = pattern.pressure_distribution()
+    p = preload_pressure(one, shape, 1e4, moment)
     force = one.A_0 * shape.share * p
     assert force.sum() == pytest.approx(1e4 * len(pattern.x), rel=1e-9)
-    even = one.A_0 * shape.share * pressures(one, shape, 1e4, 0.0)
+    even = one.A_0 * shape.share * preload_pressure(one, shape, 1e4, 0.0)
     assert (force - even) @ shape.position[:, 1] == pytest.approx(moment, rel=1e-9)
 
 
 def test_one_pressure_falls_as_the_polynomial_and_has_the_moment_of_its_cone():
     pattern = plate([0.0], [0.0])
-    a, R = 0.5 * pattern.hole_diameter, pattern.reach
+    a, R = 0.5 * pattern.hole_diameter, pattern.pressure_radius
     r = np.linspace(a, R, 20001)
-    p = decay(pattern, r)
+    p = pressure_decay(pattern, r)
     assert p[0] == 1.0
-    assert decay(pattern, np.array([0.5 * a, 2.0 * R])).tolist() == [1.0, 0.0]
+    assert pressure_decay(pattern, np.array([0.5 * a, 2.0 * R])).tolist() == [1.0, 0.0]
     slope = np.gradient(p, r)
     assert abs(slope[0]) < 1e-3 * abs(slope).max()
     assert abs(slope[-1]) < 1e-6 * abs(slope).max()
     square = np.trapezoid(p * r**3, r) / np.trapezoid(p * r, r)
     assert square == pytest.approx(0.5 * (a**2 + (0.5 * pattern.cone_diameter) ** 2), rel=1e-6)
-    shape = pattern.shape()  # and the cells have it too
-    found = shape.share @ (shape.equal * np.sum(shape.position**2, axis=1))
+    shape = pattern.pressure_distribution()  # and the cells have it too
+    found = shape.share @ (shape.preload_shape * np.sum(shape.position**2, axis=1))
     assert found == pytest.approx(square, rel=0.01)
 
 
 def test_two_rows_have_their_own_distance_and_more_rows_help():
-    assert lever(np.array([-0.03, -0.03, 0.03, 0.03])) == pytest.approx((2.0, 0.06))
-    assert lever(np.array([-0.03, 0.0, 0.03])) == pytest.approx((1.0, 0.06))
+    assert equivalent_rows(np.array([-0.03, -0.03, 0.03, 0.03])) == pytest.approx((2.0, 0.06))
+    assert equivalent_rows(np.array([-0.03, 0.0, 0.03])) == pytest.approx((1.0, 0.06))
     # M y_i/sum(y^2) at the outer bolts is M/(N_b L_a)
     y = np.array([-0.036, -0.012, 0.012, 0.036])
-    count, distance = lever(y)
+    count, distance = equivalent_rows(y)
     assert 1.0 / (count * distance) == pytest.approx(0.036 / (y @ y))
 
 
@@ -126,10 +128,10 @@ def test_as_many_places_along_as_across():
 def test_the_moment_of_two_rows_is_that_of_a_frame():
     """Bolt forces of a plate: those of Zhao 2018, section 3, for two rows."""
     pattern = plate(*LAYOUTS["two by two"])
-    shape = pattern.shape()
+    shape = pattern.pressure_distribution()
     upper = shape.position[:, 1] > 0.0
     one = joint(pattern)
-    p = pressures(one, shape, 2e4, 600.0)
+    p = preload_pressure(one, shape, 2e4, 600.0)
     force = one.A_0 * shape.share * p
     shift = 600.0 / (0.06 * 2)
     # a bolt's disc does not reach across the middle here
@@ -139,11 +141,11 @@ def test_the_moment_of_two_rows_is_that_of_a_frame():
 
 def test_the_contact_of_one_row_opens_where_the_rows_say():
     pattern = plate(*LAYOUTS["one row"])
-    one, shape = joint(pattern), pattern.shape()
+    one, shape = joint(pattern), pattern.pressure_distribution()
     opening = 1e4 * one.row_distance * one.row_bolts
-    pressed = shape.equal > 0.0
+    pressed = shape.preload_shape > 0.0
     held, open_ = (
-        np.array([pressures(one, shape, 1e4, sign * part * opening)[pressed] for sign in (1.0, -1.0)])
+        np.array([preload_pressure(one, shape, 1e4, sign * part * opening)[pressed] for sign in (1.0, -1.0)])
         for part in (0.999, 1.001)
     )
     assert np.all(held > 0.0)
@@ -180,28 +182,28 @@ def test_a_file_that_contradicts_itself_is_refused(tmp_path, changes, text):
     one = joint(plate(*LAYOUTS["two by two"]))
     assert list(contradictions(one)) == []
     path = tmp_path / "joint.toml"
-    file = replace(default("bolted_joint"), values=replace(one, **changes), roughness={})
-    path.write_text(dump(file))
+    file = replace(load_default("bolted_joint"), values=replace(one, **changes), roughness={})
+    path.write_text(format_parameter_file(file))
     with pytest.raises(ValueError, match=r"joint\.toml") as error:
-        load(path)
+        load_parameter_file(path)
     assert text in str(error.value)
-    path.write_text(dump(replace(file, values=one)))
-    assert load(path).values == one
+    path.write_text(format_parameter_file(replace(file, values=one)))
+    assert load_parameter_file(path).values == one
 
 
 def test_a_frame_of_eight_bolts_with_four_is_refused(tmp_path):
     path = tmp_path / "four.toml"
-    text = dump(default("bolted_joint"))
+    text = format_parameter_file(load_default("bolted_joint"))
     path.write_text(
         text.replace("n_bolts = { value = 8.0", "n_bolts = { value = 4.0").replace(
             "row_bolts = { value = 3.0", "row_bolts = { value = 2.0"
         )
     )
     with pytest.raises(ValueError, match=r"n_bolts = 4 contradicts \[pattern\], which has 8 bolts"):
-        load(path)
+        load_parameter_file(path)
     path.write_text(text.replace("A_0 = { value = 0.0382", "A_0 = { value = 0.0482"))
     with pytest.raises(ValueError, match=r"A_0 = 0.0482 m2 contradicts \[pattern\], which has 0.03807\d+ m2"):
-        load(path)
+        load_parameter_file(path)
 
 
 def test_one_row_says_what_to_do():
@@ -217,15 +219,15 @@ def test_one_row_says_what_to_do():
 
 def normal(pattern, **changes):
     """The joint on the points of its normal force, on which its friction is too: no bolt knows of it."""
-    return BoltedJointSpring.of_nodes(joint(pattern, **changes), points(pattern))
+    return BoltedJointSpring.of_nodes(joint(pattern, **changes), contact_points(pattern))
 
 
 def test_without_bolt_stiffness_nothing_changes():
-    old = default("bolted_joint").values
+    old = load_default("bolted_joint").values
     assert old.bolt_stiffness == 0.0
     state = (9e3, 800.0, (1e-6, -2e-6, 5e-7), (1e-3, 2e-3, -1e-3))
-    plain = BoltedJointSpring.of(old).motion(*state)
-    again = BoltedJointSpring.of(replace(old, bolt_stiffness=1e8)).motion(*state)
+    plain = BoltedJointSpring.of(old).evaluate(*state)
+    again = BoltedJointSpring.of(replace(old, bolt_stiffness=1e8)).evaluate(*state)
     same = {"f_x", "f_y", "K_xx", "K_yy", "C_xx", "C_zz", "K_rz", "p_mean", "p_max", "eta_t", "eta_n"}
     assert {name: plain[name] for name in same} == {name: again[name] for name in same}
     assert again["f_z"] - plain["f_z"] == pytest.approx(-8e8 * 5e-7, rel=1e-9)
@@ -238,7 +240,7 @@ def test_without_bolt_stiffness_nothing_changes():
 def test_bolts_carry_the_open_joint_and_the_stiffness_is_the_derivative():
     pattern = plate(*LAYOUTS["two by two"])
     spring = normal(pattern, bolt_stiffness=3e8)
-    far = spring.motion(3e4, 0.0, (0.0, 0.0, 1e-4), STILL)
+    far = spring.evaluate(3e4, 0.0, (0.0, 0.0, 1e-4), STILL)
     assert far["f_z"] == pytest.approx(-4 * (3e4 + 3e8 * 1e-4), rel=1e-12)
     assert far["K_zz"] == pytest.approx(4 * 3e8, rel=1e-12)
     assert far["K_rx"] == pytest.approx(4 * 3e8 * 0.03**2, rel=1e-6)
@@ -246,8 +248,8 @@ def test_bolts_carry_the_open_joint_and_the_stiffness_is_the_derivative():
     assert far["K_xx"] == far["K_rz"] == 0.0
     h, state = 1e-10, (3e4, 400.0)
     for z in (-2e-7, 0.0, 6e-7):
-        up, down = (spring.motion(*state, (0.0, 0.0, z + d), STILL)["f_z"] for d in (h, -h))
-        K = spring.motion(*state, (0.0, 0.0, z), STILL)["K_zz"]
+        up, down = (spring.evaluate(*state, (0.0, 0.0, z + d), STILL)["f_z"] for d in (h, -h))
+        K = spring.evaluate(*state, (0.0, 0.0, z), STILL)["K_zz"]
         assert (down - up) / (2.0 * h) == pytest.approx(K, rel=1e-5)
 
 
@@ -259,16 +261,16 @@ M12 = 3.416e8
 def test_bolts_off_the_centre_turn_the_open_joint(s_z, by_hand):
     pattern = plate([-0.08, 0.08, 0.0], [-0.03, -0.03, 0.03])
     spring = normal(pattern, bolt_stiffness=M12)
-    open_ = spring.motion(3e4, 0.0, (0.0, 0.0, s_z), STILL)
+    open_ = spring.evaluate(3e4, 0.0, (0.0, 0.0, s_z), STILL)
     assert open_["m_x"] == pytest.approx(by_hand, rel=1e-3)  # printed to four digits
     assert open_["m_y"] == pytest.approx(0.0, abs=1e-6)
 
 
 def test_bolts_on_a_diagonal_couple_both_tilts():
     spring = normal(plate([-0.08, 0.08], [-0.03, 0.03]), bolt_stiffness=M12)
-    about_x = spring.motion(3e4, 0.0, (0.0, 0.0, 1e-4), STILL, (1e-4, 0.0, 0.0))
+    about_x = spring.evaluate(3e4, 0.0, (0.0, 0.0, 1e-4), STILL, (1e-4, 0.0, 0.0))
     assert about_x["m_y"] == pytest.approx(2 * M12 * 0.08 * 0.03 * 1e-4, rel=1e-9)  # 164 N.m
-    about_y = spring.motion(3e4, 0.0, (0.0, 0.0, 1e-4), STILL, (0.0, 1e-4, 0.0))
+    about_y = spring.evaluate(3e4, 0.0, (0.0, 0.0, 1e-4), STILL, (0.0, 1e-4, 0.0))
     assert about_y["m_x"] == pytest.approx(2 * M12 * 0.08 * 0.03 * 1e-4, rel=1e-9)
 
 
@@ -277,8 +279,8 @@ def test_each_bolt_pulls_at_its_place(name):
     pattern = plate(*LAYOUTS[name])
     free, held = (normal(pattern, bolt_stiffness=k) for k in (0.0, M12))
     s_z, turn = 1e-4, (2e-4, -3e-4, 1e-4)
-    without, with_ = (one.motion(3e4, 0.0, (0.0, 0.0, s_z), STILL, turn) for one in (free, held))
-    areas, places = cells(pattern)
+    without, with_ = (one.evaluate(3e4, 0.0, (0.0, 0.0, s_z), STILL, turn) for one in (free, held))
+    areas, places = plate_cells(pattern)
     x, y = (pattern.bolts - areas @ places / areas.sum()).T
     tension = M12 * (s_z + turn[0] * y - turn[1] * x)
     cut = 1e-3 * M12 * s_z  # the centroid of cells is that of the plate within their cut at a hole's edge
@@ -296,7 +298,9 @@ PLATE = Plate(length=0.2, width=0.1, thickness=0.02, E=210e9, nu=0.3, density=78
 @pytest.mark.parametrize("x", [(0.0,), (-0.05, 0.0, 0.05)])
 def test_the_default_joint_takes_one_row(x):
     bolts = BoltList(x=x, y=(0.0,) * len(x), hole_diameter=0.0135, head_diameter=0.018)
-    joint = with_assembly(default("bolted_joint"), Assembly("row", PLATE, PLATE, bolts), whole=True).values
+    joint = with_assembly(
+        load_default("bolted_joint"), Assembly("row", PLATE, PLATE, bolts), include_bolts=True
+    ).values
     assert (joint.n_bolts, joint.row_bolts, joint.row_distance) == (len(x), 1.0, 0.018)
 
 
@@ -370,21 +374,23 @@ def test_four_bolts_share_a_load_evenly(capsys):
 def test_the_whole_of_a_computed_field_has_the_stiffness_of_all_its_nodes(capsys, tmp_path, monkeypatch):
     """The file has few of them, with the same sums: the whole that the finite elements find is its own, and
     the one that is told. Its picture has the plate's outline and holes."""
-    monkeypatch.setattr(BoltedContact, "of", partial(BoltedContact.of, refinement=0.5))  # as the bodies' here
+    monkeypatch.setattr(
+        BoltedContact, "from_assembly", partial(BoltedContact.from_assembly, refinement=0.5)
+    )  # as the bodies' here
     path = tmp_path / "plate.toml"
     words = ["--plate", "60x30", "--bolts", "2xM8", "--at", "40x0", "--grip", "20", *M16[6:]]
-    seen, real = [], computed.whole_joint
-    monkeypatch.setattr(computed, "whole_joint", lambda *asked: seen.append(real(*asked)) or seen[-1])
+    seen, real = [], computed.compute_joint
+    monkeypatch.setattr(computed, "compute_joint", lambda *asked: seen.append(real(*asked)) or seen[-1])
     facts, _ = made(capsys, *words, "--preload", "15e3", "--field", "computed", "--out", str(path))
-    values = load(path).values
+    values = load_parameter_file(path).values
     found = Compliances.of(BoltedJointSpring.of(values), 15e3)
-    np.testing.assert_allclose(found.whole, seen[0].compliances.whole, rtol=2e-3)
-    for name, compliance in zip(DIRECTIONS, found.whole, strict=True):
+    np.testing.assert_allclose(found.total, seen[0].compliances.whole, rtol=2e-3)
+    for name, compliance in zip(DIRECTIONS, found.total, strict=True):
         whole = facts[f"whole_K_{name if name.startswith('r') else 2 * name}"]
         assert 1.0 / compliance == pytest.approx(whole, rel=1e-9), name
-    drawn = PlaneLayout.of(values)
+    drawn = PlaneLayout.from_joint(values)
     np.testing.assert_allclose(drawn.extent, [[-0.03, -0.015], [0.03, 0.015]], atol=1e-6)
-    assert (len(drawn.outline), drawn.hole) == (1, pytest.approx(0.009))
+    assert (len(drawn.outline), drawn.hole_diameter) == (1, pytest.approx(0.009))
 
 
 def test_without_finite_elements_it_is_said(capsys, monkeypatch):
@@ -422,11 +428,11 @@ def test_a_joint_of_which_embedding_takes_much_has_a_page_and_a_report(tmp_path,
         path, page = (tmp_path / f"{preload}.{kind}" for kind in ("toml", "html"))
         words = ["--preload", preload, "--attached", "edge", "--out", str(path)]
         assert cli.main(["new", "bolted-joint", *THIN, "--sides", sides, *words]) == 0
-        file = load(path)
+        file = load_parameter_file(path)
         assert file.values.embedding == pytest.approx(1745.0, rel=1e-3)
         with warnings.catch_warnings():
             warnings.simplefilter("error")
-            model = MODELS["BoltedJoint"].of(file.joint, file.values)
+            model = MODELS["BoltedJoint"].with_parameters(file.joint, file.values)
             assert b"Loops at preload" in documentation(model, file)["index.html"]
             assert cli.main(["report", str(path), "--out", str(page)]) == 0
         capsys.readouterr()
@@ -434,8 +440,8 @@ def test_a_joint_of_which_embedding_takes_much_has_a_page_and_a_report(tmp_path,
 
 def test_embedding_that_takes_all_of_the_preload_is_refused(tmp_path, capsys):
     path = tmp_path / "joint.toml"
-    file = default("bolted_joint").with_values({"embedding": 12e3}, "user", "test")
-    path.write_text(dump(replace(file, inputs={**file.inputs, "preload": 9e3})))
+    file = load_default("bolted_joint").with_values({"embedding": 12e3}, "user", "test")
+    path.write_text(format_parameter_file(replace(file, inputs={**file.inputs, "preload": 9e3})))
     for words in (["build", "BoltedJoint", "--params", path, "--out", tmp_path], ["report", path]):
         line = refused_line(capsys, *words)
         assert (
@@ -445,5 +451,5 @@ def test_embedding_that_takes_all_of_the_preload_is_refused(tmp_path, capsys):
     # none is stated: the ramp and the loops begin with a bolt that embedding does not slacken
     page = documentation(MODELS["BoltedJoint"], replace(file, inputs={}))["index.html"]
     assert b"Loops at preload = 17.4 kN" in page
-    model = MODELS["BoltedJoint"].of("bolted_joint", file.values)
+    model = MODELS["BoltedJoint"].with_parameters("bolted_joint", file.values)
     assert model.loop.settings["preload"] == 24e3

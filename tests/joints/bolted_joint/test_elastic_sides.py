@@ -14,7 +14,7 @@ from conftest import REFINEMENT, Fmu, here_alone, refused_line
 from jointfmu_fmu_src.building import build
 from jointfmu_fmu_src.native import page
 from jointfmu_tools import cli
-from jointfmu_tools.fem.whole_joint import WholeJoint
+from jointfmu_tools.fem.whole_joint import JointFiniteElements
 from jointfmu_tools.fields.joint_parameters import with_field
 from jointfmu_tools.fields.nodal_result import ContactField
 from jointfmu_tools.fitting import branches
@@ -23,17 +23,17 @@ from jointfmu_tools.joints.bolted_joint.fit import loop
 from jointfmu_tools.joints.bolted_joint.fit import preload as over_preload
 from jointfmu_tools.joints.bolted_joint.new import computed
 from jointfmu_tools.joints.bolted_joint.pull import bolt_forces
-from jointfmu_tools.report.course import Course
-from jointfmu_tools.shown import quantity
+from jointfmu_tools.report.course import LoadHistory
+from jointfmu_tools.shown import format_quantity
 from jointfmu_tools.uncertainty import propagate
-from jointfmu_tools.uncertainty.problem import pose
+from jointfmu_tools.uncertainty.problem import state_problem
 
 from jointfmu.joints import KINDS
 from jointfmu.joints.bolted_joint import whole as equilibrium
-from jointfmu.joints.bolted_joint.contact import Place
+from jointfmu.joints.bolted_joint.contact import RelativeDisplacement
 from jointfmu.joints.bolted_joint.law import interface_alone
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
-from jointfmu.parameters import dump, load
+from jointfmu.parameters import format_parameter_file, load_parameter_file
 
 pytestmark = [pytest.mark.slow, needs("gmsh")]
 
@@ -51,7 +51,7 @@ def made(tmp_path_factory):
     """Joints that the command makes, with the compliances that finite elements gave it; those that
     are not compared with VDI 2230, loaded at their faces, of coarse ones."""
     found, seen = {}, {}
-    real = computed.whole_joint
+    real = computed.compute_joint
 
     def watched(*arguments):
         seen["last"] = real(*arguments)
@@ -61,12 +61,12 @@ def made(tmp_path_factory):
         if words not in found:
             path = tmp_path_factory.mktemp("whole") / "joint.toml"
             with pytest.MonkeyPatch.context() as patch:
-                patch.setattr(computed, "whole_joint", watched)
+                patch.setattr(computed, "compute_joint", watched)
                 if "heads" in words:
                     patch.setitem(REFINEMENT, "bodies", 1.0)
                 stated = [*words, "--embedding", "0", "--preload", str(preload), "--out", str(path)]
                 assert cli.main(["new", "bolted-joint", *stated, "--json"]) == 0
-            file = load(path)
+            file = load_parameter_file(path)
             spring = BoltedJointSpring.of(file.values)
             found[words] = SimpleNamespace(path=path, file=file, spring=spring, fe=seen["last"].compliances)
         return found[words]
@@ -77,13 +77,13 @@ def made(tmp_path_factory):
 def embedded(joint, path):
     """The same joint whose bolts lose 800 N, in a file of its own."""
     file = joint.file.with_values({"embedding": 800.0}, "user", "test")
-    path.write_text(dump(file))
+    path.write_text(format_parameter_file(file))
     return SimpleNamespace(path=path, file=file, spring=BoltedJointSpring.of(file.values))
 
 
 def at(spring, *six, memory=None, preload=PRELOAD, moment=0.0):
     start = spring.at_rest() if memory is None else memory
-    return spring.evolve(preload, moment, Place(np.array(six)), STILL, start)
+    return spring.evolve(preload, moment, RelativeDisplacement(np.array(six)), STILL, start)
 
 
 def stiffness(spring):
@@ -130,7 +130,7 @@ def test_the_report_states_the_whole_beside_its_parts(made):
     np.testing.assert_allclose(found.bolt_force[:, 2], fe.bolt_force[:, 2], rtol=0.05)
 
     model = KINDS[joint.file.joint].models[0]
-    picture, figure, friction = report.joint_figures(Course(model, joint.file))
+    picture, figure, friction = report.joint_figures(LoadHistory(model, joint.file))
     assert "side 1: 10 mm" in picture.pictures[1]
     assert "the load enters at the outer faces" in picture.pictures[1]
     assert [row[0] for row in friction.table[1:]] == ["0.1", "0.15", "0.3"]
@@ -148,10 +148,10 @@ def test_the_report_states_the_whole_beside_its_parts(made):
     np.testing.assert_allclose(pulled[2], 20e3, rtol=1e-3)  # open: no moment is left
     file = joint.file  # of before outlines were written
     bare = replace(file, values=replace(file.values, bodies=replace(file.values.bodies, outline=())))
-    assert quantity((), "m") == ("none", "")
+    assert format_quantity((), "m") == ("none", "")
     assert [row.value for row in page._rows(bare) if row.name == "bodies.outline"] == ["none"]
     alone = interface_alone(joint.file.values)
-    assert report.whole_joint(Course(model, replace(joint.file, values=alone))) == []
+    assert report.stiffness_figures(LoadHistory(model, replace(joint.file, values=alone))) == []
 
 
 def test_stiffnesses_are_those_of_the_forces(made):
@@ -189,7 +189,7 @@ def test_a_tapped_joint_is_near_vdi_2230(made, capsys):
     # the same by the forces: a pull at the heads, and all of it once open
     out, _ = at(joint.spring, 0, 0, 200e-6, 0, 0, 0)
     assert out["F_bolt[1]"] == pytest.approx(-out["f_z"], rel=1e-6)
-    picture = report.pictured(Course(KINDS["bolted_joint"].models[0], joint.file)).pictures[1]
+    picture = report.picture_figure(LoadHistory(KINDS["bolted_joint"].models[0], joint.file)).pictures[1]
     assert "side 2: 60 mm" in picture
     assert "what lies under heads and at threads (hatched)" in picture
     assert picture.count('stroke-dasharray="2 3"') == 3  # under its head, and both walls of the thread
@@ -223,7 +223,9 @@ def test_embedding_takes_of_the_preload(made):
     assert found == expected
     none, _ = at(lost, *STILL, preload=700.0)
     assert none["p_max"] == none["K_xx"] == none["F_bolt[1]"] == 0.0
-    told = report.whole_joint(Course(KINDS["bolted_joint"].models[0], replace(joint.file, values=lost.joint)))
+    told = report.stiffness_figures(
+        LoadHistory(KINDS["bolted_joint"].models[0], replace(joint.file, values=lost.joint))
+    )
     assert "14.2 kN in each bolt" in told[0].text
 
 
@@ -236,7 +238,11 @@ def test_what_is_made_of_the_interface_alone_says_so(made, tmp_path, capsys):
     (line,) = json.loads(capsys.readouterr().out)["warnings"]
     assert line.startswith("'plate 80x80 with 4xM8' is a whole joint (sides = elastic), but this file has")
     docs = {
-        v.name: v.doc for v in KINDS["bolted_joint"].models[0].of("bolted_joint", load(path).values).outputs
+        v.name: v.doc
+        for v in KINDS["bolted_joint"]
+        .models[0]
+        .with_parameters("bolted_joint", load_parameter_file(path).values)
+        .outputs
     }
     assert docs["C_xx"].endswith("along x; of the interface alone")
 
@@ -244,15 +250,17 @@ def test_what_is_made_of_the_interface_alone_says_so(made, tmp_path, capsys):
 def test_bands_are_those_of_the_whole(made):
     """Of roughness and bolts; at points of other samples' ramp and without preload too, to 1e-4 of values."""
     joint = made(*FOUR, preload=15e3)
-    task = pose(joint.file, {"h": "+-20%", "bolt_stiffness": "+-5%", "A_0": "+-5%"}, 15e3, 31)
-    found = propagate.bands(task, propagate.design(task, 16, 0)[0])
-    assert found.error < 1e-4
+    task = state_problem(joint.file, {"h": "+-20%", "bolt_stiffness": "+-5%", "A_0": "+-5%"}, 15e3, 31)
+    found = propagate.compute_bands(task, propagate.sample_designs(task, 16, 0)[0])
+    assert found.reduction_error < 1e-4
     out, _ = at(joint.spring, *STILL, preload=15e3)
     for name in ("K_zz", "K_xx"):
         assert found.nominal[name][-1] == pytest.approx(out[name], rel=1e-4)
         assert found.nominal[name][0] == pytest.approx(at(joint.spring, *STILL, preload=0.0)[0][name])
     alone = replace(joint.file, values=interface_alone(joint.file.values))
-    rigid = propagate.bands(pose(alone, {"h": "+-20%"}, 15e3, 3), propagate.design(task, 16, 0)[0])
+    rigid = propagate.compute_bands(
+        state_problem(alone, {"h": "+-20%"}, 15e3, 3), propagate.sample_designs(task, 16, 0)[0]
+    )
     assert rigid.nominal["K_zz"][-1] > 4.0 * found.nominal["K_zz"][-1]
     assert rigid.nominal["approach"][-1] == pytest.approx(found.nominal["approach"][-1], rel=1e-6)
 
@@ -274,7 +282,7 @@ def test_sides_that_do_not_give_way_are_rigid(made):
     stiff = replace(values.bodies, stiffness=tuple(1e12 * k for k in values.bodies.stiffness))
     elastic = BoltedJointSpring.of(replace(values, bodies=stiff))
     rigid = replace(BoltedJointSpring.of(replace(values, sides="rigid")), patches=elastic.patches)
-    memory = [spring.at_rest() for spring in (elastic, rigid)]
+    memory = [spring.initial_history() for spring in (elastic, rigid)]
     for six in ([1e-7, 2e-8, -1e-8, 1e-7, 0.0, 1e-7], [2e-7, 1e-7, 5e-8, -1e-7, 2e-7, 0.0]):
         (a, memory[0]), (b, memory[1]) = (
             at(s, *six, memory=m, preload=15e3) for s, m in zip((elastic, rigid), memory, strict=True)
@@ -327,19 +335,19 @@ def test_the_fmu_is_the_package(made, tmp_path, flavour):
         moved = rng.uniform(-1.0, 1.0, 6) * unit * (step > 2 or AXIS_X)
         six = 0.3 * six if step % 10 == 9 else six + moved
         expected, memory = at(joint.spring, *six, memory=memory, preload=15e3)
-        fmu.set(dict(zip(MOTIONS, six, strict=True)))
+        fmu.set_values(dict(zip(MOTIONS, six, strict=True)))
         fmu.step()
         for name, found in fmu.get(*expected).items():
             least = {"f": 1e-5, "m": 1e-6}.get(name[0], 0.0)  # of 1e4 N, 1e3 N.m
             assert found == pytest.approx(float(expected[name]), rel=1e-8, abs=least), name
     before = fmu.get("f_x", "m_y")
-    fmu.set({"s_rel_x": 1e15, "theta_z": 1e20})
+    fmu.set_values({"s_rel_x": 1e15, "theta_z": 1e20})
     line = fmu.refused(fmu.step)
     assert re.search(r"s_rel_x = 1e\+15, .*: the sides find no equilibrium beyond .* residual is .* N", line)
-    fmu.set(dict(zip(MOTIONS, six, strict=True)))
+    fmu.set_values(dict(zip(MOTIONS, six, strict=True)))
     fmu.step()
     assert fmu.get("f_x", "m_y") == before
-    fmu.free()
+    fmu.free_instance()
 
 
 def random_preloads(rng, preload, embedding, steps):
@@ -398,13 +406,13 @@ def test_the_fmu_loses_and_regains_preload_as_the_package(made, tmp_path, flavou
         _, memory = at(joint.spring, *STILL, preload=15e3, memory=memory)
         for preload, six in random_preloads(rng, 15e3, 800.0, 30):
             expected, memory = at(joint.spring, *six, memory=memory, preload=preload)
-            fmu.set({"preload": preload, **dict(zip(MOTIONS, six, strict=True))})
+            fmu.set_values({"preload": preload, **dict(zip(MOTIONS, six, strict=True))})
             accept(fmu)
             for name, found in fmu.get(*expected).items():
                 allowed = least.get(name[0], 0.0)  # of 1e4 N, 1e3 N.m, 1e9 N/m
                 wanted = pytest.approx(float(expected[name]), rel=1e-8, abs=allowed)
                 assert found == wanted, (name, preload, six)
-        fmu.free()
+        fmu.free_instance()
 
 
 def accept(fmu):
@@ -435,11 +443,11 @@ def test_what_does_not_go_with_elastic_sides_is_refused(made, tmp_path, capsys):
     assert "n_bolts = 5 is outside [4, 4]: the bolts that [bodies] has" in refused({"n_bolts": 5.0}, file)
     other = replace(file.values.bodies, x=tuple(x + 1e-3 for x in file.values.bodies.x))
     assert "[bodies] lies 0.001 m beside the contact" in refused({"bodies": other}, file)
-    text = dump(file)
+    text = format_parameter_file(file)
     alone = text[: text.index("[bodies]")] + text[text.index("[plate]") :] if "[plate]" in text else text
     (tmp_path / "alone.toml").write_text(alone)
     with pytest.raises(ValueError, match=r"sides = elastic without \[bodies\]"):
-        load(tmp_path / "alone.toml")
+        load_parameter_file(tmp_path / "alone.toml")
     capsys.readouterr()
     line = refused_line(capsys, "new", "bolted-joint", *FOUR, "--thickness", "10", "12")
     assert "--thickness = 10 and 12 mm contradicts --grip = 20 mm" in line
@@ -451,7 +459,7 @@ def test_a_path_far_into_slip_and_opening_is_found_with_few_parts(made, monkeypa
     """By the derivative of the residual, which is that of its differences: one step of 15 goes in parts."""
     spring, rng = made(*FOUR, preload=15e3).spring, np.random.default_rng(2)
     unit = np.array([1.2e-5, 1.2e-5, 4e-6, 8e-5, 8e-5, 2e-4])
-    newton, found, apart = equilibrium.Whole._newton, [], []
+    newton, found, apart = equilibrium.JointAssembly._solve_newton, [], []
 
     def watched(self, way, part, tight, amplitude, derivative):
         place = way.place(part)
@@ -470,7 +478,7 @@ def test_a_path_far_into_slip_and_opening_is_found_with_few_parts(made, monkeypa
         found.append(newton(self, way, part, tight, amplitude, derivative))
         return found[-1]
 
-    monkeypatch.setattr(equilibrium.Whole, "_newton", watched)
+    monkeypatch.setattr(equilibrium.JointAssembly, "_newton", watched)
     for _ in range(24):
         a, b = rng.uniform(-1.0, 1.0, (2, 6)) * unit
     memory = spring.at_rest()
@@ -505,7 +513,7 @@ def test_a_motion_without_equilibrium_is_told_and_the_next_goes_on(made, monkeyp
 def test_a_singular_derivative_is_told_as_no_equilibrium(made, monkeypatch):
     spring = made(*FOUR, preload=15e3).spring
     nothing = np.zeros([len(spring.joint.bodies.stiffness)] * 2)
-    monkeypatch.setattr(equilibrium.Whole, "_derivative", lambda *given: nothing)
+    monkeypatch.setattr(equilibrium.JointAssembly, "_derivative", lambda *given: nothing)
     told = (
         r"preload = 15000, s_rel_x = 0.0001: the sides find no equilibrium beyond 0\.00061 of the way, .* N"
     )
@@ -561,34 +569,36 @@ def test_an_assembly_makes_the_whole_joint(made, plates, tmp_path, capsys, monke
     """Its computed pressure reaches further than the cones of the drawing's joint: the joint is stiffer, by
     less than the interface has of the compliance; a field alone leaves no body behind. Coarse elements do."""
     drawn, out = embedded(made(*FOUR, preload=15e3), tmp_path / "drawn.toml"), tmp_path / "whole.toml"
-    monkeypatch.setattr(WholeJoint, "of", partial(WholeJoint.of, refinement=0.35))
+    monkeypatch.setattr(
+        JointFiniteElements, "of", partial(JointFiniteElements.from_assembly, refinement=0.35)
+    )
     words = ["footprint", "compute", str(plates), "--params", str(drawn.path), "--preload", "14200"]
     field, back = tmp_path / "field.csv", tmp_path / "back.toml"
     both = ["--attached", "faces", "--out", str(out), "--field", str(field)]
     assert cli.main([*words, "--refinement", "0.5", *both]) == 0
-    spring = BoltedJointSpring.of(load(out).values)
+    spring = BoltedJointSpring.of(load_parameter_file(out).values)
     assert spring.joint.elastic
     assert (
-        f"whole_K_zz         {spring.motion(15e3, 0.0, *[(0.0,) * 3] * 2)['K_zz']:.4g} N/m"
+        f"whole_K_zz         {spring.evaluate(15e3, 0.0, *[(0.0,) * 3] * 2)['K_zz']:.4g} N/m"
         in capsys.readouterr().out
     )
     found, before = spring.compliances(15e3), drawn.spring.compliances(15e3)
-    assert np.all((found.whole < before.whole) & (found.whole > 0.6 * before.whole))
-    assert found.bolts == pytest.approx(before.bolts, rel=1e-3)
+    assert np.all((found.total < before.whole) & (found.total > 0.6 * before.whole))
+    assert found.bolt_stiffness == pytest.approx(before.bolts, rel=1e-3)
     corners = 0.03 * np.array([[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]])
     even = ContactField(np.full(4, 1e-3), corners, np.full(4, 15e6))
-    alone, _ = with_field(load(out), even, 15e3, "four nodes")
+    alone, _ = with_field(load_parameter_file(out), even, 15e3, "four nodes")
     assert not alone.values.elastic
     # its field brought back, with plates of the rectangle around it: on a finer mesh the same joint
     again = ["footprint", "import", str(field), "--open", "keep", *words[3:]]
     assert cli.main([*again, "--thickness", "10", "10", "--out", str(back)]) == 0
-    returned = BoltedJointSpring.of(load(back).values)
+    returned = BoltedJointSpring.of(load_parameter_file(back).values)
     assert returned.joint.elastic
     assert (
         f"opening_load       {returned.compliances(15e3).opening_load(14.2e3):.4g} N"
         in capsys.readouterr().out
     )
-    np.testing.assert_allclose(returned.compliances(15e3).whole, found.whole, rtol=0.05)
+    np.testing.assert_allclose(returned.compliances(15e3).total, found.total, rtol=0.05)
     np.testing.assert_allclose(returned.joint.pattern.bolt_means, spring.joint.pattern.bolt_means, atol=1e-6)
     capsys.readouterr()
     for wrong, told in (
@@ -632,17 +642,17 @@ def test_loops_give_friction_and_roughness_of_the_whole(made, tmp_path, monkeypa
         rows.append((x, -out["f_x"]))
     motion, force = np.transpose(rows)
     law, facts = loop.first_loading(joint.file.values, 15e3)
-    loops = branches.cut([("", motion, force)])
-    off = loop._off_masing(joint.file.values, 15e3, loops, law)
+    loops = branches.cut_branches([("", motion, force)])
+    off = loop._masing_deviation(joint.file.values, 15e3, loops, law)
     for found, low, high in ((loops, 3e-3, 1e-2), (replace(loops, force=loops.force - off), 0.0, 2e-3)):
-        missed = np.max(np.abs(found.fitted(law, found.scale)[2])) / facts["friction_limit"][0]
+        missed = np.max(np.abs(found.fit_turning_points(law, found.scale)[2])) / facts["friction_limit"][0]
         assert low < missed < high
     assert facts["shear_stiffness"][0] == at(joint.spring, *STILL, preload=15e3)[0]["K_xx"]
 
     noisy = np.stack([motion, force + 30.0 * noise.standard_normal(force.size)], axis=1)
     np.savetxt(path, noisy, delimiter=",", header="displacement [m], force [N]", comments="")
-    monkeypatch.setattr(loop, "_WHOLE_NODES", 12)
-    monkeypatch.setattr(loop, "STARTS", {})
+    monkeypatch.setattr(loop, "_ELASTIC_TABLE_STEPS", 12)
+    monkeypatch.setattr(loop, "START_VALUES", {})
     start = joint.file.with_values({"h": 1.6e-6, "mu": 0.17}, "user", "test")
     found = loop.fit(path, start, preload=15e3)
     assert found.parameters.values.elastic

@@ -11,13 +11,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 from jointfmu_tools.export import ansys, keywords, tables
-from jointfmu_tools.export.mesh import Mesh, read_pairs
-from jointfmu_tools.export.placing import AXES, SI, UNITS, Placing
-from jointfmu_tools.joints.bolted_joint.export import SUMS, of_joint, on_mesh, under_pressure
+from jointfmu_tools.export.mesh import NodePairs, read_pairs
+from jointfmu_tools.export.placing import AXIS_ORDER, SI, UNITS, Placement
+from jointfmu_tools.joints.bolted_joint.export import (
+    TOTAL_OUTPUTS,
+    springs_of_joint,
+    springs_on_mesh,
+    springs_under_pressure,
+)
 
-from jointfmu.joints.bolted_joint.law import pressures
+from jointfmu.joints.bolted_joint.law import preload_pressure
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
-from jointfmu.parameters import default
+from jointfmu.parameters import load_default
 
 MM = UNITS["mm-N-MPa-t"]
 REST = (0.0, 0.0, 0.0)
@@ -26,12 +31,12 @@ DIGITS = 1e-8  # the formats carry nine digits
 
 @pytest.fixture(scope="module")
 def joint():
-    return BoltedJointSpring.of_nodes(default("bolted_joint").values)
+    return BoltedJointSpring.of_nodes(load_default("bolted_joint").values)
 
 
 @pytest.fixture(scope="module")
 def found(joint):
-    return of_joint(joint, 15e3, 4500.0)
+    return springs_of_joint(joint, 15e3, 4500.0)
 
 
 def grid(size, nodes):
@@ -50,11 +55,13 @@ def grid(size, nodes):
 
 @pytest.mark.parametrize(("preload", "moment"), [(9e3, 0.0), (15e3, 4500.0), (20e3, -3000.0)])
 def test_pairs_add_up_to_the_joint(joint, preload, moment):
-    springs = of_joint(joint, preload, moment)
+    springs = springs_of_joint(joint, preload, moment)
     state = joint.motion(preload, moment, REST, REST)
     # sums of a thousand terms: round-off
     for name, column in zip(
-        SUMS, (springs.K_t, springs.K_t, springs.K_n, springs.C_t, springs.C_t, springs.C_n), strict=True
+        TOTAL_OUTPUTS,
+        (springs.K_t, springs.K_t, springs.K_n, springs.C_t, springs.C_t, springs.C_n),
+        strict=True,
     ):
         assert column.sum() == pytest.approx(state[name], rel=1e-12), name
     x, y = springs.position.T
@@ -75,9 +82,9 @@ def test_stiffness_of_a_pair_is_the_law_at_its_pressure(joint, found):
 
 def test_open_pairs_are_left_out(joint):
     moment = 0.9 * 15e3 * 3 * joint.joint.row_distance * 1.5  # one row gives way
-    springs = of_joint(joint, 15e3, moment)
-    p = pressures(joint.joint, joint.shape, 15e3, moment)
-    assert springs.opened == np.sum(p == 0.0) > 0
+    springs = springs_of_joint(joint, 15e3, moment)
+    p = preload_pressure(joint.joint, joint.shape, 15e3, moment)
+    assert springs.open_pairs == np.sum(p == 0.0) > 0
     assert len(springs.nodes) == np.sum(p > 0.0)
     assert springs.K_n.sum() == pytest.approx(joint.motion(15e3, moment, REST, REST)["K_zz"], rel=1e-12)
 
@@ -85,7 +92,7 @@ def test_open_pairs_are_left_out(joint):
 @pytest.mark.parametrize("state", [(0.0, 0.0), (-1.0, 0.0), (np.nan, 0.0), (1e9, 0.0)])
 def test_state_outside_the_law_is_refused(joint, state):
     with pytest.raises(ValueError, match=r"preload = .* N per bolt with moment = .* outside the law"):
-        of_joint(joint, *state)
+        springs_of_joint(joint, *state)
 
 
 # ---- meshes ----
@@ -93,8 +100,8 @@ def test_state_outside_the_law_is_refused(joint, state):
 
 def test_the_joints_own_nodes_as_a_mesh_give_the_same(joint, found):
     area = joint.shape.share * joint.joint.A_0
-    mesh = Mesh("own.csv", found.nodes, joint.shape.position, area, None)
-    same = on_mesh(joint, mesh, 15e3, 4500.0)
+    mesh = NodePairs("own.csv", found.nodes, joint.shape.position, area, None)
+    same = springs_on_mesh(joint, mesh, 15e3, 4500.0)
     np.testing.assert_allclose(same.K_n, found.K_n, rtol=1e-9)  # the triangulation's round-off
     assert same.correction == pytest.approx(1.0, rel=1e-9)
 
@@ -103,7 +110,7 @@ def test_the_joints_own_nodes_as_a_mesh_give_the_same(joint, found):
 def test_a_mesh_has_the_joints_sums(joint, nodes):
     labels, place, area = grid((0.12, 0.17), nodes)
     area *= joint.joint.A_0 / area.sum()
-    springs = on_mesh(joint, Mesh("mesh.csv", labels, place, area, None), 15e3, 4500.0)
+    springs = springs_on_mesh(joint, NodePairs("mesh.csv", labels, place, area, None), 15e3, 4500.0)
     state = joint.motion(15e3, 4500.0, REST, REST)
     assert springs.K_n.sum() == pytest.approx(state["K_zz"], rel=1e-12)
     assert springs.C_t.sum() == pytest.approx(state["C_xx"], rel=1e-12)
@@ -119,14 +126,14 @@ def test_stated_pressures_give_the_law_at_them(joint):
     area *= joint.joint.A_0 / area.sum()
     p = 1e6 * (1.0 + 5.0 * place[:, 1] ** 2 / 0.17**2)
     p[:7] = 0.0
-    springs = under_pressure(joint, Mesh("mesh.csv", labels, place, area, p))
-    assert springs.opened == 7
+    springs = springs_under_pressure(joint, NodePairs("mesh.csv", labels, place, area, p))
+    assert springs.open_pairs == 7
     np.testing.assert_allclose(springs.pressure, p[7:], rtol=1e-12)
     k = joint.curve.derivatives(joint.curve.inverse(p[7:]), 1)[1]
     np.testing.assert_allclose(springs.K_n, area[7:] * k, rtol=1e-12)
     assert not np.any(springs.C_n)  # plastic work of first loading
     joint = replace(joint, joint=replace(joint.joint, plastic_damping=True))
-    springs = under_pressure(joint, Mesh("mesh.csv", labels, place, area, p))
+    springs = springs_under_pressure(joint, NodePairs("mesh.csv", labels, place, area, p))
     plastic, elastic = joint.works(p)  # open nodes count with the closing's end, as in the joint
     eta = (plastic @ area) / (elastic @ area)
     expected = eta * np.sqrt(joint.joint.mass * springs.K_n.sum())
@@ -137,17 +144,17 @@ def test_meshes_that_do_not_fit_are_refused(joint):
     labels, place, area = grid((0.12, 0.17), (25, 35))
     area *= joint.joint.A_0 / area.sum()
     with pytest.raises(ValueError, match=r"m.csv: the areas add up to 0.0764 m2, the joint has A_0 = 0.0382"):
-        on_mesh(joint, Mesh("m.csv", labels, place, 2.0 * area, None), 9e3, 0.0)
+        springs_on_mesh(joint, NodePairs("m.csv", labels, place, 2.0 * area, None), 9e3, 0.0)
     with pytest.raises(ValueError, match=r"m.csv: node \d+ is .* m off the joint"):
-        on_mesh(joint, Mesh("m.csv", labels, 1.5 * place, area, None), 9e3, 0.0)
+        springs_on_mesh(joint, NodePairs("m.csv", labels, 1.5 * place, area, None), 9e3, 0.0)
     peaks = np.argsort(joint.shape.equal)[-3:]  # beside bolts only
-    coarse = Mesh("m.csv", labels[:3], joint.shape.position[peaks], np.full(3, 0.0382 / 3), None)
+    coarse = NodePairs("m.csv", labels[:3], joint.shape.position[peaks], np.full(3, 0.0382 / 3), None)
     with pytest.raises(
         ValueError, match=r"m.csv: the pressures at its nodes carry .* times the joint's force"
     ):
-        on_mesh(joint, coarse, 15e3, 4500.0)
+        springs_on_mesh(joint, coarse, 15e3, 4500.0)
     with pytest.raises(ValueError, match="has no column 'pressure'"):
-        under_pressure(joint, Mesh("m.csv", labels, place, area, None))
+        springs_under_pressure(joint, NodePairs("m.csv", labels, place, area, None))
 
 
 HEAD = "node_1 [1],node_2 [1],x [mm],y [mm],area [mm2],pressure [MPa]\n"
@@ -195,22 +202,24 @@ def test_bad_pairs_are_refused_with_their_place(tmp_path, old, new, said):
 
 def test_units():
     # 1 N/mm = 1e3 N/m, 1 MPa = 1 N/mm2, 1 t = 1 N s2/mm
-    assert MM.of(2e3, "N/m") == pytest.approx(2.0)
-    assert MM.of(3e6, "Pa") == pytest.approx(3.0)
-    assert MM.of(1.0, "m2") == pytest.approx(1e6)
-    assert MM.of(5.0, "N.m") == pytest.approx(5e3)
-    assert MM.of(1e9, "N/m3") == pytest.approx(1.0)
+    assert MM.convert(2e3, "N/m") == pytest.approx(2.0)
+    assert MM.convert(3e6, "Pa") == pytest.approx(3.0)
+    assert MM.convert(1.0, "m2") == pytest.approx(1e6)
+    assert MM.convert(5.0, "N.m") == pytest.approx(5e3)
+    assert MM.convert(1e9, "N/m3") == pytest.approx(1.0)
     assert [MM.symbol(u) for u in ("Pa", "N", "N.s/m")] == ["MPa", "N", "N.s/mm"]
-    assert SI.of(7.0, "Pa") == 7.0
+    assert SI.convert(7.0, "Pa") == 7.0
 
 
-@pytest.mark.parametrize("normal", list(AXES))
+@pytest.mark.parametrize("normal", list(AXIS_ORDER))
 def test_ansys_is_read_by_mapdl_archive(found, tmp_path, normal):
     import mapdl_archive
 
     path = tmp_path / "springs.cdb"
     path.write_text(
-        ansys.springs_text(found, Placing(MM, normal, first=1, first_set=1), ["first line\nand second"])
+        ansys.format_springs(
+            found, Placement(MM, normal, first_number=1, first_set_number=1), ["first line\nand second"]
+        )
     )
     archive = mapdl_archive.Archive(path, parse_vtk=False)
     assert archive.ekey.tolist() == [[1, 27], [2, 27]]
@@ -218,7 +227,7 @@ def test_ansys_is_read_by_mapdl_archive(found, tmp_path, normal):
         1: [(2, 0), (3, 4)],
         2: [(2, 0), (3, 5)],
     }
-    axes = list(AXES[normal])
+    axes = list(AXIS_ORDER[normal])
     place = dict(zip(archive.nnum.tolist(), archive.nodes, strict=True))
     for side in (0, 1):
         labels = archive.node_components[f"JOINT_SIDE_{side + 1}"]
@@ -256,7 +265,7 @@ def symmetric(upper):
 def test_the_order_of_the_constants_is_the_references():
     # "if a simple spring of stiffness K in the nodal x direction is desired, the input constants would be
     # C1=C58=K and C7=-K" (ANSYS element reference, MATRIX27)
-    constants = ansys.triangle(np.array([3.0, 0.0, 0.0]))
+    constants = ansys.upper_triangle(np.array([3.0, 0.0, 0.0]))
     assert {i + 1: v for i, v in enumerate(constants) if v} == {1: 3.0, 58: 3.0, 7: -3.0}
 
 
@@ -264,7 +273,7 @@ def test_the_order_of_the_constants_is_the_references():
 def test_abaqus_is_read_by_abq2ccx(found, tmp_path):
     deck = tmp_path / "springs.inp"
     step = "*STEP\n*STATIC\n*END STEP\n"
-    text = keywords.springs_text(found, Placing(MM, "z", first=1), ["about"], dashpots=True)
+    text = keywords.format_springs(found, Placement(MM, "z", first_number=1), ["about"], dashpots=True)
     deck.write_text(text + step)
     done = subprocess.run(
         [sys.executable, "-m", "abq2ccx", deck, "-o", tmp_path / "out.inp", "--strict"],
@@ -279,7 +288,7 @@ def test_abaqus_is_read_by_abq2ccx(found, tmp_path):
         axis = "XYZ".index(name.split("_")[1][1])
         assert dofs in (None, (axis + 1, axis + 1))  # a converted dashpot has an axis of its own
         sums[keyword][axis] += value * len(elements[name])
-    whole = [found.sums[n] / 1e3 for n in SUMS]
+    whole = [found.sums[n] / 1e3 for n in TOTAL_OUTPUTS]
     np.testing.assert_allclose(sums["SPRING"] + sums["DASHPOT"], whole, rtol=DIGITS)
 
 
@@ -289,7 +298,7 @@ def test_meshio_has_no_name_for_the_elements(found, tmp_path, capsys, dashpots):
     import meshio
 
     deck = tmp_path / "springs.inp"
-    text = keywords.springs_text(found, Placing(MM, "z", first=1), ["about"], dashpots=dashpots)
+    text = keywords.format_springs(found, Placement(MM, "z", first_number=1), ["about"], dashpots=dashpots)
     names = set(re.findall(r"^\*ELEMENT, TYPE=(\w+)", text, re.MULTILINE))
     assert names == ({"SPRING2", "DASHPOT2"} if dashpots else {"SPRING2"})
     page = (Path(__file__).parents[3] / "docs" / "export.md").read_text()
@@ -332,7 +341,9 @@ def deck_cards(text):
 
 
 def test_calculix_text_has_the_same_springs_and_no_dashpots(found):
-    text = keywords.springs_text(found, Placing(MM, "x", first=5000, own=False), [], dashpots=False)
+    text = keywords.format_springs(
+        found, Placement(MM, "x", first_number=5000, has_own_nodes=False), [], dashpots=False
+    )
     elements, values = deck_cards(text)
     assert "*NODE" not in text
     assert {kind for kind, _, _ in values.values()} == {"SPRING"}
@@ -348,7 +359,7 @@ def test_calculix_text_has_the_same_springs_and_no_dashpots(found):
 
 
 def test_csv_is_read_by_the_standard_library(found):
-    text = tables.springs_csv(found, Placing(MM), ["about"])
+    text = tables.format_springs_csv(found, Placement(MM), ["about"])
     lines = [line for line in text.splitlines() if not line.startswith("#")]
     rows = list(csv.DictReader(io.StringIO("\n".join(lines))))
     read = {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
@@ -361,6 +372,6 @@ def test_csv_is_read_by_the_standard_library(found):
 
 def test_what_is_written_as_csv_is_a_mesh_again(joint, found, tmp_path):
     path = tmp_path / "springs.csv"
-    path.write_text(tables.springs_csv(found, Placing(MM), []))
-    again = under_pressure(joint, read_pairs(path))
+    path.write_text(tables.format_springs_csv(found, Placement(MM), []))
+    again = springs_under_pressure(joint, read_pairs(path))
     np.testing.assert_allclose(again.K_n, found.K_n, rtol=1e-9)  # pressures of twelve digits, power 0.9

@@ -11,25 +11,25 @@ from jointfmu_tools import PARTS, cli, plots
 from jointfmu_tools.fields import nodal_result, reduction
 from jointfmu_tools.fields.joint_parameters import pressure_shape, with_field
 from jointfmu_tools.fields.nodal_result import ContactField
-from jointfmu_tools.fields.reduction import DIGITS, TOLERANCE, reduce
-from jointfmu_tools.fields.sums import PRELOADS, PRESSED, Load, Sums
-from jointfmu_tools.joints.bolted_joint.published import p_between
+from jointfmu_tools.fields.reduction import RELATIVE_TOLERANCE, ROUNDING_BITS, reduce_field
+from jointfmu_tools.fields.sums import MAX_COMPRESSION_RATIO, PRELOAD_RANGE, LoadCase, SumFunctions
+from jointfmu_tools.joints.bolted_joint.published import pressure_between_bolts
 from jointfmu_tools.modelica import library
 from jointfmu_tools.ramps import ramp
 
 from jointfmu.joints import KINDS
 from jointfmu.joints.bolted_joint import KIND
-from jointfmu.joints.bolted_joint.law import bolt_pattern, pressures
+from jointfmu.joints.bolted_joint.law import bolt_pattern, preload_pressure
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.mechanics.footprint import bolts
-from jointfmu.mechanics.footprint.reproducible import rounded
+from jointfmu.mechanics.footprint.reproducible import round_distribution
 from jointfmu.mechanics.footprint.shape import NodalField
-from jointfmu.parameters import default, dump, load
-from jointfmu.quantity import flatten
+from jointfmu.parameters import format_parameter_file, load_default, load_parameter_file
+from jointfmu.quantity import flatten_parameters
 
 pytestmark = pytest.mark.slow
 
-FILE = default("bolted_joint")
+FILE = load_default("bolted_joint")
 JOINT = FILE.values
 PRELOAD = 9e3
 OFFSET = np.array([0.2, -0.1])
@@ -37,11 +37,11 @@ OFFSET = np.array([0.2, -0.1])
 
 def field(closed=0.0, moment=0.0):
     """Nodes of the default frame with its pressure; below `closed` of the mean they are open."""
-    shape = bolt_pattern(JOINT).shape()
+    shape = bolt_pattern(JOINT).pressure_distribution()
     mean = PRELOAD * JOINT.n_bolts / JOINT.A_0
-    p = np.maximum(shape.equal - closed, 0.0)
+    p = np.maximum(shape.preload_shape - closed, 0.0)
     p *= mean / (shape.share @ p)
-    p += moment / (JOINT.row_distance * JOINT.A_0) * shape.tilt
+    p += moment / (JOINT.row_distance * JOINT.A_0) * shape.moment_shape
     return ContactField(shape.share * JOINT.A_0, shape.position + OFFSET, p)
 
 
@@ -52,20 +52,20 @@ FIELD = field()
 def reduced(request):
     shape = pressure_shape(JOINT, field(request.param), PRELOAD)
     joint = replace(JOINT, A_0=float(FIELD.area.sum()))
-    return joint, shape, reduce(joint, shape, PRELOAD, pressures)
+    return joint, shape, reduce_field(joint, shape, PRELOAD, preload_pressure)
 
 
 def direct(joint, shape, load):
     """Force, K_zz, K_xx, K_rx, K_ry of the spring itself over all nodes, and those at tightening."""
     elastic = replace(joint, memory=False)
-    curve = Sums.of(joint, PRELOAD, pressures).curve
+    curve = SumFunctions.from_joint(joint, PRELOAD, preload_pressure).curve
     spring = replace(BoltedJointSpring.of_nodes(elastic, shape), curve=curve)
     force = load.preload * PRELOAD
     moment = load.moment * force * joint.row_distance * joint.row_bolts
-    start = spring.tightened(force, moment)
+    start = spring.preloaded_approach(force, moment)
     found = []
     for s_z in (load.apart, 0.0):
-        state = spring.motion(force, moment, (0.0, 0.0, s_z), (0.0, 0.0, 0.0))
+        state = spring.evaluate(force, moment, (0.0, 0.0, s_z), (0.0, 0.0, 0.0))
         state["force"] = state["p_mean"] * joint.A_0
         found.append(np.array([state[n] for n in ("force", "K_zz", "K_xx", "K_rx", "K_ry")]))
         last = state
@@ -76,17 +76,21 @@ def test_points_keep_the_sums(reduced):
     """At loads that the reduction never saw, within what it promises; the peak pressure exactly."""
     joint, shape, found = reduced
     assert found.points < 0.35 * found.nodes
-    assert found.deviation <= TOLERANCE
+    assert found.deviation <= RELATIVE_TOLERANCE
     rng = np.random.default_rng(11)
-    lowest = Sums.of(joint, PRELOAD, pressures).curve.displacement[0]
+    lowest = SumFunctions.from_joint(joint, PRELOAD, preload_pressure).curve.displacement[0]
     for _ in range(15):  # many in benchmarks/field_reduction.py
-        load = Load(float(np.exp(rng.uniform(*np.log(PRELOADS)))), found.moment * rng.uniform(-1, 1), 0.0)
+        load = LoadCase(
+            float(np.exp(rng.uniform(*np.log(PRELOAD_RANGE)))), found.moment * rng.uniform(-1, 1), 0.0
+        )
         start, _, peak = direct(joint, shape, load)
-        apart = rng.choice([0.0, rng.uniform(-PRESSED, 1.0)]) * (start.max() - lowest)
+        apart = rng.choice([0.0, rng.uniform(-MAX_COMPRESSION_RATIO, 1.0)]) * (start.max() - lowest)
         _, full, _ = direct(joint, shape, load._replace(apart=apart))
         _, few, same = direct(joint, found.shape, load._replace(apart=apart))
-        np.testing.assert_array_less(np.abs(few[0] - full[0]), TOLERANCE * np.maximum(full[0], full[1]))
-        assert same == pytest.approx(peak, rel=TOLERANCE)  # scaled to balance
+        np.testing.assert_array_less(
+            np.abs(few[0] - full[0]), RELATIVE_TOLERANCE * np.maximum(full[0], full[1])
+        )
+        assert same == pytest.approx(peak, rel=RELATIVE_TOLERANCE)  # scaled to balance
 
 
 def test_points_balance(reduced):
@@ -105,7 +109,7 @@ def test_points_balance(reduced):
 def test_a_field_that_is_a_bit_off_is_the_same():
     """Reduced are the same bits: 40 times with every number of the file off by 1e-15 of itself."""
     rng, shape = np.random.default_rng(8), pressure_shape(JOINT, FIELD, PRELOAD)
-    before, numbers = rounded(shape, DIGITS), ("share", "position", "equal", "tilt")
+    before, numbers = round_distribution(shape, ROUNDING_BITS), ("share", "position", "equal", "tilt")
     for _ in range(40):
         area, position, pressure = (
             values * (1.0 + 1e-15 * rng.choice([-1.0, 1.0], values.shape))
@@ -113,8 +117,10 @@ def test_a_field_that_is_a_bit_off_is_the_same():
         )
         other = pressure_shape(JOINT, ContactField(area, position, pressure), PRELOAD)
         for name in numbers:
-            assert np.array_equal(getattr(rounded(other, DIGITS), name), getattr(before, name)), name
-    one, two = (reduce(JOINT, each, PRELOAD, pressures).shape for each in (shape, other))
+            assert np.array_equal(
+                getattr(round_distribution(other, ROUNDING_BITS), name), getattr(before, name)
+            ), name
+    one, two = (reduce_field(JOINT, each, PRELOAD, preload_pressure).shape for each in (shape, other))
     for name in numbers:
         was = getattr(one, name)
         np.testing.assert_allclose(getattr(two, name), was, rtol=1e-9, atol=1e-9 * np.max(np.abs(was)))
@@ -125,17 +131,17 @@ def test_patches_come_from_the_nodes(tmp_path):
     friction; the file keeps the patches, and those that do not balance are refused."""
     ring = patch_reduction.annulus(48, 5)
     mean = PRELOAD * JOINT.n_bolts / JOINT.A_0
-    contact = ContactField(ring.share * JOINT.A_0, ring.position, mean * ring.equal)
+    contact = ContactField(ring.share * JOINT.A_0, ring.position, mean * ring.preload_shape)
     (tmp_path / "ring.toml").write_text(
-        dump(with_field(FILE, contact, PRELOAD, "a ring")[0]), encoding="utf-8"
+        format_parameter_file(with_field(FILE, contact, PRELOAD, "a ring")[0]), encoding="utf-8"
     )
-    joint = load(tmp_path / "ring.toml").values
+    joint = load_parameter_file(tmp_path / "ring.toml").values
     spring = BoltedJointSpring.of(joint)
     assert spring.patches.share.tolist() == list(joint.pattern.patch_share)
-    slides = spring.motion(PRELOAD, 0.0, (0.0, 0.0, 0.0), (0.0,) * 3, (0.0, 0.0, 1e-2))
+    slides = spring.evaluate(PRELOAD, 0.0, (0.0, 0.0, 0.0), (0.0,) * 3, (0.0, 0.0, 1e-2))
     friction = joint.mu * PRELOAD * joint.n_bolts
     assert np.hypot(slides["f_x"], slides["f_y"]) < 4e-3 * friction
-    arm = (ring.share * ring.equal) @ np.hypot(*ring.position.T)
+    arm = (ring.share * ring.preload_shape) @ np.hypot(*ring.position.T)
     assert -slides["m_z"] == pytest.approx(friction * arm, rel=2e-3)
     share = (2.0 * joint.pattern.patch_share[0], *joint.pattern.patch_share[1:])
     with pytest.raises(ValueError, match=r"^the sum of patch_share is 1\.\d+, expected 1 within 1e-06$"):
@@ -144,18 +150,21 @@ def test_patches_come_from_the_nodes(tmp_path):
 
 def test_few_nodes_stay_as_they_are():
     shape = pressure_shape(JOINT, ContactField(*(a[:50] for a in _parts(FIELD))), _preload(FIELD, 50))
-    assert reduce(JOINT, shape, PRELOAD, pressures).shape is shape
+    assert reduce_field(JOINT, shape, PRELOAD, preload_pressure).shape is shape
 
 
 def test_points_that_miss_a_little_stand_for_many_nodes_alone(monkeypatch):
     shape = pressure_shape(JOINT, FIELD, PRELOAD)
-    found = [reduction.Reduction(shape.part(slice(99)), shape, 0.5 * reduction.LARGE), None]
-    monkeypatch.setattr(reduction, "_search", lambda *given: found[0])
-    assert reduce(JOINT, shape, PRELOAD, pressures).points == shape.share.size
-    monkeypatch.setattr(reduction, "MOST", 1000)
-    assert reduce(JOINT, shape, PRELOAD, pressures) is found.pop(0)
+    found = [
+        reduction.Reduction(shape.select_nodes(slice(99)), shape, 0.5 * reduction.LARGE_FIELD_TOLERANCE),
+        None,
+    ]
+    monkeypatch.setattr(reduction, "_search_points", lambda *given: found[0])
+    assert reduce_field(JOINT, shape, PRELOAD, preload_pressure).point_count == shape.share.size
+    monkeypatch.setattr(reduction, "MAX_KEPT_NODES", 1000)
+    assert reduce_field(JOINT, shape, PRELOAD, preload_pressure) is found.pop(0)
     with pytest.raises(RuntimeError, match="no points that keep its sums within 1e-05; of up to 1000 all"):
-        reduce(JOINT, shape, PRELOAD, pressures)
+        reduce_field(JOINT, shape, PRELOAD, preload_pressure)
 
 
 def _parts(one):
@@ -170,9 +179,11 @@ def test_second_field_gives_the_tilt():
     """The pattern's own two fields give back the pattern's own tilt, up to the sum it leaves (round-off)."""
     moment = 900.0
     found = pressure_shape(JOINT, FIELD, PRELOAD, field(moment=moment), moment)
-    pattern = bolt_pattern(JOINT).shape()
+    pattern = bolt_pattern(JOINT).pressure_distribution()
     scale = FIELD.area.sum() / JOINT.A_0
-    np.testing.assert_allclose(found.tilt, scale * pattern.tilt, atol=1e-9 * np.abs(pattern.tilt).max())
+    np.testing.assert_allclose(
+        found.moment_shape, scale * pattern.moment_shape, atol=1e-9 * np.abs(pattern.moment_shape).max()
+    )
     with pytest.raises(ValueError, match=r"balance -0.877 of the moment of -900 N.m, allowed is 0.5 to 1.5"):
         pressure_shape(JOINT, FIELD, PRELOAD, field(moment=moment), -moment)
     with pytest.raises(ValueError, match=r"moment = None N.m is outside"):
@@ -194,7 +205,7 @@ def test_a_force_more_than_one_per_cent_off_is_refused(factor):
 
 def test_other_joints_have_no_field():
     with pytest.raises(ValueError, match=r"joint = 'gear_contact' has no field"):
-        with_field(default("gear_contact"), FIELD, PRELOAD, "test")
+        with_field(load_default("gear_contact"), FIELD, PRELOAD, "test")
 
 
 def test_a_joint_of_another_name_may_have_a_field(monkeypatch):
@@ -204,7 +215,7 @@ def test_a_joint_of_another_name_may_have_a_field(monkeypatch):
     monkeypatch.setitem(PARTS, "toy", PARTS[KIND.name])
     few = ContactField(*(a[:50] for a in _parts(FIELD)))
     file, found = with_field(replace(FILE, joint="toy"), few, _preload(FIELD, 50), "test")
-    assert (file.joint, found.nodes) == ("toy", 50)
+    assert (file.joint, found.node_count) == ("toy", 50)
     assert isinstance(file.values, toy.parameters)
     assert len(file.values.pattern.share) == 50
 
@@ -217,13 +228,13 @@ def imported():
 def test_file_survives_and_says_where_it_comes_from(imported, tmp_path):
     file, found = imported
     path = tmp_path / "joint.toml"
-    path.write_text(dump(file))
-    again = load(path, "bolted_joint")
+    path.write_text(format_parameter_file(file))
+    again = load_parameter_file(path, "bolted_joint")
     assert again.values == file.values
-    assert dump(again) == dump(file)
+    assert format_parameter_file(again) == format_parameter_file(file)
     assert isinstance(again.values.pattern, NodalField)
     assert float(FIELD.area.sum()) == again.values.A_0
-    assert "pattern." not in " ".join(flatten(again.values))
+    assert "pattern." not in " ".join(flatten_parameters(again.values))
     assert again.origins["field.tilt"] == "derived"
     assert again.sources["field.share"].endswith(f"{found.points} points for {found.nodes} nodes")
     assert again.sources["A_0"] == "a test's field, sum of the nodal areas"
@@ -243,10 +254,10 @@ def test_broken_field_is_refused(imported, change, message):
 
 def test_a_file_with_both_sections_is_refused(imported, tmp_path):
     path = tmp_path / "joint.toml"
-    pattern = dump(FILE).partition("[pattern]\n")[2].partition("\n[")[0]
-    path.write_text(f"{dump(imported[0])}\n[pattern]\n{pattern}\n")
+    pattern = format_parameter_file(FILE).partition("[pattern]\n")[2].partition("\n[")[0]
+    path.write_text(f"{format_parameter_file(imported[0])}\n[pattern]\n{pattern}\n")
     with pytest.raises(ValueError, match=r"joint.toml: pattern\.\w+, .* beside field\.share, .*") as error:
-        load(path, "bolted_joint")
+        load_parameter_file(path, "bolted_joint")
     assert str(error.value).endswith(": allowed is one of [pattern], [plate], [field]")
     assert "\n" not in str(error.value)
 
@@ -266,15 +277,15 @@ def test_unbalanced_field_is_refused():
 
 def test_what_asks_for_bolts_refuses_a_field(imported):
     with pytest.raises(ValueError, match=r"the joint has \[field\], a nodal field of \d+ points; expected"):
-        p_between(imported[0].values, PRELOAD)
+        pressure_between_bolts(imported[0].values, PRELOAD)
 
 
 def test_fmus_have_the_field(imported, tmp_path, monkeypatch):
     """Import, parameter file, native FMU, ramp: the stiffnesses of direct summation over all nodes."""
     monkeypatch.setattr(bolts, "CELLS_ACROSS", 10)
-    shape = bolt_pattern(JOINT).shape()
+    shape = bolt_pattern(JOINT).pressure_distribution()
     mean = PRELOAD * JOINT.n_bolts / JOINT.A_0
-    many = ContactField(shape.share * JOINT.A_0, shape.position, mean * shape.equal)
+    many = ContactField(shape.share * JOINT.A_0, shape.position, mean * shape.preload_shape)
     (tmp_path / "field.csv").write_text(nodal_result.csv_text(many))
     out = tmp_path / "joint.toml"
     line = [
@@ -287,27 +298,27 @@ def test_fmus_have_the_field(imported, tmp_path, monkeypatch):
         str(out),
     ]
     assert cli.main(line) == 0
-    file = load(out, "bolted_joint")
+    file = load_parameter_file(out, "bolted_joint")
     assert len(file.values.pattern.share) < many.area.size
     with here_alone():
         (fmu,) = build(["BoltedJoint"], ["fmi2"], file, tmp_path)
-    found = ramp.run(fmu, "preload", 27e3, 3e3).columns
+    found = ramp.run_ramp(fmu, "preload", 27e3, 3e3).columns
     full = pressure_shape(JOINT, many, PRELOAD)
     for i in range(1, len(found["preload"])):
-        _, (expected, _), peak = direct(file.values, full, Load(found["preload"][i] / PRELOAD, 0.0, 0.0))
+        _, (expected, _), peak = direct(file.values, full, LoadCase(found["preload"][i] / PRELOAD, 0.0, 0.0))
         got = [found["p_mean"][i] * file.values.A_0, *(found[n][i] for n in ("K_zz", "K_xx", "K_rx", "K_ry"))]
         shear = got.pop(2), expected[2]
         np.testing.assert_allclose(got, np.delete(expected, 2), rtol=1e-5)  # 120 of the points
         assert shear[0] == pytest.approx(shear[1], rel=5e-3)  # the patches of the friction
         assert found["p_max"][i] == pytest.approx(peak, rel=1e-7)  # the curve's table, 1e-8
-    library.write(tmp_path, file, {"bolted_joint": [(PRELOAD, 0.0)]})
+    library.write_library(tmp_path, file, {"bolted_joint": [(PRELOAD, 0.0)]})
     assert any("field_of_field_csv" in path.name for path in tmp_path.rglob("*.mo"))
 
 
 def test_uncertainty_of_a_joint_with_a_field(imported, tmp_path, capsys):
     """The reduced evaluation compares itself with the spring; parameters of a pattern are unknown."""
     path = tmp_path / "joint.toml"
-    path.write_text(dump(imported[0]))
+    path.write_text(format_parameter_file(imported[0]))
     line = ["uncertainty", "bolted_joint", "--params", str(path), "--samples", "16", "--set"]
     assert cli.main([*line, "surface.D=1.40..1.44"]) == 0
     assert "largest relative difference" in capsys.readouterr().out
@@ -329,8 +340,10 @@ def test_a_force_that_is_off_is_scaled_if_that_is_asked_for(imported, tmp_path, 
     assert cli.main([*line, "--force-tolerance", "0.3", "--out", str(out)]) == 0
     assert "scaled by +25 % to the force of the bolts" in capsys.readouterr().err
     right, _ = imported
-    found = BoltedJointSpring.of(load(out).values).motion(PRELOAD, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-    exact = BoltedJointSpring.of(right.values).motion(PRELOAD, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    found = BoltedJointSpring.of(load_parameter_file(out).values).evaluate(
+        PRELOAD, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+    )
+    exact = BoltedJointSpring.of(right.values).evaluate(PRELOAD, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     assert found["K_zz"] == pytest.approx(exact["K_zz"], rel=1e-6)  # the points of both, 1e-6
 
 

@@ -16,19 +16,19 @@ from scipy.integrate import quad
 from jointfmu.contact.interface import at_pressure
 from jointfmu.joints.gear_contact.spring import GearContact, GearContactSpring
 from jointfmu.mechanics.curve import CLOSING_RATIO, MAX_ERROR
-from jointfmu.parameters import default, load
-from jointfmu.quantity import build, flatten
+from jointfmu.parameters import load_default, load_parameter_file
+from jointfmu.quantity import build_parameter_set, flatten_parameters
 
 EPS = np.finfo(float).eps
 STENCIL = np.array([1.0, -8.0, 0.0, 8.0, -1.0]) / 12.0
 """Central difference over five points: error h^4/30 times the fifth derivative."""
 FIVE = np.arange(-2, 3)
 
-CONTACT = default("gear_contact").values
+CONTACT = load_default("gear_contact").values
 
 
 def changed(**values):
-    return build(GearContact, flatten(CONTACT) | values)
+    return build_parameter_set(GearContact, flatten_parameters(CONTACT) | values)
 
 
 SETS = {
@@ -37,7 +37,7 @@ SETS = {
     "slender": changed(**{"e": 0.7, "lambda": 0.3, "A_0": 2e-5, "surface1.G": 1e-11, "surface2.G": 1e-11}),
     "two-bodies": changed(rigid_flat=False, plastic_area="kogut_etsion", sigma_y=6e8),
 }
-SPRINGS = {name: GearContactSpring.of(contact) for name, contact in SETS.items()}
+SPRINGS = {name: GearContactSpring.tabulate(contact) for name, contact in SETS.items()}
 each = pytest.mark.parametrize("spring", SPRINGS.values(), ids=SPRINGS)
 
 
@@ -106,7 +106,7 @@ def test_no_load_and_pull(spring):
 @pytest.mark.parametrize("f", [1e-100, 1e-200, 1e-300, 5e-324])
 def test_vanishing_forces(f):
     """Down to the smallest float every output is a number close to that without load."""
-    out = SPRINGS["default"].approach(f)
+    out = SPRINGS["default"].evaluate(f)
     assert all(np.isfinite(float(value)) for value in out.values())
     # round-off of the approach over the closing of 1 um, and 1e-12 of the stiffness at 1 N
     assert 0.0 <= float(out["s_rel"]) < 1e-17
@@ -253,9 +253,9 @@ def test_the_patch_is_hertz(capsys, radii, curvature):
 def test_the_file_has_the_stiffness_it_shows(capsys, tmp_path):
     path = tmp_path / "flanks.toml"
     found = made(capsys, *DRAWING, "--radii", "12", "30", path=path)
-    file = load(path)
-    assert (file.law, file.start("f")) == ("roughness", 2000.0)
-    state = GearContactSpring.of(file.values).approach(2000.0)
+    file = load_parameter_file(path)
+    assert (file.law, file.start_value("f")) == ("roughness", 2000.0)
+    state = GearContactSpring.tabulate(file.values).evaluate(2000.0)
     assert found["facts"]["K_N"]["value"] == pytest.approx(float(state["K_N"]))
     assert float(state["K_N"]) == pytest.approx(2000.0 / (0.45 * file.values.h), rel=0.1)
 

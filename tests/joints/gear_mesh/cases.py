@@ -4,12 +4,12 @@ import math
 
 from case import Beyond, Case, Description, Inputs, Joint, Numbers, Refusals, Refused, Study, Tuning
 
-from jointfmu.parameters import default
+from jointfmu.parameters import load_default
 
 TURN = 8.0 * math.pi / 29.0
 """Angle [rad] of wheel 1 far beyond the table; half of it is a whole mesh cycle, which keeps the pairs."""
 
-R_B1, R_B2 = (getattr(default("gear_mesh").values, name) for name in ("r_b1", "r_b2"))
+R_B1, R_B2 = (getattr(load_default("gear_mesh").values, name) for name in ("r_b1", "r_b2"))
 
 
 def rolled(inputs: Inputs) -> Inputs:

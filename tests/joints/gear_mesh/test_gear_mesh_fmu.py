@@ -10,14 +10,14 @@ from conftest import Fmu
 from natives import VERSIONS, close, jacobian
 
 from jointfmu.joints.gear_mesh.spring import GearMeshSpring, base_pitch
-from jointfmu.mechanics.steps import LONGEST
-from jointfmu.parameters import default
-from jointfmu.quantity import changed
+from jointfmu.mechanics.steps import MAX_STEP
+from jointfmu.parameters import load_default
+from jointfmu.quantity import replace_values
 
 Host = Callable[..., Fmu]
 Inputs = dict[str, float]
 
-MESH = default("gear_mesh").values
+MESH = load_default("gear_mesh").values
 SETS: dict[str, dict[str, Any]] = {
     "default": {},
     "soft teeth": {"K_tooth": 1e4, "backlash": 0.0, "contact_ratio": 2.3},
@@ -31,7 +31,7 @@ SETS: dict[str, dict[str, Any]] = {
 
 @cache
 def spring(name: str) -> GearMeshSpring:
-    return GearMeshSpring.of(changed(MESH, SETS[name]))
+    return GearMeshSpring.tabulate(replace_values(MESH, SETS[name]))
 
 
 def angles(of: GearMeshSpring, s: float, phase: float) -> Inputs:
@@ -59,7 +59,7 @@ def states(of: GearMeshSpring, count: int) -> list[Inputs]:
 
 
 def outputs(of: GearMeshSpring, v: Inputs) -> dict[str, float]:
-    found = of.motion(v["phi1"], v["w1"], v["phi2"], v["w2"])
+    found = of.evaluate(v["phi1"], v["w1"], v["phi2"], v["w2"])
     return {name: float(value) for name, value in found.items()}
 
 
@@ -96,7 +96,7 @@ def test_derivatives_are_those_of_the_package(host: Host) -> None:
     Measured: 5e-8 of a thousandth of the output, the step's size."""
     of, two, three = spring("default"), *(host("GearMesh", v).start() for v in VERSIONS)
     rng, curve = np.random.default_rng(3), of.curve
-    kinks = curve.displacement[1:-1][curve.bend_end[:-1] != curve.bend_start[1:]]
+    kinks = curve.displacement[1:-1][curve.slope_end[:-1] != curve.slope_start[1:]]
     for _ in range(40):
         s = float(rng.choice([-1.0, 1.0]) * 10.0 ** rng.uniform(-7.0, -4.0))
         if np.any(np.abs(kinks - abs(s)) < 3e-3 * abs(s)):
@@ -104,7 +104,7 @@ def test_derivatives_are_those_of_the_package(host: Host) -> None:
         phase = float(rng.uniform(-2.0, 2.0))
         state = angles(of, s, phase) | {"w1": 0.3, "w2": 0.1}
         values = three.at(state)
-        two.set(state)
+        two.set_values(state)
         J = jacobian(three)
         assert jacobian(two) == J
         for ds, dphase in ((1e-3 * s, 0.0), (0.0, 1e-4)):
@@ -126,7 +126,7 @@ def test_nothing_acts_inside_the_backlash(host: Host, version: str) -> None:
             state = angles(of, 0.0, phase) | {"w1": 2.0, "w2": -1.0}
             state["phi1"] += along * MESH.backlash / MESH.r_b1
             values, J = instance.at(state), jacobian(instance)
-            assert values["step_at_once"] == LONGEST  # nothing limits it
+            assert values["step_at_once"] == MAX_STEP  # nothing limits it
             assert {values[o] for o in instance.outputs if o not in ("pairs", "step_at_once")} == {0.0}
             assert 1.0 <= values["pairs"] <= 2.0
             assert {value for (o, _), value in J.items() if o != "pairs"} == {0.0}
@@ -190,7 +190,7 @@ def test_a_parameter_that_is_refused_can_be_set_right(
     instance = host("GearMesh", version).start({"phi1": 1.5e-3})
     before = instance.get()
     right = instance.get(parameter)
-    instance.set({parameter: value})
+    instance.set_values({parameter: value})
     assert said in instance.refused(instance.get)
     assert instance.at(right) == before
 
@@ -198,7 +198,7 @@ def test_a_parameter_that_is_refused_can_be_set_right(
 def test_teeth_too_soft_for_a_table_are_refused_as_by_the_package(host: Host, version: str) -> None:
     instance = host("GearMesh", version)
     with pytest.raises(RuntimeError) as refusal:
-        GearMeshSpring.of(changed(MESH, {"K_tooth": 1e2}))
+        GearMeshSpring.tabulate(replace_values(MESH, {"K_tooth": 1e2}))
     assert instance.refused(instance.start, {"K_tooth": 1e2}) == str(refusal.value)
 
 

@@ -13,10 +13,10 @@ from test_gear_mesh_spring import MESH, each, motion
 
 from jointfmu.contact.interface import at_pressure
 from jointfmu.joints.gear_contact.spring import GearContact, GearContactSpring
-from jointfmu.joints.gear_mesh.spring import GearMesh, GearMeshSpring, pairs
-from jointfmu.mechanics.curve import MAX_ERROR, approach_curve
-from jointfmu.parameters import default
-from jointfmu.quantity import build, changed, flatten
+from jointfmu.joints.gear_mesh.spring import GearMesh, GearMeshSpring, pairs_in_contact
+from jointfmu.mechanics.curve import MAX_ERROR, tabulate_approach
+from jointfmu.parameters import load_default
+from jointfmu.quantity import build_parameter_set, flatten_parameters, replace_values
 
 EPS = np.finfo(float).eps
 
@@ -35,7 +35,7 @@ def test_mean_over_a_cycle_is_the_contact_ratio(ratio, engagement):
     ends = np.sort([0.0, *(0.5 * part + width * np.array([-0.5, 0.5])), 0.5])
     x, weights = np.polynomial.legendre.leggauss(5)
     mean = sum(
-        (b - a) * weights @ pairs(ratio, engagement, 0.0, a + (b - a) * 0.5 * (1.0 + x))[0]
+        (b - a) * weights @ pairs_in_contact(ratio, engagement, 0.0, a + (b - a) * 0.5 * (1.0 + x))[0]
         for a, b in pairwise(ends)
     )
     # three intervals of half a cycle, weights of sum two
@@ -47,12 +47,14 @@ def test_mean_over_a_cycle_is_the_contact_ratio(ratio, engagement):
     [(1.6, 0.0, 2.0), (1.6, 0.5, 1.0), (1.6, 0.3, 1.5), (1.6, 7.3, 1.5), (2.25, 0.0, 3.0), (2.25, -3.5, 2.0)],
 )
 def test_one_pair_more_around_whole_phases(ratio, phase, count):
-    assert pairs(ratio, 0.4, 0.0, phase)[0] == pytest.approx(count, abs=1e-12)  # 7.3 - 7 has lost a digit
+    assert pairs_in_contact(ratio, 0.4, 0.0, phase)[0] == pytest.approx(
+        count, abs=1e-12
+    )  # 7.3 - 7 has lost a digit
 
 
 def test_time_with_one_pair_more():
     """The rest of the contact ratio is the part of the cycle with more than half a pair more."""
-    count, _ = pairs(1.69, 0.3, 0.0, CYCLE)
+    count, _ = pairs_in_contact(1.69, 0.3, 0.0, CYCLE)
     assert np.mean(count > 1.5) == pytest.approx(0.69, abs=1.0 / CYCLE.size)
     full = np.mean(count == 2.0)
     none = np.mean(count == 1.0)
@@ -63,13 +65,13 @@ def test_time_with_one_pair_more():
 @pytest.mark.parametrize("ratio", [1.0, 2.0])
 @given(engagement=engagements, phase=phases)
 def test_a_whole_contact_ratio_is_constant(ratio, engagement, phase):
-    assert pairs(ratio, engagement, 0.0, phase) == (ratio, 0.0)
+    assert pairs_in_contact(ratio, engagement, 0.0, phase) == (ratio, 0.0)
 
 
 @given(ratio=ratios, engagement=engagements, phase=phases)
 def test_even_and_between_its_neighbours(ratio, engagement, phase):
-    count, slope = pairs(ratio, engagement, 0.0, phase)
-    back, falling = pairs(ratio, engagement, 0.0, -phase)
+    count, slope = pairs_in_contact(ratio, engagement, 0.0, phase)
+    back, falling = pairs_in_contact(ratio, engagement, 0.0, -phase)
     assert (back, falling) == (count, -slope)
     assert np.floor(ratio) <= count <= np.floor(ratio) + 1.0
 
@@ -82,8 +84,8 @@ def test_slope(ratio, engagement):
     if width < 1e-3:
         return
     h = 1e-4 * width
-    _, slope = pairs(ratio, engagement, 0.0, CYCLE[::40])
-    ends = [pairs(ratio, engagement, 0.0, CYCLE[::40] + step)[0] for step in (-h, h)]
+    _, slope = pairs_in_contact(ratio, engagement, 0.0, CYCLE[::40])
+    ends = [pairs_in_contact(ratio, engagement, 0.0, CYCLE[::40] + step)[0] for step in (-h, h)]
     # and round-off of the two counts over 2 h
     allowed = 10.0 * h**2 / width**3 + 4.0 * EPS * 3.0 / h
     np.testing.assert_allclose((ends[1] - ends[0]) / (2.0 * h), slope, rtol=0.0, atol=allowed)
@@ -93,9 +95,9 @@ def test_slope(ratio, engagement):
 def test_arrays_of_ratios():
     """As in studies of many samples: every row as alone, whole ratios among them."""
     ratio, engagement = np.array([[1.0], [1.5], [2.0], [2.9]]), np.array([[0.5], [1.0], [0.1], [0.3]])
-    together = pairs(ratio, engagement, 0.0, CYCLE)
+    together = pairs_in_contact(ratio, engagement, 0.0, CYCLE)
     for i in range(4):
-        alone = pairs(float(ratio[i, 0]), float(engagement[i, 0]), 0.0, CYCLE)
+        alone = pairs_in_contact(float(ratio[i, 0]), float(engagement[i, 0]), 0.0, CYCLE)
         for both, single in zip(together, alone, strict=True):
             np.testing.assert_array_equal(both[i], np.broadcast_to(single, CYCLE.shape))
 
@@ -109,8 +111,8 @@ def test_a_helical_mesh_is_the_mean_of_its_sections(ratio, engagement, overlap, 
         return
     h = 1.0 / 4000
     at = phase + overlap * ((np.arange(4000) + 0.5) * h - 0.5)
-    count, slope = pairs(ratio, engagement, overlap, phase)
-    sections, slopes = pairs(ratio, engagement, 0.0, at)
+    count, slope = pairs_in_contact(ratio, engagement, overlap, phase)
+    sections, slopes = pairs_in_contact(ratio, engagement, 0.0, at)
     allowed = (h * overlap) ** 2 / 24.0 * (6.0 / width**2 if width else 0.0) + 1e-12
     assert count == pytest.approx(np.mean(sections), abs=allowed)
     assert slope == pytest.approx(np.mean(slopes), abs=20.0 * allowed / (width or 1.0))
@@ -118,15 +120,15 @@ def test_a_helical_mesh_is_the_mean_of_its_sections(ratio, engagement, overlap, 
 
 @pytest.mark.parametrize("overlap", [1.0, 2.0])
 def test_a_whole_overlap_ratio_has_no_mesh_cycle(overlap):
-    count, slope = pairs(1.69, 0.3, overlap, CYCLE)
+    count, slope = pairs_in_contact(1.69, 0.3, overlap, CYCLE)
     np.testing.assert_allclose(count, 1.69, rtol=4.0 * EPS)
     np.testing.assert_allclose(slope, 0.0, atol=1e-11)  # round-off of the phase over the width of 0.09
 
 
 def test_a_vanishing_overlap_is_a_spur_mesh():
-    spur, slope = pairs(1.69, 0.3, 0.0, CYCLE)
+    spur, slope = pairs_in_contact(1.69, 0.3, 0.0, CYCLE)
     for overlap in (0.5e-6, 2e-6):
-        count, change = pairs(1.69, 0.3, overlap, CYCLE)
+        count, change = pairs_in_contact(1.69, 0.3, overlap, CYCLE)
         np.testing.assert_allclose(count, spur, atol=1e-9)
         # overlap^2/24 times the slope's curvature of 60/width^3, width 0.093
         np.testing.assert_allclose(change, slope, atol=2e-8)
@@ -134,16 +136,18 @@ def test_a_vanishing_overlap_is_a_spur_mesh():
 
 def contact_of(mesh):
     """The flanks of one pair alone."""
-    names = flatten(default("gear_contact").values)
-    return GearContactSpring.of(build(GearContact, {name: flatten(mesh)[name] for name in names}))
+    names = flatten_parameters(load_default("gear_contact").values)
+    return GearContactSpring.tabulate(
+        build_parameter_set(GearContact, {name: flatten_parameters(mesh)[name] for name in names})
+    )
 
 
 @each
 def test_the_pair_is_flanks_and_teeth_in_series(spring):
     """s = delta(F) + F/K_tooth solved for F by brentq, delta by adaptive quadrature of the law itself."""
     mesh = spring.joint
-    flanks = approach_curve(mesh)
-    first, force, delta = mesh.A_0 * flanks.closed, 0.0, -float(flanks.displacement[0])
+    flanks = tabulate_approach(mesh)
+    first, force, delta = mesh.A_0 * flanks.closing_end_load, 0.0, -float(flanks.displacement[0])
 
     def per_log(t):
         return np.exp(t) / float(at_pressure(mesh, np.exp(t) / mesh.A_0)["K_N"])
@@ -172,7 +176,7 @@ def test_the_pair_is_flanks_and_teeth_in_series(spring):
 @each
 def test_the_closing_is_in_series_too(spring):
     """Where the contact closes the flanks' curve is one polynomial: brentq on it, to the table's error."""
-    mesh, flanks = spring.joint, approach_curve(spring.joint)
+    mesh, flanks = spring.joint, tabulate_approach(spring.joint)
     start = float(flanks.displacement[0])
     for part in (1e-3, 0.02, 0.2, 0.7, 0.999):
         x = (1.0 - part) * start
@@ -189,7 +193,9 @@ def test_the_closing_is_in_series_too(spring):
         # the approach is known to 1e-16 of the closing, the load grows with its cube
         allowed = MAX_ERROR + 10.0 * EPS / part
         assert spring.curve.derivatives(s, 0)[0] == pytest.approx(load(solved), rel=allowed)
-    assert spring.closing == pytest.approx(-start + mesh.A_0 * flanks.closed / mesh.K_tooth, rel=4.0 * EPS)
+    assert spring.closing == pytest.approx(
+        -start + mesh.A_0 * flanks.closing_end_load / mesh.K_tooth, rel=4.0 * EPS
+    )
 
 
 @each
@@ -205,16 +211,18 @@ def test_the_table_starts_at_first_touch_and_ends_at_the_hardness(spring):
 def test_any_mesh_gives_a_monotone_table_or_is_refused(law, teeth):
     """Teeth by their stiffness over that of the flanks where their closing ends."""
     try:
-        flanks = approach_curve(law)
+        flanks = tabulate_approach(law)
     except ValueError as error:
         assert "plastic" in str(error)  # noqa: PT017
         return
     closed = int(np.searchsorted(flanks.displacement, 0.0))
-    p, k, bend = flanks.load[closed], flanks.stiffness[closed], flanks.bend_end[closed - 1]
+    p, k, bend = flanks.load[closed], flanks.stiffness[closed], flanks.slope_end[closed - 1]
     assume(bend * p >= 0.75 * k**2)  # else the flanks' own closing begins with a load below zero
     own = {"K_tooth": float(teeth * law.A_0 * k)}
     try:
-        spring = GearMeshSpring.of(build(GearMesh, flatten(MESH) | flatten(law) | own))
+        spring = GearMeshSpring.tabulate(
+            build_parameter_set(GearMesh, flatten_parameters(MESH) | flatten_parameters(law) | own)
+        )
     except RuntimeError as error:  # only teeth much softer than their flanks need too many nodes
         assert "nodes" in str(error)  # noqa: PT017
         assert teeth < 0.1
@@ -229,10 +237,10 @@ def test_any_mesh_gives_a_monotone_table_or_is_refused(law, teeth):
 
 
 def test_hard_teeth_leave_the_contact_alone():
-    hard = GearMeshSpring.of(changed(MESH, {"K_tooth": 1e20, "contact_ratio": 1.0}))
+    hard = GearMeshSpring.tabulate(replace_values(MESH, {"K_tooth": 1e20, "contact_ratio": 1.0}))
     contact = contact_of(MESH)
     f = np.geomspace(1e-3, 0.99, 20) * contact.max_force
-    alone = contact.approach(f)
+    alone = contact.evaluate(f)
     found = motion(hard, alone["s_rel"], 0.0)
     np.testing.assert_allclose(found["f"], f, rtol=2.0 * MAX_ERROR)
     np.testing.assert_allclose(found["K"], alone["K_N"], rtol=2.0 * MAX_ERROR)
@@ -240,4 +248,4 @@ def test_hard_teeth_leave_the_contact_alone():
 
 def test_teeth_too_soft_for_a_table_are_refused():
     with pytest.raises(RuntimeError, match="not smooth enough"):
-        GearMeshSpring.of(changed(MESH, {"K_tooth": 1.0}))
+        GearMeshSpring.tabulate(replace_values(MESH, {"K_tooth": 1.0}))

@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 
 from jointfmu.joints import MODELS
 from jointfmu.joints.gear_mesh.spring import GearMesh, GearMeshSpring, base_pitch
-from jointfmu.parameters import default, dump, load
-from jointfmu.quantity import changed
+from jointfmu.parameters import format_parameter_file, load_default, load_parameter_file
+from jointfmu.quantity import replace_values
 
 EPS = np.finfo(float).eps
 STENCIL = np.array([1.0, -8.0, 0.0, 8.0, -1.0]) / 12.0
@@ -16,17 +16,17 @@ STENCIL = np.array([1.0, -8.0, 0.0, 8.0, -1.0]) / 12.0
 FIVE = np.arange(-2, 3)
 GAUSS = np.polynomial.legendre.leggauss(5)
 
-MESH = default("gear_mesh").values
+MESH = load_default("gear_mesh").values
 SETS = {
     "default": MESH,
-    "soft teeth": changed(MESH, {"K_tooth": 1e6, "backlash": 0.0, "contact_ratio": 2.3}),
-    "stiff teeth": changed(MESH, {"K_tooth": 1e10, "engagement": 1.0, "contact_ratio": 1.1}),
-    "two-bodies": changed(
+    "soft teeth": replace_values(MESH, {"K_tooth": 1e6, "backlash": 0.0, "contact_ratio": 2.3}),
+    "stiff teeth": replace_values(MESH, {"K_tooth": 1e10, "engagement": 1.0, "contact_ratio": 1.1}),
+    "two-bodies": replace_values(
         MESH,
         {"surface1.D": 1.6, "rigid_flat": False, "plastic_area": "kogut_etsion", "r_b2": 0.05, "A_0": 2e-5},
     ),
 }
-SPRINGS = {name: GearMeshSpring.of(mesh) for name, mesh in SETS.items()}
+SPRINGS = {name: GearMeshSpring.tabulate(mesh) for name, mesh in SETS.items()}
 each = pytest.mark.parametrize("spring", SPRINGS.values(), ids=SPRINGS)
 
 
@@ -111,7 +111,7 @@ def period(panels=40_000):
 
 def undamped(spring):
     """The same tables without damping."""
-    return GearMeshSpring(changed(spring.joint, {"d": 0.0}), spring.curve, spring.closing)
+    return GearMeshSpring(replace_values(spring.joint, {"d": 0.0}), spring.curve, spring.closing)
 
 
 @each
@@ -120,7 +120,7 @@ def test_a_closed_path_returns_its_energy(spring, seed):
     """Over three mesh cycles, both flanks and separation."""
     t, weights = period()
     path = closed_path(spring, seed, t)
-    out = undamped(spring).motion(*path)
+    out = undamped(spring).evaluate(*path)
     assert np.any(out["f"] > 0.0)
     assert np.any(out["f"] < 0.0)
     assert np.ptp(out["pairs"]) > 0.99
@@ -134,7 +134,7 @@ def test_without_the_change_of_the_pairs_a_mesh_would_create_energy():
     """Torques f times the base radius alone do not close, by far more than the quadrature."""
     t, weights = period()
     path = closed_path(SPRINGS["default"], 0, t)
-    force = undamped(SPRINGS["default"]).motion(*path)["f"]
+    force = undamped(SPRINGS["default"]).evaluate(*path)["f"]
     power = -force * (MESH.r_b1 * path[1] + MESH.r_b2 * path[3])
     assert abs(weights @ power) > 1e-4 * (weights @ np.abs(power))
 
@@ -144,7 +144,7 @@ def test_without_the_change_of_the_pairs_a_mesh_would_create_energy():
 def test_what_a_path_loses_is_the_work_of_the_damping(spring, seed):
     t, weights = period()
     path = closed_path(spring, seed, t)
-    out, elastic = spring.motion(*path), undamped(spring).motion(*path)
+    out, elastic = spring.motion(*path), undamped(spring).evaluate(*path)
     power = out["tau1"] * path[1] + out["tau2"] * path[3]
     rate = spring.joint.r_b1 * path[1] + spring.joint.r_b2 * path[3]
     lost = (out["f"] - elastic["f"]) * rate
@@ -215,7 +215,7 @@ def test_mean_stiffness_is_the_contact_ratio_times_a_pairs():
 @pytest.mark.parametrize("ratio", [1.0, 2.0])
 def test_a_whole_contact_ratio_has_no_mesh_cycle(ratio):
     spring = SPRINGS["default"]
-    even = GearMeshSpring(changed(MESH, {"contact_ratio": ratio}), spring.curve, spring.closing)
+    even = GearMeshSpring(replace_values(MESH, {"contact_ratio": ratio}), spring.curve, spring.closing_end)
     out = motion(even, 2e-5, np.linspace(0.0, 3.0, 50) * base_pitch(MESH))
     assert np.all(out["pairs"] == ratio)
     np.testing.assert_allclose(out["tau1"], -MESH.r_b1 * out["f"], rtol=1e-14)
@@ -231,7 +231,7 @@ def test_beyond_the_table_the_tangent_continues_with_a_warning():
     for s, count in ((0.5 * end, 0), (1.5 * end, 1), (-1.5 * end, 1)):
         phi1, phi2 = at(spring, s, 0.0)
         values = {"phi1": float(phi1), "w1": 0.0, "phi2": float(phi2), "w2": 0.0}
-        warnings = model.warnings(spring, values | dict(model.evaluate(spring, values)))
+        warnings = model.find_warnings(spring, values | dict(model.evaluate(spring, values)))
         assert len(warnings) == count
         assert all("s_rel" in text and "tangent" in text for text in warnings.values())
 
@@ -248,7 +248,9 @@ def test_the_model_gives_its_outputs_and_depends_as_it_says():
             if moved[output] != base[output]:
                 changing[output].add(name)
     # at this phase the number of pairs rests
-    assert {name: set(model.depends(name)) for name in base} == changing | {"pairs": {"phi1", "phi2"}}
+    assert {name: set(model.list_dependencies(name)) for name in base} == changing | {
+        "pairs": {"phi1", "phi2"}
+    }
     assert {"mu", "traction_ratio"}.isdisjoint(model.parameter_fields())
 
 
@@ -257,31 +259,33 @@ def test_symbols(name):
     """The same equations with symbols, as the C is made from them."""
     import casadi
 
-    from jointfmu.joints.gear_mesh.spring import deflection, torques
+    from jointfmu.joints.gear_mesh.spring import deflection, mesh_outputs
 
     spring = SPRINGS[name]
     symbols = casadi.SX.sym("x", 8)
     x = casadi.vertsplit(symbols)
-    mesh = changed(spring.joint, {"contact_ratio": 1.5})
+    mesh = replace_values(spring.joint, {"contact_ratio": 1.5})
     object.__setattr__(mesh, "contact_ratio", x[4])
     before = casadi.GlobalOptions.getNumpyMode()
     casadi.GlobalOptions.setNumpyMode(1)
     try:
-        out = torques(mesh, x[:4], x[5], x[6], x[7], spring.closing)
+        out = mesh_outputs(mesh, x[:4], x[5], x[6], x[7], spring.closing_end)
         function = casadi.Function("f", [symbols], [casadi.vertcat(*out.values())])
     finally:
         casadi.GlobalOptions.setNumpyMode(before)
     for roll in np.linspace(-1.0, 1.0, 21) * base_pitch(mesh):
-        for s in (-2e-5, 0.3 * spring.closing, 2e-5):
+        for s in (-2e-5, 0.3 * spring.closing_end, 2e-5):
             phi1, phi2 = at(spring, s, roll)
             moving = (phi1, 0.3, phi2, -0.1)
             for ratio in (1.0, 1.69, 2.3):
-                sure = GearMeshSpring(changed(mesh, {"contact_ratio": ratio}), spring.curve, spring.closing)
+                sure = GearMeshSpring(
+                    replace_values(mesh, {"contact_ratio": ratio}), spring.curve, spring.closing_end
+                )
                 way = float(np.abs(deflection(sure.joint, moving)))
                 load, stiffness = (float(y) for y in spring.curve.derivatives(way, 1))
                 energy = float(spring.curve.energy(way))
                 found = np.array(function([*moving, ratio, load, stiffness, energy])).ravel()
-                expected = np.array([float(y) for y in sure.motion(*moving).values()])
+                expected = np.array([float(y) for y in sure.evaluate(*moving).values()])
                 # powers are multiplied in another order
                 np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-12 * abs(expected[3]) * 1e-6)
 
@@ -317,17 +321,17 @@ def test_shapes(spring):
 )
 def test_impossible_meshes_are_refused(changes, words):
     with pytest.raises(ValueError, match=next(iter(changes))) as error:
-        changed(MESH, changes)
+        replace_values(MESH, changes)
     assert "\n" not in str(error.value)
     for word in words:
         assert word in str(error.value)
 
 
 def test_parameter_file_round_trip(tmp_path):
-    file = default("gear_mesh")
+    file = load_default("gear_mesh")
     path = tmp_path / "mesh.toml"
-    path.write_text(dump(file))
-    again = load(path, "gear_mesh")
+    path.write_text(format_parameter_file(file))
+    again = load_parameter_file(path, "gear_mesh")
     assert isinstance(again.values, GearMesh)
     assert again.values == file.values
     assert (again.name, dict(again.sources)["K_tooth"]) == (file.name, file.sources["K_tooth"])

@@ -7,15 +7,15 @@ import numpy as np
 import pytest
 from conftest import refused_line
 from jointfmu_tools import cli
-from jointfmu_tools.export.exports import required
+from jointfmu_tools.export.exports import require_content
 from jointfmu_tools.joints.gear_mesh.new import InvoluteGearPair
 from jointfmu_tools.uncertainty import propagate
-from jointfmu_tools.uncertainty.problem import pose
+from jointfmu_tools.uncertainty.problem import state_problem
 from test_modelica import EXACT, move, simulate, top
 
-from jointfmu.joints.gear_mesh.spring import GearMesh, GearMeshSpring, base_pitch, pairs
-from jointfmu.parameters import default, load
-from jointfmu.quantity import build, flatten
+from jointfmu.joints.gear_mesh.spring import GearMesh, GearMeshSpring, base_pitch, pairs_in_contact
+from jointfmu.parameters import load_default, load_parameter_file
+from jointfmu.quantity import build_parameter_set, flatten_parameters
 
 DRAWING = ["--module", "4", "--teeth", "29", "45", "--width", "10", "--torque", "150"]
 FACES = ["--material", "hardened steel", "--Ra", "0.4"]
@@ -35,7 +35,7 @@ def test_the_pair_of_the_shipped_file_comes_out(capsys, tmp_path):
     """models/gear_mesh/beveloid_pair.toml: r_b and contact ratio by hand, c' = 14 N/(mm um)."""
     path = tmp_path / "mesh.toml"
     made(capsys, *DRAWING, *FACES, path=path)
-    found, shipped = load(path).values, default("gear_mesh").values
+    found, shipped = load_parameter_file(path).values, load_default("gear_mesh").values
     assert (found.r_b1, found.r_b2) == pytest.approx((shipped.r_b1, shipped.r_b2), rel=1e-6)
     assert found.contact_ratio == pytest.approx(shipped.contact_ratio, abs=2e-3)
     assert found.K_tooth == pytest.approx(shipped.K_tooth, rel=0.03)
@@ -87,7 +87,7 @@ def test_the_lines_of_contact_have_their_mean_length_and_fluctuation():
     phase = (np.arange(100) + 0.5) / 100
     away = (phase[:, None] + overlap * (axial - 0.5) + 0.5 * (eps % 1.0)) % 1.0
     lines = np.mean(np.floor(eps - away) + 1.0, axis=1)  # those with 0 <= away + i < eps
-    count, _ = pairs(eps, 1e-3, overlap, phase)
+    count, _ = pairs_in_contact(eps, 1e-3, overlap, phase)
     np.testing.assert_allclose(count, lines, atol=1e-3)  # a step of 1/4000 at every end of a line
     assert np.mean(lines) == pytest.approx(eps, abs=1e-3)
 
@@ -122,13 +122,13 @@ def test_a_mesh_from_a_drawing_returns_the_energy_of_a_cycle(capsys, tmp_path, h
     """Work of a closed path of both wheels by the trapezoidal rule, whose error is below 1e-6 here."""
     path = tmp_path / "mesh.toml"
     made(capsys, *DRAWING, *FACES, "--helix-angle", helix, path=path)
-    mesh = load(path).values
-    spring = GearMeshSpring.of(mesh)
+    mesh = load_parameter_file(path).values
+    spring = GearMeshSpring.tabulate(mesh)
     t = np.linspace(0.0, 2.0 * np.pi, 100_001)
     way = 2.0 * np.pi * mesh.r_b1 / mesh.teeth1 * 1.3 * np.sin(t)
     phi1 = way / mesh.r_b1
     phi2 = (0.5 * mesh.backlash + 2e-5 * (1.0 + np.cos(t)) - way) / mesh.r_b2
-    out = spring.motion(phi1, 0.0, phi2, 0.0)
+    out = spring.evaluate(phi1, 0.0, phi2, 0.0)
     work = np.trapezoid(out["tau1"], phi1) + np.trapezoid(out["tau2"], phi2)
     assert abs(work) < 1e-6 * np.max(out["E"])
 
@@ -165,18 +165,18 @@ def test_a_pressure_beyond_the_hardness_is_warned_of(capsys):
     assert "above the hardness" in line
 
 
-MESH = default("gear_mesh").values
+MESH = load_default("gear_mesh").values
 
 
 def test_force_over_deflection_is_the_mean_over_the_mesh_cycle():
-    table = required("gear_mesh", "curve").table(MESH, None, 1e-3)
-    spring = GearMeshSpring.of(MESH)
+    table = require_content("gear_mesh", "curve").table(MESH, None, 1e-3)
+    spring = GearMeshSpring.tabulate(MESH)
     s, f, K = table.rows.T
     load, stiffness = spring.curve.derivatives(np.abs(s), 1)
     np.testing.assert_allclose(f, MESH.contact_ratio * load * np.sign(s), rtol=1e-9)  # a shift of the table
     np.testing.assert_allclose(K, MESH.contact_ratio * stiffness, rtol=1e-9, atol=1e-9 * np.max(K))
     np.testing.assert_array_equal(table.rows[::-1] * [-1.0, -1.0, 1.0], table.rows)
-    between = np.linspace(spring.closing, s[-1], 5001)
+    between = np.linspace(spring.closing_end, s[-1], 5001)
     exact = MESH.contact_ratio * spring.curve.derivatives(between, 0)[0]
     np.testing.assert_allclose(np.interp(between, s, f), exact, rtol=1.01e-3)
     assert table.straight[0] <= 1e-3
@@ -184,8 +184,8 @@ def test_force_over_deflection_is_the_mean_over_the_mesh_cycle():
 
 def test_the_contact_is_that_of_the_flanks():
     """The same surfaces as the gear contact's default."""
-    mesh, _ = required("gear_mesh", "contact")(MESH)
-    flanks, _ = required("gear_contact", "contact")(default("gear_contact").values)
+    mesh, _ = require_content("gear_mesh", "contact")(MESH)
+    flanks, _ = require_content("gear_contact", "contact")(load_default("gear_contact").values)
     np.testing.assert_array_equal(mesh.load, flanks.load)
 
 
@@ -197,7 +197,7 @@ def test_command(what, tmp_path, capsys):
     assert "gear_mesh" in path.read_text()
 
 
-SPRING = GearMeshSpring.of(default("gear_mesh").values)
+SPRING = GearMeshSpring.tabulate(load_default("gear_mesh").values)
 
 
 def rolling(cycles: float, along: float) -> tuple[float, float]:
@@ -230,7 +230,7 @@ def test_component_gives_the_torques_of_the_package(
     )
     found = simulate(rumoca, text, 1.0, 1e-3)
     phi1, phi2 = (at + w * found.time for at, w in zip(start, rate, strict=True))
-    exact = SPRING.motion(phi1, rate[0], phi2, rate[1])
+    exact = SPRING.evaluate(phi1, rate[0], phi2, rate[1])
     exact |= {"flange_a.tau": -exact["tau1"], "flange_b.tau": -exact["tau2"]}
     for name in ("flange_a.tau", "flange_b.tau", "s_rel", "f", "K", "pairs", "E"):
         # where damping and spring cancel the error is that of the larger one
@@ -270,16 +270,16 @@ STUDIES = {
 @pytest.mark.parametrize("s_rel", [5e-7, 2e-5, 3e-4], ids=["closing", "default ramp", "end of the table"])
 def test_reduced_evaluation_against_the_spring(name, s_rel):
     """Deflections [m] of the driving flanks; the default table ends at 474 um, with stiff teeth sooner."""
-    joint = default("gear_mesh")
+    joint = load_default("gear_mesh")
     shorter = 0.1 if "K_tooth" in STUDIES[name] and s_rel > 1e-6 else 1.0
     end = shorter * s_rel / joint.values.r_b1
-    task = pose(joint, STUDIES[name], end, 9)
-    points = propagate.design(task, 256, 5)[0][:24]
-    outcome = propagate.run(task, points, task.loads, "")
-    assert np.count_nonzero(outcome.good) > 12
-    for i in np.flatnonzero(outcome.good):
+    task = state_problem(joint, STUDIES[name], end, 9)
+    points = propagate.sample_designs(task, 256, 5)[0][:24]
+    outcome = propagate.evaluate_samples(task, points, task.loads, "")
+    assert np.count_nonzero(outcome.accepted) > 12
+    for i in np.flatnonzero(outcome.accepted):
         values, factor, _ = propagate.one_sample(task, points, i)
-        exact = task.reduced.exact(build(GearMesh, values), factor * task.loads)
+        exact = task.curves.exact(build_parameter_set(GearMesh, values), factor * task.loads)
         for output, value in exact.items():
             found = outcome.outputs[output][:, i]
             assert found[1:] == pytest.approx(value[1:], rel=REDUCED), (output, values)
@@ -289,10 +289,10 @@ def test_reduced_evaluation_against_the_spring(name, s_rel):
 @pytest.mark.slow
 def test_bands():
     """The command's own check, and what turns the band: the teeth are the softer part."""
-    task = pose(default("gear_mesh"), {"surface1.D": "1.4..1.5", "K_tooth": "+-10%"}, None, 6)
-    found = propagate.bands(task, propagate.design(task, 64, 0)[0])
-    assert found.error < REDUCED
-    assert found.refused.count == 0
+    task = state_problem(load_default("gear_mesh"), {"surface1.D": "1.4..1.5", "K_tooth": "+-10%"}, None, 6)
+    found = propagate.compute_bands(task, propagate.sample_designs(task, 64, 0)[0])
+    assert found.reduction_error < REDUCED
+    assert found.refusals.count == 0
     low, high = found.quantiles["K"][[0, -1], -1]
     nominal = found.nominal["K"][-1]
     assert low < 0.95 * nominal < 1.05 * nominal < high
@@ -300,16 +300,16 @@ def test_bands():
 
 @pytest.mark.slow
 def test_default_ramp_ends_inside_the_table():
-    joint = default("gear_mesh").values
-    task = pose(default("gear_mesh"), {"K_tooth": "+-1%"}, None, 2)
-    f = task.reduced.exact(joint, task.loads)["f"][-1]
+    joint = load_default("gear_mesh").values
+    task = state_problem(load_default("gear_mesh"), {"K_tooth": "+-1%"}, None, 2)
+    f = task.curves.exact(joint, task.loads)["f"][-1]
     assert 0.5 < f / (2.0 * 0.05 * joint.hardness * joint.A_0) < 1.0  # two pairs; the flanks give way too
 
 
 @pytest.mark.slow
 def test_every_parameter_can_be_uncertain():
-    values = flatten(default("gear_mesh").values)
+    values = flatten_parameters(load_default("gear_mesh").values)
     names = [n for n, v in values.items() if isinstance(v, float) and v and n != "teeth1"]
-    task = pose(default("gear_mesh"), dict.fromkeys(names, "+-1%"), None, 3)
-    outcome = propagate.run(task, propagate.design(task, 16, 0)[0], task.loads, "")
-    assert np.all(outcome.good)
+    task = state_problem(load_default("gear_mesh"), dict.fromkeys(names, "+-1%"), None, 3)
+    outcome = propagate.evaluate_samples(task, propagate.sample_designs(task, 16, 0)[0], task.loads, "")
+    assert np.all(outcome.accepted)

@@ -4,7 +4,7 @@ import math
 
 from case import Beyond, Case, Description, Joint, Numbers, Refusals, Refused, Study, Tuning
 
-from jointfmu.parameters import default
+from jointfmu.parameters import load_default
 
 PARAMETERS = {
     "surface.D": "1", "surface.G": "m", "surface.gamma": "1", "surface.r_m": "m", "surface.s_min": "m2",
@@ -47,7 +47,10 @@ ERROR = {
 INERTIA = {"inertia1": 1e-4}
 BASE = {"eccentricity": 1e-5, "hysteresis_loss": 3e-4, "hysteresis_stiffness": 8e3, "lost_motion": 1e-4}
 """With all that is off by default, so that what it costs matters."""
-MOVED = {"load_loss_back": 0.3, "bearing.sigma_y": 0.8 * default("harmonic_drive").values.flexspline.sigma_y}
+MOVED = {
+    "load_loss_back": 0.3,
+    "bearing.sigma_y": 0.8 * load_default("harmonic_drive").values.flexspline.sigma_y,
+}
 """The softer body counts."""
 ELASTIC = frozenset({"mu", "surface.s_min", "flexspline.sigma_y", "bearing.sigma_y"})
 """All spots are elastic: their size and strength limit what the law holds for. The traction ratio is given

@@ -13,7 +13,7 @@ from jointfmu_tools import cli
 from jointfmu_tools.joints.harmonic_drive import catalogue
 
 import jointfmu
-from jointfmu.joints.harmonic_drive.given import CORNER, SHARPEST
+from jointfmu.joints.harmonic_drive.given import DEFAULT_CORNER, MIN_CORNER
 
 REFERENCE = files("jointfmu_models") / "reference"
 
@@ -24,13 +24,13 @@ def rows(name):
 
 
 def test_every_row_of_stiffness_has_its_drives():
-    names = {item.name for item in catalogue.items()}
+    names = {item.name for item in catalogue.list_drives()}
     for row in rows("stiffness"):
         group = row["series"].removeprefix("HD ")
         series = [group] if "/" not in group else [f"{s}-{row['size']}" for s in group.split("/")]
         ratio = "100" if row["ratio"] == "80+" else row["ratio"]
         for one in series:
-            found = catalogue.find(f"{one}-{ratio}")
+            found = catalogue.find_drive(f"{one}-{ratio}")
             assert found.name in names
             assert found.numbers["K1"].value == float(row["K1_Nm_per_rad"])
             if row["K3"]:
@@ -44,7 +44,7 @@ def test_every_row_of_torque_is_told_as_printed():
     for row in rows("torque"):
         name = f"{row['series']}-{row['size']}-{row['ratio']}"
         if row["size"] != "11":
-            numbers = catalogue.find(name).numbers
+            numbers = catalogue.find_drive(name).numbers
             assert numbers["rated_torque"][:2] == (float(row["rated_Nm"]), "catalogue")
             assert numbers["peak_torque"][:2] == (float(row["repeated_peak_Nm"]), "catalogue")
 
@@ -59,7 +59,7 @@ def test_every_row_of_torque_is_told_as_printed():
     ],
 )
 def test_names(name, found):
-    assert catalogue.find(name).name == found
+    assert catalogue.find_drive(name).name == found
 
 
 @pytest.mark.parametrize(
@@ -74,18 +74,18 @@ def test_names(name, found):
 def test_the_nearest_names_are_told(name, near):
     """Of the same series, then of the nearest size, then of the nearest ratio."""
     with pytest.raises(ValueError, match=f"nearest are {near}"):
-        catalogue.find(name)
+        catalogue.find_drive(name)
 
 
 def test_a_torque_that_is_not_printed_is_a_marked_estimate():
     """The catalogue gives the CSG 30 % more torque than the CSF; an SHG is as strong as a CSG."""
-    strong = catalogue.find("CSG-20-100").numbers["rated_torque"]
-    weak = catalogue.find("CSF-20-100").numbers["rated_torque"]
+    strong = catalogue.find_drive("CSG-20-100").numbers["rated_torque"]
+    weak = catalogue.find_drive("CSF-20-100").numbers["rated_torque"]
     assert (weak.kind, strong.kind) == ("estimate", "catalogue")
     assert weak.value == pytest.approx(strong.value / 1.3)
-    like = catalogue.find("SHG-14-50").numbers["rated_torque"]
+    like = catalogue.find_drive("SHG-14-50").numbers["rated_torque"]
     assert (like.value, like.kind, like.source) == (7.0, "estimate", "that of CSG-14-50")
-    assert "rated_torque" not in catalogue.find("RSF-3C-100").numbers
+    assert "rated_torque" not in catalogue.find_drive("RSF-3C-100").numbers
 
 
 def test_the_command(capsys):
@@ -106,7 +106,7 @@ def test_the_command(capsys):
 def test_json(capsys):
     assert cli.main(["catalogue", "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
-    assert len(found) == len(catalogue.items()) > 300
+    assert len(found) == len(catalogue.list_drives()) > 300
     assert all(
         n["kind"] in ("catalogue", "estimate") and n["source"] for d in found for n in d["numbers"].values()
     )
@@ -117,7 +117,7 @@ def test_every_actuator_with_limits_has_the_stiffness_of_its_row():
     arcmin = math.pi / 10800.0
     for row in rows("accuracy"):
         ratio = "100" if row["ratio"] == "50+" else row["ratio"]
-        numbers = catalogue.find(f"HFUC-{row['size']}-{ratio}").numbers
+        numbers = catalogue.find_drive(f"HFUC-{row['size']}-{ratio}").numbers
         for name, head in (
             ("T1", "T1_Nm"),
             ("T2", "T2_Nm"),
@@ -134,7 +134,7 @@ def test_every_actuator_with_limits_has_the_stiffness_of_its_row():
 
 def test_a_size_without_limits_has_the_widest_of_all():
     for name, most in (("CSG-45-100", 1.0), ("HFUC-80-50", 1.0), ("RSF-3C-30", 3.0)):
-        number = catalogue.find(name).numbers["hysteresis_loss"]
+        number = catalogue.find_drive(name).numbers["hysteresis_loss"]
         assert number.value == pytest.approx(most * math.pi / 10800.0)
         assert "none of which has this size" in number.source
 
@@ -146,12 +146,12 @@ def test_single_drives_have_what_is_printed_of_them():
     units |= {"peak_torque": ("repeated_peak_Nm", 1.0), "efficiency": ("efficiency", 1.0)}
     units |= {"K1": ("K1_Nm_per_rad", 1.0), "K3": ("K3_Nm_per_rad", 1.0)}
     for row in rows("friction"):
-        numbers = catalogue.find(row["drive"]).numbers
+        numbers = catalogue.find_drive(row["drive"]).numbers
         for name, (head, unit) in units.items():
             if row[head]:
                 assert numbers[name].value == pytest.approx(unit * float(row[head]), rel=1e-12)
                 assert numbers[name].kind == "catalogue"
-    assert catalogue.find("RT1-H-14-100").numbers["K2"][:2] == (6100.0, "estimate")
+    assert catalogue.find_drive("RT1-H-14-100").numbers["K2"][:2] == (6100.0, "estimate")
 
 
 def test_an_unknown_word_is_refused(capsys):
@@ -165,7 +165,7 @@ LINES = ("T1", "T2", "K1", "K2", "K3")
 
 
 def lines_of(name):
-    return [catalogue.find(name).numbers[column].value for column in LINES]
+    return [catalogue.find_drive(name).numbers[column].value for column in LINES]
 
 
 @pytest.mark.parametrize(
@@ -182,7 +182,7 @@ def lines_of(name):
 )
 def test_the_printed_lines(name, printed):
     assert lines_of(name) == printed
-    assert {catalogue.find(name).numbers[column].kind for column in LINES} == {"catalogue"}
+    assert {catalogue.find_drive(name).numbers[column].kind for column in LINES} == {"catalogue"}
 
 
 @pytest.mark.parametrize(
@@ -195,13 +195,13 @@ def test_the_printed_lines(name, printed):
     ],
 )
 def test_a_last_line_that_is_not_legible_is_that_of_the_same_lines_below(name, like, K3):
-    number = catalogue.find(name).numbers["K3"]
+    number = catalogue.find_drive(name).numbers["K3"]
     assert (number.value, number.kind) == (K3, "estimate")
     assert like in number.source
 
 
 def test_a_last_line_without_such_a_drive_is_the_second():
-    number = catalogue.find("RSF-5B-50").numbers["K3"]
+    number = catalogue.find_drive("RSF-5B-50").numbers["K3"]
     assert (number.value, number.kind) == (140.0, "estimate")
 
 
@@ -210,12 +210,12 @@ def test_the_limits_of_an_actuator_are_its_own():
     path = files("jointfmu_models") / "reference" / "harmonic_drive_catalogue_accuracy.csv"
     for row in csv.DictReader(path.read_text(encoding="utf-8").splitlines()):
         ratio = row["ratio"].replace("50+", "80")
-        numbers = catalogue.find(f"CHA-{row['size']}A-{ratio}").numbers
+        numbers = catalogue.find_drive(f"CHA-{row['size']}A-{ratio}").numbers
         loss = numbers["hysteresis_loss"]
         assert loss.value == pytest.approx(float(row["hysteresis_below_arcmin"]) * math.pi / 10800.0)
         assert (loss.kind, loss.bound) == ("catalogue", True)
         assert "rated_torque" not in numbers
-    assert catalogue.find("HFUC-14-30").numbers["hysteresis_loss"].kind == "estimate"
+    assert catalogue.find_drive("HFUC-14-30").numbers["hysteresis_loss"].kind == "estimate"
     assert jointfmu.drive("CHA-14A-30").values["hysteresis_loss"] == 0.0  # a limit is no value
 
 
@@ -252,8 +252,8 @@ def test_without_corners_the_printed_angles_are_met():
     smooth, sharp = jointfmu.drive(DRIVE), jointfmu.drive(DRIVE, corner=0)
     row, T = sharp.values, np.array([14.0, 48.0, 87.0])
     # at a corner a smooth step of half-width c leaves 3/32 c of the jump in compliance: 1e-7 of the angle
-    np.testing.assert_allclose(sharp.wind_up(T), angle(row, T), rtol=0.1 * SHARPEST)
-    assert abs(smooth.wind_up(14.0) / angle(row, 14.0) - 1.0) > 0.01 * CORNER
+    np.testing.assert_allclose(sharp.wind_up(T), angle(row, T), rtol=0.1 * MIN_CORNER)
+    assert abs(smooth.wind_up(14.0) / angle(row, 14.0) - 1.0) > 0.01 * DEFAULT_CORNER
     every = np.linspace(-90.0, 90.0, 1001)
     np.testing.assert_allclose(sharp.torque(sharp.wind_up(every)), every, rtol=1e-9, atol=1e-12)
     np.testing.assert_allclose(sharp.stiffness([1.0, 13.99, 14.01, 47.9, 48.1]), [31e3, 31e3, 5e4, 5e4, 57e3])
@@ -275,11 +275,13 @@ def test_all_flavours_have_the_kinks(tmp_path):
         paths = build(["HarmonicDriveCompliance"], ["fmi2", "fmi3", "python"], file, tmp_path)
     for path in paths:
         found.append(jointfmu.run(path, {"tau": T})["phi_rel"])
-        np.testing.assert_allclose(found[-1], angle(file.flat, T), rtol=0.1 * SHARPEST, atol=1e-15)
+        np.testing.assert_allclose(found[-1], angle(file.flat, T), rtol=0.1 * MIN_CORNER, atol=1e-15)
         np.testing.assert_allclose(found[-1], found[0], rtol=1e-12)
-    one = Fmu(tmp_path / "fmi2" / "HarmonicDriveCompliance.fmu").start({"corner": CORNER, "tau": 14.0})
+    one = Fmu(tmp_path / "fmi2" / "HarmonicDriveCompliance.fmu").start(
+        {"corner": DEFAULT_CORNER, "tau": 14.0}
+    )
     assert one.get("phi_rel")["phi_rel"] == pytest.approx(jointfmu.drive(DRIVE).wind_up(14.0), rel=1e-9)
-    one.free()
+    one.free_instance()
 
 
 @pytest.mark.parametrize(

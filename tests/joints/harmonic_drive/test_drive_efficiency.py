@@ -13,17 +13,26 @@ import pytest
 from drive_friction import DRIVES, JOINTS, drag, friction, joint, left_out, measured
 from jointfmu_tools import cli
 from jointfmu_tools.joints.harmonic_drive import catalogue, job
-from jointfmu_tools.joints.harmonic_drive.efficiency import bench, printed_drives, spring_bench
-from jointfmu_tools.joints.harmonic_drive.friction import SPEED, PrintedFriction, efficiency, scaled
+from jointfmu_tools.joints.harmonic_drive.efficiency import (
+    drives_with_friction,
+    make_python_test_rig,
+    open_fmu_test_rig,
+)
+from jointfmu_tools.joints.harmonic_drive.friction import (
+    QUOTED_SPEED,
+    PublishedFriction,
+    rated_efficiency,
+    scale_friction,
+)
 from jointfmu_tools.joints.harmonic_drive.new import NEW
-from jointfmu_tools.joints.harmonic_drive.report import beside
-from jointfmu_tools.report.figure import OWN, PREDICTED, SET
+from jointfmu_tools.joints.harmonic_drive.report import compare_with_catalogue
+from jointfmu_tools.report.figure import ROLE_INDEPENDENT, ROLE_PREDICTED, ROLE_SET
 from jointfmu_tools.report.joint import write_joint_report
-from jointfmu_tools.uncertainty.problem import pose
+from jointfmu_tools.uncertainty.problem import state_problem
 
 from jointfmu.joints import KINDS, MODELS
-from jointfmu.joints.harmonic_drive.friction import dry_factor
-from jointfmu.parameters import ParameterFile, default, dump, load
+from jointfmu.joints.harmonic_drive.friction import dry_friction_factor
+from jointfmu.parameters import ParameterFile, format_parameter_file, load_default, load_parameter_file
 
 GREASE = {
     "friction_coulomb": 0.02,
@@ -47,14 +56,14 @@ def test_efficiency_is_that_of_the_torques(fmu: Path, ratio: float, speed: float
     carried = load / abs(ratio)
     no_load = 0.02 + 0.01 * math.exp(-((speed / 5.0) ** 2)) + 2e-4 * speed
     expected = carried / (carried * 1.12 + no_load)
-    with bench(fmu, GIVEN | {"ratio": ratio, "lost_motion": 1e-4}) as drive:
+    with open_fmu_test_rig(fmu, GIVEN | {"ratio": ratio, "lost_motion": 1e-4}) as drive:
         found = drive.efficiency(speed, load)
     assert found == pytest.approx(expected, rel=1e-6)  # |tau| is smooth: tanh(0.5/0.05)
     assert 0.0 < found < 1.0
 
 
 def test_without_friction_nothing_is_lost_and_nothing_holds(fmu: Path) -> None:
-    with bench(fmu, {}) as drive:
+    with open_fmu_test_rig(fmu, {}) as drive:
         assert drive.efficiency(100.0, 5.0) == pytest.approx(1.0, rel=1e-12)
         assert drive.starting_torque() == 0.0
         assert drive.back_driving_torque(10.0) == 0.0
@@ -63,32 +72,32 @@ def test_without_friction_nothing_is_lost_and_nothing_holds(fmu: Path) -> None:
 @pytest.mark.parametrize("ratio", [100.0, -50.0])
 def test_back_driving_takes_the_starting_torque_and_what_the_load_adds(fmu: Path, ratio: float) -> None:
     given = GIVEN | {"ratio": ratio}
-    with bench(fmu, given) as drive:
+    with open_fmu_test_rig(fmu, given) as drive:
         start, back = drive.starting_torque(), drive.back_driving_torque(20.0)
     assert start == pytest.approx(0.03, rel=1e-9)
     assert back == pytest.approx(abs(ratio) * start / (1.0 - 0.12), rel=1e-6)
-    with bench(fmu, given | {"load_loss": 1.1}) as drive:
+    with open_fmu_test_rig(fmu, given | {"load_loss": 1.1}) as drive:
         assert drive.back_driving_torque(20.0) == math.inf
 
 
 def test_the_report_draws_it(fmu: Path) -> None:
-    *curves, back = job.friction(fmu)
+    *curves, back = job.friction_panels(fmu)
     for panel in curves:
         slow, _, fast, *_ = (series.y for series in panel.series)
         assert all(0.0 < b < a < 1.0 for a, b in zip(slow, fast, strict=True))
         assert list(slow) == sorted(slow)
-    assert [*back.series[0].titles] == [drive.name for drive in printed_drives()]
+    assert [*back.series[0].titles] == [drive.name for drive in drives_with_friction()]
 
 
 def drive_file(**changes: float) -> ParameterFile:
-    return default("harmonic_drive").with_values(changes, "user", "test")
+    return load_default("harmonic_drive").with_values(changes, "user", "test")
 
 
 @pytest.mark.parametrize("ratio", [100.0, -50.0])
 def test_the_python_drive_on_the_bench_is_the_fmu(fmu: Path, ratio: float) -> None:
     given = GIVEN | {"ratio": ratio}
-    own = spring_bench(SPRING, drive_file(**given))
-    with bench(fmu, given) as drive:
+    own = make_python_test_rig(SPRING, drive_file(**given))
+    with open_fmu_test_rig(fmu, given) as drive:
         for speed, load in ((3.0, 0.5), (100.0, 5.0)):
             # the table of the FMU is the same to 1e-9
             assert own.efficiency(speed, load) == pytest.approx(drive.efficiency(speed, load), rel=1e-9)
@@ -102,8 +111,8 @@ def test_the_page_of_a_drive_says_what_friction_costs(tmp_path: Path) -> None:
     assert "Starting torque of the motor without load: 0.03 N m." in page
     assert f"drives the motor back: {100.0 * 0.03 / 0.88:.4g} N m." in page
     for law in KINDS["harmonic_drive"].laws:  # of a straight line the wind-up is at the bracket's end
-        other = default("harmonic_drive", law).with_values(GIVEN, "user", "test")
-        bench = spring_bench(SPRING, other)
+        other = load_default("harmonic_drive", law).with_values(GIVEN, "user", "test")
+        bench = make_python_test_rig(SPRING, other)
         for held in (0.2, 1.0, 5.0):
             carried = held / abs(bench.ratio)
             expected = carried / (1.12 * carried + 0.02 + 0.01 * math.exp(-400.0) + 0.02)
@@ -137,7 +146,7 @@ def of(drive, column):
 def turned(ratio, rated, **friction):
     """A drive on the bench; its stiffness plays no part."""
     given = {"ratio": ratio, "rated_torque": rated} | friction
-    return spring_bench(SPRING, default("harmonic_drive").with_values(given, "user", "read"))
+    return make_python_test_rig(SPRING, load_default("harmonic_drive").with_values(given, "user", "read"))
 
 
 def fixed_by(full, half, share, rated, ratio, rpm):
@@ -156,7 +165,7 @@ def test_efficiency_over_load_is_the_published_curve():
     assert len(factors) == 10
     drive = turned(50.0, 172.0, **fixed_by(full, full * factors[0.5], 0.5, 172.0, 50.0, 2000.0))
     for share, factor in factors.items():
-        assert drive.efficiency(SPEED, share * 172.0) / full == pytest.approx(factor, abs=READ)
+        assert drive.efficiency(QUOTED_SPEED, share * 172.0) / full == pytest.approx(factor, abs=READ)
     guess = np.interp(0.2, [0.0, 0.5, 1.0], [0.0, factors[0.5], 1.0])
     assert abs(guess - factors[0.2]) > 30.0 * READ
 
@@ -165,7 +174,7 @@ def test_another_reading_of_such_a_curve_is_one_too():
     factors = {share: k for _, share, k in of("M2", "factor")}
     drive = turned(50.0, 96.0, **fixed_by(0.65, 0.65 * factors[0.5], 0.5, 96.0, 50.0, 2000.0))
     for share, factor in factors.items():
-        assert drive.efficiency(SPEED, share * 96.0) / 0.65 == pytest.approx(factor, abs=2.0 * READ)
+        assert drive.efficiency(QUOTED_SPEED, share * 96.0) / 0.65 == pytest.approx(factor, abs=2.0 * READ)
 
 
 @pytest.mark.parametrize(("drive", "rated"), [("ATRIAS", 172.0), ("M2", 96.0)])
@@ -190,7 +199,7 @@ def test_part_load_of_worked_examples_from_the_efficiency_at_rated_torque(drive)
     ((_, _, full),) = of(drive, "efficiency")
     ((_, share, factor),) = of(drive, "factor")
     found = turned(100.0, 40.0, load_loss=0.05, friction_coulomb=(1.0 / full - 1.05) * 0.4)
-    missed = abs(found.efficiency(SPEED, share * 40.0) / full - factor)
+    missed = abs(found.efficiency(QUOTED_SPEED, share * 40.0) / full - factor)
     assert missed < 0.08
     assert missed < 1.0 - factor
 
@@ -199,11 +208,11 @@ def test_part_load_of_worked_examples_from_the_efficiency_at_rated_torque(drive)
 
 
 def made(name, **options):
-    return NEW.run(dict.fromkeys(o.name for o in NEW.options) | {"catalogue": name} | options).file
+    return NEW.make_joint(dict.fromkeys(o.name for o in NEW.options) | {"catalogue": name} | options).file
 
 
 def rows_of(name, **options):
-    return {row.name: row for row in beside(SPRING, made(name, **options))}
+    return {row.name: row for row in compare_with_catalogue(SPRING, made(name, **options))}
 
 
 def test_the_page_has_what_is_published_of_the_drive(tmp_path):
@@ -212,17 +221,17 @@ def test_the_page_has_what_is_published_of_the_drive(tmp_path):
     roles = {name: row.role for name, row in rows.items()}
     turned = ("starting_torque", "running_torque", "efficiency", "back_driving_torque")
     set_by_it = (*turned, "wind-up at T1, 3.9 N m")
-    assert all(roles[name] == SET for name in set_by_it)
-    assert roles["lost_motion"] == PREDICTED
-    assert roles["hysteresis_loss"] == OWN
+    assert all(roles[name] == ROLE_SET for name in set_by_it)
+    assert roles["lost_motion"] == ROLE_PREDICTED
+    assert roles["hysteresis_loss"] == ROLE_INDEPENDENT
     assert all(rows[name].computed == pytest.approx(rows[name].published, rel=1e-6) for name in turned)
-    assert {"lost_motion", "hysteresis_loss"} == {name for name, row in rows.items() if row.bound}
+    assert {"lost_motion", "hysteresis_loss"} == {name for name, row in rows.items() if row.is_upper_limit}
     measured = rows_of("RT1-H-17-100", starting_torque="0.04", back_driving_torque="5")
-    assert measured["starting_torque"].role == measured["back_driving_torque"].role == PREDICTED
+    assert measured["starting_torque"].role == measured["back_driving_torque"].role == ROLE_PREDICTED
     assert not {"starting_torque", "efficiency"} & set(rows_of("CSG-17-100"))
-    assert beside(SPRING, default("harmonic_drive")) == []
+    assert compare_with_catalogue(SPRING, load_default("harmonic_drive")) == []
     warm = made("RT1-H-17-100", temperature="45")
-    assert [*beside(SPRING, warm)] == [*rows.values()]  # catalogues hold at 20 degrees C
+    assert [*compare_with_catalogue(SPRING, warm)] == [*rows.values()]  # catalogues hold at 20 degrees C
     write_joint_report(tmp_path / "drive.html", replace(warm, name="Shoulder"))
     page = (tmp_path / "drive.html").read_text(encoding="utf-8")
     assert "Compared with the catalogue" in page
@@ -256,7 +265,7 @@ def test_printed_numbers_from_those_of_the_other_drives():
     miss = {name: np.log(f.value / p) for name, what, p, f in found if what == "starting torque"}
     assert len(miss) == 6
     assert max(map(abs, miss.values())) < np.log(1.25)
-    logs = {name: np.log(drive.starting) for name, drive in DRIVES.items()}
+    logs = {name: np.log(drive.starting_torque) for name, drive in DRIVES.items()}
     guess = [np.mean([v for o, v in logs.items() if o != name]) - value for name, value in logs.items()]
     assert np.sqrt(np.mean(np.square([*miss.values()]))) < 0.3 * np.sqrt(np.mean(np.square(guess)))
 
@@ -264,16 +273,16 @@ def test_printed_numbers_from_those_of_the_other_drives():
 def test_the_law_is_the_stated_one():
     """Drives that follow it exactly give it back, with no interval."""
     drives = [
-        PrintedFriction(D, R, 2e-6 * D**2.5 * 100.0 / R, None, 0.1, 0.05)
+        PublishedFriction(D, R, 2e-6 * D**2.5 * 100.0 / R, None, 0.1, 0.05)
         for D, R in ((14, 50), (20, 100), (25, 80))
     ]
-    drives += [PrintedFriction(D, 100.0, 2e-6 * D**2.5, 1.5e-5 * D**3, 0.1, 0.05) for D in (17.0, 32.0)]
-    law = scaled(40.0, 50.0, drives)
-    assert law.starting.value == pytest.approx(2.0 * 2e-6 * 40.0**2.5, rel=1e-9)
-    assert law.rise.value == pytest.approx(1.5e-5 * 40.0**3 - 2e-6 * 40.0**2.5, rel=1e-9)
-    assert (law.starting.low, law.rise.high) == (
-        pytest.approx(law.starting.value, rel=1e-9),
-        pytest.approx(law.rise.value, rel=1e-9),
+    drives += [PublishedFriction(D, 100.0, 2e-6 * D**2.5, 1.5e-5 * D**3, 0.1, 0.05) for D in (17.0, 32.0)]
+    law = scale_friction(40.0, 50.0, drives)
+    assert law.starting_torque.value == pytest.approx(2.0 * 2e-6 * 40.0**2.5, rel=1e-9)
+    assert law.viscous_torque.value == pytest.approx(1.5e-5 * 40.0**3 - 2e-6 * 40.0**2.5, rel=1e-9)
+    assert (law.starting_torque.low, law.viscous_torque.high) == (
+        pytest.approx(law.starting_torque.value, rel=1e-9),
+        pytest.approx(law.viscous_torque.value, rel=1e-9),
     )
     assert (law.load_loss.value, law.load_loss_back.value) == (pytest.approx(0.1), pytest.approx(0.05))
 
@@ -281,10 +290,10 @@ def test_the_law_is_the_stated_one():
 @pytest.mark.slow
 def test_every_drive_has_friction_and_says_from_where():
     """The back-driving torque of CSF-17-100 leaves less than nothing for its loss."""
-    for item in catalogue.items():
+    for item in catalogue.list_drives():
         drive = made(item.name)
         for name in ("friction_coulomb", "load_loss", "load_loss_back"):
-            assert drive.flat[name] > 0.0 or item.name == "CSF-17-100"
+            assert drive.values_by_name[name] > 0.0 or item.name == "CSF-17-100"
             number = item.numbers["starting_torque"]
             assert "Harmonic Drive" in drive.sources[name] or "Schaeffler" in drive.sources[name]
         if number.kind == "estimate":
@@ -297,37 +306,37 @@ def test_drag_and_temperature(tmp_path, capsys):
     path = tmp_path / "my.toml"
     words = ["--catalogue", "CSG-25-100", "--motor-drag", "10mN.m", "--temperature", "45"]
     assert cli.main(["new", "harmonic-drive", *words, "--out", str(path)]) == 0
-    out, plain, file = capsys.readouterr().out, made("CSG-25-100"), load(path)
+    out, plain, file = capsys.readouterr().out, made("CSG-25-100"), load_parameter_file(path)
     assert file.values.friction_coulomb == pytest.approx(plain.values.friction_coulomb + 0.01, rel=1e-12)
     assert "with motor drag 0.01 N.m, stated" in file.sources["friction_coulomb"]
-    assert file.start("temperature") == pytest.approx(318.15)
-    at_rest = dry_factor(file.values, 318.15) * file.values.friction_coulomb
+    assert file.start_value("temperature") == pytest.approx(318.15)
+    at_rest = dry_friction_factor(file.values, 318.15) * file.values.friction_coulomb
     assert f"starting_torque    {at_rest:.4g} N.m  at the wave generator, at 45 degrees C" in out
-    found = efficiency(file.values, 318.15)
+    found = rated_efficiency(file.values, 318.15)
     assert f"efficiency         {found:.4g}  at rated torque and 2000 rev/min, at 45 degrees C" in out
-    warm = spring_bench(SPRING, file)
-    assert warm.efficiency(SPEED, file.values.rated_torque) == pytest.approx(found, rel=1e-6)
+    warm = make_python_test_rig(SPRING, file)
+    assert warm.efficiency(QUOTED_SPEED, file.values.rated_torque) == pytest.approx(found, rel=1e-6)
     kelvin = made("CSG-25-100", temperature="318.15K")
     assert kelvin.inputs == file.inputs
     bare = dict.fromkeys(o.name for o in NEW.options) | {"motor_drag": "0.02", "ratio": "100"}
     bare |= {"K1": "4700", "K2": "6100", "K3": "7100", "T1": "2", "T2": "6.9"}
-    assert NEW.run(bare).file.values.friction_coulomb == 0.02
+    assert NEW.make_joint(bare).file.values.friction_coulomb == 0.02
 
 
 def test_uncertainty_takes_the_interval_of_the_source(tmp_path):
     file = made("CSG-25-100", motor_drag="0.01")
-    (found,) = pose(file, {"friction_coulomb": "interval"}, None, 5).uncertain
-    number = catalogue.find("CSG-25-100").numbers["starting_torque"]
+    (found,) = state_problem(file, {"friction_coulomb": "interval"}, None, 5).uncertain
+    number = catalogue.find_drive("CSG-25-100").numbers["starting_torque"]
     assert found.support == pytest.approx([end + 0.01 for end in number.interval], rel=1e-3)
     assert load_again(file, tmp_path).sources == file.sources
     with pytest.raises(ValueError, match="ratio = interval: its source states none"):
-        pose(file, {"ratio": "interval"}, None, 5)
+        state_problem(file, {"ratio": "interval"}, None, 5)
 
 
 def load_again(file, tmp_path):
     path = tmp_path / "again.toml"
-    path.write_text(dump(file), encoding="utf-8")
-    return load(path)
+    path.write_text(format_parameter_file(file), encoding="utf-8")
+    return load_parameter_file(path)
 
 
 # a measured robot

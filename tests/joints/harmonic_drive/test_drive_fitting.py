@@ -15,13 +15,13 @@ from jointfmu_tools.fitting import decay
 from jointfmu_tools.fitting.hysteresis import Oscillator
 from jointfmu_tools.fitting.loop import Backbone
 from jointfmu_tools.joints.harmonic_drive.fit import catalogue, hysteresis, torque_angle
-from jointfmu_tools.joints.harmonic_drive.fit.drive import windup
+from jointfmu_tools.joints.harmonic_drive.fit.drive import wind_up
 from jointfmu_tools.ramps import ramp
 from memory_measurements import save
 
-from jointfmu.joints.harmonic_drive.hysteresis import MEMORY
+from jointfmu.joints.harmonic_drive.hysteresis import HISTORY_LAYOUT
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring, torque_curve
-from jointfmu.parameters import default, dump, load
+from jointfmu.parameters import format_parameter_file, load_default, load_parameter_file
 
 # A catalogue row to the law of its lines, and to the smooth law of the contact pair, down to the FMU
 
@@ -31,7 +31,7 @@ SHIPPED = Path(str(files("jointfmu_models") / "catalogue" / "size_14_ratio_80.to
 
 
 def row(K1, K2, K3, T1, T2, rated=None):
-    return catalogue.Row(K1=K1, K2=K2, K3=K3, T1=T1, T2=T2, rated=rated or T2)
+    return catalogue.CatalogueRow(K1=K1, K2=K2, K3=K3, T1=T1, T2=T2, rated=rated or T2)
 
 
 def options(**values):
@@ -42,7 +42,7 @@ def options(**values):
 def test_angle_of_the_polygon():
     one = row(**SIZE_14)
     expected = [0.0, 1 / 4700, 2 / 4700, 2 / 4700 + 4.9 / 6100, 2 / 4700 + 4.9 / 6100 + 3.1 / 7100]
-    np.testing.assert_allclose(one.angle([0.0, 1.0, 2.0, 6.9, 10.0]), expected, rtol=1e-15)
+    np.testing.assert_allclose(one.wind_up([0.0, 1.0, 2.0, 6.9, 10.0]), expected, rtol=1e-15)
 
 
 @pytest.mark.slow
@@ -61,8 +61,8 @@ def test_angle_of_the_polygon():
 def test_angles_are_kept(one):
     found = catalogue.fit_pair(one)
     kept = np.array([one.T1, one.T2, one.rated])
-    np.testing.assert_allclose(windup(found.parameters.values, kept), one.angle(kept), rtol=0.01)
-    assert found.parameters.values.max_torque == catalogue.MAX_OVER_RATED * one.rated
+    np.testing.assert_allclose(wind_up(found.parameters.values, kept), one.angle(kept), rtol=0.01)
+    assert found.parameters.values.max_torque == catalogue.MAX_TORQUE_RATIO * one.rated
 
 
 @pytest.mark.slow
@@ -73,11 +73,11 @@ def test_shipped_example_is_this_fit(tmp_path, monkeypatch, capsys):
     given = options(**SIZE_14, ratio=100, source=source, law="hu2023", out=out)
     assert cli.main(["fit", "catalogue", *given]) == 0
     assert "not determined" in capsys.readouterr().out  # three angles do not fix three parameters
-    made, shipped = load(out), load(SHIPPED)
+    made, shipped = load_parameter_file(out), load_parameter_file(SHIPPED)
     assert (made.name, made.sources, made.origins) == (shipped.name, shipped.sources, shipped.origins)
     torque = np.linspace(0.1, 27.0, 50)
     # another platform's round-off may end the fit elsewhere along what is not determined
-    np.testing.assert_allclose(windup(made.values, torque), windup(shipped.values, torque), rtol=1e-4)
+    np.testing.assert_allclose(wind_up(made.values, torque), wind_up(shipped.values, torque), rtol=1e-4)
 
 
 @pytest.mark.slow
@@ -85,12 +85,12 @@ def test_fmu_passes_through_the_catalogue(tmp_path):
     from jointfmu_fmu_src.building import build
 
     with here_alone():
-        build(["HarmonicDriveCompliance"], ["fmi2"], load(SHIPPED), tmp_path)
+        build(["HarmonicDriveCompliance"], ["fmi2"], load_parameter_file(SHIPPED), tmp_path)
     path = tmp_path / "fmi2" / "HarmonicDriveCompliance.fmu"
-    columns = ramp.run(path, "tau", 6.9, 0.1, {}).columns
+    columns = ramp.run_ramp(path, "tau", 6.9, 0.1, {}).columns
     for T in (2.0, 6.9):
         i = int(np.argmin(np.abs(columns["tau"] - T)))
-        assert columns["phi_rel"][i] == pytest.approx(row(**SIZE_14).angle(T), rel=0.01)
+        assert columns["phi_rel"][i] == pytest.approx(row(**SIZE_14).wind_up(T), rel=0.01)
 
 
 @pytest.mark.slow
@@ -108,10 +108,10 @@ def test_a_row_beyond_the_law_is_said(capsys):
 @pytest.mark.slow
 def test_the_lines_stay_where_no_smooth_law_keeps_them():
     one = row(24000, 30000, 49000, 29, 108, rated=151.2)
-    found = catalogue.fit_lines(one)
+    found = catalogue.make_line_drive_from_row(one)
     assert "keeps the angle of K1 = 24000" in found.notes[0]
     assert "pair_angle_error" not in found.facts
-    assert windup(found.parameters.values, np.array(151.2)) == pytest.approx(one.angle(151.2), rel=1e-12)
+    assert wind_up(found.parameters.values, np.array(151.2)) == pytest.approx(one.wind_up(151.2), rel=1e-12)
 
 
 @pytest.mark.slow
@@ -122,7 +122,7 @@ def test_the_default_keeps_the_lines_and_tells_what_the_pair_makes_of_them(tmp_p
     given += ["--stiffness-unit", "1e4 Nm/rad", "--rated-torque", "31", "--json"]
     assert cli.main(["fit", "catalogue", *given]) == 0
     document = json.loads(capsys.readouterr().out)
-    file = load(out)
+    file = load_parameter_file(out)
     assert file.law == "catalogue"
     assert {name: document["parameters"][name] for name in ("K1", "K2", "K3", "T1", "T2")} == {
         "K1": 1e4, "K2": 1.4e4, "K3": 1.6e4, "T1": 3.9, "T2": 12.0,
@@ -149,7 +149,7 @@ def test_json(capsys):
     assert cli.main(["fit", "catalogue", *options(**SIZE_14, law="hu2023"), "--json"]) == 0
     document = json.loads(capsys.readouterr().out)
     assert abs(document["facts"]["angle_error_T2"]["value"]) < 0.01
-    assert {row["name"] for row in document["unknowns"]} == set(catalogue.FREE)
+    assert {row["name"] for row in document["unknowns"]} == set(catalogue.FITTED_PARAMETERS)
 
 
 IN_1E4 = {"K1": 1.0, "K2": 1.4, "K3": 1.6, "T1": 3.9, "T2": 12, "rated-torque": 12}
@@ -184,16 +184,19 @@ ARCMIN = measurements.ARCMIN
 
 def test_law_is_the_exported_one():
     drive = measurements.file("harmonic_drive", measurements.DRIVE).values
-    spring, law = HarmonicDriveSpring.of(drive), hysteresis.law(drive)
+    spring, law = HarmonicDriveSpring.tabulate(drive), hysteresis.make_law(drive)
     for u in (1e-6, 1e-4, 2e-3):
-        moved = float(spring.hysteresis.moved(MEMORY.rest(), u).traction)
+        moved = float(spring.hysteresis.advance(HISTORY_LAYOUT.virgin_history(), u).traction)
         assert law.friction(np.array([u]))[0] == pytest.approx(moved, rel=1e-12)
         assert law.elastic.force(np.array([-u]))[0] == -spring.curve.derivatives(u, 0)[0]
 
 
 def test_energies_are_the_integrals_of_the_torques():
     law, u = measurements.drive_law(), np.linspace(0.0, 2e-3, 20001)
-    for torque, energy in ((law.friction(u), law.work(u)), (law.elastic.force(u), law.elastic.energy(u))):
+    for torque, energy in (
+        (law.friction(u), law.friction_work(u)),
+        (law.elastic.force(u), law.elastic.energy(u)),
+    ):
         whole = np.concatenate([[0.0], np.cumsum(0.5 * (torque[1:] + torque[:-1])) * u[1]])
         np.testing.assert_allclose(energy[1000:], whole[1000:], rtol=1e-6)  # trapezoids
 
@@ -201,19 +204,21 @@ def test_energies_are_the_integrals_of_the_torques():
 def test_branches_are_as_far_apart_as_stated():
     """After rated torque, without torque: hysteresis_loss."""
     drive = measurements.file("harmonic_drive", measurements.DRIVE).values
-    law = hysteresis.law(drive)
+    law = hysteresis.make_law(drive)
     u = np.linspace(0.0, 3e-3, 30001)
     top = np.interp(drive.rated_torque, law.friction(u) + law.elastic.force(u), u)
     down = np.linspace(top, -top, 40001)
-    torque = drive.rated_torque + law.change(down, np.full(down.size, top))
+    torque = drive.rated_torque + law.force_change(down, np.full(down.size, top))
     assert 2.0 * np.interp(0.0, torque[::-1], down[::-1]) == pytest.approx(drive.hysteresis_loss, rel=1e-4)
 
 
 @pytest.mark.slow
 def test_free_vibration_agrees_with_integration_in_time():
     """Velocity Verlet, 1e-5 with 500 steps a period; the windows miss what their own spreads say."""
-    found = decay.points(*measurements.drive_decay())
-    frequency, damping = Oscillator(measurements.drive_law(), measurements.INERTIA).free(found.amplitude)
+    found = decay.analyse_decay(*measurements.drive_decay())
+    frequency, damping = Oscillator(measurements.drive_law(), measurements.INERTIA).free_vibration(
+        found.amplitude
+    )
     assert np.all(np.abs(found.frequency / frequency - 1.0) < found.frequency_spread + 2e-4)
     assert np.all(np.abs(found.damping / damping - 1.0) < found.damping_spread / damping + 1e-2)
 
@@ -240,18 +245,18 @@ def test_the_command_writes_the_hysteresis(tmp_path, capsys):
     assert document["facts"]["offset"]["value"] == pytest.approx(np.radians(0.5), abs=1e-5)
     assert document["joint"] == "harmonic_drive"
     assert {row["name"] for row in document["unknowns"]} == set(measurements.DRIVE)
-    values = load(out, "harmonic_drive").values
+    values = load_parameter_file(out, "harmonic_drive").values
     assert values.hysteresis_loss == pytest.approx(measurements.DRIVE["hysteresis_loss"], rel=0.02)
-    assert values.K_FTS0 == default("harmonic_drive").values.K_FTS0
+    assert values.K_FTS0 == load_default("harmonic_drive").values.K_FTS0
 
 
 @pytest.mark.slow
 def test_mid_line_and_hysteresis_at_once(tmp_path):
     true = {**measurements.DRIVE, "drive_scale": 4.3}
-    law = hysteresis.law(measurements.file("harmonic_drive", true).values)
+    law = hysteresis.make_law(measurements.file("harmonic_drive", true).values)
     run, angle, torque = measurements.loops(law, measurements.TURNS, np.random.default_rng(1))
     path = save(tmp_path / "loops.csv", "run [1], angle [rad], torque [N.m]", (run, angle, torque))
-    found = hysteresis.fit(path, free=[*hysteresis.FREE, "drive_scale"]).solution
+    found = hysteresis.fit(path, fitted_names=[*hysteresis.FITTED_PARAMETERS, "drive_scale"]).solution
     for name, deviation in found.deviations.items():
         assert abs(np.log(found.values[name] / true[name])) < 3.0 * deviation, name
 
@@ -277,14 +282,14 @@ def test_a_table_is_the_mid_line(loops, tmp_path):
     out, picture = tmp_path / "drive.toml", tmp_path / "fit.svg"
     given = ["--law", "table", "--out", str(out), "--plot", str(picture)]
     assert cli.main(["fit", "torque-angle", str(loops), *given]) == 0
-    file = load(out)
+    file = load_parameter_file(out)
     assert file.law == "table"
     assert picture.stat().st_size > 0
     assert file.origins["table.torque"] == "calibration"
     fitted = torque_angle.fit(loops).parameters.values  # by the law that made the record
     torque = np.linspace(1.0, 24.0, 100)
     # the noise of a sample is 0.03 arcmin; a point of the table is the mean of some thirty
-    np.testing.assert_allclose(windup(file.values, torque), windup(fitted, torque), atol=0.05 * ARCMIN)
+    np.testing.assert_allclose(wind_up(file.values, torque), wind_up(fitted, torque), atol=0.05 * ARCMIN)
     assert np.all(torque_curve(file.values).stiffness > 0.0)
 
 
@@ -292,25 +297,25 @@ def test_a_table_is_the_mid_line(loops, tmp_path):
 def test_points_fold_both_directions_and_take_the_offset_off():
     T = np.linspace(-10.0, 10.0, 201)
     line = Backbone(T, T / 5e3 + np.sign(T) * 1e-5 * T**2 + 0.3, np.ones(T.size), 2, None, None, None)
-    torque, angle, shift = torque_angle.points(line)
+    torque, angle, shift = torque_angle.table_points(line)
     assert shift == pytest.approx(0.3, abs=1e-12)
     np.testing.assert_allclose(angle, torque / 5e3 + 1e-5 * torque**2, rtol=0.02)  # means over bins
     with pytest.raises(ValueError, match="needs it to pass zero"):
-        torque_angle.points(Backbone(T + 15.0, T, np.ones(T.size), 2, None, None, None))
+        torque_angle.table_points(Backbone(T + 15.0, T, np.ones(T.size), 2, None, None, None))
 
 
 @pytest.mark.slow
 def test_the_stiffnesses_of_lines_are_found(tmp_path):
     """A record of a catalogue drive from another row; the 41 knots of a mid-line round its corners."""
-    start = default("harmonic_drive", "catalogue")
+    start = load_default("harmonic_drive", "catalogue")
     truth = start.with_values({"K1": 4000.0, "K2": 7000.0, "K3": 7500.0}, "user", "test")
     T = np.concatenate([np.linspace(0, 25, 120), np.linspace(25, -25, 240), np.linspace(-25, 0, 120)])
     noise = 1e-6 * np.random.default_rng(0).standard_normal(T.size)
-    path = trips.save(tmp_path / "c.csv", "torque [N.m], angle [rad]", T, windup(truth.values, T) + noise)
+    path = trips.save(tmp_path / "c.csv", "torque [N.m], angle [rad]", T, wind_up(truth.values, T) + noise)
     found = torque_angle.fit(path, start)
     assert found.parameters.law == "catalogue"
     for name, value in {"K1": 4000.0, "K2": 7000.0, "K3": 7500.0}.items():
-        assert found.parameters.flat[name] == pytest.approx(value, rel=0.02)
+        assert found.parameters.values_by_name[name] == pytest.approx(value, rel=0.02)
 
 
 @pytest.mark.slow
@@ -328,8 +333,8 @@ def test_what_has_nothing_to_fit_is_refused(loops, tmp_path, capsys):
 @pytest.mark.parametrize("law", ["catalogue", "table"])
 def test_exported_tables_keep_to_the_midline(law, tmp_path, capsys):
     path, out = tmp_path / "curve.csv", tmp_path / "drive.toml"
-    file = default("harmonic_drive", law)
-    out.write_text(dump(file), encoding="utf-8")
+    file = load_default("harmonic_drive", law)
+    out.write_text(format_parameter_file(file), encoding="utf-8")
     assert cli.main(["export", "csv", "curve", "--params", str(out), "--out", str(path)]) == 0
     capsys.readouterr()
     lines = [line for line in path.read_text().splitlines() if not line.startswith("#")]
@@ -344,11 +349,11 @@ def test_exported_tables_keep_to_the_midline(law, tmp_path, capsys):
 @pytest.mark.parametrize("law", ["catalogue", "table"])
 def test_the_modelica_record_is_the_midline(law):
     from jointfmu_tools.joints.harmonic_drive.modelica import COMPONENT
-    from jointfmu_tools.modelica.records import curve_of
+    from jointfmu_tools.modelica.records import to_curve
 
-    file = default("harmonic_drive", law)
+    file = load_default("harmonic_drive", law)
     (record,) = COMPONENT.records(file, [()])
-    exact, made = torque_curve(file.values), curve_of(record.table)
+    exact, made = torque_curve(file.values), to_curve(record.table)
     x = np.linspace(0.0, 1.2 * exact.end[0], 500)
     for a, b in zip(made.derivatives(x, 1), exact.derivatives(x, 1), strict=True):
         np.testing.assert_allclose(a, b, rtol=1e-7, atol=1e-12)

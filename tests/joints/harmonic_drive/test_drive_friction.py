@@ -10,10 +10,17 @@ import pytest
 from conftest import Fmu
 from natives import close
 
-from jointfmu.joints.harmonic_drive.friction import MEMORY, REFERENCE, SPRINGS, Friction, limits, viscous
-from jointfmu.joints.harmonic_drive.spring import MEMORY as STATES
+from jointfmu.joints.harmonic_drive.friction import (
+    HISTORY_LAYOUT,
+    REFERENCE_TEMPERATURE,
+    STIFFNESS_SHARES,
+    FrictionSliders,
+    friction_limits,
+    viscous_torque,
+)
+from jointfmu.joints.harmonic_drive.spring import HISTORY_LAYOUT as STATES
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
-from jointfmu.parameters import default
+from jointfmu.parameters import load_default
 
 DRY = {"friction_coulomb": 0.03, "friction_stribeck": 0.02, "load_loss": 0.15}
 PRESLIDING = 0.01
@@ -22,7 +29,7 @@ ROUND_OFF = 1e-12
 
 
 def spring(**changes):
-    return HarmonicDriveSpring.of(replace(default("harmonic_drive").values, **changes))
+    return HarmonicDriveSpring.tabulate(replace(load_default("harmonic_drive").values, **changes))
 
 
 def started(law, *motion):
@@ -45,7 +52,9 @@ def turning(law, speed, tau=0.0):
 
 def test_friction_builds_up_as_that_of_dahl():
     law, phi1 = spring(friction_coulomb=0.05), np.linspace(0.0, 6.0 * PRESLIDING, 101)
-    found = law.driven((phi1, 0.0, phi1 / 100.0, 0.0), started(law, 0.0, 0.0, 0.0, 0.0))[0]["tau_friction"]
+    found = law.advance_motion((phi1, 0.0, phi1 / 100.0, 0.0), started(law, 0.0, 0.0, 0.0, 0.0))[0][
+        "tau_friction"
+    ]
     dahl = 0.05 * (1.0 - np.exp(-phi1 / PRESLIDING))
     assert np.max(np.abs(found - dahl)) < 0.01 * 0.05  # as `friction.BRAKES` says
     assert found[-1] == pytest.approx(0.05, rel=ROUND_OFF)
@@ -63,7 +72,7 @@ def test_steady_friction_is_that_of_speed_and_load(speed, tau, ratio):
 
 def test_without_friction_nothing_acts_and_nothing_is_remembered():
     law = spring()
-    out, memory = law.driven((3.0, 100.0, 0.0305, 1.0), law.rest())
+    out, memory = law.advance_motion((3.0, 100.0, 0.0305, 1.0), law.initial_history())
     assert float(out["tau_friction"]) == 0.0
     assert not np.any(memory[-12:])
     assert float(out["tau1"]) == float(out["tau"]) / 100.0
@@ -73,11 +82,11 @@ def test_a_drive_begins_where_it_is():
     """Far from zero at rest without friction, turning with that of its speed; no heat yet."""
     law = spring(**DRY)
     for speed, share in ((0.0, 0.0), (2.0, 1.0), (-2.0, -1.0)):
-        out, memory = law.driven((500.0, speed, 5.0, speed / 100.0), law.rest())
-        most = float(limits(law.joint, speed, 0.0)[0])
+        out, memory = law.advance_motion((500.0, speed, 5.0, speed / 100.0), law.initial_history())
+        most = float(friction_limits(law.joint, speed, 0.0)[0])
         assert float(out["tau_friction"]) == pytest.approx(share * most, rel=ROUND_OFF)
         assert float(out["E_loss"]) == 0.0
-        after = law.driven((500.0, speed, 5.0, speed / 100.0), memory)[0]
+        after = law.advance_motion((500.0, speed, 5.0, speed / 100.0), memory)[0]
         assert float(after["tau_friction"]) == pytest.approx(share * most, rel=ROUND_OFF)
 
 
@@ -86,19 +95,21 @@ def test_a_drive_begins_where_it_is():
 
 def test_work_of_a_straight_path_is_exact_while_the_limit_changes():
     """One step against very many, of which each is nearly a trapezium."""
-    brake, rng = Friction(5.0 * SPRINGS), np.random.default_rng(4)
-    memory = brake.after(brake.moved(MEMORY.rest(), 0.0, 0.0, (0.05, 0.08)), 0.0, (0.05, 0.08))
+    brake, rng = FrictionSliders(5.0 * STIFFNESS_SHARES), np.random.default_rng(4)
+    memory = brake.pack_history(
+        brake.advance(HISTORY_LAYOUT.virgin_history(), 0.0, 0.0, (0.05, 0.08)), 0.0, (0.05, 0.08)
+    )
     for _ in range(5):
         before = memory
         phi, most = before[-4] + rng.normal(0.0, 0.02), rng.uniform(0.0, 0.1, 2)
-        once = brake.moved(before, phi, 0.0, most)
+        once = brake.advance(before, phi, 0.0, most)
         steps, work, loss = 1000, 0.0, 0.0
         for part in np.linspace(0.0, 1.0, steps + 1)[1:]:
             at = before[-4] + part * (phi - before[-4]), before[-3:-1] + part * (most - before[-3:-1])
-            few = brake.moved(memory, at[0], 0.0, at[1])
+            few = brake.advance(memory, at[0], 0.0, at[1])
             work += 0.5 * (np.sum(memory[:-4]) + float(few.traction)) * (at[0] - memory[-4])
             loss += float(few.loss)
-            memory = brake.after(few, *at)
+            memory = brake.pack_history(few, *at)
         stored = [float(np.sum(m[:-4] ** 2 / (2.0 * brake.stiffness))) for m in (before, memory)]
         assert once.force == pytest.approx(memory[:-4], abs=ROUND_OFF)
         assert float(once.loss) == pytest.approx(loss, rel=1e-9, abs=ROUND_OFF)
@@ -115,7 +126,7 @@ def test_no_path_gives_energy_back_from_heat():
     for _ in range(500):
         phi1 = rng.normal(0.0, 0.05)
         motion = (phi1, rng.normal(0.0, 20.0), phi1 / 100.0 + rng.normal(0.0, 8e-4), rng.normal())
-        out, memory = law.driven(motion, memory)
+        out, memory = law.advance_motion(motion, memory)
         assert float(out["E_loss"]) >= previous
         previous = float(out["E_loss"])
 
@@ -130,19 +141,21 @@ def test_the_load_costs_its_share_by_who_drives(ratio):
             # torque of the spring that turns the wave generator with or against its motion
             tau = math.copysign(T, ratio) * sense * (-1.0 if drives else 1.0)
             wound = math.copysign(float(law.curve.inverse(T)), tau)
-            _, memory = law.driven((0.0, 0.0, wound, 0.0), law.rest())
+            _, memory = law.advance_motion((0.0, 0.0, wound, 0.0), law.initial_history())
             far = sense * 40.0 * PRESLIDING
-            out, _ = law.driven((far, 0.0, far / ratio + wound, 0.0), memory)
+            out, _ = law.advance_motion((far, 0.0, far / ratio + wound, 0.0), memory)
             assert float(out["tau_friction"]) == pytest.approx(sense * (start + share * T / 100.0), rel=1e-9)
 
 
 def test_one_share_is_both_unless_another_is_stated():
     one, both = (spring(**DRY | {"load_loss_back": back}) for back in (-1.0, DRY["load_loss"]))
-    rng, memories = np.random.default_rng(1), [law.rest() for law in (one, both)]
+    rng, memories = np.random.default_rng(1), [law.initial_history() for law in (one, both)]
     for _ in range(50):
         phi1 = rng.normal(0.0, 0.05)
         motion = (phi1, rng.normal(0.0, 20.0), phi1 / 100.0 + rng.normal(0.0, 8e-4), rng.normal())
-        found = [law.driven(motion, memory) for law, memory in zip((one, both), memories, strict=True)]
+        found = [
+            law.advance_motion(motion, memory) for law, memory in zip((one, both), memories, strict=True)
+        ]
         memories = [memory for _, memory in found]
         assert all(float(found[0][0][name]) == float(found[1][0][name]) for name in found[0][0])
 
@@ -202,10 +215,12 @@ OILS = list(
 
 def test_each_part_follows_its_own_exponential():
     drive = spring(**ALL, temperature_factor=1.3).joint
-    for kelvin in (253.15, REFERENCE, 353.15):
-        wet, dry = (math.exp(-c * (kelvin - REFERENCE)) for c in THINNING.values())
-        assert float(viscous(drive, 5.0, kelvin)) == pytest.approx(1.3 * wet * 2e-4 * 5.0, rel=1e-14)
-        for side, reference in zip(limits(drive, 5.0, 2.0, kelvin), limits(drive, 5.0, 2.0), strict=True):
+    for kelvin in (253.15, REFERENCE_TEMPERATURE, 353.15):
+        wet, dry = (math.exp(-c * (kelvin - REFERENCE_TEMPERATURE)) for c in THINNING.values())
+        assert float(viscous_torque(drive, 5.0, kelvin)) == pytest.approx(1.3 * wet * 2e-4 * 5.0, rel=1e-14)
+        for side, reference in zip(
+            friction_limits(drive, 5.0, 2.0, kelvin), friction_limits(drive, 5.0, 2.0), strict=True
+        ):
             assert float(side) == pytest.approx(dry * float(reference), rel=1e-14)
 
 
@@ -215,7 +230,7 @@ def test_the_default_coefficient_is_that_of_a_light_machine_oil():
         row["oil"]: 2.0 / 3.0 * math.log(float(row["T30_mPas"]) / float(row["T100_mPas"])) / 70.0
         for row in OILS
     }
-    own = default("harmonic_drive").values.viscous_temperature_coefficient
+    own = load_default("harmonic_drive").values.viscous_temperature_coefficient
     assert own == round(found["light machine oil"], 3)
     assert (round(min(found.values()), 3), round(max(found.values()), 3)) == (0.02, 0.042)
 
@@ -253,18 +268,18 @@ def test_random_trajectories_make_heat_only_and_all_work_is_accounted_for(ratio,
     t = np.linspace(0.0, 2.0, STEPS)
     phi1, w1 = smooth(rng, 0.6, t)
     wound, rise = smooth(rng, 1.2e-3, t)
-    warmth = REFERENCE + smooth(rng, 40.0, t)[0]
+    warmth = REFERENCE_TEMPERATURE + smooth(rng, 40.0, t)[0]
     phi2, w2 = phi1 / ratio + wound, w1 / ratio + rise
-    memory = np.broadcast_to(law.rest(), (RUNS, law.rest().size))
+    memory = np.broadcast_to(law.initial_history(), (RUNS, law.initial_history().size))
     first = []
     work, wet, through, before, lost = np.zeros(RUNS), np.zeros(RUNS), np.zeros(RUNS), None, np.zeros(RUNS)
     for k in range(STEPS):
-        out, memory = law.driven((phi1[k], w1[k], phi2[k], w2[k]), memory, warmth[k])
+        out, memory = law.advance_motion((phi1[k], w1[k], phi2[k], w2[k]), memory, warmth[k])
         assert np.all(out["E_loss"] >= lost)
         lost = out["E_loss"]
         first.append({name: float(np.broadcast_to(x, RUNS)[0]) for name, x in out.items()})
         slope = (out["tau1"] + out["tau_friction"]) / out["tau"] if k else 0.0
-        damped = 0.3 * (w2[k] - w1[k] * slope) ** 2 + w1[k] * viscous(law.joint, w1[k], warmth[k])
+        damped = 0.3 * (w2[k] - w1[k] * slope) ** 2 + w1[k] * viscous_torque(law.joint, w1[k], warmth[k])
         torques = np.stack([out["tau1"], out["tau2"]])
         places = np.stack([phi1[k], phi2[k]])
         if before is None:
@@ -286,4 +301,4 @@ def test_random_trajectories_make_heat_only_and_all_work_is_accounted_for(ratio,
         for row, expected in zip(rows, first, strict=True):
             assert drive.at(row) == close(expected)
             drive.step()
-        drive.free()
+        drive.free_instance()

@@ -11,17 +11,23 @@ import numpy as np
 import pytest
 from jointfmu_fmu_src.partners.laws import GRAVITY
 from jointfmu_tools.modelica import library
-from jointfmu_tools.modelica.records import identifier
+from jointfmu_tools.modelica.records import make_identifier
 from jointfmu_tools.systems.master import Slave
 from numpy.typing import NDArray
 from read_modelica import Read, read, solution
 from test_modelica import COMMITTED, EXACT, STAND_IN, move, simulate, top
 
 from jointfmu.joints.harmonic_drive.drive import Drive
-from jointfmu.joints.harmonic_drive.friction import BRAKES, LIMITS, REFERENCE, limits, viscous
+from jointfmu.joints.harmonic_drive.friction import (
+    FRICTION_SLIDERS,
+    LIMIT_SHARES,
+    REFERENCE_TEMPERATURE,
+    friction_limits,
+    viscous_torque,
+)
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
-from jointfmu.parameters import default
-from jointfmu.quantity import changed
+from jointfmu.parameters import load_default
+from jointfmu.quantity import replace_values
 
 pytestmark = pytest.mark.slow
 
@@ -50,7 +56,7 @@ def rumoca() -> Any:
 
 
 def spring(**changes: float) -> HarmonicDriveSpring:
-    return HarmonicDriveSpring.of(replace(default("harmonic_drive").values, **changes))
+    return HarmonicDriveSpring.tabulate(replace(load_default("harmonic_drive").values, **changes))
 
 
 def parameters(law: HarmonicDriveSpring, names: Mapping[str, float]) -> dict[str, float]:
@@ -75,9 +81,9 @@ def once(found: Any, *names: str) -> tuple[Array, ...]:
 
 def follow(law: HarmonicDriveSpring, motion: Callable[[float], tuple[float, ...]], times: Array) -> Array:
     """tau1, tau2, tau_friction and E_loss (4, n) of the package along a motion, in small steps."""
-    memory, rows = law.rest(), []
+    memory, rows = law.initial_history(), []
     for time in times:
-        out, memory = law.driven(motion(time), memory)
+        out, memory = law.advance_motion(motion(time), memory)
         rows.append([float(out[name]) for name in ("tau1", "tau2", "tau_friction", "E_loss")])
     return np.array(rows).T
 
@@ -86,7 +92,7 @@ def follow(law: HarmonicDriveSpring, motion: Callable[[float], tuple[float, ...]
 
 
 def test_a_record_has_the_packages_defaults():
-    base = (COMMITTED / library.NAME / "Data/HarmonicDrive.mo").read_text(encoding="utf-8")
+    base = (COMMITTED / library.LIBRARY_NAME / "Data/HarmonicDrive.mo").read_text(encoding="utf-8")
     own = {f.name: f.default for f in fields(Drive) if f.default is not MISSING}
     found = {
         name: float(value)
@@ -151,7 +157,7 @@ def test_a_drive_begins_where_it_is(rumoca: Any, speed: float):
         move("Rotational", "phi"),
     )
     found = simulate(rumoca, text, 1e-3, 1e-4)
-    exact = law.motion(500.0, speed, 5.0005, speed / 100.0)["tau_friction"]
+    exact = law.evaluate_motion(500.0, speed, 5.0005, speed / 100.0)["tau_friction"]
     assert found["drive.tau_friction"][0] == pytest.approx(exact, rel=EXACT, abs=1e-12)
 
 
@@ -163,7 +169,7 @@ def test_the_text_read_by_another_parser_holds_along_the_solution(rumoca: Any):
     wires = "connect(way.one, drive.flange_a);\n  connect(way.two, drive.flange_b);"
     found = simulate(rumoca, top(body, wires, _WAY), 0.6, 1e-4, rtol=1e-8)
     times, first = np.unique(found.time, return_index=True)
-    root, record = read(STAND_IN, COMMITTED), identifier(default("harmonic_drive").name)
+    root, record = read(STAND_IN, COMMITTED), make_identifier(load_default("harmonic_drive").name)
     seen = solution(found, "drive", first)
 
     def errors(more: float) -> dict[str, float]:
@@ -273,7 +279,7 @@ def test_a_coasting_motor_goes_as_far_as_its_energy_lasts(rumoca: Any):
     assert w[before] == pytest.approx(speed - friction / J * times[before], abs=1e-4 * speed)
     assert phi[-1] == pytest.approx(ends, abs=3.0 * PRESLIDING)
     # the sliders of a drive that turns have stored energy, and keep some of it when it stands
-    stored = np.sum((friction * LIMITS) ** 2 / (2.0 * law.friction.stiffness))
+    stored = np.sum((friction * LIMIT_SHARES) ** 2 / (2.0 * law.friction.stiffness))
     assert 0.0 < loss[-1] - 0.5 * J * speed**2 < stored
     assert np.abs(w[times > 0.25]).max() < 0.05 * speed
 
@@ -281,7 +287,7 @@ def test_a_coasting_motor_goes_as_far_as_its_energy_lasts(rumoca: Any):
 def test_a_drive_holds_a_shaken_load_without_drift(rumoca: Any):
     """Half of the limit at the output, shaken by a fifth of it, over 100 periods; the motor is off."""
     law = spring(friction_coulomb=0.03)
-    most = 100.0 * float(limits(law.joint, 0.0, 0.0)[0])
+    most = 100.0 * float(friction_limits(law.joint, 0.0, 0.0)[0])
     body = "\n  ".join(
         [
             component(law, {"friction_coulomb": 0.03}),
@@ -345,12 +351,12 @@ def test_the_kinematic_error_makes_a_ripple_that_resonates_at_half_the_natural_f
 def test_a_drive_of_any_law_gives_the_torque_of_the_package(
     rumoca: Any, tmp_path: Path, law: str, more: dict[str, float]
 ):
-    file = default("harmonic_drive", law)
-    file = replace(file, values=changed(file.values, more)) if more else file
-    library.write(tmp_path, file)
-    drive = HarmonicDriveSpring.of(file.values)
+    file = load_default("harmonic_drive", law)
+    file = replace(file, values=replace_values(file.values, more)) if more else file
+    library.write_library(tmp_path, file)
+    drive = HarmonicDriveSpring.tabulate(file.values)
     reach = 1.2 * drive.curve.end[0]
-    record = identifier(file.name)
+    record = make_identifier(file.name)
     text = top(
         f"JointStiffness.Components.HarmonicDriveSpring drive(data=JointStiffness.Data.{record}(), d=0);\n"
         f"  Move motor;\n  Move load(at={-reach!r}, rate={2.0 * reach!r});",
@@ -364,14 +370,16 @@ def test_a_drive_of_any_law_gives_the_torque_of_the_package(
 
 
 def test_the_component_has_the_packages_sliders():
-    text = (COMMITTED / library.NAME / "Components/HarmonicDriveSpring.mo").read_text(encoding="utf-8")
+    text = (COMMITTED / library.LIBRARY_NAME / "Components/HarmonicDriveSpring.mo").read_text(
+        encoding="utf-8"
+    )
     rows = re.search(r"brakes\[:, 2\]=\[(.*?)\]", text, re.DOTALL)
     assert rows
     shares = np.array([[float(x) for x in row.split(",")] for row in rows[1].split(";")])
-    assert shares.shape == (BRAKES, 2)
+    assert shares.shape == (FRICTION_SLIDERS, 2)
     # as Dahl's law at the places between which each slider gives way
     assert np.cumsum(shares[::-1, 0])[::-1] == pytest.approx(
-        (np.arange(BRAKES, 0, -1) / BRAKES) ** 2, rel=1e-9
+        (np.arange(FRICTION_SLIDERS, 0, -1) / FRICTION_SLIDERS) ** 2, rel=1e-9
     )
     assert shares.sum(axis=0) == pytest.approx([1.0, 1.0], rel=1e-9)
 
@@ -389,7 +397,7 @@ CAPACITY = 2.0
 _BODY = f"""
 model Body
   Modelica.Thermal.HeatTransfer.Interfaces.HeatPort_a port;
-  Real T(start={REFERENCE!r}, fixed=true, nominal=300);
+  Real T(start={REFERENCE_TEMPERATURE!r}, fixed=true, nominal=300);
 equation
   port.T = T;
   {CAPACITY!r}*der(T) = port.Q_flow;
@@ -405,9 +413,9 @@ def test_at_a_temperature_the_component_is_the_package(rumoca):
         _WAY + _BODY,
     )
     times, friction = once(simulate(rumoca, text, 1.0, 2e-3, rtol=1e-8), "drive.tau_friction")
-    fine, memory, exact = np.linspace(0.0, 1.0, 4001), law.rest(), []
+    fine, memory, exact = np.linspace(0.0, 1.0, 4001), law.initial_history(), []
     for time in fine:
-        out, memory = law.driven(way(100.0, time), memory, 263.15)
+        out, memory = law.advance_motion(way(100.0, time), memory, 263.15)
         exact.append(float(out["tau_friction"]))
     expected = np.interp(times, fine, exact)
     # of the solver, and of the package's steps, as without a temperature
@@ -442,15 +450,15 @@ def test_all_losses_go_out_at_the_heat_port(rumoca):
             stored = stored + q**2 / (2.0 * K)
     assert np.all(np.diff(lost) >= 0.0)
     assert work == pytest.approx(stored - stored[0] + lost, abs=1e-5 * np.sum(np.abs(np.diff(work))))
-    assert CAPACITY * (warmth - REFERENCE) == pytest.approx(lost, abs=1e-6 * lost[-1])
-    memory, wet = law.rest(), 0.0
+    assert CAPACITY * (warmth - REFERENCE_TEMPERATURE) == pytest.approx(lost, abs=1e-6 * lost[-1])
+    memory, wet = law.initial_history(), 0.0
     fine = np.linspace(0.0, stop, 5501)
     for time, kelvin in zip(fine, np.interp(fine, times, warmth), strict=True):
         motion = way(ratio, time)
-        out, memory = law.driven(motion, memory, kelvin)
+        out, memory = law.advance_motion(motion, memory, kelvin)
         rise = motion[3] - motion[1] / ratio
-        damped = law.joint.d * rise**2 + float(viscous(law.joint, motion[1], kelvin)) * motion[1]
+        damped = law.joint.d * rise**2 + float(viscous_torque(law.joint, motion[1], kelvin)) * motion[1]
         wet += damped * (fine[1] - fine[0])
-    assert not math.isclose(warmth[-1], REFERENCE)
+    assert not math.isclose(warmth[-1], REFERENCE_TEMPERATURE)
     # the layer of the component's sliders, as above
     assert lost[-1] == pytest.approx(wet + float(out["E_loss"]), rel=1e-3)

@@ -21,13 +21,13 @@ from scipy.integrate import quad
 from scipy.sparse.linalg import splu
 
 from jointfmu.contact.interface import at_pressure
-from jointfmu.mechanics.curve import approach_curve
-from jointfmu.parameters import default
+from jointfmu.mechanics.curve import tabulate_approach
+from jointfmu.parameters import load_default
 
 pytestmark = pytest.mark.slow
 
-DRIVE = default("harmonic_drive").values
-CURVE = approach_curve(DRIVE.law)
+DRIVE = load_default("harmonic_drive").values
+CURVE = tabulate_approach(DRIVE.law)
 COARSE = replace(SIZE_14, elements_per_ball=6)
 R, T, W = 0.017, 0.5e-3, 2e-4
 RING = Ring.of(2.09e11, 0.295, T)

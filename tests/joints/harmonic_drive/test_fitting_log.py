@@ -15,8 +15,8 @@ from jointfmu_tools.joints.harmonic_drive.new import NEW
 from log_round_trips import CASES, TRUE, trip
 from matplotlib.figure import Figure
 
-from jointfmu.joints.harmonic_drive.friction import limits, viscous
-from jointfmu.parameters import dump, load
+from jointfmu.joints.harmonic_drive.friction import friction_limits, viscous_torque
+from jointfmu.parameters import format_parameter_file, load_parameter_file
 
 TABLE = files("jointfmu_models") / "reference" / "ur5e_base_joint_friction.csv"
 NAMES = ["dq=joint_speed_rad_per_s [rad/s]", "tau=motor_torque_Nm [N.m]"]
@@ -28,7 +28,7 @@ def drive(tmp_path):
     """A parameter file of a drive like the robot's."""
     given = dict.fromkeys(o.name for o in NEW.options) | {"catalogue": "CSG-25-100", "fixed": "flexspline"}
     path = tmp_path / "drive.toml"
-    path.write_text(dump(NEW.run(given).file), encoding="utf-8")
+    path.write_text(format_parameter_file(NEW.make_joint(given).file), encoding="utf-8")
     return path
 
 
@@ -80,7 +80,7 @@ def test_an_arm_that_swings_gives_its_friction_back(monkeypatch):
         "temperature",
         "torque at the joint",
     ]
-    assert {*hysteresis.OWN} < {*found.solution.values}
+    assert {*hysteresis.LOG_PARAMETERS} < {*found.solution.values}
 
 
 def test_a_load_that_is_measured_gives_the_losses(tmp_path):
@@ -91,17 +91,17 @@ def test_a_load_that_is_measured_gives_the_losses(tmp_path):
         dq = np.array([-2.0, -1.0, -0.5, -0.02, 0.02, 0.5, 1.0, 2.0])
         w1 = 100.0 * dq
         forward = file.with_values({"ratio": 100.0}, "user", "in the joint's sense").values
-        positive, negative = limits(forward, w1, -held)
-        torque = np.where(dq > 0.0, positive, -negative) + viscous(forward, w1) + held / 100.0
+        positive, negative = friction_limits(forward, w1, -held)
+        torque = np.where(dq > 0.0, positive, -negative) + viscous_torque(forward, w1) + held / 100.0
         heads = [("gravity", "N.m"), ("motor_torque", "mN.m"), ("joint_speed", "rad/s")]
         paths.append(tmp_path / f"{number}.csv")
-        paths[-1].write_text(columns.text(heads, [np.full(8, held), 1e3 * torque, dq]))
+        paths[-1].write_text(columns.format_table(heads, [np.full(8, held), 1e3 * torque, dq]))
     found = log.fit(paths, start)
     for name in ("friction_coulomb", "friction_stribeck", "friction_viscous", "load_loss", "load_loss_back"):
-        assert found.parameters.flat[name] == pytest.approx(TRUE[name], rel=1e-3)
+        assert found.parameters.values_by_name[name] == pytest.approx(TRUE[name], rel=1e-3)
     assert any("viscous_temperature_coefficient" in note for note in found.notes)
-    figure = Figure(outcome.size(found), layout="constrained")
-    outcome.draw(figure, found)
+    figure = Figure(outcome.figure_size(found), layout="constrained")
+    outcome.draw_fit(figure, found)
     figure.draw_without_rendering()
     legend, data = figure.axes[0].get_legend().get_window_extent(), figure.axes[0].get_window_extent()
     assert legend.y0 >= data.y1  # beside the curves
@@ -124,8 +124,10 @@ def test_the_base_joint_of_a_robot(drive, tmp_path, capsys):
     assert not rows["friction_stribeck"]["determined"]
     for name in ("load_loss", "load_loss_back", "dry_temperature_coefficient"):
         assert any(f"does not determine {name}," in line for line in said["warnings"])
-    values = load(out).values
-    torque = limits(values, 101.0 * 1.5, 0.0, 318.15)[0] + viscous(values, 101.0 * 1.5, 318.15)
+    values = load_parameter_file(out).values
+    torque = friction_limits(values, 101.0 * 1.5, 0.0, 318.15)[0] + viscous_torque(
+        values, 101.0 * 1.5, 318.15
+    )
     assert torque == pytest.approx(0.1375, rel=0.15)
     low, high = rows["friction_coulomb"]["interval"]
     assert low < values.friction_coulomb < high
@@ -153,7 +155,9 @@ def written(path, **given):
     torque = 0.05 * np.sign(dq) + 0.02 * dq
     own = {"time": ("s", time), "q": ("rad", q), "dq": ("rad/s", dq), "tau": ("N.m", torque)}
     own = {name: value for name, value in (own | given).items() if value is not None}
-    text = columns.text([(n, u) for n, (u, _) in own.items()], [np.asarray(x) for _, x in own.values()], 9)
+    text = columns.format_table(
+        [(n, u) for n, (u, _) in own.items()], [np.asarray(x) for _, x in own.values()], 9
+    )
     path.write_text(text)
     return path
 
@@ -226,10 +230,13 @@ def test_what_a_light_arm_leaves_open_stays_as_it_is(drive, tmp_path, capsys):
     )
     asked = ["fit", "log", str(path), "--params", str(drive), "--motor-inertia", "1e-6", "--out", str(out)]
     assert cli.main(asked) == 0
-    shown, start, found = capsys.readouterr().err, load(drive), load(out)
+    shown, start, found = capsys.readouterr().err, load_parameter_file(drive), load_parameter_file(out)
     for name in ("load_loss", "load_loss_back"):
         assert f"does not determine {name}, which stays as it is: that fits as well" in shown
-        assert (found.flat[name], found.sources[name]) == (start.flat[name], start.sources[name])
+        assert (found.values_by_name[name], found.sources[name]) == (
+            start.values_by_name[name],
+            start.sources[name],
+        )
     assert found.origins["friction_coulomb"] == "calibration"
     assert found.origins["friction_stribeck"] == "estimate"
     assert found.sources["friction_stribeck"].endswith("not determined: other values fit as well")

@@ -11,15 +11,15 @@ from jointfmu_tools.joints.harmonic_drive import catalogue
 from jointfmu_tools.joints.harmonic_drive.new import NEW
 from jointfmu_tools.pressure import judge_file
 from jointfmu_tools.uncertainty import propagate
-from jointfmu_tools.uncertainty.problem import pose
+from jointfmu_tools.uncertainty.problem import state_problem
 from scipy.interpolate import PchipInterpolator
 
 from jointfmu.joints import KINDS
-from jointfmu.joints.harmonic_drive.given import CatalogueDrive, TableDrive, TorqueAngle
-from jointfmu.joints.harmonic_drive.hysteresis import MEMORY, exponent
+from jointfmu.joints.harmonic_drive.given import CatalogueDrive, MeasuredMidline, TableDrive
+from jointfmu.joints.harmonic_drive.hysteresis import HISTORY_LAYOUT, stiffness_exponent
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring, torque_curve
-from jointfmu.parameters import default, dump, load
-from jointfmu.quantity import changed
+from jointfmu.parameters import format_parameter_file, load_default, load_parameter_file
+from jointfmu.quantity import replace_values
 
 SAME = 1e-12
 """Lines are exact; round-off of the spline's coefficients remains."""
@@ -42,7 +42,7 @@ def drive(**changes):
 
 
 def named(name):
-    return NEW.run(dict.fromkeys(option.name for option in NEW.options) | {"catalogue": name}).file
+    return NEW.make_joint(dict.fromkeys(option.name for option in NEW.options) | {"catalogue": name}).file
 
 
 def name_of(row):
@@ -59,17 +59,17 @@ def test_every_row_keeps_its_angles(row):
     K = {
         n: float(row[k]) for n, k in (("K1", "K1_Nm_per_rad"), ("K2", "K2"), ("T1", "T1_Nm"), ("T2", "T2_Nm"))
     }
-    K["K3"] = catalogue.find(name_of(row)).numbers["K3"].value
+    K["K3"] = catalogue.find_drive(name_of(row)).numbers["K3"].value
     d = named(name_of(row)).values
-    spring = HarmonicDriveSpring.of(d)
+    spring = HarmonicDriveSpring.tabulate(d)
     for T in (d.T1, d.T2, d.rated_torque, d.max_torque, -d.rated_torque):
-        assert float(spring.windup(T)["phi_rel"]) == pytest.approx(
+        assert float(spring.evaluate_torque(T)["phi_rel"]) == pytest.approx(
             np.sign(T) * lines(abs(T), **K), rel=STATED
         )
     T = np.linspace(0.0, 1.5 * d.max_torque, 3001)[1:]
     phi = lines(T, **K)
     away = np.all([np.abs(phi / corner - 1.0) > d.corner for corner in d.corners], axis=0)
-    state = spring.windup(T)
+    state = spring.evaluate_torque(T)
     np.testing.assert_allclose(state["phi_rel"], phi, rtol=STATED)
     np.testing.assert_allclose(state["phi_rel"][away], phi[away], rtol=SAME)
     step = np.where(K["T1"] > T, K["K1"], np.where(K["T2"] > T, K["K2"], K["K3"]))
@@ -82,24 +82,26 @@ def test_stiffness_is_the_derivative_and_has_no_kink():
     x, h = np.linspace(1e-6, curve.end[0], 4001), 1e-8
     slope = (curve.derivatives(x + h, 0)[0] - curve.derivatives(x - h, 0)[0]) / (2.0 * h)
     np.testing.assert_allclose(slope, curve.derivatives(x, 1)[1], rtol=1e-6)  # round-off of 1e-13 N m over h
-    assert np.all(curve.bend_start[1:] == curve.bend_end[:-1])
-    assert curve.bend_start[0] == 0.0  # the odd continuation has none either
+    assert np.all(curve.slope_start[1:] == curve.slope_end[:-1])
+    assert curve.slope_start[0] == 0.0  # the odd continuation has none either
     K = curve.derivatives(x, 1)[1]
     assert np.all(np.diff(K) >= -1e-6)
     assert (K[0], K[-1]) == pytest.approx((1e4, 1.6e4), rel=1e-12)
 
 
 def test_a_drive_that_softens_and_lines_without_a_corner():
-    soft = HarmonicDriveSpring.of(drive(K3=9e3))
+    soft = HarmonicDriveSpring.tabulate(drive(K3=9e3))
     T = np.array([1.0, 8.0, 60.0])
-    np.testing.assert_allclose(soft.windup(T)["phi_rel"], lines(T, **CSG_17 | {"K3": 9e3}), rtol=SAME)
-    plain = HarmonicDriveSpring.of(drive(K2=1e4, K3=1e4))
-    np.testing.assert_allclose(plain.windup(T)["phi_rel"], T / 1e4, rtol=SAME)
+    np.testing.assert_allclose(
+        soft.evaluate_torque(T)["phi_rel"], lines(T, **CSG_17 | {"K3": 9e3}), rtol=SAME
+    )
+    plain = HarmonicDriveSpring.tabulate(drive(K2=1e4, K3=1e4))
+    np.testing.assert_allclose(plain.evaluate_torque(T)["phi_rel"], T / 1e4, rtol=SAME)
 
 
 def test_parts_and_pressure_of_a_given_midline():
     """1/K_WTS = 1/K_FTS + 1/K_TS with equal parts where the drive is stiffest; no pressure."""
-    state = HarmonicDriveSpring.of(drive()).windup([0.0, 8.0, 60.0])
+    state = HarmonicDriveSpring.tabulate(drive()).evaluate_torque([0.0, 8.0, 60.0])
     np.testing.assert_allclose(1.0 / state["K_FTS"] + 1.0 / state["K_TS"], 1.0 / state["K_WTS"], rtol=SAME)
     np.testing.assert_array_equal(state["K_FTS"], 3.2e4)
     assert state["K_TS"][-1] == pytest.approx(3.2e4, rel=SAME)
@@ -134,17 +136,17 @@ def test_the_table_reaches_past_the_second_corner():
 def test_hysteresis_of_a_drive_without_a_pair():
     """Exponential as Dahl's friction, and as wide as stated after rated torque; energy closes."""
     loss = 3e-4
-    assert exponent(drive()) == 1.0
-    spring = HarmonicDriveSpring.of(drive(hysteresis_loss=loss))
+    assert stiffness_exponent(drive()) == 1.0
+    spring = HarmonicDriveSpring.tabulate(drive(hysteresis_loss=loss))
     hysteresis = spring.hysteresis
     limit, stiffness = np.sum(hysteresis.limit), np.sum(hysteresis.stiffness)
     phi = np.linspace(0.0, 3.0 * limit / stiffness, 50)
-    rest = np.broadcast_to(MEMORY.rest(), (50, MEMORY.rest().size))
+    rest = np.broadcast_to(HISTORY_LAYOUT.virgin_history(), (50, HISTORY_LAYOUT.virgin_history().size))
     dahl = limit * (1.0 - np.exp(-stiffness * phi / limit))
-    np.testing.assert_allclose(hysteresis.moved(rest, phi).traction, dahl, atol=2e-3 * limit)
-    memory, wound = MEMORY.rest(), []
+    np.testing.assert_allclose(hysteresis.advance(rest, phi).traction, dahl, atol=2e-3 * limit)
+    memory, wound = HISTORY_LAYOUT.virgin_history(), []
     for tau in (31.0, 0.0, -31.0, 0.0):
-        state, memory = spring.loaded(tau, memory)
+        state, memory = spring.advance_torque(tau, memory)
         wound.append(float(state["phi_rel"]))
     assert wound[1] - wound[3] == pytest.approx(loss, rel=1e-3)  # Masing's rule from rest: the last digits
 
@@ -154,7 +156,7 @@ def test_hysteresis_of_a_drive_without_a_pair():
 
 def table(torque, angle, **changes):
     values = {"ratio": 100.0, "d": 0.5, "rated_torque": 31.0}
-    return TableDrive(table=TorqueAngle(torque=tuple(torque), angle=tuple(angle)), **values | changes)
+    return TableDrive(table=MeasuredMidline(torque=tuple(torque), angle=tuple(angle)), **values | changes)
 
 
 def random_table(rng, n):
@@ -165,7 +167,7 @@ def test_a_table_of_a_smooth_law_gives_it_back():
     """T = K x (1 + b x^2): the stiffness within the spacing, the torque within its square."""
     x = np.linspace(0.0, 2e-3, 41)[1:]
     K, b = 1e4, 2e5
-    spring = HarmonicDriveSpring.of(table(K * x * (1.0 + b * x**2), x))
+    spring = HarmonicDriveSpring.tabulate(table(K * x * (1.0 + b * x**2), x))
     at = np.linspace(1e-5, 1.95e-3, 500)
     load, stiffness = spring.curve.derivatives(at, 1)
     np.testing.assert_allclose(load, K * at * (1.0 + b * at**2), rtol=5e-4)
@@ -190,10 +192,10 @@ def test_any_rising_table_gives_a_rising_curve_through_its_points(seed):
 
 def test_a_table_is_odd_and_goes_on_with_its_last_stiffness():
     torque, angle = random_table(np.random.default_rng(1), 12)
-    spring = HarmonicDriveSpring.of(table(torque, angle))
-    np.testing.assert_allclose(spring.windup(-torque)["phi_rel"], -angle, rtol=SAME)
+    spring = HarmonicDriveSpring.tabulate(table(torque, angle))
+    np.testing.assert_allclose(spring.evaluate_torque(-torque)["phi_rel"], -angle, rtol=SAME)
     end = spring.curve.stiffness[-1]
-    beyond = spring.windup(torque[-1] + 5.0)
+    beyond = spring.evaluate_torque(torque[-1] + 5.0)
     assert float(beyond["phi_rel"]) == pytest.approx(angle[-1] + 5.0 / end, rel=SAME)
     assert float(beyond["K_WTS"]) == pytest.approx(end)
 
@@ -218,12 +220,12 @@ def test_tables_that_do_not_rise_are_refused(torque, angle, text):
 
 @pytest.mark.parametrize("law", ["catalogue", "table"])
 def test_files_are_read_and_written(law, tmp_path):
-    file = default("harmonic_drive", law)
+    file = load_default("harmonic_drive", law)
     path = tmp_path / "drive.toml"
-    path.write_text(dump(file), encoding="utf-8")
-    assert load(path) == file
+    path.write_text(format_parameter_file(file), encoding="utf-8")
+    assert load_parameter_file(path) == file
     assert file.law == law
-    assert judge_file(file).level is None  # there is no interface to judge
+    assert judge_file(file).comparison is None  # there is no interface to judge
 
 
 @pytest.mark.parametrize("law", ["catalogue", "table"])
@@ -243,15 +245,15 @@ def test_a_file_without_an_interface_says_so(law, capsys):
 )
 def test_uncertainty(law, given):
     """The reduced evaluation states 1e-4 (docs/uncertainty.md); it is exact here but for the inversion."""
-    task = pose(default("harmonic_drive", law), given, None, 33)
-    found = propagate.bands(task, propagate.design(task, 64, 5)[0])
-    assert found.refused.count == 0
-    assert found.error < 1e-6
+    task = state_problem(load_default("harmonic_drive", law), given, None, 33)
+    found = propagate.compute_bands(task, propagate.sample_designs(task, 64, 5)[0])
+    assert found.refusals.count == 0
+    assert found.reduction_error < 1e-6
 
 
 def test_the_fractal_drive_as_a_table_is_near_it():
     """The shipped table stands for a measurement: 19 points of the default drive."""
-    file, exact = default("harmonic_drive", "table"), torque_curve(default("harmonic_drive").values)
+    file, exact = load_default("harmonic_drive", "table"), torque_curve(load_default("harmonic_drive").values)
     points = file.values.table
     np.testing.assert_allclose(exact.inverse(points.torque), points.angle, rtol=1e-5)  # six digits
     torque = np.linspace(1.0, 30.0, 100)
@@ -260,24 +262,24 @@ def test_the_fractal_drive_as_a_table_is_near_it():
 
 def test_tuned_parameters_are_those_of_the_law():
     kind = KINDS["harmonic_drive"]
-    spring = kind.models[0].of("harmonic_drive", drive())
+    spring = kind.models[0].with_parameters("harmonic_drive", drive())
     assert {"K1", "K2", "K3", "T1", "T2", "corner", "ratio", "d"} <= set(spring.parameter_fields())
-    assert changed(drive(), {"K1": 9e3}).K1 == 9e3
-    measured = kind.models[0].of("harmonic_drive", table((1.0, 2.0), (1e-4, 2e-4)))
+    assert replace_values(drive(), {"K1": 9e3}).K1 == 9e3
+    measured = kind.models[0].with_parameters("harmonic_drive", table((1.0, 2.0), (1e-4, 2e-4)))
     assert not any(name.startswith("table") for name in measured.parameter_fields())
 
 
 def test_names_stand_for_the_rows():
-    assert {name_of(row) for row in ROWS} <= {item.name for item in catalogue.items()}
+    assert {name_of(row) for row in ROWS} <= {item.name for item in catalogue.list_drives()}
 
 
 def test_lost_motion_adds_to_the_lines_and_a_measured_curve_has_it_already():
-    plain, loose = (HarmonicDriveSpring.of(drive(lost_motion=x)) for x in (0.0, 2e-4))
+    plain, loose = (HarmonicDriveSpring.tabulate(drive(lost_motion=x)) for x in (0.0, 2e-4))
     rated = plain.joint.rated_torque
     T = rated * np.array([0.002, 0.005, 0.013, 0.04, 0.08, 0.3, 1.0])
     play = 1e-4 * np.tanh(T / (0.01 * rated))
-    found = loose.windup(T)
-    before = plain.windup(T)
+    found = loose.evaluate_torque(T)
+    before = plain.evaluate_torque(T)
     # the spline between nodes of the play, as `PLAY_NODES` says
     assert found["phi_rel"] - before["phi_rel"] == pytest.approx(play, abs=1e-8 * rated / 1e4)
     slope = 1e-4 * (1.0 - np.tanh(T / (0.01 * rated)) ** 2) / (0.01 * rated)
@@ -285,6 +287,6 @@ def test_lost_motion_adds_to_the_lines_and_a_measured_curve_has_it_already():
     with pytest.raises(
         ValueError, match=r"^lost_motion = 0.0002 rad is outside \[0, 0\]: a measured midline"
     ):
-        replace(default("harmonic_drive", "table").values, lost_motion=2e-4)
+        replace(load_default("harmonic_drive", "table").values, lost_motion=2e-4)
     with pytest.raises(ValueError, match=r"^lost_motion = 0.0002 rad is outside \[0, 0\]: the first line"):
         drive(lost_motion=2e-4, rated_torque=1e3)

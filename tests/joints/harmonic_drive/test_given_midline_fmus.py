@@ -20,10 +20,10 @@ from jointfmu_fmu_src.native.compiled import kept
 from jointfmu_tools.joints.harmonic_drive.new import NEW
 from natives import Host, close
 
-from jointfmu.joints.harmonic_drive.friction import REFERENCE
-from jointfmu.joints.harmonic_drive.given import MOST_POINTS
-from jointfmu.parameters import ParameterFile, default
-from jointfmu.quantity import changed
+from jointfmu.joints.harmonic_drive.friction import REFERENCE_TEMPERATURE
+from jointfmu.joints.harmonic_drive.given import MAX_POINTS
+from jointfmu.parameters import ParameterFile, load_default
+from jointfmu.quantity import replace_values
 
 SPRING, COMPLIANCE = NAMES = ("HarmonicDriveSpring", "HarmonicDriveCompliance")
 STATED = 0.005
@@ -47,9 +47,9 @@ LAWS = tuple(TUNED)
 def file_of(name: str) -> ParameterFile:
     """CSG-17-100, and the shipped table."""
     if name == "table":
-        return default("harmonic_drive", name)
+        return load_default("harmonic_drive", name)
     given = dict.fromkeys(option.name for option in NEW.options)
-    file: ParameterFile = NEW.run(given | {"catalogue": "CSG-17-100"}).file
+    file: ParameterFile = NEW.make_joint(given | {"catalogue": "CSG-17-100"}).file
     return file
 
 
@@ -79,7 +79,7 @@ def test_the_fmu_keeps_the_lines_of_the_catalogue(host: Host, built: Path) -> No
             assert found["phi_rel"] == pytest.approx(sign * lines(T), rel=within)
     assert instance.at({"tau": 1.0})["K_WTS"] == pytest.approx(1e4, rel=SAME)
     assert instance.at({"tau": 50.0})["K_WTS"] == pytest.approx(1.6e4, rel=SAME)
-    instance.set({"K3": 2e4})
+    instance.set_values({"K3": 2e4})
     assert instance.at({"tau": 70.0})["phi_rel"] == pytest.approx(lines(70.0, K3=2e4), rel=SAME)
 
 
@@ -90,7 +90,7 @@ def test_native_code_gives_the_numbers_of_the_package(host: Host, built: Path, o
     for tuned in ({}, TUNED[one]):
         instance.reset()
         instance.start(tuned)
-        expected = law(name, changed(values, tuned)).after({"temperature": REFERENCE})
+        expected = law(name, replace_values(values, tuned)).after({"temperature": REFERENCE_TEMPERATURE})
         for inputs in random_inputs(name, 20, seed=3):
             assert instance.at(inputs) == close(expected(inputs))
 
@@ -152,7 +152,7 @@ def table_of(points: int) -> ParameterFile:
     return file.with_values({"table.torque": torque, "table.angle": angle}, "user", "test")
 
 
-@pytest.mark.parametrize("points", [2, 37, MOST_POINTS])
+@pytest.mark.parametrize("points", [2, 37, MAX_POINTS])
 @pytest.mark.parametrize("name", NAMES)
 def test_another_table_needs_no_compiler(
     host: Host, built: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, points: int
@@ -162,7 +162,7 @@ def test_another_table_needs_no_compiler(
     def refused(*_: object) -> None:
         raise AssertionError("compiled")
 
-    monkeypatch.setattr(kept, "compiled", refused)
+    monkeypatch.setattr(kept, "compile_model", refused)
     file = table_of(points)
     with here_alone("3"):
         build([name], ["fmi3"], file, tmp_path)
@@ -190,8 +190,8 @@ AGREE = 1e-9
 
 def stiffened(factor: float) -> ParameterFile:
     """A drive whose steel is so many times as stiff, loaded from the start."""
-    file = default("harmonic_drive")
-    stiffer = {"K_FTS0": factor * file.flat["K_FTS0"]}
+    file = load_default("harmonic_drive")
+    stiffer = {"K_FTS0": factor * file.values_by_name["K_FTS0"]}
     return replace(file.with_values(stiffer, "user", "test"), inputs={"tau": TORQUE})
 
 
@@ -249,7 +249,7 @@ def both(drives: Path, request: pytest.FixtureRequest) -> Iterator[dict[str, Fmu
     made = {alias: Fmu(drives / request.param / f"{alias}.fmu") for alias in FILES}
     yield made
     for one in made.values():
-        one.free()
+        one.free_instance()
 
 
 @pytest.mark.slow

@@ -13,21 +13,21 @@ from jointfmu.joints import KINDS
 from jointfmu.joints.harmonic_drive.law import HarmonicDrive, drive_stiffness, pair_stiffness, peak_pressure
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring, torque_curve
 from jointfmu.mechanics.curve import MAX_ERROR
-from jointfmu.parameters import default, load
-from jointfmu.quantity import build, flatten
+from jointfmu.parameters import load_default, load_parameter_file
+from jointfmu.quantity import build_parameter_set, flatten_parameters
 
 EPS = np.finfo(float).eps
 STENCIL = np.array([1.0, -8.0, 0.0, 8.0, -1.0]) / 12.0
 """Central difference over five points: error h^4/30 times the fifth derivative."""
 FIVE = np.arange(-2, 3)
 
-DRIVE = default("harmonic_drive").values
+DRIVE = load_default("harmonic_drive").values
 
 
 def drive(**values):
     """The default drive with other values; dots of structured names as double underscores."""
     changes = {name.replace("__", "."): value for name, value in values.items()}
-    return build(HarmonicDrive, flatten(DRIVE) | changes)
+    return build_parameter_set(HarmonicDrive, flatten_parameters(DRIVE) | changes)
 
 
 SETS = {
@@ -35,14 +35,14 @@ SETS = {
     "eccentric": drive(eccentricity=3e-5, radial_deformation=0.2e-3),
     "soft": drive(surface__D=2.6, surface__r_m=3e-7, traction_ratio=0.0, K_FTS0=7e3),
     "wide": drive(torque_smoothing=0.5, max_torque=12.0, traction="real_area", shear_traction=5e5),
-    "rough": load(KINDS["harmonic_drive"].default_file("roughness")).values,
+    "rough": load_parameter_file(KINDS["harmonic_drive"].default_file("roughness")).values,
 }
 each_drive = pytest.mark.parametrize("it", SETS.values(), ids=SETS)
 
 
 @pytest.fixture(scope="module")
 def springs():
-    return {name: HarmonicDriveSpring.of(it) for name, it in SETS.items()}
+    return {name: HarmonicDriveSpring.tabulate(it) for name, it in SETS.items()}
 
 
 @pytest.fixture(scope="module")
@@ -129,7 +129,9 @@ def test_roughness_has_no_scale():
     p = it.mean_over_peak * peak_pressure(it, T)[0]
     expected = at_pressure(it.law, p)["K_T"] * it.radius**2
     np.testing.assert_allclose(pair_stiffness(it, T)[0], expected, rtol=1e-12)  # round-off
-    assert HarmonicDriveSpring.of(it).windup(5.0)["K_TS_pair"] == pytest.approx(expected[2], rel=1e-6)
+    assert HarmonicDriveSpring.tabulate(it).evaluate_torque(5.0)["K_TS_pair"] == pytest.approx(
+        expected[2], rel=1e-6
+    )
 
 
 def test_beyond_rated_torque_the_stiffness_settles():
@@ -243,7 +245,7 @@ def test_tables_of_other_drives(D, r_m, traction, eccentricity, K_FTS0, smoothin
     assert curve.error <= MAX_ERROR
     assert np.all(np.diff(curve.load) > 0.0)
     assert np.all(np.diff(curve.stiffness) > 0.0)
-    assert curve.bend_start[0] == 0.0
+    assert curve.slope_start[0] == 0.0
 
 
 # The spring

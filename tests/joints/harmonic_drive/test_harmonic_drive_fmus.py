@@ -11,7 +11,7 @@ from browser import Browser, browser
 from clients import needs
 from conftest import made_once
 from joint_cases import SAME, TABLE, law, parameters, random_inputs
-from jointfmu_tools.joints.harmonic_drive.efficiency import spring_bench
+from jointfmu_tools.joints.harmonic_drive.efficiency import make_python_test_rig
 from jointfmu_tools.joints.harmonic_drive.job import LABORATORY
 from jointfmu_tools.laboratory.assemble import write_laboratory
 from jointfmu_tools.ramps import ramp
@@ -21,16 +21,16 @@ from scipy.integrate import cumulative_simpson, quad
 
 from jointfmu.joints import MODELS
 from jointfmu.joints.harmonic_drive.law import drive_stiffness
-from jointfmu.parameters import default
+from jointfmu.parameters import load_default
 
 
 def test_parameters_count_until_initialization_ends(fmu: Host) -> None:
     instance = fmu("HarmonicDriveCompliance")
-    instance.set({"K_FTS0": 1e4})  # before setup: start values may be set right after instantiation
+    instance.set_values({"K_FTS0": 1e4})  # before setup: start values may be set right after instantiation
     instance.fmu.setupExperiment(startTime=0.0)
     instance.fmu.enterInitializationMode()
     assert instance.at({"tau": 3.0})["K_FTS"] == pytest.approx(1e4, rel=SAME)
-    instance.set({"K_FTS0": 3e4})
+    instance.set_values({"K_FTS0": 3e4})
     assert instance.get("K_FTS", "K_FTS0") == {"K_FTS": pytest.approx(3e4, rel=SAME), "K_FTS0": 3e4}
     instance.fmu.exitInitializationMode()
     expected = law("HarmonicDriveCompliance", parameters("HarmonicDriveCompliance", {"K_FTS0": 3e4}))
@@ -89,7 +89,7 @@ def test_torque_against_the_stiffness_of_the_law_without_a_table(fmu: Host) -> N
 
 
 def test_the_torque_ramp_agrees_with_scipy(fmus: Path) -> None:
-    c = ramp.run(fmus / "HarmonicDriveCompliance.fmu", "tau", 5.0, 0.01).columns
+    c = ramp.run_ramp(fmus / "HarmonicDriveCompliance.fmu", "tau", 5.0, 0.01).columns
     assert len(c["tau"]) == 501
     # Simpson's rule at 0.01 N.m, a fifth of the length over which the stiffness bends
     phi = cumulative_simpson(1.0 / c["K_WTS"], x=c["tau"], initial=0.0)
@@ -250,8 +250,8 @@ def test_efficiency_is_that_of_the_bench(shown: Browser, ratio: float) -> None:
     found = shown.run(SCRIPT.replace("GIVEN", str(given)).replace("SPEED", str(SPEED)))
     example = LABORATORY[NAME].example
     assert example
-    file = default("harmonic_drive").with_values({**example.values, **given}, "user", "a test")
-    bench = spring_bench(MODELS[NAME], file)
+    file = load_default("harmonic_drive").with_values({**example.values, **given}, "user", "a test")
+    bench = make_python_test_rig(MODELS[NAME], file)
     assert len(found["loads"]) > 10
     for load, value in zip(found["loads"], found["efficiency"], strict=True):
         # friction has built up to 1 - exp(-50) in the page, to 1 - exp(-20) on the bench

@@ -11,20 +11,20 @@ from conftest import refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.joints.harmonic_drive import catalogue
 from jointfmu_tools.joints.harmonic_drive.efficiency import (
-    bench,
+    drives_with_friction,
+    friction_and_ratio,
     hysteresis_loss,
     lost_motion,
-    parameters,
-    printed_drives,
-    spring_bench,
+    make_python_test_rig,
+    open_fmu_test_rig,
 )
-from jointfmu_tools.joints.harmonic_drive.fit.drive import windup
-from jointfmu_tools.joints.harmonic_drive.friction import SPEED, efficiency
+from jointfmu_tools.joints.harmonic_drive.fit.drive import wind_up
+from jointfmu_tools.joints.harmonic_drive.friction import QUOTED_SPEED, rated_efficiency
 from jointfmu_tools.joints.harmonic_drive.new import NEW
 
 from jointfmu.joints import MODELS
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
-from jointfmu.parameters import load
+from jointfmu.parameters import load_parameter_file
 
 ROW = ["--ratio", "100", "--K1", "4700", "--K2", "6100", "--K3", "7100", "--T1", "2", "--T2", "6.9"]
 
@@ -37,11 +37,11 @@ def test_a_row_keeps_its_angles(capsys, tmp_path):
     words += ["--law", "hu2023"]
     assert cli.main(["new", "harmonic-drive", *ROW, *words, "--out", str(path), "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
-    file = load(path)
+    file = load_parameter_file(path)
     assert (file.name, file.values.ratio, file.values.rated_torque) == ("page 7", -100.0, 7.8)
     assert file.origins["rated_torque"] == "catalogue"
     angle = 2.0 / 4700.0 + 4.9 / 6100.0
-    assert float(windup(file.values, 6.9)) == pytest.approx(angle, rel=0.01)
+    assert float(wind_up(file.values, 6.9)) == pytest.approx(angle, rel=0.01)
     assert "angle_error_T2" in found["facts"]
     assert found["warnings"]
 
@@ -52,7 +52,7 @@ def test_a_row_is_its_three_lines(capsys, tmp_path):
     words += ["--T1", "0.203943kgf.m", "--hysteresis", "1"]
     assert cli.main(["new", "harmonic-drive", *ROW, *words, "--out", str(path), "--json"]) == 0
     assert "rated_torque" in json.loads(capsys.readouterr().out)["warnings"][0]
-    file = load(path)
+    file = load_parameter_file(path)
     d = file.values
     np.testing.assert_allclose([d.K1, d.K2, d.K3], [4700.0, 6100.0, 7100.0], rtol=1e-15)
     assert pytest.approx(0.203943 * 9.80665) == d.T1
@@ -69,20 +69,20 @@ def test_a_drive_by_its_name(capsys, tmp_path):
     assert "limit for the actuators CHA-17A" in out
     assert "lost_motion" in out
     assert "estimates, not of the catalogue's row: d" in err
-    file = load(path)
+    file = load_parameter_file(path)
     d = file.values
     assert (file.law, file.name, d.ratio) == ("catalogue", "CSG-17-100", -100.0)
     assert (d.K1, d.K2, d.K3, d.T1, d.T2) == (1e4, 1.4e4, 1.6e4, 3.9, 12.0)
     assert (d.rated_torque, d.max_torque, d.hysteresis_loss) == (31.0, 70.0, 0.0)
     assert file.origins["rated_torque"] == "catalogue"
-    assert set(file.origins) == set(file.flat)
+    assert set(file.origins) == set(file.values_by_name)
 
 
 def test_what_is_stated_takes_the_place_of_the_catalogue(tmp_path):
     path = tmp_path / "my.toml"
     words = ["--catalogue", "CSF-25-80-2UH", "--rated-torque", "63", "--out", str(path)]
     assert cli.main(["new", "harmonic-drive", *words]) == 0
-    file = load(path)
+    file = load_parameter_file(path)
     assert (file.values.rated_torque, file.origins["rated_torque"]) == (63.0, "user")
     assert file.origins["max_torque"] == "estimate"
 
@@ -145,8 +145,8 @@ SPRING = MODELS["HarmonicDriveSpring"]
 ARCMIN = math.pi / 10800.0
 SCATTER = 0.03
 """Of a published efficiency [1]: the catalogue states +-3 points."""
-DRIVES = [item for item in catalogue.items() if "rated_torque" in item.numbers]
-PRINTED = {item.name: item for item in printed_drives()}
+DRIVES = [item for item in catalogue.list_drives() if "rated_torque" in item.numbers]
+PRINTED = {item.name: item for item in drives_with_friction()}
 TEXT = files("jointfmu_models") / "reference" / "harmonic_drive_catalogue_zd.csv"
 OTHER = list(csv.DictReader(TEXT.read_text(encoding="utf-8").splitlines()))
 """Drives of another maker, in sizes and ratios of these."""
@@ -157,7 +157,7 @@ def is_printed(item, column):
 
 
 def made(name, **options):
-    return NEW.run(dict.fromkeys(o.name for o in NEW.options) | {"catalogue": name} | options).file
+    return NEW.make_joint(dict.fromkeys(o.name for o in NEW.options) | {"catalogue": name} | options).file
 
 
 # the loop
@@ -175,25 +175,27 @@ def test_lost_motion_of_every_drive_is_below_the_published_limit(size):
         if item.name.rsplit("-", 1)[0] != size:
             continue
         file = made(item.name)
-        plain = HarmonicDriveSpring.of(file.values)
+        plain = HarmonicDriveSpring.tabulate(file.values)
         least = 0.04 * file.values.rated_torque
         assert lost_motion(plain) == pytest.approx(2.0 * least / file.values.K1, rel=1e-9)
         assert lost_motion(plain) < item.numbers["lost_motion"].value
         assert hysteresis_loss(plain) == pytest.approx(0.0, abs=1e-15)
         most = item.numbers["hysteresis_loss"].value
-        open_ = HarmonicDriveSpring.of(file.with_values({"hysteresis_loss": most}, "user", "limit").values)
+        open_ = HarmonicDriveSpring.tabulate(
+            file.with_values({"hysteresis_loss": most}, "user", "limit").values
+        )
         assert hysteresis_loss(open_) == pytest.approx(most, rel=1e-9)
         assert 0.85 * lost_motion(plain) < lost_motion(open_) <= (1.0 + 1e-9) * lost_motion(plain)
 
 
 def test_lost_motion_is_midway_in_the_loop_through_rated_torque():
     """The mean of both angles at 4 % of rated torque less that at -4 %, read off the loop itself."""
-    spring = HarmonicDriveSpring.of(made("CSG-17-100", hysteresis="1").values)
+    spring = HarmonicDriveSpring.tabulate(made("CSG-17-100", hysteresis="1").values)
     rated = spring.joint.rated_torque
     steps = rated * np.concatenate([np.linspace(1.0, -1.0, 51), np.linspace(-0.96, 1.0, 50)])
-    memory, angles = spring.loaded(rated, spring.rest())[1], []
+    memory, angles = spring.advance_torque(rated, spring.initial_history())[1], []
     for torque in steps:
-        out, memory = spring.loaded(torque, memory)
+        out, memory = spring.advance_torque(torque, memory)
         angles.append(float(out["phi_rel"]))
     passed = list(zip(angles, steps / rated, strict=True))
     at = {sign: [angle for angle, part in passed if np.isclose(part, 0.04 * sign)] for sign in (1, -1)}
@@ -203,11 +205,13 @@ def test_lost_motion_is_midway_in_the_loop_through_rated_torque():
 
 def test_lost_motion_counts_play_and_a_loop_is_what_it_was_made_for():
     file = made("CSG-17-100", hysteresis="0.8")
-    spring = HarmonicDriveSpring.of(file.values)
+    spring = HarmonicDriveSpring.tabulate(file.values)
     assert hysteresis_loss(spring) == pytest.approx(0.8 * ARCMIN, rel=1e-9)
     plain = made("CSG-17-100").values
-    loose = HarmonicDriveSpring.of(made("CSG-17-100").with_values({"lost_motion": 1e-4}, "user", "x").values)
-    found = lost_motion(loose) - lost_motion(HarmonicDriveSpring.of(plain))
+    loose = HarmonicDriveSpring.tabulate(
+        made("CSG-17-100").with_values({"lost_motion": 1e-4}, "user", "x").values
+    )
+    found = lost_motion(loose) - lost_motion(HarmonicDriveSpring.tabulate(plain))
     assert found == pytest.approx(1e-4, rel=1e-3)  # tanh(4) is 0.9993
 
 
@@ -217,7 +221,7 @@ def test_another_maker_prints_the_same_torques_and_no_less_lost_motion(row):
     drive = made(f"CSF-{row['size']}-{row['ratio']}").values
     assert drive.rated_torque == pytest.approx(float(row["rated_Nm"]), rel=0.02)
     assert drive.max_torque == pytest.approx(float(row["repeated_peak_Nm"]), rel=0.02)
-    assert lost_motion(HarmonicDriveSpring.of(drive)) < 0.7 * float(row["lost_motion_arcmin"]) * ARCMIN
+    assert lost_motion(HarmonicDriveSpring.tabulate(drive)) < 0.7 * float(row["lost_motion_arcmin"]) * ARCMIN
 
 
 # friction of the drives of which it is printed
@@ -231,15 +235,15 @@ def test_a_printed_drive_has_its_friction(item):
     does not ask for less than nothing. One share for both senses was 3 to 11 % off.
     """
     file, printed = made(item.name), item.numbers
-    drive = spring_bench(SPRING, file)
+    drive = make_python_test_rig(SPRING, file)
     back, start = printed["back_driving_torque"].value, printed["starting_torque"].value
     assert drive.starting_torque() == pytest.approx(start, rel=1e-9)
-    assert drive.motor_torque(SPEED, 0.0) == pytest.approx(printed["running_torque"].value, rel=1e-9)
+    assert drive.motor_torque(QUOTED_SPEED, 0.0) == pytest.approx(printed["running_torque"].value, rel=1e-9)
     found = drive.back_driving_torque(10.0 * back)
     if is_printed(item, "efficiency"):
         rated = printed["rated_torque"].value
-        assert drive.efficiency(SPEED, rated) == pytest.approx(printed["efficiency"].value, rel=1e-9)
-        assert efficiency(file.values) == pytest.approx(printed["efficiency"].value, rel=1e-12)
+        assert drive.efficiency(QUOTED_SPEED, rated) == pytest.approx(printed["efficiency"].value, rel=1e-9)
+        assert rated_efficiency(file.values) == pytest.approx(printed["efficiency"].value, rel=1e-12)
         assert found == pytest.approx(back, rel=1e-6)
     else:
         assert found == pytest.approx(max(back, printed["ratio"].value * start), rel=1e-6)
@@ -258,27 +262,31 @@ def test_efficiency_at_rated_torque_is_predicted_without_it(name):
     """
     numbers = {k: v for k, v in PRINTED[name].numbers.items() if k != "efficiency"}
     without = type(PRINTED[name])(name, numbers)
-    file = made(name).with_values(parameters(without), "user", "without efficiency")
-    drive, rated = spring_bench(SPRING, file), numbers["rated_torque"].value
+    file = made(name).with_values(friction_and_ratio(without), "user", "without efficiency")
+    drive, rated = make_python_test_rig(SPRING, file), numbers["rated_torque"].value
     published = PRINTED[name].numbers["efficiency"].value
-    missed = drive.efficiency(SPEED, rated) - published
+    missed = drive.efficiency(QUOTED_SPEED, rated) - published
     assert 0.0 < missed < 2.0 * SCATTER
-    guess = spring_bench(SPRING, file.with_values({"load_loss": 0.0}, "user", "guess"))
-    assert missed < 0.7 * (guess.efficiency(SPEED, rated) - published)
+    guess = make_python_test_rig(SPRING, file.with_values({"load_loss": 0.0}, "user", "guess"))
+    assert missed < 0.7 * (guess.efficiency(QUOTED_SPEED, rated) - published)
 
 
 def test_the_fmu_has_the_friction_of_every_printed_drive(native):
     """As on the Python drive: starting and back-driving torque, efficiency."""
     for item in PRINTED.values():
-        own, back = spring_bench(SPRING, made(item.name)), item.numbers["back_driving_torque"].value
-        with bench(native / "fmi2" / "HarmonicDriveSpring.fmu", parameters(item)) as drive:
+        own, back = make_python_test_rig(SPRING, made(item.name)), item.numbers["back_driving_torque"].value
+        with open_fmu_test_rig(
+            native / "fmi2" / "HarmonicDriveSpring.fmu", friction_and_ratio(item)
+        ) as drive:
             assert drive.starting_torque() == pytest.approx(own.starting_torque(), rel=1e-9)
             # |tau| is smooth over a hundredth of the rated torque, which is the FMU's own
             assert drive.back_driving_torque(10.0 * back) == pytest.approx(
                 own.back_driving_torque(10.0 * back), rel=1e-3
             )
             rated = item.numbers["rated_torque"].value
-            assert drive.efficiency(SPEED, rated) == pytest.approx(own.efficiency(SPEED, rated), rel=1e-6)
+            assert drive.efficiency(QUOTED_SPEED, rated) == pytest.approx(
+                own.efficiency(QUOTED_SPEED, rated), rel=1e-6
+            )
 
 
 # a drive from its catalogue
@@ -289,15 +297,15 @@ def test_what_is_stated_makes_the_friction(tmp_path):
     words = ["--catalogue", "CSG-17-50", "--starting-torque", "30mN.m", "--running-torque", "0.05"]
     words += ["--efficiency", "0.7", "--out", str(path)]
     assert cli.main(["new", "harmonic-drive", *words]) == 0
-    drive = load(path).values
+    drive = load_parameter_file(path).values
     assert drive.friction_coulomb == pytest.approx(0.03)
-    assert drive.friction_viscous == pytest.approx(0.02 / SPEED)
-    assert efficiency(drive) == pytest.approx(0.7)
+    assert drive.friction_viscous == pytest.approx(0.02 / QUOTED_SPEED)
+    assert rated_efficiency(drive) == pytest.approx(0.7)
     other = made("RT1-H-17-100", starting_torque="0.04", back_driving_torque="5").values
     assert other.load_loss_back == pytest.approx(1.0 - 100.0 * 0.04 / 5.0)
     both = made("CSG-17-50", starting_torque="0.03", efficiency="0.7", back_driving_torque="2").values
     assert both.load_loss_back == pytest.approx(1.0 - 50.0 * 0.03 / 2.0)
-    assert efficiency(both) == pytest.approx(0.7)
+    assert rated_efficiency(both) == pytest.approx(0.7)
 
 
 def test_lost_motion_is_told_beside_its_limit(capsys):

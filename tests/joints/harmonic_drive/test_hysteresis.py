@@ -8,10 +8,10 @@ import pytest
 from scipy.integrate import quad, solve_ivp
 
 from jointfmu.joints.harmonic_drive import hysteresis
-from jointfmu.joints.harmonic_drive.hysteresis import MEMORY, SLIDERS
+from jointfmu.joints.harmonic_drive.hysteresis import HISTORY_LAYOUT, HYSTERESIS_SLIDERS
 from jointfmu.joints.harmonic_drive.law import drive_stiffness
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
-from jointfmu.parameters import default
+from jointfmu.parameters import load_default
 
 ERROR = {"error_1": 4e-5, "error_1_phase": 0.7, "error_2": 2e-4, "error_2_phase": -0.4, "error_4": 5e-5}
 ROUND_OFF = 1e-12
@@ -19,7 +19,7 @@ PLAY = 3e-4
 
 
 def default_spring(**changes):
-    return HarmonicDriveSpring.of(replace(default("harmonic_drive").values, **changes))
+    return HarmonicDriveSpring.tabulate(replace(load_default("harmonic_drive").values, **changes))
 
 
 def energy(law, phi1, phi2):
@@ -33,11 +33,11 @@ def energy(law, phi1, phi2):
 def test_a_negative_ratio_is_the_motor_turned_round():
     plain, turned = default_spring(ratio=80.0, **ERROR), default_spring(ratio=-80.0)
     motion = np.array([0.03, 2.0, 7e-4, -0.01])
-    other = turned.motion(-motion[0], -motion[1], *motion[2:])
-    same = default_spring(ratio=80.0).motion(*motion)
+    other = turned.evaluate_motion(-motion[0], -motion[1], *motion[2:])
+    same = default_spring(ratio=80.0).evaluate_motion(*motion)
     for name, sign in (("phi_rel", 1.0), ("tau", 1.0), ("tau2", 1.0), ("tau1", -1.0), ("K_WTS", 1.0)):
         assert float(other[name]) == pytest.approx(sign * float(same[name]), rel=ROUND_OFF)
-    assert float(plain.motion(*motion)["tau"]) != float(same["tau"])
+    assert float(plain.evaluate_motion(*motion)["tau"]) != float(same["tau"])
 
 
 def test_no_ratio_is_refused_in_one_line():
@@ -55,7 +55,7 @@ def test_torques_are_those_of_virtual_work(ratio):
     law, rng = default_spring(ratio=ratio, **ERROR), np.random.default_rng(1)
     for phi1, wound in zip(rng.uniform(-20.0, 20.0, 20), rng.uniform(-1.5e-3, 1.5e-3, 20), strict=True):
         phi2 = phi1 / ratio + wound
-        found = law.motion(phi1, 0.0, phi2, 0.0)
+        found = law.evaluate_motion(phi1, 0.0, phi2, 0.0)
         h, k = 1e-5, 1e-7
         tau1 = (energy(law, phi1 - h, phi2) - energy(law, phi1 + h, phi2)) / (2.0 * h)
         tau2 = (energy(law, phi1, phi2 - k) - energy(law, phi1, phi2 + k)) / (2.0 * k)
@@ -68,10 +68,10 @@ def test_damping_takes_power_from_both_flanges():
     """What the damper takes, d der(phi_rel)^2, is what the flanges put in beside the spring."""
     law = default_spring(d=2.0, **ERROR)
     motion = (3.0, 40.0, 0.0305, -0.3)
-    still, moving = law.motion(3.0, 0.0, 0.0305, 0.0), law.motion(*motion)
+    still, moving = law.evaluate_motion(3.0, 0.0, 0.0305, 0.0), law.evaluate_motion(*motion)
     put_in = -sum(float(moving[f"tau{i}"] - still[f"tau{i}"]) * motion[2 * i - 1] for i in (1, 2))
     h = 1e-7
-    ahead = law.motion(3.0 + 40.0 * h, 0.0, 0.0305 - 0.3 * h, 0.0)
+    ahead = law.evaluate_motion(3.0 + 40.0 * h, 0.0, 0.0305 - 0.3 * h, 0.0)
     rate = float(ahead["phi_rel"] - still["phi_rel"]) / h
     assert put_in == pytest.approx(2.0 * rate**2, rel=1e-5)
 
@@ -115,41 +115,42 @@ def test_lost_motion_is_what_the_catalogue_measures_beside_the_wind_up():
     """The angle between +4 % and -4 % of rated torque grows by it."""
     stiff, loose = default_spring(), default_spring(lost_motion=PLAY)
     torque = 0.04 * stiff.joint.rated_torque
-    wound = [law.windup([torque, -torque])["phi_rel"] for law in (stiff, loose)]
+    wound = [law.evaluate_torque([torque, -torque])["phi_rel"] for law in (stiff, loose)]
     before, after = (float(angle[0] - angle[1]) for angle in wound)
     assert after - before == pytest.approx(PLAY, rel=1e-3)  # as `WIDTH` says
-    beyond = [float(law.windup(4.0)["phi_rel"]) for law in (stiff, loose)]
+    beyond = [float(law.evaluate_torque(4.0)["phi_rel"]) for law in (stiff, loose)]
     assert beyond[1] - beyond[0] == pytest.approx(0.5 * PLAY, rel=1e-6)  # half, to six digits of the table
 
 
 def test_the_stiffness_with_play_is_the_slope_of_the_torque_and_has_no_jump():
     law = default_spring(lost_motion=PLAY)
     phi, h = np.linspace(-6e-4, 6e-4, 241), 1e-9
-    found = law.motion(0.0, 0.0, phi, 0.0)
-    slope = (law.motion(0.0, 0.0, phi + h, 0.0)["tau"] - law.motion(0.0, 0.0, phi - h, 0.0)["tau"]) / (
-        2.0 * h
-    )
+    found = law.evaluate_motion(0.0, 0.0, phi, 0.0)
+    slope = (
+        law.evaluate_motion(0.0, 0.0, phi + h, 0.0)["tau"]
+        - law.evaluate_motion(0.0, 0.0, phi - h, 0.0)["tau"]
+    ) / (2.0 * h)
     assert found["K_WTS"] == pytest.approx(slope, rel=1e-5)  # round-off 1e-16/h over 20 N.m/rad
     assert 1.0 / found["K_WTS"] == pytest.approx(1.0 / found["K_FTS"] + 1.0 / found["K_TS"], rel=1e-9)
     play, pair = 0.01 * 5.0 / (0.5 * PLAY), float(default_spring().curve.stiffness[0])
     assert float(law.curve.stiffness[0]) == pytest.approx(1.0 / (1.0 / play + 1.0 / pair), rel=ROUND_OFF)
-    fine = law.motion(0.0, 0.0, np.linspace(-6e-4, 6e-4, 20001), 0.0)["K_WTS"]
+    fine = law.evaluate_motion(0.0, 0.0, np.linspace(-6e-4, 6e-4, 20001), 0.0)["K_WTS"]
     # a step of 6e-8 rad; the stiffness rises by 3e3 N.m/rad within some 3e-5 rad
     assert np.max(np.abs(np.diff(fine))) < 20.0
 
 
 def test_a_loop_with_lost_motion_opens_as_stated_and_closes_in_energy():
     law = default_spring(lost_motion=PLAY, hysteresis_loss=2e-4, error_2=1e-4)
-    memory, angle = law.rest(), []
+    memory, angle = law.initial_history(), []
     for tau in (5.0, 0.0, -5.0, 0.0):
-        out, memory = law.loaded(tau, memory)
+        out, memory = law.advance_torque(tau, memory)
         angle.append(float(out["phi_rel"]))
     assert angle[1] - angle[3] == pytest.approx(2e-4, rel=1e-9)
-    memory, work, before = law.rest(), 0.0, None
+    memory, work, before = law.initial_history(), 0.0, None
     for phi1, phi2 in zip(
         np.linspace(0.0, 9.0, 4001), 1e-3 * np.sin(np.linspace(0.0, 9.0, 4001)), strict=True
     ):
-        out, memory = law.driven((phi1, 0.0, phi1 / 100.0 + phi2, 0.0), memory)
+        out, memory = law.advance_motion((phi1, 0.0, phi1 / 100.0 + phi2, 0.0), memory)
         now = (phi1, phi1 / 100.0 + phi2, float(out["tau1"]), float(out["tau2"]))
         if before:
             work -= sum(0.5 * (now[i + 2] + before[i + 2]) * (now[i] - before[i]) for i in (0, 1))
@@ -167,11 +168,11 @@ EXPONENTS = (1.0 / 3.0, 0.6, 0.9, 1.0)
 
 
 def drive(law=None, **changes):
-    return replace(default("harmonic_drive", law).values, **changes)
+    return replace(load_default("harmonic_drive", law).values, **changes)
 
 
 def spring(law=None, loss=ARCMIN, **changes):
-    return HarmonicDriveSpring.of(drive(law, hysteresis_loss=loss, **changes))
+    return HarmonicDriveSpring.tabulate(drive(law, hysteresis_loss=loss, **changes))
 
 
 def along(law, path, memory=None):
@@ -186,8 +187,8 @@ def along(law, path, memory=None):
 
 def stored(law, memory):
     """Energy [J] of the midline and of the sliders."""
-    springs = memory[:SLIDERS] ** 2 / (2.0 * law.hysteresis.stiffness)
-    return float(law.curve.energy(abs(memory[SLIDERS]))) + float(np.sum(springs))
+    springs = memory[:HYSTERESIS_SLIDERS] ** 2 / (2.0 * law.hysteresis.stiffness)
+    return float(law.curve.energy(abs(memory[HYSTERESIS_SLIDERS]))) + float(np.sum(springs))
 
 
 # The friction of the theorem
@@ -195,9 +196,9 @@ def stored(law, memory):
 
 def test_exponent_is_that_of_the_pairs_law():
     """K_N in proportion to P as Hu 2023 is printed; between few spots and many ones with a roughness."""
-    assert float(hysteresis.exponent(drive())) == pytest.approx(1.0, abs=1e-12)
+    assert float(hysteresis.stiffness_exponent(drive())) == pytest.approx(1.0, abs=1e-12)
     rough = drive("roughness")
-    assert 1.0 / (1.0 + rough.hurst) < hysteresis.exponent(rough) < 1.0
+    assert 1.0 / (1.0 + rough.hurst) < hysteresis.stiffness_exponent(rough) < 1.0
 
 
 def friction_left(m, travel):
@@ -207,7 +208,7 @@ def friction_left(m, travel):
 
 
 def shared(m):
-    return (np.array(share) for share in hysteresis.shares(m))
+    return (np.array(share) for share in hysteresis.slider_shares(m))
 
 
 @pytest.mark.parametrize("m", EXPONENTS)
@@ -252,10 +253,10 @@ def test_first_friction_is_the_extra_stiffness():
 def test_branches_at_zero_torque_are_apart_as_stated(law, loss, stiffness):
     """After rated torque one way and the other, step by step; 1 % is asked for, found is round-off."""
     found = spring(law, loss * ARCMIN, hysteresis_stiffness=stiffness)
-    memory, place = MEMORY.rest(), []
+    memory, place = HISTORY_LAYOUT.virgin_history(), []
     for start, end in pairwise((0.0, 1.0, 0.0, -1.0, 0.0, 1.0, 0.0)):
         for tau in found.joint.rated_torque * np.linspace(start, end, 12):
-            out, memory = found.loaded(tau, memory)
+            out, memory = found.advance_torque(tau, memory)
         place.append(float(out["phi_rel"]))
     assert place[1] - place[3] == pytest.approx(loss * ARCMIN, rel=1e-9)
     assert place[5] == pytest.approx(place[1], rel=1e-9)
@@ -290,7 +291,7 @@ def test_without_a_stated_stiffness_it_is_that_of_the_midline_or_as_needed():
 )
 def test_what_cannot_be_is_refused(changes, words):
     with pytest.raises(ValueError) as refusal:  # noqa: PT011 the words follow
-        HarmonicDriveSpring.of(drive(**changes))
+        HarmonicDriveSpring.tabulate(drive(**changes))
     assert words in str(refusal.value)
     assert "\n" not in str(refusal.value)
 
@@ -301,15 +302,17 @@ def test_what_cannot_be_is_refused(changes, words):
 def test_without_hysteresis_it_is_the_spring_of_the_midline():
     law, phi = spring(loss=0.0), np.linspace(-3e-3, 3e-3, 41)
     load, stiffness = law.curve.derivatives(np.abs(phi), 1)
-    found = law.motion(0.0, 0.0, phi, 0.0)
+    found = law.evaluate_motion(0.0, 0.0, phi, 0.0)
     assert np.array_equal(found["tau"], np.copysign(load, phi))
     assert np.array_equal(found["K_WTS"], stiffness)
     torque, loss, memory = along(law, phi)
     assert np.array_equal(torque, found["tau"])
     assert not np.any(loss)
-    assert not np.any(memory[:SLIDERS])
+    assert not np.any(memory[:HYSTERESIS_SLIDERS])
     tau = np.linspace(-25.0, 25.0, 41)
-    assert np.array_equal(law.windup(tau)["phi_rel"], np.copysign(law.curve.inverse(np.abs(tau)), tau))
+    assert np.array_equal(
+        law.evaluate_torque(tau)["phi_rel"], np.copysign(law.curve.inverse(np.abs(tau)), tau)
+    )
 
 
 def test_masings_rule_and_memory_wiped_out_by_the_larger_loop():
@@ -328,7 +331,7 @@ def test_masings_rule_and_memory_wiped_out_by_the_larger_loop():
     after, _, memory = along(law, [-a], minor)
     assert after == pytest.approx(plain, abs=ROUND_OFF)
     untouched = along(law, [-a], turned)[2]
-    assert memory[:SLIDERS] == pytest.approx(untouched[:SLIDERS], abs=ROUND_OFF)
+    assert memory[:HYSTERESIS_SLIDERS] == pytest.approx(untouched[:HYSTERESIS_SLIDERS], abs=ROUND_OFF)
 
 
 def test_ten_times_larger_steps_agree():
@@ -344,17 +347,17 @@ def test_ten_times_larger_steps_agree():
 def test_work_is_stored_or_lost_along_random_paths():
     """Work of a step: the midline's energy, and trapezia between places where a slider begins to slip."""
     law, rng = spring(), np.random.default_rng(3)
-    memory, work, previous = law.rest(), 0.0, 0.0
+    memory, work, previous = law.initial_history(), 0.0, 0.0
     for end in np.cumsum(rng.normal(0.0, 4e-4, 400)):
-        start = memory[SLIDERS]
+        start = memory[HYSTERESIS_SLIDERS]
         k, limit, way = law.hysteresis.stiffness, law.hysteresis.limit, end - start
-        slips = start + (np.copysign(limit, way) - memory[:SLIDERS]) / k
+        slips = start + (np.copysign(limit, way) - memory[:HYSTERESIS_SLIDERS]) / k
         inside = slips[(slips - start) * (slips - end) < 0.0]
         corners = np.sort(np.array([start, *inside, end]))[:: 1 if way > 0.0 else -1]
-        friction = law.hysteresis.moved(memory[: SLIDERS + 2], corners).traction
+        friction = law.hysteresis.advance(memory[: HYSTERESIS_SLIDERS + 2], corners).traction
         work += float(np.sum(0.5 * (friction[1:] + friction[:-1]) * np.diff(corners)))
         work += float(law.curve.energy(abs(end)) - law.curve.energy(abs(start)))
-        out, memory = law.driven((0.0, 0.0, end, 0.0), memory)
+        out, memory = law.advance_motion((0.0, 0.0, end, 0.0), memory)
         assert float(out["E_loss"]) >= previous
         previous = float(out["E_loss"])
         assert work == pytest.approx(stored(law, memory) + previous, rel=1e-9, abs=1e-12)
@@ -363,10 +366,10 @@ def test_work_is_stored_or_lost_along_random_paths():
 
 def test_compliance_is_the_inverse_of_the_spring():
     law, rng = spring("roughness"), np.random.default_rng(5)
-    memory = other = law.rest()
+    memory = other = law.initial_history()
     for tau in rng.normal(0.0, 4.0, 200):
-        wound, memory = law.loaded(tau, memory)
-        turned, other = law.driven((0.0, 0.0, wound["phi_rel"], 0.0), other)
+        wound, memory = law.advance_torque(tau, memory)
+        turned, other = law.advance_motion((0.0, 0.0, wound["phi_rel"], 0.0), other)
         assert turned["tau"] == pytest.approx(tau, rel=ROUND_OFF, abs=ROUND_OFF)
         assert (turned["K_WTS"], turned["E_loss"]) == (wound["K_WTS"], wound["E_loss"])
         assert np.array_equal(memory, other)
@@ -376,6 +379,6 @@ def test_memory_given_stays_as_it_is():
     law = spring()
     memory = along(law, [3e-4])[2]
     before = memory.copy()
-    law.driven((0.0, 0.0, -5e-4, 0.0), memory)
-    law.loaded(-1.0, memory)
+    law.advance_motion((0.0, 0.0, -5e-4, 0.0), memory)
+    law.advance_torque(-1.0, memory)
     assert np.array_equal(memory, before)

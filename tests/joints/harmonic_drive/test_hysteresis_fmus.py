@@ -13,8 +13,8 @@ from conftest import Fmu, run_host
 from natives import Host, close, jacobian, slope
 
 from jointfmu.joints import MODELS
-from jointfmu.joints.harmonic_drive.spring import MEMORY
-from jointfmu.parameters import default
+from jointfmu.joints.harmonic_drive.spring import HISTORY_LAYOUT
+from jointfmu.parameters import load_default
 
 SPRING, COMPLIANCE = NAMES = ("HarmonicDriveSpring", "HarmonicDriveCompliance")
 LOOP = {"hysteresis_loss": 3e-4}
@@ -46,7 +46,7 @@ def instance(native: Path, fmus: Path) -> Iterator[Any]:
 
     yield make
     for one in made:
-        one.free()
+        one.free_instance()
 
 
 def path(name: str, given: Mapping[str, float] = LOOP) -> list[dict[str, float]]:
@@ -83,14 +83,14 @@ def begin(instance: Fmu, values: Mapping[str, float]) -> Fmu:
 
 def package(name: str, changes: Mapping[str, float] = LOOP) -> Iterator[Any]:
     """Send inputs; get outputs and memory after the way to them, step by step, from their start."""
-    model, file = MODELS[name], default("harmonic_drive").with_values(changes, "user", "test")
-    spring = model.spring(file.values)
+    model, file = MODELS[name], load_default("harmonic_drive").with_values(changes, "user", "test")
+    spring = model.tabulate(file.values)
     inputs = {v.name: v.start for v in model.inputs}
-    memory = model.evolve(spring, inputs, model.rest(spring))[1]
+    memory = model.advance(spring, inputs, model.initial_history(spring))[1]
     found = None
     while True:
         inputs |= yield found
-        out, memory = model.evolve(spring, inputs, memory)
+        out, memory = model.advance(spring, inputs, memory)
         found = {k: float(v) for k, v in out.items()}, memory
 
 
@@ -105,10 +105,10 @@ def saved(instance: Fmu) -> bytes:
 def memory_of(instance: Fmu) -> np.ndarray:
     """Memory after the last accepted inputs, from the end of a native state as snapshot.c writes it."""
     inputs = sum(v.causality == "input" for v in instance.variables.values())
-    tail = f"<{2 * MEMORY.size}d{inputs}dIIQ"
+    tail = f"<{2 * HISTORY_LAYOUT.size}d{inputs}dIIQ"
     numbers = struct.unpack(tail, saved(instance)[-struct.calcsize(tail) :])
     assert numbers[-2] == 1  # there are accepted inputs
-    return np.array(numbers[: 2 * MEMORY.size]).reshape(2, MEMORY.size)[numbers[-3]]
+    return np.array(numbers[: 2 * HISTORY_LAYOUT.size]).reshape(2, HISTORY_LAYOUT.size)[numbers[-3]]
 
 
 # The package's numbers
@@ -157,7 +157,7 @@ def test_derivatives_are_those_at_the_accepted_state(
     found, driven = begin(host(name, version), given), "tau" if name == COMPLIANCE else "phi2"
     size = {"tau": 1.0, "phi1": 0.1, "phi2": 1e-3, "w1": 1.0, "w2": 0.01, "temperature": 10.0}
     for inputs in path(name, given)[:-1]:
-        found.set(inputs)
+        found.set_values(inputs)
         found.step()
         for part in (0.4, -0.7):
             there = inputs | {driven: inputs[driven] + 0.3 * part * size[driven]}
@@ -217,11 +217,11 @@ def test_a_master_may_go_back(instance: Any, flavour: str) -> None:
     way = path(SPRING)
     for inputs in way[:3]:
         for one in (plain, used):
-            one.set(inputs)
+            one.set_values(inputs)
             one.step()
     state, time = used.fmu.getFMUState(), used.time
     for inputs in way[4:]:
-        used.set(inputs)
+        used.set_values(inputs)
         used.step()
     used.fmu.setFMUState(state)
     used.fmu.freeFMUState(state)
@@ -229,7 +229,7 @@ def test_a_master_may_go_back(instance: Any, flavour: str) -> None:
     assert used.get() == plain.get()
     for inputs in way[3:]:
         for one in (plain, used):
-            one.set(inputs)
+            one.set_values(inputs)
             one.step()
         assert used.get() == plain.get()
 
@@ -238,10 +238,10 @@ def test_a_master_may_go_back(instance: Any, flavour: str) -> None:
 def test_a_refused_step_changes_nothing(instance: Any, flavour: str) -> None:
     found, plain = (begin(instance(SPRING, flavour), LOOP) for _ in range(2))
     for inputs in path(SPRING):
-        found.set({"phi2": float("nan")})
+        found.set_values({"phi2": float("nan")})
         found.refused(found.step)
         for one in (found, plain):
-            one.set(inputs)
+            one.set_values(inputs)
             one.step()
         assert found.get() == plain.get()
 
@@ -270,7 +270,7 @@ def test_another_process_goes_on(
 ) -> None:
     found = begin(instance(SPRING, flavour), LOOP)
     for phi in TURNS[:3]:
-        found.set({"phi2": phi})
+        found.set_values({"phi2": phi})
         found.step()
     data = tmp_path / "state"
     data.write_bytes(saved(found))
@@ -288,9 +288,9 @@ def test_inputs_that_move_in_a_step_come_from_where_they_are(host: Host) -> None
     """FMI 2: to the turning point by set, on from there by a derivative, in one step."""
     moving, plain = (begin(host(SPRING, "fmi2"), LOOP) for _ in range(2))
     for one in (moving, plain):
-        one.set({"phi2": 6e-4})
+        one.set_values({"phi2": 6e-4})
     plain.step()
-    plain.set({"phi2": 6e-4 + 1.0 * -2e-4})
+    plain.set_values({"phi2": 6e-4 + 1.0 * -2e-4})
     plain.step()
     slope(moving, phi2=-2e-4)
     moving.step()
@@ -299,7 +299,7 @@ def test_inputs_that_move_in_a_step_come_from_where_they_are(host: Host) -> None
 
 def test_a_tuned_parameter_acts_from_the_accepted_point_on(host: Host, version: str) -> None:
     found = begin(host(SPRING, version), LOOP)
-    found.set({"phi2": 6e-4})
+    found.set_values({"phi2": 6e-4})
     found.step()
     before = found.get()
     assert found.at({"hysteresis_loss": 3e-4}) == before

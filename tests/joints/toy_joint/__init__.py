@@ -3,16 +3,16 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from jointfmu.joints.kind import Kind
-from jointfmu.joints.model import Model, Ramp, Variable
-from jointfmu.quantity import Checked, Number, quantity
+from jointfmu.joints.kind import JointKind
+from jointfmu.joints.model import LoadRamp, Model, Variable
+from jointfmu.quantity import CheckedParameters, Number, quantity_field
 
 
 @dataclass(frozen=True, kw_only=True)
-class LinearSpring(Checked):
+class LinearSpring(CheckedParameters):
     """A spring that obeys Hooke's law."""
 
-    c: float = quantity("N/m", "stiffness", gt=0.0)
+    c: float = quantity_field("N/m", "stiffness", gt=0.0)
 
     def motion(self, v: Mapping[str, Number]) -> dict[str, Number]:
         """Force [N] and stiffness [N/m] at s_rel [m]."""
@@ -24,16 +24,18 @@ MODEL = Model(
     joint="toy",
     doc="Linear spring: motion in, force out",
     parameters=LinearSpring,
-    spring=lambda parameters: parameters,
+    tabulate=lambda parameters: parameters,
     inputs=(Variable("s_rel", "m", "elongation", 1e-3),),
     outputs=(
         Variable("f", "N", "force on side 2, restoring", 10.0),
         Variable("K", "N/m", "stiffness -df/ds_rel", 1e4),
     ),
     evaluate=LinearSpring.motion,
-    outside=(),
-    ramp=Ramp("s_rel", 1e-3, 1e-5),
+    validity_limits=(),
+    ramp=LoadRamp("s_rel", 1e-3, 1e-5),
     dependencies={"K": ()},
-    linear={"f": {"s_rel": "parameters"}},
+    linear_factors={"f": {"s_rel": "parameters"}},
 )
-KIND = Kind(name="toy", package=__name__, default="spring", laws={"linear": LinearSpring}, models=(MODEL,))
+KIND = JointKind(
+    name="toy", package=__name__, default_stem="spring", laws={"linear": LinearSpring}, models=(MODEL,)
+)

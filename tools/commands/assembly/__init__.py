@@ -6,43 +6,43 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from jointfmu.joints import KINDS
-from jointfmu.parameters import ParameterFile, default, load
+from jointfmu.parameters import ParameterFile, load_default, load_parameter_file
 
-from ...command_line.common import argument
+from ...command_line.common import declare_argument
 from ...drawing.vdi2230 import proof_load
-from ...fields.clamped import clamped
-from ...judgement import Judgement, judge, known_height
-from ...pressure import overload
+from ...fields.clamped import field_adapters
+from ...judgement import Plausibility, assess_law, find_height
+from ...pressure import warn_overload
 
 if TYPE_CHECKING:
     from ...fem.geometry import Assembly
 
 
-def assembly_arguments(sub: argparse.ArgumentParser) -> None:
+def declare_assembly_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the assembly file, `--preload` and `--params`."""
-    argument(sub, "assembly", Path, "assembly file: bodies and bolts (TOML)", "ASSEMBLY")
-    argument(sub, "--preload", float, "preload of each bolt [N]", "F", default=9e3)
-    argument(sub, "--params", Path, "parameter file of the interface (default: box specimen)")
+    declare_argument(parser, "assembly", Path, "assembly file: bodies and bolts (TOML)", "ASSEMBLY")
+    declare_argument(parser, "--preload", float, "preload of each bolt [N]", "F", default=9e3)
+    declare_argument(parser, "--params", Path, "parameter file of the interface (default: box specimen)")
 
 
-def joint_file(path: Path | None) -> ParameterFile:
+def load_joint_file(path: Path | None) -> ParameterFile:
     """Load the parameter file of a bolted joint; None: the default file of the first bolted joint.
 
     Raises ValueError for a file of another joint.
     """
-    joints = list(clamped())
+    joints = list(field_adapters())
     if path is None:
-        return default(joints[0])
-    file = load(path)
+        return load_default(joints[0])
+    file = load_parameter_file(path)
     if file.joint not in joints:
         allowed = " or ".join(repr(name) for name in joints)
         raise ValueError(f"{path}: joint = {file.joint!r}, expected a parameter file of a {allowed}")
     return file
 
 
-def check_bolts(option: str, file: ParameterFile) -> None:
+def check_bolt_stiffness(option: str, file: ParameterFile) -> None:
     """Raise ValueError if an option for the whole joint is set and the file has no bolt stiffness."""
-    if not file.flat.get("bolt_stiffness", 0.0) > 0.0:
+    if not file.values_by_name.get("bolt_stiffness", 0.0) > 0.0:
         raise ValueError(
             f"{option} without the stiffness of a bolt: expected bolt_stiffness above 0 N/m in the file of "
             "--params"
@@ -50,19 +50,23 @@ def check_bolts(option: str, file: ParameterFile) -> None:
 
 
 def judge_assembly(
-    file: ParameterFile, assembly: "Assembly", preload: float, mean: float, peak: float
-) -> Judgement:
+    file: ParameterFile, assembly: "Assembly", preload: float, mean_pressure: float, peak_pressure: float
+) -> Plausibility:
     """Judge the stiffness of an assembly's contact, and the preload against the proof load of the bolts.
 
     preload       : preload of each bolt [N]
     mean_pressure : mean contact pressure [Pa]
     peak_pressure : greatest contact pressure [Pa]
     """
-    judgement = judge(KINDS[file.joint].law_of(file.values), [mean], known_height(file), peak)
-    return judgement.with_warnings(overload("preload", preload, proof_load(assembly.bolts.hole_diameter)))
+    judgement = assess_law(
+        KINDS[file.joint].extract_law(file.values), [mean_pressure], find_height(file), peak_pressure
+    )
+    return judgement.with_warnings(
+        warn_overload("preload", preload, proof_load(assembly.bolts.hole_diameter))
+    )
 
 
-def with_assembly(file: ParameterFile, assembly: "Assembly", whole: bool) -> ParameterFile:
+def with_assembly(file: ParameterFile, assembly: "Assembly", include_bolts: bool) -> ParameterFile:
     """Return the joint's parameters with contact area and materials of an assembly.
 
     include_bolts : also set number and rows of the bolts
@@ -74,13 +78,13 @@ def with_assembly(file: ParameterFile, assembly: "Assembly", whole: bool) -> Par
     for name in ("side1", "side2"):
         body = getattr(assembly, name)
         changes |= {f"{name}.E": body.E, f"{name}.nu": body.nu}
-    if whole:
+    if include_bolts:
         rows = assembly.outer_rows()
         changes |= {"n_bolts": float(len(assembly.bolts.positions))}
         if rows is None:
             changes |= {"row_bolts": 1.0, "row_distance": assembly.bolts.head_diameter}
         else:
             changes |= {"row_bolts": float(rows[0].sum()), "row_distance": assembly.row_distance}
-    old = file.flat
+    old = file.values_by_name
     new = {name: v for name, v in changes.items() if not math.isclose(old[name], v, rel_tol=1e-12)}
     return file.with_values(new, "derived", f"from the assembly {assembly.name}")

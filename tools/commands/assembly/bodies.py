@@ -8,45 +8,47 @@ import numpy as np
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
 
-from ...command_line.common import argument
-from ...drawing.reading import number, numbers
-from ...drawing.tables import threads
-from ...fields.clamped import clamping
+from ...command_line.common import declare_argument
+from ...drawing.reading import parse_number, parse_numbers
+from ...drawing.tables import read_threads
+from ...fields.clamped import field_adapter
 from ...fields.nodal_result import ContactField
-from . import check_bolts
+from . import check_bolt_stiffness
 
 if TYPE_CHECKING:
     from ...fem.geometry import Assembly
 
-OUTSIDE = 1e-6
+MAX_OUTSIDE_DISTANCE = 1e-6
 """Largest distance [m] of a bolt outside the bounding rectangle of the contact."""
-COVERED, MOVED = 0.9, 0.01
+MIN_AREA_RATIO, MAX_CENTROID_OFFSET_RATIO = 0.9, 0.01
 """Limits for a warning: contact area over the area of the plates [1], at least, and distance between the
 centroids of contact and plates over the plate size [1], at most."""
 
 
-def arguments(step: argparse.ArgumentParser) -> None:
+def declare_body_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options that describe the plates and the bolts."""
-    step.add_argument(
+    parser.add_argument(
         "--thickness",
         nargs=2,
         metavar=("T1", "T2"),
         help="thicknesses of both plates [mm]: write the whole joint (sides = elastic), with plates as large "
         "as the rectangle around the contact (default: write the interface only)",
     )
-    step.add_argument(
+    parser.add_argument(
         "--attached",
         choices=("faces", "edge", "heads"),
         help="faces of the plates that move with the connected bodies (default: faces)",
     )
     text = "position of each bolt in the plane of the file [mm] (default: positions of --params, relative to "
-    argument(step, "--bolts", str, text + "the centroid)", "X,Y", nargs="+")
-    argument(step, "--hole", str, "diameter of the clearance holes [mm] (default: from --params)", "D")
+    declare_argument(parser, "--bolts", str, text + "the centroid)", "X,Y", nargs="+")
+    declare_argument(
+        parser, "--hole", str, "diameter of the clearance holes [mm] (default: from --params)", "D"
+    )
     text = "outer diameter of head or washer [mm] (default: from --params, else the hexagon head of the "
-    argument(step, "--head", str, text + "largest bolt that passes the hole)", "D")
+    declare_argument(parser, "--head", str, text + "largest bolt that passes the hole)", "D")
 
 
-def check(args: argparse.Namespace, file: ParameterFile) -> None:
+def check_body_arguments(args: argparse.Namespace, file: ParameterFile) -> None:
     """Raise ValueError before the work starts if the options do not describe a whole joint."""
     if args.attached and not args.thickness:
         raise ValueError(f"--attached {args.attached} without --thickness: expected that of both plates")
@@ -56,10 +58,10 @@ def check(args: argparse.Namespace, file: ParameterFile) -> None:
     if args.thickness and not args.out:
         raise ValueError("--thickness without --out: expected the file for the whole joint")
     if args.thickness:
-        check_bolts("--thickness", file)
+        check_bolt_stiffness("--thickness", file)
 
 
-def places(args: argparse.Namespace, file: ParameterFile, field: ContactField) -> Array | None:
+def find_bolt_positions(args: argparse.Namespace, file: ParameterFile, field: ContactField) -> Array | None:
     """Positions (b, 2) [m] of the bolts in the plane of the field; None if they are not known.
 
     Without `--bolts` they are the positions of the parameter file, relative to the centroid of the field. If
@@ -67,12 +69,20 @@ def places(args: argparse.Namespace, file: ParameterFile, field: ContactField) -
 
     Raises ValueError if `--bolts` has too few or too many positions, or one outside the contact.
     """
-    low, high = np.min(field.position, axis=0) - OUTSIDE, np.max(field.position, axis=0) + OUTSIDE
+    low, high = (
+        np.min(field.position, axis=0) - MAX_OUTSIDE_DISTANCE,
+        np.max(field.position, axis=0) + MAX_OUTSIDE_DISTANCE,
+    )
     if not args.bolts:
-        positions = clamping(file.joint).layout(file.values).bolts + field.centroid
+        positions = field_adapter(file.joint).bolt_layout(file.values).bolts + field.centroid
         inside = np.all((positions > low) & (positions < high))
         return positions if len(positions) == file.values.n_bolts and inside else None
-    stated = np.array([numbers("bolts", text, "mm", "m", by=",", count=2, least=None) for text in args.bolts])
+    stated = np.array(
+        [
+            parse_numbers("bolts", text, "mm", "m", separator=",", count=2, lower_bound=None)
+            for text in args.bolts
+        ]
+    )
     if len(stated) != file.values.n_bolts:
         raise ValueError(f"--bolts has {len(stated)} places, expected {file.values.n_bolts:g}: n_bolts")
     for i, place in enumerate(stated):
@@ -86,8 +96,8 @@ def places(args: argparse.Namespace, file: ParameterFile, field: ContactField) -
     return stated
 
 
-def assembly(
-    args: argparse.Namespace, file: ParameterFile, field: ContactField, at: Array | None
+def build_assembly(
+    args: argparse.Namespace, file: ParameterFile, field: ContactField, bolt_positions: Array | None
 ) -> tuple["Assembly", list[str]]:
     """Build the plates of a field with bolts; returns the assembly and notes about its shape.
 
@@ -98,14 +108,14 @@ def assembly(
     """
     from ...fem.geometry import Assembly, BoltList, Plate, check_thickness
 
-    if at is None:
+    if bolt_positions is None:
         raise ValueError("--thickness without the places of the bolts: expected --bolts X,Y for each")
-    hole, head = _sizes(args, file)
-    thick = [number("thickness", text, "mm", "m") for text in args.thickness]
+    hole, head = _hole_and_head_diameters(args, file)
+    thick = [parse_number("thickness", text, "mm", "m") for text in args.thickness]
     low, high = np.min(field.position, axis=0), np.max(field.position, axis=0)
     (length, width), area = high - low, float(np.sum(field.area))
     # a node in the middle of its area lies half an area's width inside the edge: enlarge to the true area
-    missing_area = area + len(at) * 0.25 * np.pi * hole**2 - length * width
+    missing_area = area + len(bolt_positions) * 0.25 * np.pi * hole**2 - length * width
     half = 0.5 * (length + width)
     extension = np.sqrt(max(half**2 + missing_area, 0.0)) - half
     extension = float(np.clip(extension, 0.0, np.sqrt(field.area.max())))
@@ -114,13 +124,13 @@ def assembly(
             length=float(length + extension),
             width=float(width + extension),
             thickness=thick[i],
-            E=file.flat[f"side{i + 1}.E"],
-            nu=file.flat[f"side{i + 1}.nu"],
+            E=file.values_by_name[f"side{i + 1}.E"],
+            nu=file.values_by_name[f"side{i + 1}.nu"],
             density=1.0,  # not used: the analysis is static
         )
         for i in range(2)
     ]
-    places = at - 0.5 * (low + high)
+    places = bolt_positions - 0.5 * (low + high)
     bolts = BoltList(
         x=tuple(places[:, 0].tolist()), y=tuple(places[:, 1].tolist()), hole_diameter=hole, head_diameter=head
     )
@@ -132,7 +142,7 @@ def assembly(
     ]
     centroid = -0.25 * np.pi * hole**2 * places.sum(axis=0) / plates.contact_area
     offset = np.hypot(*(field.centroid - 0.5 * (low + high) - centroid)) / max(length, width)
-    if (share := area / plates.contact_area) < COVERED or offset > MOVED:
+    if (share := area / plates.contact_area) < MIN_AREA_RATIO or offset > MAX_CENTROID_OFFSET_RATIO:
         notes.append(
             f"the contact covers {share:.0%} of that rectangle, its centroid is off by {offset:.1%} of the "
             "plate size: plates of another outline have another stiffness"
@@ -140,15 +150,15 @@ def assembly(
     return plates, notes
 
 
-def _sizes(args: argparse.Namespace, file: ParameterFile) -> tuple[float, float]:
+def _hole_and_head_diameters(args: argparse.Namespace, file: ParameterFile) -> tuple[float, float]:
     """Diameters [m] of clearance hole and head. Raises ValueError if one of them is not known."""
-    layout = clamping(file.joint).layout(file.values)
-    hole = number("hole", args.hole, "mm", "m") if args.hole else layout.hole
+    layout = field_adapter(file.joint).bolt_layout(file.values)
+    hole = parse_number("hole", args.hole, "mm", "m") if args.hole else layout.hole
     if not hole > 0.0:
         raise ValueError("--thickness without the holes of the bolts: expected --hole")
     if args.head:
-        return hole, number("head", args.head, "mm", "m")
-    fitting = [thread for thread in threads().values() if thread.d < hole]
+        return hole, parse_number("head", args.head, "mm", "m")
+    fitting = [thread for thread in read_threads().values() if thread.d < hole]
     if layout.head <= 0.0 and not fitting:
         raise ValueError(f"no bolt of the tables passes a hole of {1e3 * hole:g} mm: expected --head")
     return hole, layout.head or max(fitting, key=lambda thread: thread.d).hexagon

@@ -5,27 +5,27 @@ import math
 from collections.abc import Mapping, Sequence
 
 from jointfmu.contact.laws import ROUGHNESS_LAW
-from jointfmu.contact.roughness import GAMMA, height, level
+from jointfmu.contact.roughness import GAMMA, combined_height, predicted_stiffness
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Number
 
-from ...command_line.common import Answer
+from ...command_line.common import CommandResult
 from ...fractal import zhao_roughness
-from ...judgement import Judgement
+from ...judgement import Plausibility
 from ...pressure import judge_file
-from ...shown import aligned
+from ...shown import align_columns
 from ...surfaces.form import ScanRoughness
-from ...surfaces.heights import Areal, Heights
-from ...surfaces.joint_parameters import changes, doubt, meaning
-from ...surfaces.results import Estimate, Identification, Result
+from ...surfaces.heights import ArealMap, Heights
+from ...surfaces.joint_parameters import dimension_meaning, fractal_parameters, undetermined_reason
+from ...surfaces.results import Estimate, FractalResult, Identification
 from . import synthesize
 
-UNIT_PRESSURE = 1e6
+LEVEL_PRESSURE = 1e6
 """Pressure [Pa] at which the stiffness per area is reported."""
 
 
-def as_dict(
+def build_document(
     identified: Identification,
     heights: Sequence[Heights],
     file: ParameterFile | None,
@@ -35,48 +35,48 @@ def as_dict(
 
     file : parameter file with the identified surface, if one is made
     """
-    joints = joints_shown(args, file)
-    judged = (judge_file(file) if file else Judgement(None, ())).document()
+    joints = reported_joints(args, file)
+    judged = (judge_file(file) if file else Plausibility(None, ())).to_json()
     return {
         "files": list(identified.names),
-        "kind": "areal" if isinstance(heights[0], Areal) else "profile",
+        "kind": "areal" if isinstance(heights[0], ArealMap) else "profile",
         "pair": len(heights) == 2,
         "side": identified.side,
-        "textured": identified.textured,
+        "textured": identified.is_textured,
         "form": args.form,
-        "roughness": _roughness_dict(identified, file),
+        "roughness": _roughness_document(identified, file),
         "repairs": [
             {"file": n, "repair": r.name, "count": r.count, "points": r.points, "effect": r.effect[2:]}
             for n, r in identified.repairs
         ],
-        "results": [_result_dict(result, args.gamma) for result in identified.results],
-        "determined": {joint: doubt(identified, joint) is None for joint in joints},
-        "not_determined": {joint: why for joint in joints if (why := doubt(identified, joint))},
-        "joints": {joint: _joint_dict(identified, joint, args) for joint in joints},
+        "results": [_result_document(result, args.gamma) for result in identified.results],
+        "determined": {joint: undetermined_reason(identified, joint) is None for joint in joints},
+        "not_determined": {joint: why for joint in joints if (why := undetermined_reason(identified, joint))},
+        "joints": {joint: _joint_document(identified, joint, args) for joint in joints},
         "law": file.law if file else None,
         "level": judged["level"],
         "written": str(args.out) if args.out else None,
-        "warnings": [*warnings(identified, file, args), *judged["warnings"]],
+        "warnings": [*collect_warnings(identified, file, args), *judged["warnings"]],
     }
 
 
-def _joint_dict(
+def _joint_document(
     identified: Identification, joint: str, args: argparse.Namespace
 ) -> Mapping[str, float | None]:
-    determined = args.force or doubt(identified, joint) is None
-    values = changes(identified, joint, args.method)
-    return {name: _number(value) if determined else None for name, (value, _) in values.items()}
+    determined = args.force or undetermined_reason(identified, joint) is None
+    values = fractal_parameters(identified, joint, args.method)
+    return {name: _convert_number(value) if determined else None for name, (value, _) in values.items()}
 
 
-def _roughness_dict(identified: Identification, file: ParameterFile | None) -> dict[str, object]:
+def _roughness_document(identified: Identification, file: ParameterFile | None) -> dict[str, object]:
     """JSON object of the roughness: heights of each scan and of both sides together, stiffness per area."""
-    h = together(identified, file)
+    h = combined_height(identified, file)
     return {
         "scans": [
             {
                 "file": name,
-                "Sq" if scan.areal else "Rq": scan.rms,
-                "Sa" if scan.areal else "Ra": scan.mean,
+                "Sq" if scan.is_areal else "Rq": scan.rms,
+                "Sa" if scan.is_areal else "Ra": scan.mean_absolute,
                 "h": scan.h,
                 "slope": scan.slope,
             }
@@ -86,123 +86,132 @@ def _roughness_dict(identified: Identification, file: ParameterFile | None) -> d
         "shortest_wave": identified.scans[0].shortest_wave,
         "h": h,
         "slope": identified.slope,
-        "stiffness_per_MPa": level(UNIT_PRESSURE, h),
+        "stiffness_per_MPa": predicted_stiffness(LEVEL_PRESSURE, h),
     }
 
 
-def _result_dict(result: Result, gamma: float) -> dict[str, object]:
+def _result_document(result: FractalResult, gamma: float) -> dict[str, object]:
     fit = result.fit
     return {
         "method": result.method,
         "direction": result.direction,
         "range": [fit.low, fit.high],
         "decades": fit.decades,
-        "self_affine": fit.straight,
-        "at_bound": fit.at_bound,
+        "self_affine": fit.is_self_affine,
+        "at_bound": fit.is_at_bound,
         "drift_of_D": fit.drift,
         "deviation": fit.deviation,
-        "profile": {"D": _interval(result.profile.D), "G": _interval(result.profile.G)},
-        "surface": {"D_s": _interval(result.areal.D_s), "G_s": _interval(result.areal.G_s)},
-        "G_eq30": _number(zhao_roughness(result.profile.G.value, fit.H, gamma)),
+        "profile": {"D": _interval_document(result.profile.D), "G": _interval_document(result.profile.G)},
+        "surface": {"D_s": _interval_document(result.areal.D_s), "G_s": _interval_document(result.areal.G_s)},
+        "G_eq30": _convert_number(zhao_roughness(result.profile.G.value, fit.H, gamma)),
     }
 
 
-def _interval(estimate: Estimate) -> dict[str, float | None]:
-    return {"value": _number(estimate.value), "low": _number(estimate.low), "high": _number(estimate.high)}
+def _interval_document(estimate: Estimate) -> dict[str, float | None]:
+    return {
+        "value": _convert_number(estimate.value),
+        "low": _convert_number(estimate.low),
+        "high": _convert_number(estimate.high),
+    }
 
 
-def _number(value: Number) -> float | None:
+def _convert_number(value: Number) -> float | None:
     """Convert a number for JSON; None if it is not finite, which means not determined."""
     return float(value) if math.isfinite(float(value)) else None
 
 
-def together(identified: Identification, file: ParameterFile | None) -> float:
+def combined_height(identified: Identification, file: ParameterFile | None) -> float:
     """Rms height h [m] of both sides together: from the parameter file if it has one, else from the scans."""
-    return height(file.roughness if file else {}) or identified.h
+    return combined_height(file.roughness if file else {}) or identified.h
 
 
-def joints_shown(args: argparse.Namespace, file: ParameterFile | None) -> list[str]:
+def reported_joints(args: argparse.Namespace, file: ParameterFile | None) -> list[str]:
     """Joints to report: that of the parameter file, else all joints with a rough surface."""
     return [file.joint] if file else [name for name, kind in KINDS.items() if kind.surfaces]
 
 
-def warnings(identified: Identification, file: ParameterFile | None, args: argparse.Namespace) -> list[str]:
+def collect_warnings(
+    identified: Identification, file: ParameterFile | None, args: argparse.Namespace
+) -> list[str]:
     """Collect warnings about the identified surface and the written parameter file."""
     lines = list(identified.warnings)
     if not file or not args.out:
         return lines
-    why = doubt(identified, file.joint)
-    names = "hurst" if file.law == ROUGHNESS_LAW else ", ".join(changes(identified, file.joint))
+    why = undetermined_reason(identified, file.joint)
+    names = "hurst" if file.law == ROUGHNESS_LAW else ", ".join(fractal_parameters(identified, file.joint))
     alone = ["slope"] if file.law == ROUGHNESS_LAW else []
     if why and not args.force:
         lines.append(f"{names} stay as they were, since they are not determined ({why}); --force writes them")
     else:
         alone.append(names)
-    if alone and len(identified.sides) < len({name[-1] for name in file.roughness}):
+    if alone and len(identified.roughness_by_side) < len({name[-1] for name in file.roughness}):
         side = f"values of side {identified.side} alone"
         lines.append(f"{', '.join(alone)} are {side}; give both scans for the values of the pair")
     return lines
 
 
-def answer(
+def build_result(
     identified: Identification,
     heights: Sequence[Heights],
     file: ParameterFile | None,
     args: argparse.Namespace,
-) -> Answer:
+) -> CommandResult:
     """Build the result of the command: lines, table and warnings.
 
     file : parameter file with the identified surface, if one is made
     """
     lines = [
-        f"{surface.name}: {synthesize.size(surface)}; {_scan(scan)}"
+        f"{surface.name}: {synthesize.format_size(surface)}; {_format_scan(scan)}"
         for surface, scan in zip(heights, identified.scans, strict=True)
     ]
-    lines.append(_level(identified, file))
+    lines.append(_format_level(identified, file))
     if len(heights) == 2:
         lines.append("equivalent surface of the pair: structure functions and spectra added")
     lines += [f"repaired in {name}: {repair}" for name, repair in identified.repairs]
     heads = ("method", "direction", "range [m]", "D, profile", "G, profile [m]", "D_s, surface", "G_s [m]")
-    lines += aligned([heads, *(_row(result) for result in identified.results)])
+    lines += align_columns([heads, *(_format_row(result) for result in identified.results)])
     lines.append("brackets: 95 % confidence intervals")
-    for joint in joints_shown(args, file):
-        lines.append(f"{joint} ({meaning(joint)}, {_values(identified, joint, args)}")
-    judgement = judge_file(file) if file and file.law != ROUGHNESS_LAW else Judgement(None, ())
+    for joint in reported_joints(args, file):
+        lines.append(f"{joint} ({dimension_meaning(joint)}, {_format_values(identified, joint, args)}")
+    judgement = judge_file(file) if file and file.law != ROUGHNESS_LAW else Plausibility(None, ())
     prefix = f"law {file.law}: " if file else ""
-    texts = [*(f"{prefix}{text}" for text in judgement.warnings), *warnings(identified, file, args)]
-    return Answer(
-        document=as_dict(identified, heights, file, args),
-        lines=[*lines, *(f"{prefix}{line}" for line in judgement.lines())],
+    texts = [*(f"{prefix}{text}" for text in judgement.warnings), *collect_warnings(identified, file, args)]
+    return CommandResult(
+        document=build_document(identified, heights, file, args),
+        lines=[*lines, *(f"{prefix}{line}" for line in judgement.format_lines())],
         notes=[f"warning: {text}" for text in texts],
-        written=(args.out, args.plot),
+        written_files=(args.out, args.plot),
     )
 
 
-def _scan(scan: ScanRoughness) -> str:
-    q, a = ("Sq", "Sa") if scan.areal else ("Rq", "Ra")
+def _format_scan(scan: ScanRoughness) -> str:
+    q, a = ("Sq", "Sa") if scan.is_areal else ("Rq", "Ra")
     return (
-        f"{q} = {1e6 * scan.rms:.4g} um, {a} = {1e6 * scan.mean:.4g} um, "
+        f"{q} = {1e6 * scan.rms:.4g} um, {a} = {1e6 * scan.mean_absolute:.4g} um, "
         f"h = {1e6 * scan.h:.4g} um of waves up to {1e3 * scan.longest_wave:.4g} mm"
     )
 
 
-def _level(identified: Identification, file: ParameterFile | None) -> str:
-    h = together(identified, file)
+def _format_level(identified: Identification, file: ParameterFile | None) -> str:
+    h = combined_height(identified, file)
     known = {name[2] for name in file.roughness} if file else set()
-    if "h" in (file.roughness if file else ()) or len(known | {str(n) for n in identified.sides}) == 2:
+    if (
+        "h" in (file.roughness if file else ())
+        or len(known | {str(n) for n in identified.roughness_by_side}) == 2
+    ):
         what = "both sides" if identified.side != "both" else "two sides like it"
     else:
         what = "one side, the other smooth"
     return (
-        f"stiffness per area p/({GAMMA:g} h) = {level(UNIT_PRESSURE, h):.3g} N/m3 per MPa "
+        f"stiffness per area p/({GAMMA:g} h) = {predicted_stiffness(LEVEL_PRESSURE, h):.3g} N/m3 per MPa "
         f"(h = {1e6 * h:.4g} um of {what})"
     )
 
 
-def _values(identified: Identification, joint: str, args: argparse.Namespace) -> str:
-    values = changes(identified, joint, args.method)
+def _format_values(identified: Identification, joint: str, args: argparse.Namespace) -> str:
+    values = fractal_parameters(identified, joint, args.method)
     method = next(iter(values.values()))[1].method
-    why = doubt(identified, joint)
+    why = undetermined_reason(identified, joint)
     if why and not args.force:
         return f"{method}): {', '.join(values)} not determined: {why}"
     return f"{method}): " + ", ".join(
@@ -211,23 +220,25 @@ def _values(identified: Identification, joint: str, args: argparse.Namespace) ->
     )
 
 
-def _row(result: Result) -> tuple[str, ...]:
+def _format_row(result: FractalResult) -> tuple[str, ...]:
     profile, areal = result.profile, result.areal
     return (
         result.method,
         result.direction,
         f"{result.fit.low:.2e} to {result.fit.high:.2e}",
-        _bracket(profile.D, ".3f"),
-        _bracket(profile.G, ".2e"),
+        _format_interval(profile.D, ".3f"),
+        _format_interval(profile.G, ".2e"),
         *(
-            (_bracket(areal.D_s, ".3f"), _bracket(areal.G_s, ".2e"))
+            (_format_interval(areal.D_s, ".3f"), _format_interval(areal.G_s, ".2e"))
             if result.direction in ("areal", "profile")
             else ("", "")
         ),
     )
 
 
-def _bracket(estimate: Estimate, style: str) -> str:
+def _format_interval(estimate: Estimate, number_format: str) -> str:
     if not math.isfinite(estimate.value):
         return "not determined"
-    return f"{estimate.value:{style}} [{estimate.low:{style}}, {estimate.high:{style}}]"
+    return (
+        f"{estimate.value:{number_format}} [{estimate.low:{number_format}}, {estimate.high:{number_format}}]"
+    )

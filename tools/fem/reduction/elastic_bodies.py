@@ -17,35 +17,37 @@ from jointfmu.joints.bolted_joint.bodies import DIGITS, MODES, ElasticBodies
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.quantity import Array
 
-from ..whole_joint import AXES, Linear
+from ..whole_joint import AXES, LinearJoint
 from .patch_work import (
+    FrictionPoints,
     LinearContact,
-    PatchWork,
-    Shears,
-    Surface,
-    into_slip,
-    moved,
-    on_circles,
-    rigid_shifts,
-    stiffness,
-    turned,
-    work_of,
+    PatchFit,
+    ShearStates,
+    compute_friction_work,
+    evaluate_friction,
+    patch_rotations,
+    place_sliders,
+    rigid_displacement_matrix,
+    shear_combinations,
+    stick_stiffness_matrix,
 )
-from .states import cell_means, closed_by, states
+from .states import approach_at_stiffness, averaging_matrix, compute_states
 
-LEAST = 1e-3
+MIN_SINGULAR_VALUE_RATIO = 1e-3
 """Smallest singular value of a mode over the largest [1], for states of equal energy."""
-OPENING = 0.5
+OPENING_STATE_WEIGHT = 0.5
 """Weight of states with opening over the weight of states in shear alone [1], in the decomposition: the
 loss in partial slip needs more accurate modes."""
 STIFFNESS_DIGITS = 6
 """Significant digits of the stiffness of a mode: more than for its displacements, fewer than those in which
 different processors agree."""
-GAIN = 10.0
+MAX_GAIN = 10.0
 """Largest factor [1] of the correction of modal displacements at the points, and of its inverse."""
 
 
-def elastic_bodies(linear: Linear, spring: BoltedJointSpring, normal: Array, preload: float) -> ElasticBodies:
+def reduce_bodies(
+    linear: LinearJoint, spring: BoltedJointSpring, normal_stiffness: Array, preload: float
+) -> ElasticBodies:
     """Modes of the bodies at the points, patches and bolts of a joint, for a preload [N] per bolt.
 
     linear           : linear finite-element model of the joint
@@ -57,61 +59,66 @@ def elastic_bodies(linear: Linear, spring: BoltedJointSpring, normal: Array, pre
     joint = linear.joint
     interface = joint.interface
     bolts = joint.bolts - interface.centroid
-    motions, deformed = states(linear, spring, normal, preload)
-    fields = _modes(linear, deformed, motions)
-    stretch = joint.stretch.T @ fields
+    motions, deformed = compute_states(linear, spring, normal_stiffness, preload)
+    fields = _energy_modes(linear, deformed, motions)
+    stretch = joint.elongation_matrix.T @ fields
     patches = spring.patches
-    start = spring.tightened(preload, 0.0)
-    point_stiffness, patch_approach = spring.curve.derivatives(start, 1)[1], spring.pressed(start)
-    ratio = spring.foundation().ratio
+    start = spring.preloaded_approach(preload, 0.0)
+    point_stiffness, patch_approach = spring.curve.derivatives(start, 1)[1], spring.patch_approach(start)
+    ratio = spring.foundation().stiffness_ratio
     patch_shear = ratio * spring.curve.derivatives(patch_approach, 1)[1]
     x, y = patches.position.T
-    traces = [joint.apart(axis) @ fields for axis in AXES]
-    springs, area = interface.area * normal, spring.joint.A_0
-    opening = _matched(
-        cell_means(joint, spring.shape.position, normal) @ traces[2],
-        _planes(spring.shape.position),
+    traces = [joint.relative_displacement_matrix(axis) @ fields for axis in AXES]
+    springs, area = interface.area * normal_stiffness, spring.joint.A_0
+    opening = _match_stiffness(
+        averaging_matrix(joint, spring.shape.position, normal_stiffness) @ traces[2],
+        _rigid_opening(spring.shape.position),
         area * spring.shape.share * point_stiffness,
-        _planes(interface.centred),
+        _rigid_opening(interface.centred_position),
         traces[2],
         springs,
     )
-    combinations = into_slip(motions)
+    combinations = shear_combinations(motions)
     deformation = -(deformed @ combinations.T)
-    shears = Shears((combinations @ motions)[:, (0, 1, 5)], (fields.T @ (linear.bodies @ deformation)).T)
-    law, approach = spring.foundation(), closed_by(spring, normal)
-    surface = Surface(interface.area, approach, rigid_shifts(interface.centred))
+    shears = ShearStates(
+        (combinations @ motions)[:, (0, 1, 5)], (fields.T @ (linear.body_matrix @ deformation)).T
+    )
+    law, approach = spring.foundation(), approach_at_stiffness(spring, normal_stiffness)
+    surface = FrictionPoints(interface.area, approach, rigid_displacement_matrix(interface.centred_position))
     tangential = np.concatenate(traces[:2])
-    target_work = work_of(law, shears, surface, tangential)
-    means = cell_means(joint, patches.position, normal)
-    patch_rows = _matched(
+    target_work = compute_friction_work(law, shears, surface, tangential)
+    means = averaging_matrix(joint, patches.position, normal_stiffness)
+    patch_rows = _match_stiffness(
         np.concatenate([means @ traces[0], means @ traces[1]]),
-        rigid_shifts(patches.position),
+        rigid_displacement_matrix(patches.position),
         np.tile(area * patches.share * patch_shear, 2),
-        surface.rigid,
+        surface.rigid_displacement,
         tangential,
         np.tile(ratio * springs, 2),
     )
-    rotations = turned(interface.centred, patches, means, traces)
-    unit = Shears(np.eye(6)[:, (0, 1, 5)], ((linear.bodies @ (linear.moved - linear.rigid)).T @ fields))
+    rotations = patch_rotations(interface.centred_position, patches, means, traces)
+    unit = ShearStates(
+        np.eye(6)[:, (0, 1, 5)],
+        ((linear.body_matrix @ (linear.displacement - linear.rigid_displacement)).T @ fields),
+    )
     linear_contact = LinearContact(
         unit,
-        stiffness(moved(law, unit, surface, tangential)[1], interface.area),
+        stick_stiffness_matrix(evaluate_friction(law, unit, surface, tangential)[1], interface.area),
         linear.stiffness.diagonal(),
     )
-    sliders = on_circles(patches, area, patch_approach, rotations)
-    patch_rows = PatchWork(law, shears, *sliders, target_work, linear_contact).fitted(patch_rows)
+    sliders = place_sliders(patches, area, patch_approach, rotations)
+    patch_rows = PatchFit(law, shears, *sliders, target_work, linear_contact).fit(patch_rows)
     displacements = {"opening": opening, "stretch": stretch}
     displacements |= dict(zip(("patch_x", "patch_y"), np.split(patch_rows, 2), strict=True))
     displacements["patch_around"] = patches.radius[:, None] * rotations
-    largest, values = _rounded(displacements)
+    largest, values = _normalise_modes(displacements)
     positions = {"x": x, "y": y, "bolt_x": bolts[:, 0], "bolt_y": bolts[:, 1]}
-    values |= {name: _listed(coordinates) for name, coordinates in positions.items()}
+    values |= {name: _to_tuple(coordinates) for name, coordinates in positions.items()}
     modal_stiffness = tuple(float(f"{k:.{STIFFNESS_DIGITS}g}") for k in 1.0 / largest**2)
     return ElasticBodies(stiffness=modal_stiffness, **values)
 
 
-def _rounded(moves: dict[str, Array]) -> tuple[Array, dict[str, Any]]:
+def _normalise_modes(displacements: dict[str, Array]) -> tuple[Array, dict[str, Any]]:
     """Normalise the modes to a largest displacement of 1 and round them.
 
     The sign makes the first largest displacement positive: otherwise the last bits of a processor would
@@ -121,20 +128,20 @@ def _rounded(moves: dict[str, Array]) -> tuple[Array, dict[str, Any]]:
 
     Returns the largest displacement (k) of each mode, and the normalised rows as flat tuples.
     """
-    largest = np.max(np.abs(np.concatenate(list(moves.values()))), axis=0)
-    rounded = {name: np.round(rows / largest, DIGITS) for name, rows in moves.items()}
+    largest = np.max(np.abs(np.concatenate(list(displacements.values()))), axis=0)
+    rounded = {name: np.round(rows / largest, DIGITS) for name, rows in displacements.items()}
     all_rows = np.concatenate(list(rounded.values()))
     first = np.argmax(np.abs(all_rows), axis=0)
     sign = np.sign(all_rows[first, np.arange(len(first))])
-    return largest, {name: _listed((sign * rows).ravel()) for name, rows in rounded.items()}
+    return largest, {name: _to_tuple((sign * rows).ravel()) for name, rows in rounded.items()}
 
 
-def _listed(values: Array) -> tuple[float, ...]:
+def _to_tuple(values: Array) -> tuple[float, ...]:
     """Convert an array (n) to a tuple, with 0.0 for -0.0."""
     return tuple((values + 0.0).tolist())
 
 
-def _modes(linear: Linear, states: Array, motions: Array) -> Array:
+def _energy_modes(linear: LinearJoint, states: Array, motions: Array) -> Array:
     """Modes (n, k), orthonormal in the energy norm.
 
     The first modes span the response of the linear joint to unit motions; the others come from the proper
@@ -143,40 +150,42 @@ def _modes(linear: Linear, states: Array, motions: Array) -> Array:
     states  : (n, s) [m] deformation of the bodies
     motions : (s, 6) [m, rad] of side 2 in these states
     """
-    linear_modes = _unit(_of_unit_energy(linear.moved - linear.rigid, linear), linear)
-    states = _of_unit_energy(states, linear)
+    linear_modes = _decompose(
+        _scale_to_unit_energy(linear.displacement - linear.rigid_displacement, linear), linear
+    )
+    states = _scale_to_unit_energy(states, linear)
     for _ in range(2):  # repeated Gram-Schmidt: two passes are enough
-        states = states - linear_modes @ (linear_modes.T @ (linear.bodies @ states))
-    weight = np.where(np.any(motions[:, 2:5], axis=1), OPENING, 1.0)
-    other_modes = _unit(weight * states, linear)[:, : MODES - linear_modes.shape[1]]
+        states = states - linear_modes @ (linear_modes.T @ (linear.body_matrix @ states))
+    weight = np.where(np.any(motions[:, 2:5], axis=1), OPENING_STATE_WEIGHT, 1.0)
+    other_modes = _decompose(weight * states, linear)[:, : MODES - linear_modes.shape[1]]
     return np.concatenate([linear_modes, other_modes], axis=1)
 
 
-def _of_unit_energy(fields: Array, linear: Linear) -> Array:
+def _scale_to_unit_energy(fields: Array, linear: LinearJoint) -> Array:
     """Scale displacements (n, s) [m] to unit energy norm, u K u = 1."""
-    return np.asarray(fields / np.sqrt(np.sum(fields * (linear.bodies @ fields), axis=0)))
+    return np.asarray(fields / np.sqrt(np.sum(fields * (linear.body_matrix @ fields), axis=0)))
 
 
-def _unit(fields: Array, linear: Linear) -> Array:
+def _decompose(fields: Array, linear: LinearJoint) -> Array:
     """Proper orthogonal decomposition of fields (n, s) in the energy norm.
 
     Returns orthonormal modes (n, k), the largest singular value first, without those below
     MIN_SINGULAR_VALUE_RATIO.
     """
-    energy, vectors = np.linalg.eigh(fields.T @ (linear.bodies @ fields))
+    energy, vectors = np.linalg.eigh(fields.T @ (linear.body_matrix @ fields))
     energy, vectors = energy[::-1], vectors[:, ::-1]
-    count = int(np.sum(energy > LEAST**2 * energy[0]))
+    count = int(np.sum(energy > MIN_SINGULAR_VALUE_RATIO**2 * energy[0]))
     return np.asarray(fields @ (vectors[:, :count] / np.sqrt(energy[:count])))
 
 
-def _planes(place: Array) -> Array:
+def _rigid_opening(position: Array) -> Array:
     """Opening (n, 3) at positions (n, 2) [m] by rigid-body motions: along z, about x and about y."""
-    x, y = place.T
+    x, y = position.T
     return np.stack([np.ones_like(x), y, -x], axis=1)
 
 
-def _matched(
-    means: Array, rigid: Array, weight: Array, all_rigid: Array, trace: Array, springs: Array
+def _match_stiffness(
+    means: Array, rigid: Array, mean_stiffness: Array, all_rigid: Array, trace: Array, spring_stiffness: Array
 ) -> Array:
     """Correct the modal displacements (n, k) of few springs until they are as stiff as all springs.
 
@@ -187,13 +196,16 @@ def _matched(
     trace          : (q, k) displacement of all springs by the modes
     spring_stiffness : (q) [N/m] of all springs
     """
-    few_rigid_part = np.linalg.solve(rigid.T @ (weight[:, None] * rigid), rigid.T @ (weight[:, None] * means))
+    few_rigid_part = np.linalg.solve(
+        rigid.T @ (mean_stiffness[:, None] * rigid), rigid.T @ (mean_stiffness[:, None] * means)
+    )
     all_rigid_part = np.linalg.solve(
-        all_rigid.T @ (springs[:, None] * all_rigid), all_rigid.T @ (springs[:, None] * trace)
+        all_rigid.T @ (spring_stiffness[:, None] * all_rigid),
+        all_rigid.T @ (spring_stiffness[:, None] * trace),
     )
     few_bending, all_bending = means - rigid @ few_rigid_part, trace - all_rigid @ all_rigid_part
-    target = all_bending.T @ (springs[:, None] * all_bending)
+    target = all_bending.T @ (spring_stiffness[:, None] * all_bending)
     target += 1e-6 * np.trace(target) / len(target) * np.eye(len(target))
-    ratio, vectors = la.eigh(few_bending.T @ (weight[:, None] * few_bending), target)
-    gain = np.minimum(1.0 / np.sqrt(np.maximum(ratio, GAIN**-2)), GAIN)
+    ratio, vectors = la.eigh(few_bending.T @ (mean_stiffness[:, None] * few_bending), target)
+    gain = np.minimum(1.0 / np.sqrt(np.maximum(ratio, MAX_GAIN**-2)), MAX_GAIN)
     return np.asarray(rigid @ all_rigid_part + few_bending @ (vectors * gain) @ vectors.T @ target)

@@ -15,31 +15,31 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.spatial import cKDTree
 
-from jointfmu.mechanics.footprint.friction import CIRCLE
+from jointfmu.mechanics.footprint.friction import CIRCLE_POINTS
 from jointfmu.mechanics.footprint.shape import FrictionPatches
 from jointfmu.mechanics.sliders import Foundation
 from jointfmu.quantity import Array
 
-PART = np.sqrt(0.5)
+PAIR_WEIGHT = np.sqrt(0.5)
 """Weight of each of two motions that are combined [1]."""
-STAY = 0.1
+REGULARISATION_WEIGHT = 0.1
 """Weight of the change of the patch displacements (regularisation) over the weight of the forces [1]."""
-STEPS = 10
+MAX_STEPS = 10
 """Largest number of steps of the Levenberg-Marquardt method."""
-FIRST_DAMPING, LESS, MORE, MOST_DAMPING = 1e-3, 0.2, 5.0, 1e6
+INITIAL_DAMPING, DAMPING_DECREASE, DAMPING_INCREASE, MAX_DAMPING = 1e-3, 0.2, 5.0, 1e6
 """Levenberg-Marquardt damping over the diagonal of the normal equations [1]: initial value, factor after a
 successful step, factor after a failed step, largest value."""
-EXACT = 300.0
+STIFFNESS_WEIGHT = 300.0
 """Weight of the error of the stick stiffness, relative to the joint stiffness, over the weight of forces and
 losses [1]. The stiffness error stays below 2e-4. A larger weight makes the valley of the objective too narrow
 for the steps."""
-TINY = 1e-15
+MIN_DISPLACEMENT = 1e-15
 """Smallest tangential displacement in divisions [m]; also the smallest relative loss in scales [1]."""
-LEAST = 0.03
+MIN_RELATIVE_SCALE = 0.03
 """Displacement of the patches by a mode over that by the most effective mode [1]: lower limit for scales."""
 
 
-def into_slip(motion: Array) -> Array:
+def shear_combinations(motion: Array) -> Array:
     """Coefficients (w, s) that combine s states to w states in shear.
 
     The combinations are the states along x, along y and about z alone (the same number for each axis), then
@@ -52,11 +52,11 @@ def into_slip(motion: Array) -> Array:
     identity = np.eye(len(motion))
     axes = [identity[single[motion[single][:, axis] != 0.0]] for axis in (0, 1, 5)]
     pairs = [(axes[i], axes[j], sign) for i, j in ((0, 1), (0, 2), (1, 2)) for sign in (1.0, -1.0)]
-    return np.concatenate([*axes, *(PART * (a + sign * b) for a, b, sign in pairs)])
+    return np.concatenate([*axes, *(PAIR_WEIGHT * (a + sign * b) for a, b, sign in pairs)])
 
 
 @dataclass(frozen=True)
-class Shears:
+class ShearStates:
     """States of the joint in shear.
 
     motion            : (s, 3) [m, rad] of side 2 along x, along y and about z
@@ -64,11 +64,11 @@ class Shears:
     """
 
     motion: Array
-    amplitude: Array
+    modal_coordinates: Array
 
 
 @dataclass(frozen=True)
-class Surface:
+class FrictionPoints:
     """Points (n) with friction: quadrature points of the contact, or sliders of the patches.
 
     area               : (n) [m2]
@@ -79,11 +79,11 @@ class Surface:
 
     area: Array
     approach: Array
-    rigid: Array
+    rigid_displacement: Array
 
 
 @dataclass(frozen=True)
-class Work:
+class FrictionWork:
     """Friction forces and loss in s states in shear.
 
     forces       : generalised friction forces (s, 3 + k) [N, N.m] on three motions and k modes
@@ -92,26 +92,30 @@ class Work:
     """
 
     forces: Array
-    stuck: Array
+    stick_forces: Array
     loss: Array
 
     @cached_property
-    def scale(self) -> tuple[Array, Array, Array]:
+    def scales(self) -> tuple[Array, Array, Array]:
         """Scales of forces, stick forces (s, 3 + k) and losses (s): their relative errors count alike."""
-        return _size(self.forces), _size(self.stuck), np.maximum(self.loss, TINY * np.max(self.loss))
+        return (
+            _force_scale(self.forces),
+            _force_scale(self.stick_forces),
+            np.maximum(self.loss, MIN_DISPLACEMENT * np.max(self.loss)),
+        )
 
 
-def _size(forces: Array) -> Array:
+def _force_scale(forces: Array) -> Array:
     """Scale (s, 3 + k) of generalised forces: one each for x and y, for the moment, and for the modes."""
     force, moment, modes = (np.linalg.norm(f, axis=1) for f in (forces[:, :2], forces[:, 2:3], forces[:, 3:]))
     lever_arm = np.max(moment) / np.max(force)
     force = np.hypot(force, moment / lever_arm)
-    modes = np.maximum(modes, LEAST * np.max(modes / force) * force)
+    modes = np.maximum(modes, MIN_RELATIVE_SCALE * np.max(modes / force) * force)
     return np.stack([force, force, lever_arm * force, *[modes] * (forces.shape[1] - 3)], axis=1)
 
 
 @dataclass(frozen=True)
-class Friction:
+class MonotonicFriction:
     """Friction law in monotonic loading at s states and n points; all arrays (s, n).
 
     u, v              : tangential displacement along x and y [m]
@@ -125,26 +129,26 @@ class Friction:
 
     u: Array
     v: Array
-    size: Array
-    secant: Array
-    tangent: Array
-    stick: Array
+    magnitude: Array
+    secant_stiffness: Array
+    tangent_stiffness: Array
+    stick_stiffness: Array
     loss: Array
-    rate: Array
+    loss_derivative: Array
 
     @classmethod
-    def of(cls, law: Foundation, approach: Array, shift: Array) -> "Friction":
+    def evaluate(cls, law: Foundation, approach: Array, displacement: Array) -> "MonotonicFriction":
         """Friction at approaches (n) [m] and tangential displacements (s, 2 n) [m]: along x, then along y."""
-        u, v = np.split(shift, 2, axis=1)
-        size = np.maximum(np.hypot(u, v), TINY)
+        u, v = np.split(displacement, 2, axis=1)
+        size = np.maximum(np.hypot(u, v), MIN_DISPLACEMENT)
         stick, tangent = (
-            law.ratio * law.curve.derivatives(x, 1)[1]
-            for x in (approach, approach - law.ratio / law.friction * size)
+            law.stiffness_ratio * law.curve.derivatives(x, 1)[1]
+            for x in (approach, approach - law.stiffness_ratio / law.friction_coefficient * size)
         )
         stick = np.broadcast_to(stick, size.shape)
-        force = np.minimum(law.backbone(approach, size), stick * size)
+        force = np.minimum(law.virgin_traction(approach, size), stick * size)
         rate = 4.0 * (force - tangent * size)
-        return cls(u, v, size, force / size, tangent, stick, law.loop(approach, size)[0], rate)
+        return cls(u, v, size, force / size, tangent, stick, law.cycle_energies(approach, size)[0], rate)
 
 
 @dataclass(frozen=True)
@@ -156,18 +160,18 @@ class LinearContact:
     joint_stiffness   : (w) [N/m, N.m] of the joint along each motion
     """
 
-    ways: Shears
-    shear: Array
-    joint: Array
+    unit_states: ShearStates
+    contact_stiffness: Array
+    joint_stiffness: Array
 
     @cached_property
-    def size(self) -> Array:
+    def stiffness_scale(self) -> Array:
         """Scale (w, w) [N/m, N, N.m] of stiffness errors: geometric mean of the joint stiffnesses."""
-        return np.sqrt(np.outer(self.joint, self.joint))
+        return np.sqrt(np.outer(self.joint_stiffness, self.joint_stiffness))
 
 
 @dataclass(frozen=True)
-class PatchWork:
+class PatchFit:
     """Least-squares problem: friction of m patches that equals the friction of all quadrature points.
 
     law            : friction law of the interface
@@ -179,125 +183,159 @@ class PatchWork:
     """
 
     law: Foundation
-    shears: Shears
-    places: Surface
-    turned: Array
-    aim: Work
-    tight: LinearContact
+    states: ShearStates
+    sliders: FrictionPoints
+    rotation_displacement: Array
+    target_work: FrictionWork
+    linear_contact: LinearContact
 
-    def moved(self, shears: Shears, rows: Array) -> tuple[Array, Friction]:
+    def evaluate_sliders(
+        self, states: ShearStates, patch_displacement: Array
+    ) -> tuple[Array, MonotonicFriction]:
         """Evaluate the friction of all sliders in states of the joint.
 
         patch_displacement : (2 m, k) [1] displacement of the patches along x, then along y, by the modes
 
         Returns the displacement (2 c m, 3 + k) of the sliders by motions and modes, and their friction.
         """
-        count = len(self.turned) // len(rows)
-        by_modes = np.concatenate([np.tile(half, (count, 1)) for half in np.split(rows, 2)]) + self.turned
-        return moved(self.law, shears, self.places, by_modes)
+        count = len(self.rotation_displacement) // len(patch_displacement)
+        by_modes = (
+            np.concatenate([np.tile(half, (count, 1)) for half in np.split(patch_displacement, 2)])
+            + self.rotation_displacement
+        )
+        return evaluate_friction(self.law, states, self.sliders, by_modes)
 
-    def fitted(self, rows: Array) -> Array:
+    def fit(self, patch_displacement: Array) -> Array:
         """Fit the patch displacements (2 m, k) by the Levenberg-Marquardt method, from given initial values.
 
         The preloaded joint keeps the stiffness of its finite elements: in the equilibrium of the linear
         joint, the contact stores the same energy. There, forces on modes have only an effect of second order.
         """
-        typical = np.sqrt(np.mean(rows**2, axis=0))
-        weight = STAY * np.sqrt(len(self.aim.loss) / rows.size) / np.maximum(typical, LEAST * typical.max())
-        weight, initial, damping = np.broadcast_to(weight, rows.shape), rows, FIRST_DAMPING
-        work_residual = self._missed(rows, weight * (rows - initial))
-        stiffness_residual = self._tightened(rows)
-        for _ in range(STEPS):
-            work_jacobian = np.concatenate([self._slopes(rows), np.diag(weight.ravel())])
-            stiffness_jacobian = self._tightened_slopes(rows)
+        typical = np.sqrt(np.mean(patch_displacement**2, axis=0))
+        weight = (
+            REGULARISATION_WEIGHT
+            * np.sqrt(len(self.target_work.loss) / patch_displacement.size)
+            / np.maximum(typical, MIN_RELATIVE_SCALE * typical.max())
+        )
+        weight, initial, damping = (
+            np.broadcast_to(weight, patch_displacement.shape),
+            patch_displacement,
+            INITIAL_DAMPING,
+        )
+        work_residual = self._work_residual(patch_displacement, weight * (patch_displacement - initial))
+        stiffness_residual = self._stiffness_residual(patch_displacement)
+        for _ in range(MAX_STEPS):
+            work_jacobian = np.concatenate([self._work_jacobian(patch_displacement), np.diag(weight.ravel())])
+            stiffness_jacobian = self._stiffness_jacobian(patch_displacement)
             hessian = work_jacobian.T @ work_jacobian
             gradient = work_jacobian.T @ work_residual + stiffness_jacobian.T @ stiffness_residual
             objective = work_residual @ work_residual + stiffness_residual @ stiffness_residual
-            while damping < MOST_DAMPING:
+            while damping < MAX_DAMPING:
                 damped = hessian + stiffness_jacobian.T @ stiffness_jacobian
                 damped += damping * np.diag(np.diag(hessian))
-                trial = rows + np.linalg.solve(damped, -gradient).reshape(rows.shape)
-                residuals = self._missed(trial, weight * (trial - initial)), self._tightened(trial)
+                trial = patch_displacement + np.linalg.solve(damped, -gradient).reshape(
+                    patch_displacement.shape
+                )
+                residuals = (
+                    self._work_residual(trial, weight * (trial - initial)),
+                    self._stiffness_residual(trial),
+                )
                 if sum(residual @ residual for residual in residuals) < objective:
                     break
-                damping *= MORE
+                damping *= DAMPING_INCREASE
             else:
-                return rows
-            rows, (work_residual, stiffness_residual), damping = trial, residuals, LESS * damping
-        return rows
+                return patch_displacement
+            patch_displacement, (work_residual, stiffness_residual), damping = (
+                trial,
+                residuals,
+                DAMPING_DECREASE * damping,
+            )
+        return patch_displacement
 
-    def _tightened(self, rows: Array) -> Array:
+    def _stiffness_residual(self, patch_displacement: Array) -> Array:
         """Weighted relative error (w (w + 1) / 2) [1] of the stick stiffness of the patches."""
-        _, friction = self.moved(self.tight.ways, rows)
-        error = (stiffness(friction, self.places.area) - self.tight.shear) / self.tight.size
-        return np.asarray(EXACT * error[np.triu_indices(len(error))])
+        _, friction = self.evaluate_sliders(self.linear_contact.unit_states, patch_displacement)
+        error = (
+            stick_stiffness_matrix(friction, self.sliders.area) - self.linear_contact.contact_stiffness
+        ) / self.linear_contact.stiffness_scale
+        return np.asarray(STIFFNESS_WEIGHT * error[np.triu_indices(len(error))])
 
-    def _tightened_slopes(self, rows: Array) -> Array:
+    def _stiffness_jacobian(self, patch_displacement: Array) -> Array:
         """Derivative of the stiffness residual with respect to the patch displacements."""
-        _, friction = self.moved(self.tight.ways, rows)
-        force = (self.places.area * friction.stick * np.stack([friction.u, friction.v])).swapaxes(0, 1)
-        force = force.reshape(len(force), 2, -1, len(rows) // 2).sum(axis=2).reshape(len(force), -1)
-        half = np.einsum("im,jk->ijmk", force, self.tight.ways.amplitude)
-        slope = (half + half.swapaxes(0, 1)) / self.tight.size[:, :, None, None]
-        return np.asarray(EXACT * slope[np.triu_indices(len(slope))].reshape(-1, rows.size))
+        _, friction = self.evaluate_sliders(self.linear_contact.unit_states, patch_displacement)
+        force = (self.sliders.area * friction.stick_stiffness * np.stack([friction.u, friction.v])).swapaxes(
+            0, 1
+        )
+        force = (
+            force.reshape(len(force), 2, -1, len(patch_displacement) // 2).sum(axis=2).reshape(len(force), -1)
+        )
+        half = np.einsum("im,jk->ijmk", force, self.linear_contact.unit_states.modal_coordinates)
+        slope = (half + half.swapaxes(0, 1)) / self.linear_contact.stiffness_scale[:, :, None, None]
+        return np.asarray(
+            STIFFNESS_WEIGHT * slope[np.triu_indices(len(slope))].reshape(-1, patch_displacement.size)
+        )
 
-    def _missed(self, rows: Array, change: Array) -> Array:
+    def _work_residual(self, patch_displacement: Array, change: Array) -> Array:
         """Relative errors [1] of forces, stick forces and loss of the patches, then their weighted change."""
-        displacement, friction = self.moved(self.shears, rows)
-        actual, target = work(friction, self.places.area, displacement), self.aim
+        displacement, friction = self.evaluate_sliders(self.states, patch_displacement)
+        actual, target = assemble_friction_work(friction, self.sliders.area, displacement), self.target_work
         pairs = (
             (actual.forces, target.forces),
-            (actual.stuck, target.stuck),
+            (actual.stick_forces, target.stick_forces),
             (actual.loss, target.loss),
         )
-        errors = [((a - b) / size).ravel() for (a, b), size in zip(pairs, target.scale, strict=True)]
+        errors = [((a - b) / size).ravel() for (a, b), size in zip(pairs, target.scales, strict=True)]
         return np.concatenate([*errors, change.ravel()])
 
-    def _slopes(self, rows: Array) -> Array:
+    def _work_jacobian(self, patch_displacement: Array) -> Array:
         """Derivative of the relative errors of forces and loss with respect to the patch displacements."""
-        displacement, friction = self.moved(self.shears, rows)
-        area, amplitude = self.places.area, self.shears.amplitude
-        (n_states, modes), count = amplitude.shape, len(rows) // 2
-        u, v, size = friction.u, friction.v, friction.size
+        displacement, friction = self.evaluate_sliders(self.states, patch_displacement)
+        area, amplitude = self.sliders.area, self.states.modal_coordinates
+        (n_states, modes), count = amplitude.shape, len(patch_displacement) // 2
+        u, v, size = friction.u, friction.v, friction.magnitude
         direction, halves = (u / size, v / size), np.split(displacement, 2)
-        secant, tangent = friction.secant, friction.tangent
+        secant, tangent = friction.secant_stiffness, friction.tangent_stiffness
 
-        def of_patches(slope: Array, half: Array) -> Array:
+        def patch_products(slope: Array, slider_displacement: Array) -> Array:
             """Product of tangent and displacement (s, 3 + k, m), summed over the sliders of each patch."""
-            factors = slope.reshape(n_states, -1, count), half.reshape(-1, count, 3 + modes)
+            factors = slope.reshape(n_states, -1, count), slider_displacement.reshape(-1, count, 3 + modes)
             return np.einsum("scm,cmh->shm", *factors)
 
-        def sums(each: Array) -> Array:
+        def patch_sums(slider_values: Array) -> Array:
             """Sum (s, m) over the sliders of each patch."""
-            return each.reshape(n_states, -1, count).sum(axis=1)
+            return slider_values.reshape(n_states, -1, count).sum(axis=1)
 
         forces, loss = np.zeros((2, n_states, 3 + modes, 2, count)), np.zeros((n_states, 2, count))
-        patch_forces, springs = np.zeros((2, n_states, 2, count)), area * friction.stick
+        patch_forces, springs = np.zeros((2, n_states, 2, count)), area * friction.stick_stiffness
         for i, shift in enumerate((u, v)):
             for j in range(2):
                 slope = area * ((i == j) * secant + (tangent - secant) * direction[i] * direction[j])
-                forces[0, :, :, i] += of_patches(slope, halves[j])
-            forces[1, :, :, i] = of_patches(springs, halves[i])
-            patch_forces[:, :, i] = sums(area * secant * shift), sums(springs * shift)
-            loss[:, i] = sums(area * friction.rate * direction[i])
+                forces[0, :, :, i] += patch_products(slope, halves[j])
+            forces[1, :, :, i] = patch_products(springs, halves[i])
+            patch_forces[:, :, i] = patch_sums(area * secant * shift), patch_sums(springs * shift)
+            loss[:, i] = patch_sums(area * friction.loss_derivative * direction[i])
         force_derivative, mode = forces[..., None] * amplitude[:, None, None, None], np.arange(modes)
         force_derivative[:, :, 3 + mode, :, :, mode] += patch_forces
         derivatives = *force_derivative, loss[..., None] * amplitude[:, None, None]
-        pairs = zip(derivatives, self.aim.scale, strict=True)
-        return np.concatenate([(x / s.reshape(s.shape + (1,) * 3)).reshape(-1, rows.size) for x, s in pairs])
+        pairs = zip(derivatives, self.target_work.scales, strict=True)
+        return np.concatenate(
+            [(x / s.reshape(s.shape + (1,) * 3)).reshape(-1, patch_displacement.size) for x, s in pairs]
+        )
 
 
-def rigid_shifts(place: Array) -> Array:
+def rigid_displacement_matrix(position: Array) -> Array:
     """Displacement (2 n, 3) of positions (n, 2) [m] by unit motions along x, along y and about z.
 
     The first n rows are the displacement along x, the others along y.
     """
-    x, y = place.T
+    x, y = position.T
     unit, zero = np.ones_like(x), np.zeros_like(x)
     return np.concatenate([np.stack([unit, zero, -y], axis=1), np.stack([zero, unit, x], axis=1)])
 
 
-def turned(place: Array, patches: FrictionPatches, means: sp.csr_matrix, traces: list[Array]) -> Array:
+def patch_rotations(
+    position: Array, patches: FrictionPatches, means: sp.csr_matrix, traces: list[Array]
+) -> Array:
     """Rotation (m, k) [1/m] of the patches about their centres by the modes.
 
     The rotation is a mean over the cell of each patch, weighted by the averaging matrix and the squared
@@ -307,15 +345,17 @@ def turned(place: Array, patches: FrictionPatches, means: sp.csr_matrix, traces:
     means    : averaging matrix (m, q) [1]
     traces   : displacement (q, k) [1] of the quadrature points along x and y by the modes
     """
-    cell = cKDTree(patches.position).query(place)[1]
-    x, y = (place - (means @ place)[cell]).T
+    cell = cKDTree(patches.position).query(position)[1]
+    x, y = (position - (means @ position)[cell]).T
     lever, square = x[:, None] * traces[1] - y[:, None] * traces[0], means @ (x * x + y * y)
     extended = square > 0.0
     inverse = np.where(extended, 1.0 / np.where(extended, square, 1.0), 0.0)
     return np.asarray(inverse[:, None] * (means @ lever))
 
 
-def on_circles(patches: FrictionPatches, area: float, approach: Array, turns: Array) -> tuple[Surface, Array]:
+def place_sliders(
+    patches: FrictionPatches, area: float, approach: Array, rotations: Array
+) -> tuple[FrictionPoints, Array]:
     """Sliders of the patches: c = 1 at the centre, or c on a circle around it if patches have a radius.
 
     area      : nominal contact area [m2]
@@ -324,52 +364,58 @@ def on_circles(patches: FrictionPatches, area: float, approach: Array, turns: Ar
 
     Returns the sliders (c m), and their displacement (2 c m, k) [1] by the rotation of the patches.
     """
-    circle = CIRCLE if np.any(patches.radius) else 0.0 * CIRCLE[:1]
+    circle = CIRCLE_POINTS if np.any(patches.radius) else 0.0 * CIRCLE_POINTS[:1]
     offset = circle[:, None] * patches.radius[:, None]
     count, (x, y) = len(circle), offset.reshape(-1, 2).T[:, :, None]
-    slider_rotations = np.tile(turns, (count, 1))
-    sliders = Surface(
+    slider_rotations = np.tile(rotations, (count, 1))
+    sliders = FrictionPoints(
         np.tile(area * patches.share / count, count),
         np.tile(approach, count),
-        rigid_shifts((patches.position + offset).reshape(-1, 2)),
+        rigid_displacement_matrix((patches.position + offset).reshape(-1, 2)),
     )
     return sliders, np.concatenate([-y * slider_rotations, x * slider_rotations])
 
 
-def moved(law: Foundation, shears: Shears, surface: Surface, rows: Array) -> tuple[Array, Friction]:
+def evaluate_friction(
+    law: Foundation, states: ShearStates, points: FrictionPoints, modal_displacement: Array
+) -> tuple[Array, MonotonicFriction]:
     """Evaluate the friction of n points in states of the joint.
 
     modal_displacement : (2 n, k) [1] of the points along x, then along y, by the modes
 
     Returns the displacement (2 n, 3 + k) of the points by motions and modes, and their friction.
     """
-    displacement = np.concatenate([surface.rigid, rows], axis=1)
-    coordinates = np.concatenate([shears.motion, shears.amplitude], axis=1)
-    return displacement, Friction.of(law, surface.approach, coordinates @ displacement.T)
+    displacement = np.concatenate([points.rigid_displacement, modal_displacement], axis=1)
+    coordinates = np.concatenate([states.motion, states.modal_coordinates], axis=1)
+    return displacement, MonotonicFriction.evaluate(law, points.approach, coordinates @ displacement.T)
 
 
-def work(at: Friction, area: Array, every: Array) -> Work:
+def assemble_friction_work(friction: MonotonicFriction, area: Array, displacement: Array) -> FrictionWork:
     """Generalised forces and loss of the friction of n points.
 
     area         : (n) [m2]
     displacement : (2 n, 3 + k) of the points by motions and modes
     """
     forces, stick_forces = (
-        np.concatenate([area * slope * shift for shift in (at.u, at.v)], axis=1) @ every
-        for slope in (at.secant, at.stick)
+        np.concatenate([area * slope * shift for shift in (friction.u, friction.v)], axis=1) @ displacement
+        for slope in (friction.secant_stiffness, friction.stick_stiffness)
     )
-    return Work(forces, stick_forces, at.loss @ area)
+    return FrictionWork(forces, stick_forces, friction.loss @ area)
 
 
-def stiffness(at: Friction, area: Array) -> Array:
+def stick_stiffness_matrix(friction: MonotonicFriction, area: Array) -> Array:
     """Stick stiffness (w, w) [N/m, N, N.m] of points with areas (n) [m2] for each pair of w states."""
-    return np.asarray(sum((area * at.stick * shift) @ shift.T for shift in (at.u, at.v)))
+    return np.asarray(
+        sum((area * friction.stick_stiffness * shift) @ shift.T for shift in (friction.u, friction.v))
+    )
 
 
-def work_of(law: Foundation, shears: Shears, surface: Surface, rows: Array) -> Work:
+def compute_friction_work(
+    law: Foundation, states: ShearStates, points: FrictionPoints, modal_displacement: Array
+) -> FrictionWork:
     """Generalised forces and loss of the friction of n points in states of the joint.
 
     modal_displacement : (2 n, k) [1] of the points along x, then along y, by the modes
     """
-    displacement, friction = moved(law, shears, surface, rows)
-    return work(friction, surface.area, displacement)
+    displacement, friction = evaluate_friction(law, states, points, modal_displacement)
+    return assemble_friction_work(friction, points.area, displacement)

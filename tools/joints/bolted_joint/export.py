@@ -13,11 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointfmu.joints.bolted_joint import KIND
-from jointfmu.joints.bolted_joint.law import Bolted, pressures
+from jointfmu.joints.bolted_joint.law import Bolted, preload_pressure
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.joints.model import Variable
-from jointfmu.mechanics.footprint.shape import PressureShape
-from jointfmu.quantity import Array, quantity
+from jointfmu.mechanics.footprint.shape import PressureDistribution
+from jointfmu.quantity import Array, quantity_field
 
 from ...export.exports import Exports, LoadCurve
 from ...export.placing import Springs
@@ -25,33 +25,35 @@ from ...export.placing import Springs
 if TYPE_CHECKING:
     from jointfmu.mechanics.curve import Curve
 
-    from ...export.mesh import Mesh
-    from ...export.placing import Placing
+    from ...export.mesh import NodePairs
+    from ...export.placing import Placement
     from ...export.tables import LoadTable
 
-SUMS = ("K_xx", "K_yy", "K_zz", "C_xx", "C_yy", "C_zz")
+TOTAL_OUTPUTS = ("K_xx", "K_yy", "K_zz", "C_xx", "C_yy", "C_zz")
 """Outputs of the joint that the springs and dashpots of all nodes must add up to."""
 FORCE_TOLERANCE = 0.3
 """Relative error [1] of the total force of interpolated pressures that is still corrected by scaling."""
 AREA_TOLERANCE = 0.1
 """Relative difference [1] allowed between the area of a mesh and A_0 of the joint."""
-_OUTSIDE = 0.1
+_MAX_DISTANCE_RATIO = 0.1
 """Distance of a mesh node from the nearest node of the joint over the diagonal of the contact [1], at
 most."""
 
 
-def of_joint(spring: BoltedJointSpring, preload: float, moment: float, first: int = 1) -> Springs:
+def springs_of_joint(
+    spring: BoltedJointSpring, preload: float, moment: float, first_label: int = 1
+) -> Springs:
     """Springs at the nodes of the joint itself, for a preload [N] per bolt and a moment [N.m].
 
     Every node of the pressure shape becomes a pair of coincident nodes with consecutive labels: the node of
     side 1, then that of side 2. The first label is `first_label`.
     """
     count = spring.shape.share.size
-    labels = first + np.arange(2 * count, dtype=np.int64).reshape(2, count).T
-    return _split(spring, labels, preload, moment, None)
+    labels = first_label + np.arange(2 * count, dtype=np.int64).reshape(2, count).T
+    return _distribute_to_nodes(spring, labels, preload, moment, None)
 
 
-def on_mesh(spring: BoltedJointSpring, mesh: "Mesh", preload: float, moment: float) -> Springs:
+def springs_on_mesh(spring: BoltedJointSpring, mesh: "NodePairs", preload: float, moment: float) -> Springs:
     """Springs at the node pairs of a mesh, for a preload [N] per bolt and a moment [N.m].
 
     The pressure shape is interpolated linearly between the nodes of the joint (outside of them: value of the
@@ -68,14 +70,14 @@ def on_mesh(spring: BoltedJointSpring, mesh: "Mesh", preload: float, moment: flo
     shape, position = spring.shape, mesh.position
     share = mesh.area / mesh.area.sum()
     distance, nearest = KDTree(shape.position).query(position)
-    allowed = _OUTSIDE * float(np.hypot(*np.ptp(shape.position, axis=0)))
+    allowed = _MAX_DISTANCE_RATIO * float(np.hypot(*np.ptp(shape.position, axis=0)))
     if np.any(distance > allowed):
         worst = int(np.argmax(distance))
         raise ValueError(
             f"{mesh.path}: node {mesh.nodes[worst, 0]} is {distance[worst]:.3g} m off the joint, allowed are "
             f"{allowed:.3g} m; place and size must be the joint's"
         )
-    values = np.stack([shape.equal, shape.tilt], axis=1)
+    values = np.stack([shape.preload_shape, shape.moment_shape], axis=1)
     linear = LinearNDInterpolator(shape.position, values)(position)
     equal, tilt = np.where(np.isnan(linear), values[nearest], linear).T
     force = float(share @ equal)
@@ -86,11 +88,13 @@ def on_mesh(spring: BoltedJointSpring, mesh: "Mesh", preload: float, moment: flo
         )
     equal /= force
     tilt -= (share @ tilt) * equal
-    mapped = spring.on(PressureShape(share, position, equal, tilt))
-    return _split(mapped, mesh.nodes, preload, moment, _sums(spring, preload, moment))
+    mapped = spring.on_nodes(PressureDistribution(share, position, equal, tilt))
+    return _distribute_to_nodes(
+        mapped, mesh.nodes, preload, moment, _interface_totals(spring, preload, moment)
+    )
 
 
-def under_pressure(spring: BoltedJointSpring, mesh: "Mesh") -> Springs:
+def springs_under_pressure(spring: BoltedJointSpring, mesh: "NodePairs") -> Springs:
     """Springs at the node pairs of a mesh, under the nodal pressures in the file of the mesh.
 
     Raises ValueError if the file has no pressures, or if the areas do not add up to A_0 within
@@ -101,12 +105,12 @@ def under_pressure(spring: BoltedJointSpring, mesh: "Mesh") -> Springs:
     _check_area(spring, mesh)
     share = mesh.area / mesh.area.sum()
     mean = float(share @ mesh.pressure)
-    shape = PressureShape(share, mesh.position, mesh.pressure / mean, np.zeros_like(share))
-    mapped = spring.on(shape)
-    return _split(mapped, mesh.nodes, mean * spring.joint.A_0 / spring.joint.n_bolts, 0.0, None)
+    shape = PressureDistribution(share, mesh.position, mesh.pressure / mean, np.zeros_like(share))
+    mapped = spring.on_nodes(shape)
+    return _distribute_to_nodes(mapped, mesh.nodes, mean * spring.joint.A_0 / spring.joint.n_bolts, 0.0, None)
 
 
-def _check_area(spring: BoltedJointSpring, mesh: "Mesh") -> None:
+def _check_area(spring: BoltedJointSpring, mesh: "NodePairs") -> None:
     area, expected = float(mesh.area.sum()), float(spring.joint.A_0)
     if abs(area / expected - 1.0) > AREA_TOLERANCE:
         raise ValueError(
@@ -115,21 +119,21 @@ def _check_area(spring: BoltedJointSpring, mesh: "Mesh") -> None:
         )
 
 
-def _sums(spring: BoltedJointSpring, preload: float, moment: float) -> dict[str, float]:
+def _interface_totals(spring: BoltedJointSpring, preload: float, moment: float) -> dict[str, float]:
     rest = (0.0, 0.0, 0.0)
-    state = spring.motion(preload, moment, rest, rest)
-    sums = {name: float(state[name]) for name in SUMS}
-    tightened = spring.bolts.tightened(spring.joint, preload, moment)
+    state = spring.evaluate(preload, moment, rest, rest)
+    sums = {name: float(state[name]) for name in TOTAL_OUTPUTS}
+    tightened = spring.bolts.preload_force(spring.joint, preload, moment)
     bolts = spring.bolts.count * spring.bolts.tangent(tightened, np.zeros_like(tightened))
     return sums | {"K_zz": sums["K_zz"] - float(np.sum(bolts))}
 
 
-def _split(
+def _distribute_to_nodes(
     spring: BoltedJointSpring,
     nodes: NDArray[np.int64],
     preload: float,
     moment: float,
-    whole: dict[str, float] | None,
+    totals: dict[str, float] | None,
 ) -> Springs:
     """Distribute stiffness and damping to the nodes, in proportion to area share times k(p).
 
@@ -138,7 +142,7 @@ def _split(
     Raises ValueError if nothing is in contact or a pressure is outside the law.
     """
     joint, shape = spring.joint, spring.shape
-    p = pressures(joint, shape, preload, moment)
+    p = preload_pressure(joint, shape, preload, moment)
     highest = spring.curve.end[1]
     if not (np.isfinite(preload + moment) and 0.0 < np.max(p) <= highest):
         raise ValueError(
@@ -148,8 +152,8 @@ def _split(
     nodal_stiffness = shape.share * spring.curve.derivatives(spring.curve.inverse(p), 1)[1]
     closed = nodal_stiffness > 0.0
     fraction = (nodal_stiffness / nodal_stiffness.sum())[closed]
-    spring_totals = _sums(spring, preload, moment)
-    sums = whole or spring_totals
+    spring_totals = _interface_totals(spring, preload, moment)
+    sums = totals or spring_totals
     return Springs(
         nodes[closed],
         shape.position[closed],
@@ -165,15 +169,17 @@ def _split(
     )
 
 
-STRONGEST = 10.0
+MAX_FORCE_RATIO = 10.0
 """Total contact force at the compressed end of the table over the one at tightening [1]."""
-_FINE = 4000
+_ERROR_POINTS = 4000
 """Sample points on either side of the tightened state, at which the error of the table is measured."""
-_BLOCK = 100_000
+_BLOCK_SIZE = 100_000
 """Nodes times sample points that are evaluated at once, to limit the memory."""
 
 
-def pull_table(spring: BoltedJointSpring, preload: float, moment: float, error: float) -> "LoadTable":
+def tabulate_normal_force(
+    spring: BoltedJointSpring, preload: float, moment: float, max_error: float
+) -> "LoadTable":
     """Normal force [N] and stiffness [N/m] of interface and bolts as functions of the separation s_rel_z [m].
 
     The force is positive when it pulls the sides together. The table starts in compression, at a contact
@@ -185,14 +191,14 @@ def pull_table(spring: BoltedJointSpring, preload: float, moment: float, error: 
 
     Raises ValueError if nothing is in contact or the pressure reaches the hardness.
     """
-    from ...export.tables import LoadTable, thinned
+    from ...export.tables import LoadTable, decimate_curve
 
-    start = spring.within_law(preload, moment)
+    start = spring.checked_approach(preload, moment)
     low, high = spring.curve.displacement[[0, -1]]
-    shape = spring.shape.merged(moment=moment != 0.0)
-    approach = spring.curve.inverse(pressures(spring.joint, shape, preload, moment))
+    shape = spring.shape.merge_nodes(with_moment=moment != 0.0)
+    approach = spring.curve.inverse(preload_pressure(spring.joint, shape, preload, moment))
     weight = spring.joint.A_0 * shape.share
-    springs, held_bolts = spring.bolts, spring.bolts.tightened(spring.joint, preload, moment)
+    springs, held_bolts = spring.bolts, spring.bolts.preload_force(spring.joint, preload, moment)
     bolts = float(spring.joint.n_bolts * spring.joint.bolt_stiffness)
 
     def missing(separation: Array) -> tuple[Array, Array]:
@@ -202,76 +208,80 @@ def pull_table(spring: BoltedJointSpring, preload: float, moment: float, error: 
         lost = springs.stiffness - springs.tangent(held_bolts, elongation)
         return springs.count * springs.stiffness * gap.sum(axis=1), springs.count * lost.sum(axis=1)
 
-    def total(separation: Array) -> Array:
-        blocks = np.array_split(separation[:, None], max(separation.size * approach.size // _BLOCK, 1))
+    def contact_force_and_stiffness(separation: Array) -> Array:
+        blocks = np.array_split(separation[:, None], max(separation.size * approach.size // _BLOCK_SIZE, 1))
         results = [[value @ weight for value in spring.curve.derivatives(approach - s, 1)] for s in blocks]
         return np.concatenate(results, axis=1)
 
-    preload_force, preload_stiffness = (float(value[0]) for value in total(np.zeros(1)))
+    preload_force, preload_stiffness = (float(value[0]) for value in contact_force_and_stiffness(np.zeros(1)))
     compression = np.linspace(0.0, float(high - np.max(start)), 400)
-    end = float(np.interp(STRONGEST * preload_force, total(-compression)[0], compression))
+    end = float(
+        np.interp(MAX_FORCE_RATIO * preload_force, contact_force_and_stiffness(-compression)[0], compression)
+    )
     opening = float(np.max(start) - low)
-    s = np.concatenate([np.linspace(-end, 0.0, _FINE), np.linspace(0.0, opening, _FINE)[1:]])
-    force, stiffness = total(s)
+    s = np.concatenate([np.linspace(-end, 0.0, _ERROR_POINTS), np.linspace(0.0, opening, _ERROR_POINTS)[1:]])
+    force, stiffness = contact_force_and_stiffness(s)
     pushing, lost = missing(s)
     normal_force = preload_force - force + bolts * s + pushing
     scale = preload_force, preload_stiffness
-    table = thinned(s, normal_force, stiffness + (bolts - lost), error, scale, keep=(_FINE - 1,))
+    table = decimate_curve(
+        s, normal_force, stiffness + (bolts - lost), max_error, scale, fixed_points=(_ERROR_POINTS - 1,)
+    )
     last = [2.0 * opening, preload_force + 2.0 * bolts * opening, bolts]
-    return LoadTable(np.vstack([table.rows, last]), table.straight, table.monotone)
+    return LoadTable(np.vstack([table.rows, last]), table.linear_errors, table.monotone_cubic_errors)
 
 
 @dataclass(frozen=True, slots=True)
-class Tightening:
+class TightenedState:
     """Tightened state of a bolted joint: preload of each bolt and bending moment."""
 
-    preload: float = quantity("N", "the force of each bolt")
-    moment: float = quantity("N.m", "the bending moment")
+    preload: float = quantity_field("N", "the force of each bolt")
+    moment: float = quantity_field("N.m", "the bending moment")
 
     def __str__(self) -> str:
         return f"preload {self.preload:g} N per bolt, moment {self.moment:g} N.m"
 
 
-def _springs(
-    joint: Bolted, state: Tightening | None, mesh: "Mesh | None", placing: "Placing"
+def _make_springs(
+    joint: Bolted, state: TightenedState | None, mesh: "NodePairs | None", placement: "Placement"
 ) -> "tuple[Springs, str]":
     spring = BoltedJointSpring.of_nodes(joint)
     if state is None:
         if mesh is None:
             raise ValueError("springs need a preload, or node pairs with their pressure")
-        return under_pressure(spring, mesh), f"pressures of {mesh.path.name}"
+        return springs_under_pressure(spring, mesh), f"pressures of {mesh.path.name}"
     if mesh is None:
-        return of_joint(spring, state.preload, state.moment, placing.first), str(state)
-    springs = on_mesh(spring, mesh, state.preload, state.moment)
+        return springs_of_joint(spring, state.preload, state.moment, placement.first_number), str(state)
+    springs = springs_on_mesh(spring, mesh, state.preload, state.moment)
     return springs, f"{state}, on the nodes of {mesh.path.name}"
 
 
-def _contact(joint: Bolted) -> "tuple[Curve, Sequence[str]]":
+def _contact_curve(joint: Bolted) -> "tuple[Curve, Sequence[str]]":
     ratio = float(joint.shear_ratio())
     note = f"tangential stiffness of the law: {ratio:.9g} times the slope of the table"
     return BoltedJointSpring.of_nodes(joint).curve, [note]
 
 
-def _pull(joint: Bolted, state: Tightening | None, error: float) -> "LoadTable":
+def _normal_force_table(joint: Bolted, state: TightenedState | None, max_error: float) -> "LoadTable":
     if state is None:
         raise ValueError("the curve of a bolted_joint needs a preload")
-    return pull_table(BoltedJointSpring.of_nodes(joint), state.preload, state.moment, error)
+    return tabulate_normal_force(BoltedJointSpring.of_nodes(joint), state.preload, state.moment, max_error)
 
 
-_VARIABLES = KIND.variables
+_JOINT_VARIABLES = KIND.variables
 EXPORTS = Exports(
-    state=Tightening,
-    springs=_springs,
-    contact=_contact,
+    working_point_class=TightenedState,
+    springs=_make_springs,
+    contact=_contact_curve,
     curve=LoadCurve(
         meaning="force that holds the interface together over its separation from the tightened state, "
         "with the tension of the bolts; without members and damping",
         columns=(
-            _VARIABLES["s_rel_z"],
+            _JOINT_VARIABLES["s_rel_z"],
             Variable("pull", "N", "force that holds it together"),
-            _VARIABLES["K_zz"],
+            _JOINT_VARIABLES["K_zz"],
         ),
         name="force",
-        table=_pull,
+        compute_table=_normal_force_table,
     ),
 )

@@ -11,30 +11,30 @@ from jointfmu_fmu_src.joint_parts import RampPanel
 from scipy.integrate import cumulative_simpson
 
 from jointfmu.joints.bolted_joint.law import bolt_pattern
-from jointfmu.parameters import default
+from jointfmu.parameters import load_default
 
-from ...job.checks import deviation
-from ...laboratory.part import LaboratoryModel, Map, MeasuredCurve, Shown
+from ...job.checks import relative_deviation
+from ...laboratory.part import ContactMap, LaboratoryModel, MeasuredCurve, PublishedQuantity
 from ...published.reference import Point
 from ...ramps import ramp
 from ...ramps.ramp import RampResult
 from ...report.figure import Figure, Panel, Series
 from ...systems.master import Slave
 from ...systems.ringing import Axis, Body, Pull, Rest
-from .picture import plan
+from .picture import draw_plan
 
 _FMU = "BoltedJoint"
 
 
-def _pulled(folder: Path, result: ramp.RampResult) -> tuple[str, float]:
-    pulled = ramp.run(folder / f"{_FMU}.fmu", "s_rel_z", 5e-6, 1e-8, {"preload": 9e3}).columns
+def _check_separation(folder: Path, result: ramp.RampResult) -> tuple[str, float]:
+    pulled = ramp.run_ramp(folder / f"{_FMU}.fmu", "s_rel_z", 5e-6, 1e-8, {"preload": 9e3}).columns
     force = -cumulative_simpson(pulled["K_zz"], x=pulled["s_rel_z"], initial=0.0)
-    return "f_z pulled apart against the integral of K_zz ds (scipy, Simpson)", deviation(
+    return "f_z pulled apart against the integral of K_zz ds (scipy, Simpson)", relative_deviation(
         pulled["f_z"], force
     )
 
 
-RAMPS = {_FMU: _pulled}
+RAMPS = {_FMU: _check_separation}
 """{FMU: check}, a check being (folder, ramp of the FMU) -> (text, largest relative deviation [1])."""
 
 
@@ -43,34 +43,34 @@ def through_fmu(point: Point, folder: Path) -> float | None:
     if point.quantity != "p_max":
         return None
     load = point.where["preload"]
-    return float(ramp.run(folder / f"{_FMU}.fmu", "preload", load, load).columns["p_max"][-1])
+    return float(ramp.run_ramp(folder / f"{_FMU}.fmu", "preload", load, load).columns["p_max"][-1])
 
 
-_CASES = ((9e3, 0.0), (15e3, 4500.0))
+_MAP_LOADS = ((9e3, 0.0), (15e3, 4500.0))
 """Preload [N] and moment [N.m] of the two pressure maps: without a moment, and with the moment of the
 paper."""
 
 
 def figures(outcome: Any) -> list[Figure]:
     """Figures of the bolted joint, from the results of the main job (`JobResult`)."""
-    joint = default("bolted_joint").values
+    joint = load_default("bolted_joint").values
     return [
         Figure(
             "Stiffness and damping over preload",
             "Normal (zz) and tangential (xx) direction; the damping is the viscous equivalent.",
-            stiffness(outcome.ramps[_FMU]),
+            stiffness_panels(outcome.ramps[_FMU]),
             data=f"{_FMU}.csv",
         ),
         Figure(
             "Contact pressure",
             "Bolts are numbered. First the preload of the published pressures, then the moment that shifts "
             "the bolt forces of the two rows by 5 kN.",
-            pictures=[plan(joint, *case) for case in _CASES],
+            pictures=[draw_plan(joint, *case) for case in _MAP_LOADS],
         ),
     ]
 
 
-def stiffness(result: RampResult) -> list[Panel]:
+def stiffness_panels(result: RampResult) -> list[Panel]:
     """Panels of stiffness and damping as functions of the preload."""
     c, over = result.columns, "preload per bolt [kN]"
     load = c["preload"] / 1e3
@@ -80,11 +80,11 @@ def stiffness(result: RampResult) -> list[Panel]:
     ]
 
 
-PRELOADS = (3e3, 9e3, 15e3, 30e3)
+VIBRATION_PRELOADS = (3e3, 9e3, 15e3, 30e3)
 """Preloads per bolt [N] of the simulated free vibrations."""
 
 
-def _rest(path: Path, preload: float, parameters: Mapping[str, Any]) -> Rest:
+def _vibration_at_rest(path: Path, preload: float, parameters: Mapping[str, Any]) -> Rest:
     start = {**parameters, "preload": preload, "v_rel_x": 1.0}
     with Slave(path, start, (), ("K_xx", "f_x")) as law:
         K, dashpot = law.get()
@@ -99,9 +99,9 @@ RINGING = Body(
     force="f_x",
     partner="TranslationalMass",
     over="preload",
-    loads=lambda path, parameters: PRELOADS,
+    loads=lambda path, parameters: VIBRATION_PRELOADS,
     start=lambda preload: {"preload": preload},
-    rest=_rest,
+    rest=_vibration_at_rest,
     release=1.0,
     load=Axis("preload", "kN", 1e-3),
     deflection=Axis("motion", "um", 1e6),
@@ -111,27 +111,27 @@ RINGING = Body(
 )
 
 
-_PRESSURES = (0.3e6, 8e6)
+_PRESSURE_RANGE = (0.3e6, 8e6)
 """Range [Pa] of the measured curves: the mean pressures of the load ramp."""
-_SHARE = 41
+_CURVE_POINTS = 41
 """Points of a measured curve."""
 
 
-def _bolts(joint: Any) -> tuple[Sequence[Sequence[float]], str]:
+def _bolt_marks(joint: Any) -> tuple[Sequence[Sequence[float]], str]:
     try:
         return bolt_pattern(joint).bolts.tolist(), "bolts"
     except ValueError:  # a field of nodal pressures, or a plate
         return [], ""
 
 
-def _measured() -> list[MeasuredCurve]:
+def _measured_curves() -> list[MeasuredCurve]:
     """Measured normal stiffness per area k [N/m3]: from approach = C p^m follows k = p^(1 - m)/(C m)."""
     text = (files("jointfmu_models") / "reference" / "measured_joints.toml").read_text(encoding="utf-8")
     curves = []
     for row in tomllib.loads(text)["normal"]:
         unit = row["pressure_unit"]
         C, m = (float(np.mean(row[name])) for name in "Cm")
-        p = np.geomspace(_PRESSURES[0], min(_PRESSURES[1], row["to"] * unit), _SHARE)
+        p = np.geomspace(_PRESSURE_RANGE[0], min(_PRESSURE_RANGE[1], row["to"] * unit), _CURVE_POINTS)
         k = p / (C * m * 1e-6 * (p / unit) ** m)
         label = row["finish"]
         curves.append(MeasuredCurve(label, row["source"], "p_mean", "K_zz", p.tolist(), k.tolist(), "A_0"))
@@ -141,11 +141,13 @@ def _measured() -> list[MeasuredCurve]:
 LABORATORY = {
     _FMU: LaboratoryModel(
         panels=(RampPanel("preload", ("p_max", "p_mean")), RampPanel("p_mean", ("K_zz",))),
-        spans={"moment": (-5e3, 5e3), "bolt_stiffness": (0.0, 2e9), "preload": (0.0, 30e3)},
-        path=("s_rel_x", "s_rel_y"),
-        points={"p_max": Shown("p_max", {"preload": "preload"})},
-        measured=_measured(),
-        picture=Map("contact pressure", "Pa", "MPa", "of the nodes that the FMU carries", _bolts),
+        slider_spans={"moment": (-5e3, 5e3), "bolt_stiffness": (0.0, 2e9), "preload": (0.0, 30e3)},
+        path_inputs=("s_rel_x", "s_rel_y"),
+        published_points={"p_max": PublishedQuantity("p_max", {"preload": "preload"})},
+        measured_curves=_measured_curves(),
+        contact_map=ContactMap(
+            "contact pressure", "Pa", "MPa", "of the nodes that the FMU carries", _bolt_marks
+        ),
     )
 }
 """{FMU: contents of its laboratory page that are not variables of the FMU}."""

@@ -7,27 +7,27 @@ import numpy as np
 from jointfmu.contact.laws import mindlin
 from jointfmu.contact.laws import zhao2018 as zhao
 from jointfmu.contact.surface import domain_extension
-from jointfmu.joints.bolted_joint.law import BoltedJoint, bolt_pattern, pressures, row_forces
-from jointfmu.mechanics.footprint.bolts import cells, pressure_shape, unit_pressures
+from jointfmu.joints.bolted_joint.law import BoltedJoint, bolt_pattern, preload_pressure, row_forces
+from jointfmu.mechanics.footprint.bolts import bolt_pressures, frame_cells, pressure_distribution
 
-from ...fractal import height
-from ...published.computed import CalibrationFit, Published
+from ...fractal import rms_height
+from ...published.computed import CalibrationFit, PublishedNumbers
 
 
-def p_max(joint: BoltedJoint, preload: float) -> float:
+def largest_pressure(joint: BoltedJoint, preload: float) -> float:
     """Largest nodal pressure [Pa] at a preload [N] per bolt."""
-    return float(np.max(pressures(joint, pressure_shape(joint.pattern), preload, 0.0)))
+    return float(np.max(preload_pressure(joint, pressure_distribution(joint.pattern), preload, 0.0)))
 
 
-def p_between(joint: BoltedJoint, preload: float) -> float:
+def pressure_between_bolts(joint: BoltedJoint, preload: float) -> float:
     """Pressure [Pa] midway between a corner bolt and the next bolt of the other row.
 
     preload : [N] per bolt
     """
     pattern = bolt_pattern(joint)
-    areas, nodes = cells(pattern)
+    areas, nodes = frame_cells(pattern)
     middle = pattern.bolts[[0, 3]].mean(axis=0)[None, :]
-    unit = float(unit_pressures(pattern, areas, nodes, middle).sum())
+    unit = float(bolt_pressures(pattern, areas, nodes, middle).sum())
     return unit * preload * joint.n_bolts / 8.0 * float(areas.sum()) / joint.A_0
 
 
@@ -49,18 +49,22 @@ def spot_stiffness_ratio(joint: BoltedJoint) -> float:
     return float(family / hertz)
 
 
-def rms_height(joint: BoltedJoint, longest_wave: float) -> float:
+def surface_rms_height(joint: BoltedJoint, longest_wave: float) -> float:
     """Rms height h [m] of the fractal surface (D, G) with wavelengths up to `longest_wave` [m]."""
-    return float(height(joint.surface.D, joint.surface.G, longest_wave))
+    return float(rms_height(joint.surface.D, joint.surface.G, longest_wave))
 
 
-def mindlin_function(joint: BoltedJoint, function: str, x: float) -> float:
+def evaluate_mindlin(joint: BoltedJoint, function: str, x: float) -> float:
     """Mindlin's H1 (`loop`), H2 (`storage`) or W_d/W (`loss_ratio`) [1] at a traction ratio x [1]."""
-    table = {"loop": mindlin.loop, "storage": mindlin.storage, "loss_ratio": mindlin.loss_ratio}
+    table = {
+        "loop": mindlin.dissipation_function,
+        "storage": mindlin.storage_function,
+        "loss_ratio": mindlin.loss_ratio,
+    }
     return float(table[function](x))
 
 
-def psi(joint: BoltedJoint, D: float) -> float:
+def domain_extension_factor(joint: BoltedJoint, D: float) -> float:
     """Domain extension factor psi [1] for a fractal dimension D of the profile."""
     return float(domain_extension(D))
 
@@ -70,17 +74,17 @@ def frequency_error(joint: BoltedJoint, predicted: float, measured: float) -> fl
     return 100.0 * (predicted / measured - 1.0)
 
 
-PUBLISHED = Published(
+PUBLISHED = PublishedNumbers(
     papers=("zhao2018",),
     observables={
-        "p_max": p_max,
-        "p_between": p_between,
+        "p_max": largest_pressure,
+        "p_between": pressure_between_bolts,
         "row_force": row_force,
         "critical_area": critical_area,
         "spot_stiffness_ratio": spot_stiffness_ratio,
-        "rms_height": rms_height,
-        "mindlin": mindlin_function,
-        "psi": psi,
+        "rms_height": surface_rms_height,
+        "mindlin": evaluate_mindlin,
+        "psi": domain_extension_factor,
         "frequency_error": frequency_error,
     },
     calibration=(

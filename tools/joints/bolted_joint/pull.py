@@ -2,22 +2,22 @@
 
 import numpy as np
 
-from jointfmu.joints.bolted_joint.contact import STICKS
+from jointfmu.joints.bolted_joint.contact import STICK_TANGENT
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.quantity import Array
 
-CLOSE = 1e-10
+RELATIVE_TOLERANCE = 1e-10
 """Work of a Newton correction over the work of the external force [1] that counts as equilibrium."""
-STEPS, PARTS = 100, 8
+MAX_ITERATIONS, MAX_LINE_SEARCH = 100, 8
 """Newton iterations at one force, and trial lengths in each iteration."""
-LEAST_SHIFT, LEAST = 1e-12, 1e-6
+MIN_DISPLACEMENT, MIN_STIFFNESS_RATIO = 1e-12, 1e-6
 """Tangential displacement of a patch [m] that avoids a division by zero, and stiffness of open patches and
 points over the largest stiffness at tightening [1]: it keeps the matrix of an open joint regular."""
-MOST = 2.0
+MAX_BOLT_FORCE_RATIO = 2.0
 """Bolt force over the force at tightening [1] at which the calculation ends."""
 
 
-def bolt_forces(spring: BoltedJointSpring, preload: float, moment: float, pulls: Array) -> Array:
+def bolt_forces(spring: BoltedJointSpring, preload: float, moment: float, tensile_forces: Array) -> Array:
     """Bolt forces (m, bolts) [N] under the first m of increasing tensile forces (n) [N].
 
     Static equilibrium from the tightened state,
@@ -29,38 +29,42 @@ def bolt_forces(spring: BoltedJointSpring, preload: float, moment: float, pulls:
     secant stiffness of the patches from the iteration before. Ends at the first force at which a bolt exceeds
     MAX_BOLT_FORCE_RATIO, or at which the iteration does not converge.
     """
-    whole, modes, law = spring.whole, spring.modes, spring.foundation()
-    start = spring.tightened(preload, moment)
+    whole, modes, law = spring.assembly, spring.modes, spring.foundation()
+    start = spring.preloaded_approach(preload, moment)
     z, bolts = np.zeros(6 + len(modes.stiffness)), spring.bolts
-    tension = bolts.tightened(spring.joint, preload, moment)
+    tension = bolts.preload_force(spring.joint, preload, moment)
     G, E = (np.zeros((len(rows), len(z))) for rows in (start, tension))
-    G[:, 2:5], G[:, 6:] = whole.points, modes.opening
-    E[:, 2:5], E[:, 6:] = whole.seats, modes.stretch
+    G[:, 2:5], G[:, 6:] = whole.point_opening, modes.opening
+    E[:, 2:5], E[:, 6:] = whole.bolt_elongation, modes.bolt_elongation
     preload_pressure, preload_stiffness = spring.curve.derivatives(start, 1)
-    min_stiffness, results = LEAST * law.stick(spring.pressed(start)).max(), []
+    min_stiffness, results = MIN_STIFFNESS_RATIO * law.stick_stiffness(spring.patch_approach(start)).max(), []
 
-    def left(z: Array, K: Array, pull: float) -> Array:
+    def residual(z: Array, K: Array, tensile_force: float) -> Array:
         p = spring.curve.derivatives(start - G @ z, 0)[0]
-        contact = G.T @ (whole.weight * (p - preload_pressure))
+        contact = G.T @ (whole.point_area * (p - preload_pressure))
         inside = E.T @ (bolts.force(tension, E @ z) - tension) - contact
-        return np.asarray(K @ z + inside - pull * (np.arange(len(z)) == 2))
+        return np.asarray(K @ z + inside - tensile_force * (np.arange(len(z)) == 2))
 
-    for pull in pulls:
-        for _ in range(STEPS):
+    for pull in tensile_forces:
+        for _ in range(MAX_ITERATIONS):
             approach = start - G @ z
-            shift = np.linalg.norm(spring.shift(z[[0, 1, 5]], z[6:]), axis=1) + LEAST_SHIFT
-            stick = np.maximum(law.backbone(spring.pressed(approach), shift) / shift, min_stiffness)
-            K = whole.slope(np.zeros_like(start), stick[:, None] * STICKS, np.zeros_like(tension))
+            shift = np.linalg.norm(spring.patch_displacement(z[[0, 1, 5]], z[6:]), axis=1) + MIN_DISPLACEMENT
+            stick = np.maximum(
+                law.virgin_traction(spring.patch_approach(approach), shift) / shift, min_stiffness
+            )
+            K = whole.tangent_stiffness(
+                np.zeros_like(start), stick[:, None] * STICK_TANGENT, np.zeros_like(tension)
+            )
             stiffness = spring.curve.derivatives(approach, 1)[1]
-            normal = np.maximum(stiffness, LEAST * preload_stiffness.max()) * whole.weight
-            r = left(z, K, pull)
+            normal = np.maximum(stiffness, MIN_STIFFNESS_RATIO * preload_stiffness.max()) * whole.point_area
+            r = residual(z, K, pull)
             pulling = bolts.tangent(tension, E @ z)[:, None]
             step = -np.linalg.solve(K + E.T @ (pulling * E) + G.T @ (normal[:, None] * G), r)
             energy_slope_0, size = float(r @ step), 1.0
-            if -energy_slope_0 <= CLOSE * pull * abs(z[2]):
+            if -energy_slope_0 <= RELATIVE_TOLERANCE * pull * abs(z[2]):
                 break
-            for _ in range(PARTS):
-                energy_slope_1 = float(left(z + size * step, K, pull) @ step)
+            for _ in range(MAX_LINE_SEARCH):
+                energy_slope_1 = float(residual(z + size * step, K, pull) @ step)
                 if energy_slope_1 <= 0.5 * abs(energy_slope_0):
                     break
                 size *= max(energy_slope_0 / (energy_slope_0 - energy_slope_1), 0.1)
@@ -68,7 +72,7 @@ def bolt_forces(spring: BoltedJointSpring, preload: float, moment: float, pulls:
         else:
             break
         forces = bolts.force(tension, E @ z)
-        if np.any(forces > MOST * tension):
+        if np.any(forces > MAX_BOLT_FORCE_RATIO * tension):
             break
         results.append(forces)
     return np.array(results)

@@ -19,16 +19,16 @@ from jointfmu.contact.laws import mindlin
 from jointfmu.joints.bolted_joint import KIND
 from jointfmu.joints.bolted_joint.bodies import Modes
 from jointfmu.joints.bolted_joint.bolts import AT_LIFT_OFF, BoltSprings
-from jointfmu.joints.bolted_joint.contact import pressing
+from jointfmu.joints.bolted_joint.contact import pressure_transfer
 from jointfmu.joints.bolted_joint.law import Bolted, interface_alone, node_pressure, slip_force
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring, patches, points
-from jointfmu.joints.bolted_joint.whole import Whole
+from jointfmu.joints.bolted_joint.spring import BoltedJointSpring, contact_points, friction_patches_of
+from jointfmu.joints.bolted_joint.whole import JointAssembly
 from jointfmu.joints.model import Variable
-from jointfmu.mechanics.footprint.bolts import PressureSource, pressure_shape
-from jointfmu.quantity import Array, flatten
+from jointfmu.mechanics.footprint.bolts import PressureSource, pressure_distribution
+from jointfmu.quantity import Array, flatten_parameters
 
 from ...batch.approach import columns, discrete_gauss, held, tabulate
-from ...uncertainty.problem import Reduced
+from ...uncertainty.problem import ReducedCurves
 from .report import loss_factor
 
 EQUAL = 6
@@ -58,9 +58,9 @@ def equal_pressures(pattern: PressureSource) -> tuple[Array, Array]:
 
     Open nodes have no part in it.
     """
-    shape = pressure_shape(pattern)
-    closed = shape.equal > 0.0
-    logs, shares = discrete_gauss(np.log(shape.equal[closed]), shape.share[closed], EQUAL)
+    shape = pressure_distribution(pattern)
+    closed = shape.preload_shape > 0.0
+    logs, shares = discrete_gauss(np.log(shape.preload_shape[closed]), shape.share[closed], EQUAL)
     return np.exp(logs), shares
 
 
@@ -138,7 +138,7 @@ def _evaluate(
     parameters: type[Any], values: Mapping[str, Any], loads: Array, factor: Array
 ) -> dict[str, Array]:
     joint = columns(parameters, values, 1)
-    pattern = type(joint.pattern)(**flatten(joint.pattern))
+    pattern = type(joint.pattern)(**flatten_parameters(joint.pattern))
     equal, shares = equal_pressures(pattern)
     touching = loads > 0.0
     ramp = np.log(loads[touching] / loads[-1])
@@ -168,9 +168,9 @@ def _evaluate(
     rho = joint.shear_ratio()
     C = 0.0 * K
     if works:
-        C = mindlin.viscous_equivalent(total(works[0]) / total(works[1]), joint.mass, K)
+        C = mindlin.equivalent_damping(total(works[0]) / total(works[1]), joint.mass, K)
     eta_t = joint.loss_factor()
-    tangential = mindlin.viscous_equivalent(eta_t, joint.mass, rho * K)
+    tangential = mindlin.equivalent_damping(eta_t, joint.mass, rho * K)
     approach = 3.0 * compliance[:, :1] + compliance @ integral
     curves = {"K_zz": K, "K_xx": rho * K, "C_zz": C, "C_xx": tangential, "approach": approach}
     zero = np.zeros((factor.size, int(np.sum(~touching))))
@@ -209,10 +209,10 @@ class Sides(NamedTuple):
     @classmethod
     def of(cls, joint: Bolted, pattern: PressureSource) -> "Sides":
         """Raises ValueError for bodies that were computed for another contact."""
-        shape, few = points(pattern), patches(pattern)
+        shape, few = contact_points(pattern), friction_patches_of(pattern)
         modes = Modes.of(joint.bodies, shape.share.size, few.position)
         bolts = BoltSprings(modes.bolts, count=1.0, stiffness=1.0, lift_off=0.0)
-        whole = Whole.of(modes, shape, few, area=1.0, bolts=bolts, closed=0.0)
+        whole = JointAssembly.of(modes, shape, few, area=1.0, bolts=bolts, closure_pressure=0.0)
 
         def products(weight: Array, *motions: tuple[Array, Array]) -> Array:
             rows = [np.column_stack(motion) for motion in motions]
@@ -221,10 +221,14 @@ class Sides(NamedTuple):
             )
 
         return cls(
-            (shape.equal, pressing(shape, few) @ shape.equal),
-            products(whole.weight, (whole.points[:, :1], modes.opening)),
-            products(whole.patch, *zip(whole.patches[:, :, :1], modes.patch, strict=True)),
-            products(np.ones(len(whole.seats)), (whole.seats[:, :1], modes.stretch)).sum(axis=0),
+            (shape.preload_shape, pressure_transfer(shape, few) @ shape.preload_shape),
+            products(whole.point_area, (whole.point_opening[:, :1], modes.opening)),
+            products(
+                whole.patch_area, *zip(whole.patch_motion[:, :, :1], modes.patch_displacement, strict=True)
+            ),
+            products(
+                np.ones(len(whole.bolt_elongation)), (whole.bolt_elongation[:, :1], modes.bolt_elongation)
+            ).sum(axis=0),
             modes.stiffness,
         )
 
@@ -324,10 +328,12 @@ def exact(joint: Bolted, loads: Array) -> dict[str, Array]:
     alone = replace(interface_alone(joint), memory=False, embedding=0.0)
     spring, rest = BoltedJointSpring.of_nodes(alone), (0.0, 0.0, 0.0)
     tightened = BoltedJointSpring.of(replace(joint, embedding=0.0)) if joint.elastic else spring
-    states = [tightened.motion(float(load), 0.0, rest, rest) for load in loads]
+    states = [tightened.evaluate(float(load), 0.0, rest, rest) for load in loads]
     curves = {name: np.array([state[name] for state in states]) for name in _OUTPUTS}
-    pressure = node_pressure(alone, spring.shape.equal, spring.shape.tilt, loads[:, None], 0.0)
-    slip = alone.A_0 * spring.foundation().friction * (pressure @ spring.shape.share)
+    pressure = node_pressure(
+        alone, spring.shape.preload_shape, spring.shape.moment_shape, loads[:, None], 0.0
+    )
+    slip = alone.A_0 * spring.foundation().friction_coefficient * (pressure @ spring.shape.share)
     lost = [loss_factor(spring, each, shear_at(alone, each)) if each > 0.0 else 0.0 for each in loads]
     found = {"approach": approach(spring, loads), "slip_force": slip, "loss_factor": np.array(lost)}
     return curves | found
@@ -339,13 +345,15 @@ def approach(spring: BoltedJointSpring, loads: Array) -> Array:
     Three Gauss-Legendre nodes per log-spaced panel; nodes of the pressure pattern that its symmetry makes
     equal are taken together.
     """
-    joint, shape = spring.joint, spring.shape.merged(moment=False)
-    lowest = 1e-9 * spring.curve.closed * joint.A_0 / joint.n_bolts
+    joint, shape = spring.joint, spring.shape.merge_nodes(with_moment=False)
+    lowest = 1e-9 * spring.curve.closing_end_load * joint.A_0 / joint.n_bolts
     ends = np.unique(np.concatenate([np.geomspace(lowest, np.max(loads), 60), loads[loads > lowest]]))
     places, weights = np.polynomial.legendre.leggauss(3)
     half, middle = 0.5 * np.diff(np.log(ends)), 0.5 * np.log(ends[1:] * ends[:-1])
     preload = np.concatenate([ends[:1], np.exp(middle[:, None] + half[:, None] * places).ravel()])
-    node = spring.curve.inverse(node_pressure(joint, shape.equal, shape.tilt, preload[:, None], 0.0))
+    node = spring.curve.inverse(
+        node_pressure(joint, shape.preload_shape, shape.moment_shape, preload[:, None], 0.0)
+    )
     K = joint.A_0 * spring.curve.derivatives(node, 1)[1] @ shape.share
     rate = joint.n_bolts * preload / K
     panels = half * (rate[1:].reshape(-1, 3) @ weights)
@@ -354,7 +362,7 @@ def approach(spring: BoltedJointSpring, loads: Array) -> Array:
 
 
 _OUTPUTS = ("K_zz", "K_xx", "C_zz", "C_xx")
-REDUCED = Reduced(
+REDUCED = ReducedCurves(
     load=replace(KIND.variables["preload"], doc="force of each bolt that embedding has left"),
     outputs=(
         *(KIND.variables[name] for name in _OUTPUTS),
@@ -362,8 +370,8 @@ REDUCED = Reduced(
         Variable("slip_force", "N", "shear force at which all of the interface slips", 1e4),
         Variable("loss_factor", "1", f"of a loop under a shear of {SHEAR:g} times the bolts' force", 0.1),
     ),
-    to=lambda joint: 30e3,
-    most=lambda joint: joint.H * joint.A_0 / joint.n_bolts,
+    default_end=lambda joint: 30e3,
+    max_load=lambda joint: joint.H * joint.A_0 / joint.n_bolts,
     evaluate=evaluate,
     exact=exact,
 )

@@ -21,38 +21,38 @@ from jointfmu.joints.model import Model
 from jointfmu.mechanics.footprint.shape import NodalField
 from jointfmu.parameters import ParameterFile
 
-from ...report.course import Course
-from ...report.figure import Beside, Figure
-from ...shown import quantity
+from ...report.course import LoadHistory
+from ...report.figure import ComparisonRow, Figure
+from ...shown import format_quantity
 from .field import PlaneLayout
-from .picture import plan, section
-from .pull import MOST, bolt_forces
+from .picture import draw_plan, draw_section
+from .pull import MAX_BOLT_FORCE_RATIO, bolt_forces
 
-BEYOND = 1.3
+PLOTTED_LOAD_RATIO = 1.3
 """Largest plotted tensile force over the opening load of the interface [1]."""
-ALIKE = 0.05
+EQUAL_SHARE_TOLERANCE = 0.05
 """Excess of the largest bolt share over the mean share [1], up to which bolts count as equally loaded."""
-TOLD_AT = 0.1
+SHEAR_RATIO = 0.1
 """Shear force over the gross-slip force [1] at which the loss factor is reported."""
 
 
-def joint_figures(course: Course) -> list[Figure]:
+def joint_figures(load_history: LoadHistory) -> list[Figure]:
     """All figures of the joint: pictures, complete joint, friction."""
-    return [pictured(course), *whole_joint(course), *friction(course)]
+    return [picture_figure(load_history), *stiffness_figures(load_history), *friction_figures(load_history)]
 
 
-def pictured(course: Course) -> Figure:
+def picture_figure(load_history: LoadHistory) -> Figure:
     """Plan view of the joint, and a section if the file has the thickness of the sides."""
-    joint = course.file.values
-    preload, moment = _tight(course)
-    bodies, bolts = joint.bodies, PlaneLayout.of(joint).bolts
-    pictures = [plan(joint, preload, moment)]
+    joint = load_history.file.values
+    preload, moment = _working_point(load_history)
+    bodies, bolts = joint.bodies, PlaneLayout.from_joint(joint).bolt_positions
+    pictures = [draw_plan(joint, preload, moment)]
     if joint.elastic and isinstance(bodies, ElasticBodies) and bodies.thickness:
-        pictures.append(section(joint))
+        pictures.append(draw_section(joint))
     text = "The tightened interface from side 2, grey where it is open. "
     if isinstance(joint.pattern, NodalField):
         text += "Dots show the pressure at some nodes of the field, which represent all nodes. "
-    if not PlaneLayout.of(joint).outline:
+    if not PlaneLayout.from_joint(joint).outline:
         text += "The outline is not in the file. "
     text += (
         "The numbers of the bolts are those of the FMU's F_bolt. "
@@ -70,22 +70,22 @@ def pictured(course: Course) -> Figure:
     return Figure("The joint", text, pictures=pictures)
 
 
-def friction(course: Course) -> list[Figure]:
+def friction_figures(load_history: LoadHistory) -> list[Figure]:
     """Table of gross-slip force and loss factor over the range of mu; empty if the file states no range."""
-    if "mu" not in course.file.ranges:
+    if "mu" not in load_history.file.ranges:
         return []
-    shear, rows = friction_band(course.file, _tight(course)[0])
-    table = [("mu", "all slips at", f"loss factor at {_told(shear, 'N')} of shear")]
+    shear, rows = friction_results(load_history.file, _working_point(load_history)[0])
+    table = [("mu", "all slips at", f"loss factor at {_format_value(shear, 'N')} of shear")]
     for row in sorted(rows):
-        table.append((f"{row.mu:.4g}", _told(row.slip_force, "N"), f"{row.loss_factor:.3g}"))
+        table.append((f"{row.mu:.4g}", _format_value(row.slip_force, "N"), f"{row.loss_factor:.3g}"))
     text = (
-        f"The friction coefficient is the least certain input: {course.file.sources['mu']}. The loss factor "
+        f"The friction coefficient is the least certain input: {load_history.file.sources['mu']}. The loss factor "
         "is that of the interface between rigid sides, under the same shear force."
     )
     return [Figure("Effect of the friction coefficient", text, table=table)]
 
 
-class Band(NamedTuple):
+class FrictionResult(NamedTuple):
     """Effect of one friction coefficient.
 
     mu          : friction coefficient [1]
@@ -98,7 +98,7 @@ class Band(NamedTuple):
     loss_factor: float
 
 
-def friction_band(file: ParameterFile, preload: float) -> tuple[float, list[Band]]:
+def friction_results(file: ParameterFile, preload: float) -> tuple[float, list[FrictionResult]]:
     """Gross-slip force and loss factor for mu of the file and both ends of its range, at a preload [N].
 
     Returns the amplitude [N] of the shear force, then one FrictionResult per mu. The loss factors are those
@@ -106,111 +106,118 @@ def friction_band(file: ParameterFile, preload: float) -> tuple[float, list[Band
     """
     joint = interface_alone(file.values)
     remaining_preload = float(working_preload(joint, preload))
-    shear = TOLD_AT * float(slip_force(joint, remaining_preload))
+    shear = SHEAR_RATIO * float(slip_force(joint, remaining_preload))
     rows = []
     for mu in (joint.mu, *file.ranges.get("mu", ())):
         other = replace(joint, mu=mu)
         loss = loss_factor(BoltedJointSpring.of(other), remaining_preload, shear)
-        rows.append(Band(mu, float(slip_force(other, remaining_preload)), loss))
+        rows.append(FrictionResult(mu, float(slip_force(other, remaining_preload)), loss))
     return shear, rows
 
 
-def loss_factor(spring: BoltedJointSpring, left: float, shear: float) -> float:
+def loss_factor(spring: BoltedJointSpring, remaining_preload: float, shear: float) -> float:
     """Loss factor [1]: dissipated energy over 2 pi times the stored energy, in a loop of the shear force.
 
     remaining_preload : [N] of each bolt after embedding; without a moment
     shear             : amplitude [N] of the shear force
     """
     joint, shape = spring.joint, spring.patches
-    law, mean = spring.foundation(), left * joint.n_bolts / joint.A_0
-    approach = spring.curve.inverse(shaped_pressure(shape.equal, shape.tilt, mean, 0.0))
-    low, size = 0.0, law.friction / law.ratio * float(np.max(approach - spring.curve.displacement[0]))
+    law, mean = spring.foundation(), remaining_preload * joint.n_bolts / joint.A_0
+    approach = spring.curve.inverse(shaped_pressure(shape.preload_shape, shape.moment_shape, mean, 0.0))
+    low, size = (
+        0.0,
+        law.friction_coefficient
+        / law.stiffness_ratio
+        * float(np.max(approach - spring.curve.displacement[0])),
+    )
     for _ in range(60):
         middle = 0.5 * (low + size)
-        carried = joint.A_0 * float(law.backbone(approach, middle) @ shape.share)
+        carried = joint.A_0 * float(law.virgin_traction(approach, middle) @ shape.share)
         low, size = (middle, size) if carried < shear else (low, middle)
-    lost, stored = (float(shape.share @ each) for each in law.loop(approach, np.full(approach.size, size)))
+    lost, stored = (
+        float(shape.share @ each) for each in law.cycle_energies(approach, np.full(approach.size, size))
+    )
     return lost / (2.0 * np.pi * stored)
 
 
-def _tight(course: Course) -> tuple[float, float]:
+def _working_point(load_history: LoadHistory) -> tuple[float, float]:
     """Preload [N] and moment [N.m] of the tightened joint."""
-    preload, moment = (float(course.about.get(name, 0.0)) for name in ("preload", "moment"))
+    preload, moment = (float(load_history.loop_inputs.get(name, 0.0)) for name in ("preload", "moment"))
     return preload, moment
 
 
-def whole_joint(course: Course) -> list[Figure]:
+def stiffness_figures(load_history: LoadHistory) -> list[Figure]:
     """Stiffness of the complete joint, its interface and its bolts, and bolt forces over a force along z.
 
     Empty for rigid sides.
     """
-    joint, spring = course.file.values, course.spring
+    joint, spring = load_history.file.values, load_history.spring
     if not joint.elastic:
         return []
     assert isinstance(spring, BoltedJointSpring)
-    preload, moment = _tight(course)
+    preload, moment = _working_point(load_history)
     compliances = spring.compliances(preload, moment)
     remaining_preload = float(working_preload(joint, preload))
     opening = compliances.opening_load(remaining_preload)
     limit = float(slip_force(joint, remaining_preload))
-    panel = _bolt_forces(spring, preload, moment, BEYOND * opening)
+    panel = _bolt_force_panel(spring, preload, moment, PLOTTED_LOAD_RATIO * opening)
     share = compliances.bolt_force[:, 2]
     most_loaded = int(np.argmax(share))
-    is_uneven = share[most_loaded] > (1.0 + ALIKE) * np.mean(share)
+    is_uneven = share[most_loaded] > (1.0 + EQUAL_SHARE_TOLERANCE) * np.mean(share)
     location = (
         f"around bolt {most_loaded + 1}, which gets {share[most_loaded]:.3g} of it"
         if is_uneven
         else "around the bolts"
     )
-    text = _text(compliances, remaining_preload, moment) + (
-        f" A force of {_told(opening, 'N')} along z opens the interface {location}, by these stiffnesses; "
+    text = _stiffness_text(compliances, remaining_preload, moment) + (
+        f" A force of {_format_value(opening, 'N')} along z opens the interface {location}, by these stiffnesses; "
         "a joint that peels opens at a lower load, as the plot shows. The whole interface slips at "
-        f"{_told(limit, 'N')} along x or y; slip begins at the edges at a far lower load, and its loss is "
-        f"under Loops. The plot shows a tensile force up to {BEYOND:g} times the opening load, free in the "
-        f"other five motions, and up to {MOST:g} times the force of a bolt at tightening."
+        f"{_format_value(limit, 'N')} along x or y; slip begins at the edges at a far lower load, and its loss is "
+        f"under Loops. The plot shows a tensile force up to {PLOTTED_LOAD_RATIO:g} times the opening load, free in the "
+        f"other five motions, and up to {MAX_BOLT_FORCE_RATIO:g} times the force of a bolt at tightening."
     )
-    return [Figure("The whole joint", text, [panel], table=_rows(compliances))]
+    return [Figure("The whole joint", text, [panel], table=_stiffness_rows(compliances))]
 
 
-def _told(value: float, unit: str) -> str:
-    return " ".join(quantity(value, unit, 4))
+def _format_value(value: float, unit: str) -> str:
+    return " ".join(format_quantity(value, unit, 4))
 
 
-def _rows(found: Compliances) -> list[tuple[str, ...]]:
+def _stiffness_rows(compliances: Compliances) -> list[tuple[str, ...]]:
     """Table rows, one per direction: stiffnesses, and shares of the compliance."""
     heads = ("whole joint", "interface alone", "members", "bolts alone", "interface", "members", "bolts")
     rows: list[tuple[str, ...]] = [("", *heads)]
-    for name, unit, stiffnesses, shares in found.rows():
-        cells = [_told(value, unit) if value > 0.0 else "none" for value in stiffnesses]
+    for name, unit, stiffnesses, shares in compliances.rows():
+        cells = [_format_value(value, unit) if value > 0.0 else "none" for value in stiffnesses]
         rows.append((name, *cells, *(f"{share:.1%}" for share in shares)))
     return rows
 
 
-def _text(found: Compliances, tension: float, moment: float) -> str:
-    share = found.shares[0]
+def _stiffness_text(compliances: Compliances, tension: float, moment: float) -> str:
+    share = compliances.shares[0]
     largest = float(np.max(share))
-    effect = "it matters for the stiffness" if found.matters else "it hardly affects the stiffness"
+    effect = "it matters for the stiffness" if compliances.matters else "it hardly affects the stiffness"
     return (
-        f"Small motions of the attachments about the tightened state, {_told(tension, 'N')} in each bolt"
+        f"Small motions of the attachments about the tightened state, {_format_value(tension, 'N')} in each bolt"
         + (f" with a moment of {moment:g} N m" if moment else "")
         + ", one at a time with the other five fixed. The stiffness of the whole joint is that of the FMU. "
         "The last three columns are shares of its compliance, by stored energy. Members are a spring in "
         "series with interface and bolts; interface alone and bolts alone are between rigid sides. The "
         f"interface has {share[2]:.1%} of the compliance along z and at most {largest:.1%} in any direction: "
-        f"{effect}. The bolts carry {found.load_factor:.3f} of a force along z (load factor n Phi_K of VDI "
+        f"{effect}. The bolts carry {compliances.load_factor:.3f} of a force along z (load factor n Phi_K of VDI "
         "2230), with the other motions free; where the interface is open they carry the full force, as the "
         "plot shows."
     )
 
 
-def _bolt_forces(spring: BoltedJointSpring, preload: float, moment: float, most: float) -> Panel:
+def _bolt_force_panel(spring: BoltedJointSpring, preload: float, moment: float, max_force: float) -> Panel:
     """Panel of the force of each bolt over a tensile force along z, up to `max_force` [N]."""
-    pulls = np.linspace(0.0, most, 27)
+    pulls = np.linspace(0.0, max_force, 27)
     columns = 1e-3 * bolt_forces(spring, preload, moment, pulls).T
     series = [Series(bolt_force_name(j), 1e-3 * pulls[: len(y)], y) for j, y in enumerate(columns)]
     return Panel("Bolts under a force along z", "force that pulls [kN]", "force of a bolt [kN]", series)
 
 
 FIGURES = {"BoltedJoint": joint_figures}
-BESIDE: dict[str, Callable[[Model, ParameterFile], list[Beside]]] = {}
+BESIDE: dict[str, Callable[[Model, ParameterFile], list[ComparisonRow]]] = {}
 """Empty: there are no catalogue values of bolted joints to compare with."""

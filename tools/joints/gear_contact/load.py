@@ -4,11 +4,11 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from jointfmu.joints.gear_contact import KIND
-from jointfmu.joints.gear_contact.spring import Contact, GearContactSpring
+from jointfmu.joints.gear_contact.spring import ContactParameters, GearContactSpring
 
 from ...export.exports import Exports, LoadCurve
 from ...laboratory.part import LaboratoryModel
-from ...pressure import FLANKS
+from ...pressure import FLANK_PRESSURE
 
 if TYPE_CHECKING:
     from jointfmu.mechanics.curve import Curve
@@ -16,27 +16,27 @@ if TYPE_CHECKING:
     from ...export.tables import LoadTable
 
 
-def _contact(gear: Contact) -> "tuple[Curve, Sequence[str]]":
-    return GearContactSpring.of(gear).curve, ()
+def _contact_curve(gear: ContactParameters) -> "tuple[Curve, Sequence[str]]":
+    return GearContactSpring.tabulate(gear).curve, ()
 
 
-def _load(gear: Contact, _: None, error: float) -> "LoadTable":
-    from ...export.tables import load_table
+def _load_table(gear: ContactParameters, _: None, max_error: float) -> "LoadTable":
+    from ...export.tables import tabulate_load
 
-    return load_table(GearContactSpring.of(gear).curve, gear.A_0, error)
+    return tabulate_load(GearContactSpring.tabulate(gear).curve, gear.A_0, max_error)
 
 
 EXPORTS = Exports(
-    contact=_contact,
+    contact=_contact_curve,
     curve=LoadCurve(
         meaning="normal load over approach of the flanks from first touch; without load while apart",
         columns=tuple(KIND.variables[name] for name in ("s_rel", "f", "K_N")),
         name="force",
-        table=_load,
+        compute_table=_load_table,
     ),
 )
 
 
-PRESSURE = FLANKS
-LABORATORY = {"GearContact": LaboratoryModel(spans={"f": (0.0, 3e3)})}
+PRESSURE = FLANK_PRESSURE
+LABORATORY = {"GearContact": LaboratoryModel(slider_spans={"f": (0.0, 3e3)})}
 """{FMU: contents of its laboratory page that are not variables of the FMU}."""

@@ -9,10 +9,10 @@ from jointfmu.contact.interface import at_largest_spot
 from jointfmu.contact.laws.yu2022 import Yu2022
 from jointfmu.joints.gear_contact.spring import GearContact
 
-from ...published.computed import Published
+from ...published.computed import PublishedNumbers
 
 
-def claim(contact: GearContact, of: str, over: str) -> bool:
+def is_claim_met(contact: GearContact, of: str, over: str) -> bool:
     """Check whether a claim of Yu 2022, section 5, holds for the parameter values in that section.
 
     of   : quantity that changes: load, stiffness, real area `A_r` or `elastic_fraction`
@@ -21,40 +21,44 @@ def claim(contact: GearContact, of: str, over: str) -> bool:
     Loads and stiffnesses are compared at equal real areas, real areas at an equal largest spot.
     """
     if over == "MB":
-        return _below_majumdar_bhushan(contact)
+        return _is_below_majumdar_bhushan(contact)
     if of == "elastic_fraction" and over == "e":
         shares = [
-            _at_real_area(_varied(contact, D1=1.56, D2=1.56, e=e), 0.01)[of] for e in (0.1, 0.3, 0.5, 0.7)
+            _state_at_real_area(_replace_parameters(contact, D1=1.56, D2=1.56, e=e), 0.01)[of]
+            for e in (0.1, 0.3, 0.5, 0.7)
         ]
         return bool(max(shares) - min(shares) < 0.05)
     if of == "elastic_fraction":
-        share = [_at_real_area(_varied(contact, D1=1.56, D2=D), 0.01)[of] for D in (1.45, 1.55, 1.65)]
+        share = [
+            _state_at_real_area(_replace_parameters(contact, D1=1.56, D2=D), 0.01)[of]
+            for D in (1.45, 1.55, 1.65)
+        ]
         return bool(share[0] < share[1] and abs(share[2] - share[1]) < 0.2 * (share[1] - share[0]))
     fine = {"G1": 1e-11, "G2": 1e-11}
     studies: dict[str, list[Yu2022]] = {
-        "D": [_varied(contact, D1=1.36, D2=D, **fine) for D in (1.36, 1.46, 1.56, 1.66, 1.76)],
-        "G": [_varied(contact, G2=G) for G in (9e-10, 7e-10, 5e-10, 3e-10, 1e-10)],
-        "e": [_varied(contact, e=e, **fine) for e in (0.7, 0.5, 0.3, 0.1)],
-        "lambda": [_varied(contact, lambda_=v, **fine) for v in (0.3, 0.5, 0.7, 0.9)],
+        "D": [_replace_parameters(contact, D1=1.36, D2=D, **fine) for D in (1.36, 1.46, 1.56, 1.66, 1.76)],
+        "G": [_replace_parameters(contact, G2=G) for G in (9e-10, 7e-10, 5e-10, 3e-10, 1e-10)],
+        "e": [_replace_parameters(contact, e=e, **fine) for e in (0.7, 0.5, 0.3, 0.1)],
+        "lambda": [_replace_parameters(contact, lambda_=v, **fine) for v in (0.3, 0.5, 0.7, 0.9)],
     }
     if of == "A_r":
         rows = [[float(at_largest_spot(law, 1e-6)[of]) for law in studies[over]]]
     else:
         fractions = np.geomspace(1e-3, 1e-1, 9)
-        rows = [[_at_real_area(law, fraction)[of] for law in studies[over]] for fraction in fractions]
+        rows = [[_state_at_real_area(law, fraction)[of] for law in studies[over]] for fraction in fractions]
     return bool(np.all(np.diff(rows, axis=1) > 0.0))
 
 
-def _varied(contact: GearContact, **changes: Any) -> GearContact:
+def _replace_parameters(contact: GearContact, **new_values: Any) -> GearContact:
     for key in ("D1", "D2", "G1", "G2"):
-        if key in changes:
+        if key in new_values:
             name = f"surface{key[1]}"
-            surface = replace(getattr(contact, name), **{key[0]: changes.pop(key)})
+            surface = replace(getattr(contact, name), **{key[0]: new_values.pop(key)})
             contact = replace(contact, **{name: surface})
-    return replace(contact, **changes)
+    return replace(contact, **new_values)
 
 
-def _at_real_area(law: Yu2022, fraction: float) -> dict[str, float]:
+def _state_at_real_area(law: Yu2022, fraction: float) -> dict[str, float]:
     """State of the law at a real contact area of `fraction` times A_0, with the largest spot by Eq. 54."""
     spots = law.spots()
     largest = fraction * law.A_0 * (1.0 - spots.m) / (spots.m * spots.weight)
@@ -62,7 +66,7 @@ def _at_real_area(law: Yu2022, fraction: float) -> dict[str, float]:
     return {name: float(value) for name, value in state.items()}
 
 
-def _below_majumdar_bhushan(contact: GearContact) -> bool:
+def _is_below_majumdar_bhushan(contact: GearContact) -> bool:
     """Whether the load is below that of Majumdar and Bhushan (1991) at all real areas from 1 to 10 % of A_0.
 
     Both models have the same D (fractal dimension of the profile) and G. In the model of Majumdar and Bhushan
@@ -76,15 +80,15 @@ def _below_majumdar_bhushan(contact: GearContact) -> bool:
         scale = 4.0 * np.sqrt(np.pi) / 3.0 * E * G ** (D - 1.0) * D / (3.0 - 2.0 * D)
         elastic = scale * largest ** (0.5 * D) * (largest ** (1.5 - D) - critical ** (1.5 - D))
         plastic = H * D / (2.0 - D) * largest ** (0.5 * D) * critical ** (1.0 - 0.5 * D)
-        if _at_real_area(contact, fraction)["F"] >= elastic + plastic:
+        if _state_at_real_area(contact, fraction)["F"] >= elastic + plastic:
             return False
     return True
 
 
-PUBLISHED = Published(
+PUBLISHED = PublishedNumbers(
     papers=("yu2022",),
     observables={
-        "claim": claim,
+        "claim": is_claim_met,
     },
 )
 """{quantity of a reference file: function that computes it}."""

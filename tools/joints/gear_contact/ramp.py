@@ -8,30 +8,30 @@ import numpy as np
 
 from jointfmu.contact.interface import stiffness_curve
 from jointfmu.joints.gear_contact import KIND
-from jointfmu.joints.gear_contact.spring import Contact, GearContact, GearContactSpring
-from jointfmu.parameters import default
+from jointfmu.joints.gear_contact.spring import ContactParameters, GearContact, GearContactSpring
+from jointfmu.parameters import load_default
 from jointfmu.quantity import Array
 
 from ...batch.approach import columns, held, tabulate
-from ...job.checks import deviation, integrals
+from ...job.checks import integrate_logarithmically, relative_deviation
 from ...ramps.ramp import RampResult
 from ...report.figure import Figure, Panel, Series
-from ...uncertainty.problem import Reduced
+from ...uncertainty.problem import ReducedCurves
 
 
-def _approach(folder: Path, result: RampResult) -> tuple[str, float]:
-    law = default("gear_contact").values
+def _check_approach(folder: Path, result: RampResult) -> tuple[str, float]:
+    law = load_default("gear_contact").values
     assert isinstance(law, GearContact)
 
     def compliance(f: Array) -> Array:
         return 1.0 / (law.A_0 * stiffness_curve(law, f / law.A_0)[0])
 
     c, at = result.columns, [1, 10, 100, 300]
-    miss = deviation(np.diff(c["s_rel"][at]), integrals(compliance, c["f"][at]))
+    miss = relative_deviation(np.diff(c["s_rel"][at]), integrate_logarithmically(compliance, c["f"][at]))
     return "s_rel against the integral of df/K of the law (scipy, Simpson)", miss
 
 
-RAMPS = {"GearContact": _approach}
+RAMPS = {"GearContact": _check_approach}
 """{FMU: check}, a check being (folder, ramp of the FMU) -> (text, largest relative deviation [1])."""
 
 
@@ -48,7 +48,7 @@ def figures(outcome: Any) -> list[Figure]:
 
 
 def evaluate(
-    parameters: type[Contact], values: Mapping[str, object], loads: Array, factor: Array
+    parameters: type[ContactParameters], values: Mapping[str, object], loads: Array, factor: Array
 ) -> dict[str, Array]:
     """Stiffness K_N (n, m) [N/m] and approach s_rel (n, m) [m] at the forces factor times loads.
 
@@ -67,17 +67,17 @@ def evaluate(
     return {"K_N": K, "s_rel": s}
 
 
-def exact(joint: Contact, loads: Array) -> dict[str, Array]:
+def evaluate_exported(joint: ContactParameters, loads: Array) -> dict[str, Array]:
     """K_N (m) [N/m] and s_rel (m) [m] of the exported joint at forces (m) [N]; both are 0 at zero force."""
-    state = GearContactSpring.of(joint).approach(loads)
+    state = GearContactSpring.tabulate(joint).evaluate(loads)
     return {name: np.where(loads > 0.0, state[name], 0.0) for name in REDUCED.units}
 
 
-REDUCED = Reduced(
+REDUCED = ReducedCurves(
     load=KIND.variables["f"],
     outputs=tuple(KIND.variables[name] for name in ("K_N", "s_rel")),
-    to=lambda contact: 3e3,
-    most=lambda contact: contact.hardness * contact.A_0,
+    default_end=lambda contact: 3e3,
+    max_load=lambda contact: contact.hardness * contact.A_0,
     evaluate=evaluate,
-    exact=exact,
+    exact=evaluate_exported,
 )

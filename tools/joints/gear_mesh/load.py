@@ -6,41 +6,43 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from jointfmu.joints.gear_mesh import KIND
-from jointfmu.joints.gear_mesh.spring import Mesh, pair_curve
-from jointfmu.mechanics.curve import Curve, approach_curve
+from jointfmu.joints.gear_mesh.spring import MeshParameters, tabulate_pair
+from jointfmu.mechanics.curve import Curve, tabulate_approach
 
 from ...export.exports import Exports, LoadCurve
-from ...pressure import FLANKS
+from ...pressure import FLANK_PRESSURE
 
 if TYPE_CHECKING:
     from ...export.tables import LoadTable
 
 
-def _contact(mesh: Mesh) -> tuple[Curve, Sequence[str]]:
-    return approach_curve(mesh), ("the flanks alone; what the teeth give way comes on top",)
+def _contact_curve(mesh: MeshParameters) -> tuple[Curve, Sequence[str]]:
+    return tabulate_approach(mesh), ("the flanks alone; what the teeth give way comes on top",)
 
 
-def _load(mesh: Mesh, _: None, error: float) -> "LoadTable":
-    from ...export.tables import LoadTable, law_table
+def _load_table(mesh: MeshParameters, _: None, max_error: float) -> "LoadTable":
+    from ...export.tables import LoadTable, tabulate_law
 
-    pair, closing = pair_curve(mesh)
+    pair, closing = tabulate_pair(mesh)
     i = int(np.argmin(np.abs(pair.displacement - closing)))
-    columns = (pair.load, pair.stiffness, pair.bend_start, pair.bend_end)
+    columns = (pair.load, pair.stiffness, pair.slope_start, pair.slope_end)
     load, stiffness, start, end = (mesh.contact_ratio * column for column in columns)
-    positive = law_table(Curve(pair.displacement - pair.displacement[i], load, stiffness, start, end), error)
+    positive = tabulate_law(
+        Curve(pair.displacement - pair.displacement[i], load, stiffness, start, end), max_error
+    )
     rows = np.vstack([positive.rows[:0:-1] * [-1.0, -1.0, 1.0], positive.rows])
-    return LoadTable(rows, positive.straight, positive.monotone)
+    return LoadTable(rows, positive.linear_errors, positive.monotone_cubic_errors)
 
 
 EXPORTS = Exports(
-    contact=_contact,
+    contact=_contact_curve,
     curve=LoadCurve(
         meaning="force over deflection of the flanks beyond the backlash, mean over the mesh cycle",
         columns=tuple(KIND.variables[name] for name in ("s_rel", "f", "K")),
         name="force",
-        table=_load,
+        compute_table=_load_table,
     ),
 )
 
 
-PRESSURE = FLANKS
+PRESSURE = FLANK_PRESSURE

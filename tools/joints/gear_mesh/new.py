@@ -8,20 +8,20 @@ from jointfmu.contact.surface import Elastic, contact_modulus
 from jointfmu.joints.gear_mesh import KIND
 from jointfmu.joints.gear_mesh.spring import GearMeshSpring
 
-from ...command_line.common import flag
+from ...command_line.common import option_flag
 from ...drawing import faces
-from ...drawing.faces import OPTIONS, patch
-from ...drawing.part import Drawing, Given, NewJoint, Sheet
-from ...drawing.reading import number
+from ...drawing.faces import FACE_OPTIONS, hertz_line_contact
+from ...drawing.part import DrawingOptions, NewJoint, NewJointCommand, ParameterSheet
+from ...drawing.reading import parse_number
 from ...joint_parts import Option
 
 E_STEEL = 206e9
 """Young's modulus [Pa] of steel wheels for which ISO 6336-1 states the stiffness."""
-CORRECTION = 0.8
+STIFFNESS_CORRECTION = 0.8
 """Factor C_M of ISO 6336-1: measured over theoretical single stiffness [1]."""
-LOADED = 100e3
+REFERENCE_LINE_LOAD = 100e3
 """Tangential load per face width [N/m] below which ISO 6336-1 reduces the tooth stiffness."""
-DAMPING = 0.06
+DAMPING_RATIO = 0.06
 """Damping ratio [1] of the oscillation of both wheels, as solid discs, on the mesh stiffness."""
 
 
@@ -37,7 +37,7 @@ class InvoluteGearPair:
     """
 
     module: float
-    z: tuple[float, float]
+    tooth_counts: tuple[float, float]
     width: float
     pressure_angle: float
     helix_angle: float
@@ -48,15 +48,15 @@ class InvoluteGearPair:
         return float(np.arctan(np.tan(self.pressure_angle) / np.cos(self.helix_angle)))
 
     @property
-    def radii(self) -> tuple[float, float]:
+    def reference_radii(self) -> tuple[float, float]:
         """Radii of both reference circles [m]."""
-        first, second = (0.5 * self.module * z / np.cos(self.helix_angle) for z in self.z)
+        first, second = (0.5 * self.module * z / np.cos(self.helix_angle) for z in self.tooth_counts)
         return float(first), float(second)
 
     @property
     def base_radii(self) -> tuple[float, float]:
         """Radii of both base circles [m]: r cos(alpha_t)."""
-        first, second = (r * np.cos(self.transverse_angle) for r in self.radii)
+        first, second = (r * np.cos(self.transverse_angle) for r in self.reference_radii)
         return float(first), float(second)
 
     @property
@@ -65,11 +65,11 @@ class InvoluteGearPair:
 
         The mean total length of the contact lines is epsilon_alpha width/cos(beta_b), for any overlap ratio.
         """
-        (r1, r2), base = self.radii, self.base_radii
+        (r1, r2), base = self.reference_radii, self.base_radii
         path = sum(np.sqrt((r + self.module) ** 2 - b**2) for r, b in zip((r1, r2), base, strict=True)) - (
             r1 + r2
         ) * np.sin(self.transverse_angle)
-        return float(path / (2.0 * np.pi * base[0] / self.z[0]))
+        return float(path / (2.0 * np.pi * base[0] / self.tooth_counts[0]))
 
     @property
     def overlap_ratio(self) -> float:
@@ -77,10 +77,10 @@ class InvoluteGearPair:
         return float(self.width * np.sin(self.helix_angle) / (np.pi * self.module))
 
     @property
-    def curvature(self) -> float:
+    def relative_curvature(self) -> float:
         """Relative curvature 1/R_1 + 1/R_2 [1/m] at the pitch point, in the section normal to the flanks."""
         base_helix = np.arcsin(np.sin(self.helix_angle) * np.cos(self.pressure_angle))
-        curvatures = (np.cos(base_helix) / (r * np.sin(self.transverse_angle)) for r in self.radii)
+        curvatures = (np.cos(base_helix) / (r * np.sin(self.transverse_angle)) for r in self.reference_radii)
         return float(sum(curvatures))
 
     def tooth_stiffness(self, moduli: tuple[float, float], torque: float) -> float:
@@ -92,20 +92,20 @@ class InvoluteGearPair:
         ISO 6336-1, method B: solid wheels, no profile shift, K_A = 1, basic rack with a dedendum of 1.2
         modules (C_B is 1 at 20 degrees).
         """
-        virtual = [z / np.cos(self.helix_angle) ** 3 for z in self.z]
+        virtual = [z / np.cos(self.helix_angle) ** 3 for z in self.tooth_counts]
         q = 0.04723 + 0.15551 / virtual[0] + 0.25791 / virtual[1]  # mm um/N
         material = 2.0 / (1.0 / moduli[0] + 1.0 / moduli[1]) / E_STEEL
         rack = 1.0 - 0.02 * (20.0 - np.degrees(self.pressure_angle))  # C_B
-        loaded = min(torque / self.radii[0] / self.width / LOADED, 1.0) ** 0.25
+        loaded = min(torque / self.reference_radii[0] / self.width / REFERENCE_LINE_LOAD, 1.0) ** 0.25
         theory = 1e9 / q * np.cos(self.helix_angle) * material * self.width
-        return float(CORRECTION * rack * loaded * theory)
+        return float(STIFFNESS_CORRECTION * rack * loaded * theory)
 
-    def mesh_stiffness(self, tooth: float) -> float:
+    def mesh_stiffness(self, tooth_stiffness: float) -> float:
         """Mesh stiffness c_gamma times width [N/m] of ISO 6336-1.
 
         tooth_stiffness : [N/m] of one tooth pair
         """
-        return tooth * (0.75 * self.contact_ratio + 0.25)
+        return tooth_stiffness * (0.75 * self.contact_ratio + 0.25)
 
     def damping(self, stiffness: float, density: tuple[float, float]) -> float:
         """Damping [N.s/m] along the line of action: 2 DAMPING_RATIO sqrt(stiffness mass).
@@ -116,28 +116,30 @@ class InvoluteGearPair:
         """
         masses = [
             0.5 * np.pi * rho * self.width * r**4 / b**2
-            for rho, r, b in zip(density, self.radii, self.base_radii, strict=True)
+            for rho, r, b in zip(density, self.reference_radii, self.base_radii, strict=True)
         ]
-        return float(2.0 * DAMPING * np.sqrt(stiffness / (1.0 / masses[0] + 1.0 / masses[1])))
+        return float(2.0 * DAMPING_RATIO * np.sqrt(stiffness / (1.0 / masses[0] + 1.0 / masses[1])))
 
 
-def mesh(given: Given) -> NewJoint:
+def make_joint(options: DrawingOptions) -> NewJoint:
     """Make the parameters of a gear mesh from the options of a drawing.
 
     Raises ValueError with a one-line message for options that are invalid or contradict each other.
     """
-    wheels, torque = _wheels(given), number("torque", given["torque"], "N.m", "N.m")
-    sheet = Sheet(KIND.name, "roughness")
-    faces.put(sheet, given)
-    moduli = (sheet.value("side1.E"), sheet.value("side2.E"))
+    wheels, torque = _parse_wheels(options), parse_number("torque", options["torque"], "N.m", "N.m")
+    sheet = ParameterSheet(KIND.name, "roughness")
+    faces.add_faces(sheet, options)
+    moduli = (sheet.value_of("side1.E"), sheet.value_of("side2.E"))
     load = torque / wheels.base_radii[0]
-    sides = [Elastic(E=E, nu=sheet.value(f"side{i + 1}.nu")) for i, E in enumerate(moduli)]
-    hertz = patch(load, wheels.width, wheels.curvature, contact_modulus(*sides))
-    _put(sheet, wheels, given, wheels.tooth_stiffness(moduli, torque))
+    sides = [Elastic(E=E, nu=sheet.value_of(f"side{i + 1}.nu")) for i, E in enumerate(moduli)]
+    hertz = hertz_line_contact(load, wheels.width, wheels.relative_curvature, contact_modulus(*sides))
+    _add_parameters(sheet, wheels, options, wheels.tooth_stiffness(moduli, torque))
     text = f"Hertz's line contact at the pitch point, one pair under {torque:g} N.m of wheel 1"
-    sheet.put("A_0", float(hertz.area), "derived", text)
-    file = sheet.file(f"wheels of module {given['module']}, {wheels.z[0]:g} to {wheels.z[1]:g} teeth")
-    spring = GearMeshSpring.of(file.values)
+    sheet.add("A_0", float(hertz.area), "derived", text)
+    file = sheet.build_file(
+        f"wheels of module {options['module']}, {wheels.tooth_counts[0]:g} to {wheels.tooth_counts[1]:g} teeth"
+    )
+    spring = GearMeshSpring.tabulate(file.values)
     deflection = float(spring.curve.inverse(load / wheels.contact_ratio))
     stiffness = wheels.contact_ratio * float(spring.curve.derivatives(np.array([deflection]), 1)[1][0])
     facts = {
@@ -145,78 +147,91 @@ def mesh(given: Given) -> NewJoint:
         "p_hertz": (float(hertz.pressure), "Pa", "largest pressure of smooth flanks, one pair in contact"),
         "contact_ratio": (wheels.contact_ratio, "1", "mean number of pairs in contact over the full width"),
         "overlap_ratio": (wheels.overlap_ratio, "1", "mesh cycles over which a helix spreads the contact"),
-        "K_tooth": (file.flat["K_tooth"], "N/m", "bending of one pair (ISO 6336-1)"),
-        "h": (file.flat["h"], "m", "combined rms height of both flanks"),
+        "K_tooth": (file.values_by_name["K_tooth"], "N/m", "bending of one pair (ISO 6336-1)"),
+        "h": (file.values_by_name["h"], "m", "combined rms height of both flanks"),
         "K": (stiffness, "N/m", "mean stiffness of the mesh at this load"),
-        "c_gamma": (wheels.mesh_stiffness(file.flat["K_tooth"]), "N/m", "the same by ISO 6336-1, to compare"),
+        "c_gamma": (
+            wheels.mesh_stiffness(file.values_by_name["K_tooth"]),
+            "N/m",
+            "the same by ISO 6336-1, to compare",
+        ),
         "deflection": (deflection, "m", "deflection of a tooth pair at this load"),
     }
-    return NewJoint(file, facts, faces.beyond(float(hertz.pressure), file.flat["H"]))
+    return NewJoint(file, facts, faces.warn_hardness(float(hertz.pressure), file.values_by_name["H"]))
 
 
-def _wheels(given: Given) -> InvoluteGearPair:
-    if len(given["teeth"]) != 2:
-        raise ValueError(f"--teeth has {len(given['teeth'])} values, expected one of each wheel")
-    teeth = [number("teeth", text, "1", "1") for text in given["teeth"]]
+def _parse_wheels(options: DrawingOptions) -> InvoluteGearPair:
+    if len(options["teeth"]) != 2:
+        raise ValueError(f"--teeth has {len(options['teeth'])} values, expected one of each wheel")
+    teeth = [parse_number("teeth", text, "1", "1") for text in options["teeth"]]
     if any(z % 1.0 for z in teeth):
-        raise ValueError(f"--teeth = {' '.join(given['teeth'])}: expected whole numbers")
+        raise ValueError(f"--teeth = {' '.join(options['teeth'])}: expected whole numbers")
     angles = []
     for name, default, lowest, highest in (
         ("pressure_angle", "20", 0.0, 45.0),
         ("helix_angle", "0", -1.0, 60.0),
     ):
-        angle = number(name, given[name] or default, "deg", "rad", least=None)
+        angle = parse_number(name, options[name] or default, "deg", "rad", lower_bound=None)
         if not max(lowest, 0.0) <= np.degrees(angle) < highest or (lowest == 0.0 and angle == 0.0):
             lower_end = "(0" if lowest == 0.0 else "[0"
-            raise ValueError(f"{flag(name)} = {given[name]} deg is outside {lower_end}, {highest:g})")
+            raise ValueError(
+                f"{option_flag(name)} = {options[name]} deg is outside {lower_end}, {highest:g})"
+            )
         angles.append(angle)
-    width, module = (number(name, given[name], "mm", "m") for name in ("width", "module"))
+    width, module = (parse_number(name, options[name], "mm", "m") for name in ("width", "module"))
     return InvoluteGearPair(module, (teeth[0], teeth[1]), width, angles[0], angles[1])
 
 
-def _put(sheet: Sheet, wheels: InvoluteGearPair, given: Given, K: float) -> None:
+def _add_parameters(
+    sheet: ParameterSheet, wheels: InvoluteGearPair, options: DrawingOptions, tooth_stiffness: float
+) -> None:
     """Add the parameters that follow from the gear geometry to the sheet.
 
     tooth_stiffness : [N/m] of one tooth pair
     """
     for i, radius in enumerate(wheels.base_radii):
-        sheet.put(f"r_b{i + 1}", radius, "derived", "m_n z cos(alpha_t)/(2 cos(beta)) of the drawing")
-    sheet.stated("teeth1", wheels.z[0])
-    if given["backlash"] is None:
-        distance = sum(wheels.radii) * 1e3
+        sheet.add(f"r_b{i + 1}", radius, "derived", "m_n z cos(alpha_t)/(2 cos(beta)) of the drawing")
+    sheet.add_stated("teeth1", wheels.tooth_counts[0])
+    if options["backlash"] is None:
+        distance = sum(wheels.reference_radii) * 1e3
         min_backlash = 2.0 / 3.0 * (0.06 + 0.0005 * distance + 0.03 * wheels.module * 1e3) * 1e-3
         text = f"least backlash of ISO/TR 10064-2, Annex A, at {distance:.4g} mm of centre distance"
-        sheet.put("backlash", min_backlash, "estimate", text)
+        sheet.add("backlash", min_backlash, "estimate", text)
     else:
-        sheet.stated("backlash", number("backlash", given["backlash"], "um", "m"))
-    sheet.put("K_tooth", K, "derived", "single stiffness c' of ISO 6336-1, method B, times the width")
+        sheet.add_stated("backlash", parse_number("backlash", options["backlash"], "um", "m"))
+    sheet.add(
+        "K_tooth", tooth_stiffness, "derived", "single stiffness c' of ISO 6336-1, method B, times the width"
+    )
     text = "ISO 21771, addendum of one module, transverse"
-    sheet.put("contact_ratio", wheels.contact_ratio, "derived", text)
-    sheet.put("overlap_ratio", wheels.overlap_ratio, "derived", "b sin(beta)/(pi m_n) of ISO 21771")
-    sheet.put("engagement", 0.3, "estimate", "docs/gear_mesh.md says what it does")
-    density = tuple(material.numbers["density"].value for material in faces.materials(given))
-    d = wheels.damping(K * wheels.contact_ratio, (density[0], density[1]))
-    sheet.put("d", d, "estimate", f"a damping ratio of {DAMPING:g} for the wheels as solid discs")
+    sheet.add("contact_ratio", wheels.contact_ratio, "derived", text)
+    sheet.add("overlap_ratio", wheels.overlap_ratio, "derived", "b sin(beta)/(pi m_n) of ISO 21771")
+    sheet.add("engagement", 0.3, "estimate", "docs/gear_mesh.md says what it does")
+    density = tuple(material.numbers["density"].value for material in faces.read_materials(options))
+    d = wheels.damping(tooth_stiffness * wheels.contact_ratio, (density[0], density[1]))
+    sheet.add("d", d, "estimate", f"a damping ratio of {DAMPING_RATIO:g} for the wheels as solid discs")
     for name in ("phi1", "phi2"):
-        sheet.put(f"inputs.{name}", 0.0, "user", "default choice: the middle of the backlash")
+        sheet.add(f"inputs.{name}", 0.0, "user", "default choice: the middle of the backlash")
 
 
-NEW = Drawing(
-    text="the mesh of two external involute wheels without profile shift",
+NEW = NewJointCommand(
+    description="the mesh of two external involute wheels without profile shift",
     example="--module 4 --teeth 29 45 --width 20 --torque 150 --material 'hardened steel' --Ra 0.4",
     options=(
-        Option("module", "normal module [mm]", "M", required=True),
-        Option("teeth", "numbers of teeth of wheel 1 and wheel 2", "Z", many=True, required=True),
-        Option("width", "common face width [mm]", "B", required=True),
+        Option("module", "normal module [mm]", "M", is_required=True),
+        Option("teeth", "numbers of teeth of wheel 1 and wheel 2", "Z", is_list=True, is_required=True),
+        Option("width", "common face width [mm]", "B", is_required=True),
         Option(
-            "torque", "working torque of wheel 1 [N.m]; it determines the contact patch", "T", required=True
+            "torque",
+            "working torque of wheel 1 [N.m]; it determines the contact patch",
+            "T",
+            is_required=True,
         ),
         Option("pressure_angle", "normal pressure angle [deg] (default: 20)", "A"),
         Option("helix_angle", "helix angle at the reference circle [deg] (default: 0)", "A"),
         Option(
             "backlash", "backlash along the line of action [um] (default: minimum of ISO/TR 10064-2)", "J"
         ),
-        *OPTIONS,
+        *FACE_OPTIONS,
     ),
-    run=mesh,
+    make_joint=make_joint,
 )

@@ -14,22 +14,29 @@ from scipy.integrate import cumulative_simpson
 
 from jointfmu.contact.interface import stiffness_curve
 from jointfmu.joints.gear_mesh import KIND
-from jointfmu.joints.gear_mesh.spring import GearMesh, GearMeshSpring, Mesh, in_series, pairs, phase
-from jointfmu.parameters import default
+from jointfmu.joints.gear_mesh.spring import (
+    GearMesh,
+    GearMeshSpring,
+    MeshParameters,
+    combine_in_series,
+    mesh_phase,
+    pairs_in_contact,
+)
+from jointfmu.parameters import load_default
 from jointfmu.quantity import Array
 
 from ...batch.approach import Rows, columns, tabulate
-from ...job.checks import deviation, integrals
+from ...job.checks import integrate_logarithmically, relative_deviation
 from ...ramps.ramp import RampResult
 from ...report.figure import Figure, Panel, Series
-from ...uncertainty.problem import Reduced
+from ...uncertainty.problem import ReducedCurves
 
-_CLOSED = 10.0
+_CLOSED_FORCE = 10.0
 """Force [N] of a tooth pair above which its contact is closed, with the default parameters."""
 
 
-def _series(folder: Path, result: RampResult) -> tuple[str, float]:
-    mesh = default("gear_mesh").values
+def _check_deflection_and_work(folder: Path, result: RampResult) -> tuple[str, float]:
+    mesh = load_default("gear_mesh").values
     assert isinstance(mesh, GearMesh)
 
     def compliance(f: Array) -> Array:
@@ -37,21 +44,21 @@ def _series(folder: Path, result: RampResult) -> tuple[str, float]:
 
     c = result.columns
     pair = c["f"] / c["pairs"]
-    first = int(np.argmax(pair > _CLOSED))
+    first = int(np.argmax(pair > _CLOSED_FORCE))
     rows = np.linspace(first, pair.size - 1, 4).astype(int)
-    deflection = integrals(compliance, pair[rows])
+    deflection = integrate_logarithmically(compliance, pair[rows])
     work = -cumulative_simpson(c["tau1"], x=c["phi1"], initial=0.0)
     return (
         "s_rel against the integral of df/K of flanks and teeth (scipy, Simpson), E against the work of tau1",
-        max(deviation(np.diff(c["s_rel"][rows]), deflection), deviation(c["E"], work)),
+        max(relative_deviation(np.diff(c["s_rel"][rows]), deflection), relative_deviation(c["E"], work)),
     )
 
 
-RAMPS = {"GearMesh": _series}
+RAMPS = {"GearMesh": _check_deflection_and_work}
 """{FMU: check}, a check being (folder, ramp of the FMU) -> (text, largest relative deviation [1])."""
 
 
-_FORCES = (5e2, 1e3, 2e3)
+_FIGURE_FORCES = (5e2, 1e3, 2e3)
 """Constant forces of the mesh [N] in the figures over the mesh cycle."""
 
 
@@ -61,24 +68,24 @@ def figures(outcome: Any) -> list[Figure]:
         Figure(
             "Stiffness and deflection over the mesh cycle",
             "At constant forces: tooth pairs come and go, and flanks that carry more are stiffer.",
-            cycle(GearMeshSpring.of(default("gear_mesh").values)),
+            mesh_cycle_panels(GearMeshSpring.tabulate(load_default("gear_mesh").values)),
         ),
         Figure(
             "Torque over angle",
             "What turns wheel 1, wheel 2 held: backlash and the flanks of both sides; then the first touch.",
-            torque_angle(outcome.ramps["GearMesh"]),
+            torque_angle_panels(outcome.ramps["GearMesh"]),
             data="GearMesh.csv",
         ),
     ]
 
 
-def cycle(spring: GearMeshSpring) -> list[Panel]:
+def mesh_cycle_panels(spring: GearMeshSpring) -> list[Panel]:
     """Panels of stiffness and deflection over two mesh cycles, at constant forces."""
     phase = np.linspace(0.0, 2.0, 401)
     mesh = spring.joint
-    count, _ = pairs(mesh.contact_ratio, mesh.engagement, mesh.overlap_ratio, phase)
+    count, _ = pairs_in_contact(mesh.contact_ratio, mesh.engagement, mesh.overlap_ratio, phase)
     stiffness, deflection = [], []
-    for force in _FORCES:
+    for force in _FIGURE_FORCES:
         s = spring.curve.inverse(force / count)
         name = f"{force / 1e3:g} kN"
         stiffness.append(Series(name, phase, count * spring.curve.derivatives(s, 1)[1] / 1e6))
@@ -90,7 +97,7 @@ def cycle(spring: GearMeshSpring) -> list[Panel]:
     ]
 
 
-def torque_angle(result: RampResult) -> list[Panel]:
+def torque_angle_panels(result: RampResult) -> list[Panel]:
     """Panels of the torque on wheel 1 over its angle: for both flanks, and near the first contact."""
     angle, torque = result.columns["phi1"] * 1e3, -result.columns["tau1"]
     first = int(np.argmax(torque > 0.0))
@@ -103,12 +110,12 @@ def torque_angle(result: RampResult) -> list[Panel]:
     ]
 
 
-RAMP_END = 0.05
+RAMP_END_RATIO = 0.05
 """Default end of the ramp over `largest_table_angle` [1]."""
 
 
 def evaluate(
-    parameters: type[Mesh], values: Mapping[str, object], loads: Array, factor: Array
+    parameters: type[MeshParameters], values: Mapping[str, object], loads: Array, factor: Array
 ) -> dict[str, Array]:
     """Stiffness K (n, m) [N/m] and force f (n, m) [N] at the angles factor times loads.
 
@@ -119,33 +126,33 @@ def evaluate(
     """
     mesh = columns(parameters, values, 1)
     angle = factor * loads
-    cycle = phase(mesh, (angle, 0.0, held(mesh), 0.0))
-    count, _ = pairs(mesh.contact_ratio, mesh.engagement, mesh.overlap_ratio, cycle)
+    cycle = mesh_phase(mesh, (angle, 0.0, fixed_angle(mesh), 0.0))
+    count, _ = pairs_in_contact(mesh.contact_ratio, mesh.engagement, mesh.overlap_ratio, cycle)
     loaded = loads > 0.0
     deflection = mesh.r_b1 * factor
     max_pressure = mesh.K_tooth * deflection * loads[-1] / mesh.A_0  # upper bound: flanks as rigid
-    pair = _pair(mesh, max_pressure)(np.log(loads[loaded]), np.log(deflection))
+    pair = _tabulate_pair(mesh, max_pressure)(np.log(loads[loaded]), np.log(deflection))
     K, f = np.zeros((2, *angle.shape))
     K[:, loaded], f[:, loaded] = np.exp(pair["K"]), np.exp(pair["f"])
     return {"K": count * K, "f": count * f}
 
 
-def _pair(mesh: Mesh, most: Array) -> Rows:
+def _tabulate_pair(mesh: MeshParameters, max_pressure: Array) -> Rows:
     """Tables of log K and log f of one tooth pair over log deflection, up to `max_pressure` (n, 1) [Pa]."""
-    rows, _ = tabulate(mesh, np.zeros_like(most), most)
+    rows, _ = tabulate(mesh, np.zeros_like(max_pressure), max_pressure)
     p, (k, growth), approach = rows.pressure, rows.values["k"], rows.values["s"][0]
     pressure, stiffness = np.exp(p), np.exp(k)
     bend = growth * stiffness**2 / pressure
-    s, f, K, slope = in_series(mesh, np.exp(approach), pressure, stiffness, bend)
+    s, f, K, slope = combine_in_series(mesh, np.exp(approach), pressure, stiffness, bend)
     return Rows(np.log(s), {"K": (np.log(K), slope * s / K), "f": (np.log(f), K * s / f)})
 
 
-def held(mesh: Mesh) -> Any:
+def fixed_angle(mesh: MeshParameters) -> Any:
     """Angle [rad] of wheel 2 at which the driving flanks are in contact at phi1 = 0."""
     return 0.5 * mesh.backlash / mesh.r_b2
 
 
-def table_end(mesh: Mesh) -> Any:
+def largest_table_angle(mesh: MeshParameters) -> Any:
     """Angle [rad] of wheel 1 at which tooth bending alone gives the largest force of the table.
 
     This force is the hardness times A_0. The approach of the flanks is neglected.
@@ -153,17 +160,17 @@ def table_end(mesh: Mesh) -> Any:
     return mesh.hardness * mesh.A_0 / (mesh.K_tooth * mesh.r_b1)
 
 
-def exact(joint: Mesh, loads: Array) -> dict[str, Array]:
+def evaluate_exported(joint: MeshParameters, loads: Array) -> dict[str, Array]:
     """K (m) [N/m] and f (m) [N] of the exported joint at angles (m) [rad]."""
-    state = GearMeshSpring.of(joint).motion(loads, 0.0, held(joint), 0.0)
+    state = GearMeshSpring.tabulate(joint).evaluate(loads, 0.0, fixed_angle(joint), 0.0)
     return {name: state[name] for name in REDUCED.units}
 
 
-REDUCED = Reduced(
+REDUCED = ReducedCurves(
     load=KIND.variables["phi1"],
     outputs=tuple(KIND.variables[name] for name in ("K", "f")),
-    to=lambda mesh: RAMP_END * float(table_end(mesh)),
-    most=table_end,
+    default_end=lambda mesh: RAMP_END_RATIO * float(largest_table_angle(mesh)),
+    max_load=largest_table_angle,
     evaluate=evaluate,
-    exact=exact,
+    exact=evaluate_exported,
 )

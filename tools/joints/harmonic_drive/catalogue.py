@@ -16,71 +16,73 @@ from functools import cache
 from importlib.resources import files
 from typing import TypeAlias
 
-from jointfmu.quantity.units import factor
+from jointfmu.quantity.units import conversion_factor
 
-from ...catalogue import Catalogue, Column, Item, Printed
-from .friction import known, with_friction
+from ...catalogue import Catalogue, CatalogueColumn, CatalogueEntry, SourcedNumber
+from .friction import add_friction_estimates, collect_published
 
-ROW = (
-    Column("K1", "N.m/rad", "stiffness below T1", "N.m/rad"),
-    Column("K2", "N.m/rad", "stiffness between T1 and T2", "N.m/rad"),
-    Column("K3", "N.m/rad", "stiffness above T2", "N.m/rad"),
-    Column("T1", "N.m", "torque at the first corner", "N.m"),
-    Column("T2", "N.m", "torque at the second corner", "N.m"),
+STIFFNESS_COLUMNS = (
+    CatalogueColumn("K1", "N.m/rad", "stiffness below T1", "N.m/rad"),
+    CatalogueColumn("K2", "N.m/rad", "stiffness between T1 and T2", "N.m/rad"),
+    CatalogueColumn("K3", "N.m/rad", "stiffness above T2", "N.m/rad"),
+    CatalogueColumn("T1", "N.m", "torque at the first corner", "N.m"),
+    CatalogueColumn("T2", "N.m", "torque at the second corner", "N.m"),
 )
 """Columns of the torsional stiffness."""
-LINES = tuple(column.name for column in ROW)
+STIFFNESS_NAMES = tuple(column.name for column in STIFFNESS_COLUMNS)
 """Names of these columns."""
 COLUMNS = (
-    Column("ratio", "1", "speed ratio", "1"),
-    *ROW,
-    Column("rated_torque", "N.m", "rated torque", "N.m"),
-    Column("peak_torque", "N.m", "repeated peak torque", "N.m"),
-    Column("hysteresis_loss", "rad", "angle between the branches at zero torque", "arcmin"),
-    Column("lost_motion", "rad", "angle between +4 % and -4 % of rated torque, midway in the loop", "arcmin"),
-    Column("starting_torque", "N.m", "at the wave generator, no load", "N.m"),
-    Column("running_torque", "N.m", "at the wave generator, no load, 2000 rev/min", "N.m"),
-    Column("back_driving_torque", "N.m", "at the output, no motor", "N.m"),
-    Column("efficiency", "1", "at rated torque and 2000 rev/min", "1"),
+    CatalogueColumn("ratio", "1", "speed ratio", "1"),
+    *STIFFNESS_COLUMNS,
+    CatalogueColumn("rated_torque", "N.m", "rated torque", "N.m"),
+    CatalogueColumn("peak_torque", "N.m", "repeated peak torque", "N.m"),
+    CatalogueColumn("hysteresis_loss", "rad", "angle between the branches at zero torque", "arcmin"),
+    CatalogueColumn(
+        "lost_motion", "rad", "angle between +4 % and -4 % of rated torque, midway in the loop", "arcmin"
+    ),
+    CatalogueColumn("starting_torque", "N.m", "at the wave generator, no load", "N.m"),
+    CatalogueColumn("running_torque", "N.m", "at the wave generator, no load, 2000 rev/min", "N.m"),
+    CatalogueColumn("back_driving_torque", "N.m", "at the output, no motor", "N.m"),
+    CatalogueColumn("efficiency", "1", "at rated torque and 2000 rev/min", "1"),
 )
 """All columns of the catalogue."""
-RATIOS = ("80", "100", "120", "160")
+RATIOS_FROM_80 = ("80", "100", "120", "160")
 """Ratios of the drives in a row for "ratio 80 and more", if any series has a torque for this size and
 ratio."""
-ACTUATORS = ("CHA", "FHA", "RSF")
+ACTUATOR_SERIES = ("CHA", "FHA", "RSF")
 """Series with a built-in motor; their published torques are not those of the gear alone."""
-STRONG = ("CSG", "SHG")
+STRONG_SERIES = ("CSG", "SHG")
 """Series with higher torques than the others, by the factor STRONG_TORQUE_RATIO."""
-STRONGER = 1.3
+STRONG_TORQUE_RATIO = 1.3
 """Torque of a CSG drive over that of a CSF drive of the same size and ratio [1]."""
-ALIKE = ("CSG", "SHG", "HFUC", "HFUS")
+TORQUE_SERIES = ("CSG", "SHG", "HFUC", "HFUS")
 """Series with published torques, in the order in which they serve as estimates for other series."""
-Torques: TypeAlias = Mapping[tuple[str, str, str], Mapping[str, str]]
+TorqueTable: TypeAlias = Mapping[tuple[str, str, str], Mapping[str, str]]
 """Published torques: {(series, size, ratio): row of the file}."""
-_NAMES = 3
+_SUGGESTION_COUNT = 3
 """Number of similar names in the error for an unknown name."""
 
 
-def find(name: str) -> Item:
+def find_drive(name: str) -> CatalogueEntry:
     """Find a drive by its name, SERIES-SIZE-RATIO.
 
     Case and separators do not matter; further parts of the name are ignored.
 
     Raises ValueError with similar names if there is no such drive.
     """
-    known = {_key(item.name): item for item in items()}
-    wanted = _key(name)
+    known = {_normalise_name(item.name): item for item in list_drives()}
+    wanted = _normalise_name(name)
     matches = [item for key, item in known.items() if wanted == key or wanted.startswith(f"{key}-")]
     if matches:
         return max(matches, key=lambda item: len(item.name))
-    similar = sorted(known, key=lambda key: _distance(key, wanted))[:_NAMES]
+    similar = sorted(known, key=lambda key: _name_distance(key, wanted))[:_SUGGESTION_COUNT]
     raise ValueError(
         f"catalogue {name!r} is unknown; nearest are {', '.join(known[key].name for key in similar)} "
         "(jointfmu catalogue)"
     )
 
 
-def _distance(key: str, wanted: str) -> tuple[float, ...]:
+def _name_distance(key: str, wanted: str) -> tuple[float, ...]:
     """Distance between two names, for sorting: difference of the letters, then of size, then of ratio."""
     letters, wanted_letters = (re.sub("[^a-z]", "", name) for name in (key, wanted))
     numbers = ([float(n) for n in re.findall(r"[1-9]\d*", name)] for name in (key, wanted))
@@ -89,56 +91,58 @@ def _distance(key: str, wanted: str) -> tuple[float, ...]:
 
 
 @cache
-def items() -> tuple[Item, ...]:
+def list_drives() -> tuple[CatalogueEntry, ...]:
     """All drives of the catalogue: those with a row of stiffness, and those that share such a row."""
-    torques = {(row["series"], row["size"], row["ratio"]): row for row in _table("torque")}
-    drives_by_name = {item.name: item for row in _table("stiffness") for item in _of_row(row, torques)}
-    for row in _table("friction"):
-        drives_by_name[row["drive"]] = _single(row, drives_by_name[row["like"]])
-    drives = known(drives_by_name.values())
-    return tuple(with_friction(item, drives) for item in drives_by_name.values())
+    torques = {(row["series"], row["size"], row["ratio"]): row for row in _read_table("torque")}
+    drives_by_name = {
+        item.name: item for row in _read_table("stiffness") for item in _drives_of_row(row, torques)
+    }
+    for row in _read_table("friction"):
+        drives_by_name[row["drive"]] = _single_drive(row, drives_by_name[row["like"]])
+    drives = collect_published(drives_by_name.values())
+    return tuple(add_friction_estimates(item, drives) for item in drives_by_name.values())
 
 
-def _of_row(row: Mapping[str, str], torques: Torques) -> Iterator[Item]:
+def _drives_of_row(row: Mapping[str, str], torques: TorqueTable) -> Iterator[CatalogueEntry]:
     """Drives for which a row of stiffness holds."""
     group = row["series"].removeprefix("HD ")
     ratios = [row["ratio"]]
     if row["ratio"].endswith("+"):
-        ratios = [r for r in RATIOS if any((s, row["size"], r) in torques for s in ALIKE)]
+        ratios = [r for r in RATIOS_FROM_80 if any((s, row["size"], r) in torques for s in TORQUE_SERIES)]
     source = f"{group}, size {row['size']}, ratio {row['ratio']}: {row['source']}"
-    printed = {name: row[column] for name, column in _STIFFNESS.items()}
-    lines = {name: Printed(float(text), "catalogue", source) for name, text in printed.items() if text}
+    printed = {name: row[column] for name, column in _STIFFNESS_HEADINGS.items()}
+    lines = {name: SourcedNumber(float(text), "catalogue", source) for name, text in printed.items() if text}
     if "K3" not in lines:
-        lines["K3"] = _last_line(row, source)
+        lines["K3"] = _estimate_K3(row, source)
     for series in group.split("/"):
         stem = series if group == series else f"{series}-{row['size']}"
         for ratio in ratios:
             name = f"{stem}-{ratio}"
             numbers = {
-                "ratio": Printed(float(ratio), "catalogue", f"{name}: {source}"),
+                "ratio": SourcedNumber(float(ratio), "catalogue", f"{name}: {source}"),
                 **lines,
-                **_torque(torques, series, row["size"], ratio),
-                **_limits(series, row["size"], float(ratio)),
+                **_rated_and_peak_torque(torques, series, row["size"], ratio),
+                **_hysteresis_limits(series, row["size"], float(ratio)),
             }
-            yield Item(name, numbers)
+            yield CatalogueEntry(name, numbers)
 
 
-def _last_line(row: Mapping[str, str], source: str) -> Printed:
+def _estimate_K3(row: Mapping[str, str], source: str) -> SourcedNumber:
     """Estimate of K3 if it is not published: K3 of a drive with equal T1, T2, K1 and K2, else K2."""
-    known = [heading for column, heading in _STIFFNESS.items() if column != "K3"]
-    for other in _table("stiffness"):
+    known = [heading for column, heading in _STIFFNESS_HEADINGS.items() if column != "K3"]
+    for other in _read_table("stiffness"):
         if other["K3"] and all(float(other[h]) == float(row[h]) for h in known):
             what = f"{other['series']}, size {other['size']}, ratio {other['ratio']}"
             text = f"not in the source; that of {what}, of the same T1, T2, K1 and K2 ({other['source']})"
-            return Printed(float(other["K3"]), "estimate", text)
-    return Printed(float(row["K2"]), "estimate", f"not in the source; K2 of {source}")
+            return SourcedNumber(float(other["K3"]), "estimate", text)
+    return SourcedNumber(float(row["K2"]), "estimate", f"not in the source; K2 of {source}")
 
 
-_STIFFNESS = {"K1": "K1_Nm_per_rad", "K2": "K2", "K3": "K3", "T1": "T1_Nm", "T2": "T2_Nm"}
+_STIFFNESS_HEADINGS = {"K1": "K1_Nm_per_rad", "K2": "K2", "K3": "K3", "T1": "T1_Nm", "T2": "T2_Nm"}
 """{column: heading in the file of stiffnesses}."""
-_TORQUE = {"rated_torque": "rated_Nm", "peak_torque": "repeated_peak_Nm"}
-_LIMITS = {"hysteresis_loss": "hysteresis_below_arcmin", "lost_motion": "lost_motion_below_arcmin"}
-_SINGLE = {
+_TORQUE_HEADINGS = {"rated_torque": "rated_Nm", "peak_torque": "repeated_peak_Nm"}
+_LIMIT_HEADINGS = {"hysteresis_loss": "hysteresis_below_arcmin", "lost_motion": "lost_motion_below_arcmin"}
+_SINGLE_DRIVE_HEADINGS = {
     "ratio": ("ratio", 1.0),
     "K1": ("K1_Nm_per_rad", 1.0),
     "K3": ("K3_Nm_per_rad", 1.0),
@@ -152,78 +156,82 @@ _SINGLE = {
 """{column: (heading in the file of single drives, factor to the SI unit)}."""
 
 
-def _torque(torques: Torques, series: str, size: str, ratio: str) -> dict[str, Printed]:
+def _rated_and_peak_torque(
+    torques: TorqueTable, series: str, size: str, ratio: str
+) -> dict[str, SourcedNumber]:
     """Rated and repeated peak torque of a drive.
 
     Published, else estimated from another series; empty if no series has them.
     """
-    if series.startswith(ACTUATORS):
+    if series.startswith(ACTUATOR_SERIES):
         return {}
-    for other in (series, *ALIKE):
+    for other in (series, *TORQUE_SERIES):
         if row := torques.get((other, size, ratio)):
             name = f"{other}-{size}-{ratio}"
             if other == series:
                 kind, ratio_to_series = "catalogue", 1.0
                 text = f"{name}: {row['source']}"
-            elif other in STRONG and series not in STRONG:
-                kind, ratio_to_series = "estimate", 1.0 / STRONGER
-                text = f"that of {name} over {STRONGER:g}: the catalogue gives the CSG 30 % more than the CSF"
+            elif other in STRONG_SERIES and series not in STRONG_SERIES:
+                kind, ratio_to_series = "estimate", 1.0 / STRONG_TORQUE_RATIO
+                text = f"that of {name} over {STRONG_TORQUE_RATIO:g}: the catalogue gives the CSG 30 % more than the CSF"
             else:
                 kind, text, ratio_to_series = "estimate", f"that of {name}", 1.0
             return {
-                column: Printed(ratio_to_series * float(row[head]), kind, text)
-                for column, head in _TORQUE.items()
+                column: SourcedNumber(ratio_to_series * float(row[head]), kind, text)
+                for column, head in _TORQUE_HEADINGS.items()
             }
     return {}
 
 
-def _limits(drive: str, size: str, ratio: float) -> dict[str, Printed]:
+def _hysteresis_limits(series: str, size: str, ratio: float) -> dict[str, SourcedNumber]:
     """Upper limits of hysteresis and lost motion of a drive.
 
     From actuators of the same size, else the largest of all actuators.
     """
     step = "30" if ratio < 50.0 else "50" if ratio == 50.0 else "50+"
-    rows = [row for row in _table("accuracy") if row["ratio"] == step]
+    rows = [row for row in _read_table("accuracy") if row["ratio"] == step]
     same_size = [row for row in rows if row["size"] == size]
     limits = {}
-    for column, head in _LIMITS.items():
+    for column, head in _LIMIT_HEADINGS.items():
         row = max(same_size or rows, key=lambda row: float(row[head]))
         actuator = f"{row['series']}-{row['size']}A"
-        kind = "catalogue" if drive == actuator else "estimate"
+        kind = "catalogue" if series == actuator else "estimate"
         text = f"limit for the actuators {actuator}"
-        if drive != actuator:
+        if series != actuator:
             text += ", whose stiffness is the same"
         if not same_size:
             text = f"limit for all actuators {row['series']}, none of which has this size"
-        value = float(row[head]) * factor("arcmin", "rad")
-        limits[column] = Printed(value, kind, f"{text} ({row['source']})", bound=True)
+        value = float(row[head]) * conversion_factor("arcmin", "rad")
+        limits[column] = SourcedNumber(value, kind, f"{text} ({row['source']})", bound=True)
     return limits
 
 
-def _single(row: Mapping[str, str], like: Item) -> Item:
+def _single_drive(row: Mapping[str, str], similar_drive: CatalogueEntry) -> CatalogueEntry:
     """Drive with published friction.
 
     similar_drive : drive of the same size, ratio and stiffness, which may be the drive itself; it supplies
                     the values that are not published
     """
-    name, numbers = row["drive"], dict(like.numbers)
-    if name != like.name:
-        text = f"that of {like.name}, of the same size, ratio and stiffness; "
-        numbers = {c: Printed(n.value, "estimate", text + n.source, n.bound) for c, n in numbers.items()}
+    name, numbers = row["drive"], dict(similar_drive.numbers)
+    if name != similar_drive.name:
+        text = f"that of {similar_drive.name}, of the same size, ratio and stiffness; "
+        numbers = {
+            c: SourcedNumber(n.value, "estimate", text + n.source, n.bound) for c, n in numbers.items()
+        }
     source = f"{name}: {row['source']}"
-    for column, (head, unit) in _SINGLE.items():
-        if row[head] and (name != like.name or column not in ("ratio", "K1", "K3")):
-            numbers[column] = Printed(unit * float(row[head]), "catalogue", source)
-    return Item(name, numbers)
+    for column, (head, unit) in _SINGLE_DRIVE_HEADINGS.items():
+        if row[head] and (name != similar_drive.name or column not in ("ratio", "K1", "K3")):
+            numbers[column] = SourcedNumber(unit * float(row[head]), "catalogue", source)
+    return CatalogueEntry(name, numbers)
 
 
-def _table(name: str) -> list[dict[str, str]]:
+def _read_table(name: str) -> list[dict[str, str]]:
     path = files("jointfmu_models") / "reference" / f"harmonic_drive_catalogue_{name}.csv"
     return list(csv.DictReader(path.read_text(encoding="utf-8").splitlines()))
 
 
-def _key(name: str) -> str:
+def _normalise_name(name: str) -> str:
     return re.sub(r"[\s_/-]+", "-", name.strip().lower())
 
 
-CATALOGUE = Catalogue(columns=COLUMNS, items=items)
+CATALOGUE = Catalogue(columns=COLUMNS, entries=list_drives)

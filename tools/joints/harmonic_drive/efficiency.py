@@ -13,27 +13,34 @@ from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
 
-from ...catalogue import Item
+from ...catalogue import CatalogueEntry
 from ...systems.master import Slave
-from .catalogue import items
-from .friction import friction
+from .catalogue import list_drives
+from .friction import friction_parameters
 
-_MOTION = ("phi1", "w1", "phi2", "w2")
-_TORQUES = ("tau", "tau1")
-_FAR = 20.0
+_FLANGE_MOTION = ("phi1", "w1", "phi2", "w2")
+_TORQUE_OUTPUTS = ("tau", "tau1")
+_DEVELOPED_ROTATION_RATIO = 20.0
 """Rotation of the wave generator over `presliding` [1] after which friction is fully developed."""
-_STEADY: Mapping[str, float] = {"hysteresis_loss": 0.0, "error_1": 0.0, "error_2": 0.0, "error_4": 0.0}
+_STEADY_PARAMETERS: Mapping[str, float] = {
+    "hysteresis_loss": 0.0,
+    "error_1": 0.0,
+    "error_2": 0.0,
+    "error_4": 0.0,
+}
 """Parameters without hysteresis and kinematic error, which depend on the load history and on the angle."""
 
 
-def printed_drives() -> list[Item]:
+def drives_with_friction() -> list[CatalogueEntry]:
     """Drives of the catalogue with a published starting torque."""
-    return [item for item in items() if (n := item.numbers.get("starting_torque")) and n.kind == "catalogue"]
+    return [
+        item for item in list_drives() if (n := item.numbers.get("starting_torque")) and n.kind == "catalogue"
+    ]
 
 
-def parameters(item: Item) -> dict[str, float]:
+def friction_and_ratio(item: CatalogueEntry) -> dict[str, float]:
     """Ratio and friction parameters of a catalogue drive: {parameter of the FMU: value}."""
-    numbers = {"ratio": item.numbers["ratio"], **friction(item.numbers)}
+    numbers = {"ratio": item.numbers["ratio"], **friction_parameters(item.numbers)}
     return {name: number.value for name, number in numbers.items()}
 
 
@@ -41,31 +48,31 @@ class PythonDrive:
     """Harmonic drive in Python with the interface of a running FMU; starts at rest at zero angles."""
 
     def __init__(self, model: Model, file: ParameterFile) -> None:
-        assert model.rest
-        self._model, self._spring = model, model.spring(file.values)
-        self._memory = model.rest(self._spring)
-        self._rest = {v.name: file.start(v.name) for v in model.inputs}
+        assert model.initial_history
+        self._model, self._spring = model, model.tabulate(file.values)
+        self._memory = model.initial_history(self._spring)
+        self._rest = {v.name: file.start_value(v.name) for v in model.inputs}
         self.set(0.0, 0.0, 0.0, 0.0)
         self.step(0.0, 0.0)
 
     def set(self, *values: float) -> None:
-        self._inputs = {**self._rest, **dict(zip(_MOTION, values, strict=True))}
+        self._inputs = {**self._rest, **dict(zip(_FLANGE_MOTION, values, strict=True))}
 
     def get(self) -> list[float]:
         """Outputs tau, tau1 [N.m] and K_WTS [N.m/rad] at the present inputs."""
-        outputs = self._evolved()[0]
-        return [float(outputs[name]) for name in (*_TORQUES, "K_WTS")]
+        outputs = self._advance()[0]
+        return [float(outputs[name]) for name in (*_TORQUE_OUTPUTS, "K_WTS")]
 
     def step(self, time: float, size: float) -> None:
         """Accept the present inputs: update the history variables."""
-        self._memory = self._evolved()[1]
+        self._memory = self._advance()[1]
 
-    def _evolved(self) -> Any:
-        assert self._model.evolve
-        return self._model.evolve(self._spring, self._inputs, self._memory)
+    def _advance(self) -> Any:
+        assert self._model.advance
+        return self._model.advance(self._spring, self._inputs, self._memory)
 
 
-def wound_up(carried: Callable[[float], float], torque: float, stiffness: float) -> float:
+def solve_wind_up(transmitted_torque: Callable[[float], float], torque: float, stiffness: float) -> float:
     """Solve for the wind-up [rad] at which a drive transmits a torque [N.m].
 
     transmitted_torque : wind-up [rad] -> torque [N.m]
@@ -73,7 +80,7 @@ def wound_up(carried: Callable[[float], float], torque: float, stiffness: float)
     """
 
     def residual(angle: float) -> float:
-        return carried(angle) - torque
+        return transmitted_torque(angle) - torque
 
     if not torque:
         return 0.0
@@ -84,7 +91,7 @@ def wound_up(carried: Callable[[float], float], torque: float, stiffness: float)
 
 
 @dataclass(slots=True)
-class Bench:
+class DriveTestRig:
     """Simulated test rig: a drive whose input rotates at a steady speed, with a torque at its output.
 
     drive       : running drive with inputs phi1, w1, phi2, w2 and first outputs tau, tau1
@@ -101,8 +108,8 @@ class Bench:
     ratio: float
     presliding: float
     stiffness: float
-    angle: float = 0.0
-    steps: int = 0
+    motor_angle: float = 0.0
+    step_count: int = 0
 
     def motor_torque(self, speed: float, torque: float) -> float:
         """Torque [N.m] of the motor at a steady speed.
@@ -111,11 +118,11 @@ class Bench:
         torque : [N.m] external torque on the output, positive in the direction of its angle
         """
         wind_up, ratio = self._wind_up(torque), self.ratio
-        self.drive.set(self.angle, 0.0, self.angle / ratio + wind_up, 0.0)
-        self.drive.step(float(self.steps), 1.0)
-        self.steps += 1
-        self.angle += math.copysign(_FAR * self.presliding, speed)
-        self.drive.set(self.angle, speed, self.angle / ratio + wind_up, speed / ratio)
+        self.drive.set(self.motor_angle, 0.0, self.motor_angle / ratio + wind_up, 0.0)
+        self.drive.step(float(self.step_count), 1.0)
+        self.step_count += 1
+        self.motor_angle += math.copysign(_DEVELOPED_ROTATION_RATIO * self.presliding, speed)
+        self.drive.set(self.motor_angle, speed, self.motor_angle / ratio + wind_up, speed / ratio)
         return -self.drive.get()[1]
 
     def efficiency(self, speed: float, load: float) -> float:
@@ -130,7 +137,7 @@ class Bench:
         """Motor torque [N.m] that starts the rotation of the drive without load."""
         return self.motor_torque(0.0, 0.0)
 
-    def back_driving_torque(self, most: float) -> float:
+    def back_driving_torque(self, max_torque: float) -> float:
         """Torque [N.m] at the output that rotates the drive without a motor.
 
         max_torque : end of the search; inf is returned if a larger torque is needed
@@ -142,44 +149,44 @@ class Bench:
 
         if required_torque(0.0) == 0.0:
             return 0.0
-        if required_torque(most) > 0.0:
+        if required_torque(max_torque) > 0.0:
             return math.inf
-        return float(brentq(required_torque, 0.0, most, rtol=1e-9))
+        return float(brentq(required_torque, 0.0, max_torque, rtol=1e-9))
 
     def _wind_up(self, torque: float) -> float:
         """Wind-up [rad] of the output under a torque [N.m]."""
 
-        def carried(angle: float) -> float:
-            self.drive.set(self.angle, 0.0, self.angle / self.ratio + angle, 0.0)
+        def transmitted_torque(angle: float) -> float:
+            self.drive.set(self.motor_angle, 0.0, self.motor_angle / self.ratio + angle, 0.0)
             return self.drive.get()[0]
 
-        return wound_up(carried, torque, self.stiffness)
+        return solve_wind_up(transmitted_torque, torque, self.stiffness)
 
 
 @contextmanager
-def bench(path: Path, parameters: Mapping[str, float]) -> Iterator[Bench]:
+def open_fmu_test_rig(path: Path, parameters: Mapping[str, float]) -> Iterator[DriveTestRig]:
     """Open the FMU HarmonicDriveSpring (FMI 2.0) as a test rig; the parameters replace default values."""
-    wires = (*_TORQUES, "K_WTS", "ratio", "presliding")
-    with Slave(path, {**parameters, **_STEADY}, _MOTION, wires) as drive:
+    wires = (*_TORQUE_OUTPUTS, "K_WTS", "ratio", "presliding")
+    with Slave(path, {**parameters, **_STEADY_PARAMETERS}, _FLANGE_MOTION, wires) as drive:
         _, _, stiffness, ratio, presliding = drive.get()
-        yield Bench(drive, ratio, presliding, stiffness)
+        yield DriveTestRig(drive, ratio, presliding, stiffness)
 
 
-def spring_bench(model: Model, file: ParameterFile) -> Bench:
+def make_python_test_rig(model: Model, file: ParameterFile) -> DriveTestRig:
     """Make a test rig of the drive in Python, with the parameters of a file. No FMU is needed."""
-    steady = file.with_values(_STEADY, "user", "steady")
+    steady = file.with_values(_STEADY_PARAMETERS, "user", "steady")
     drive = PythonDrive(model, steady)
-    return Bench(drive, steady.values.ratio, steady.values.presliding, drive.get()[2])
+    return DriveTestRig(drive, steady.values.ratio, steady.values.presliding, drive.get()[2])
 
 
-LOST_MOTION = 0.04
+LOST_MOTION_RATIO = 0.04
 """Torque over rated torque [1], positive and negative, at which catalogues state lost motion."""
 
 
 def hysteresis_loss(spring: HarmonicDriveSpring) -> float:
     """Hysteresis loss [rad]: angle between the branches at zero torque, in the loop up to rated torque."""
     rated = float(spring.joint.rated_torque)
-    unloading, loading = (_wind_up(spring, (rated, sign * rated, 0.0)) for sign in (1.0, -1.0))
+    unloading, loading = (_final_wind_up(spring, (rated, sign * rated, 0.0)) for sign in (1.0, -1.0))
     return unloading - loading
 
 
@@ -190,16 +197,20 @@ def lost_motion(spring: HarmonicDriveSpring) -> float:
     """
     rated = float(spring.joint.rated_torque)
     ends = (
-        0.5 * sum(_wind_up(spring, (rated, side * rated, sign * LOST_MOTION * rated)) for side in (1.0, -1.0))
+        0.5
+        * sum(
+            _final_wind_up(spring, (rated, side * rated, sign * LOST_MOTION_RATIO * rated))
+            for side in (1.0, -1.0)
+        )
         for sign in (1.0, -1.0)
     )
     positive, negative = ends
     return positive - negative
 
 
-def _wind_up(spring: HarmonicDriveSpring, torques: tuple[float, ...]) -> float:
+def _final_wind_up(spring: HarmonicDriveSpring, torques: tuple[float, ...]) -> float:
     """Wind-up [rad] after a sequence of torques [N.m], starting at rest."""
-    history = spring.rest()
+    history = spring.initial_history()
     for torque in torques:
-        outputs, history = spring.loaded(torque, history)
+        outputs, history = spring.advance_torque(torque, history)
     return float(outputs["phi_rel"])

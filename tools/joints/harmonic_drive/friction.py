@@ -23,22 +23,22 @@ from typing import NamedTuple
 import numpy as np
 
 from jointfmu.joints.harmonic_drive.drive import Drive
-from jointfmu.joints.harmonic_drive.friction import REFERENCE, limits, viscous
+from jointfmu.joints.harmonic_drive.friction import REFERENCE_TEMPERATURE, friction_limits, viscous_torque
 from jointfmu.quantity import Array
 
-from ...catalogue import Item, Printed
-from ...command_line.common import flag
+from ...catalogue import CatalogueEntry, SourcedNumber
+from ...command_line.common import option_flag
 
-LEVEL = 0.95
+CONFIDENCE_LEVEL = 0.95
 """Probability of the intervals [1]."""
-SIZE, RATIO = 20.0, 100.0
+REFERENCE_SIZE, REFERENCE_RATIO = 20.0, 100.0
 """Reference size and reference ratio of the scaling laws [1]."""
-POWER = 3.0
+SIZE_EXPONENT = 3.0
 """Exponent of the size in the scaling law of the running torque [1]."""
 
 
 @dataclass(frozen=True, slots=True)
-class PrintedFriction:
+class PublishedFriction:
     """Published friction of a drive; None: not published.
 
     size, ratio       : [1]
@@ -50,13 +50,13 @@ class PrintedFriction:
 
     size: float
     ratio: float
-    starting: float
-    running: float | None
+    starting_torque: float
+    running_torque: float | None
     load_loss: float | None
     load_loss_back: float | None
 
 
-class Scaled(NamedTuple):
+class ScaledNumber(NamedTuple):
     """Number from a scaling law, with the ends of its interval, all in the same unit."""
 
     value: float
@@ -73,44 +73,61 @@ class ScaledFriction:
     load_loss, load_loss_back : [1]
     """
 
-    starting: Scaled
-    rise: Scaled
-    load_loss: Scaled
-    load_loss_back: Scaled
+    starting_torque: ScaledNumber
+    viscous_torque: ScaledNumber
+    load_loss: ScaledNumber
+    load_loss_back: ScaledNumber
 
 
-def scaled(size: float, ratio: float, drives: Collection[PrintedFriction]) -> ScaledFriction:
+def scale_friction(
+    size: float, ratio: float, published_drives: Collection[PublishedFriction]
+) -> ScaledFriction:
     """Scale the friction of published drives (four or more) to a drive of a size [1] and a ratio [1]."""
-    starting_logs = np.array([(np.log(k.size / SIZE), np.log(k.starting * k.ratio / RATIO)) for k in drives])
-    running_logs = [np.log(k.running / (k.size / SIZE) ** POWER) for k in drives if k.running is not None]
+    starting_logs = np.array(
+        [
+            (np.log(k.size / REFERENCE_SIZE), np.log(k.starting_torque * k.ratio / REFERENCE_RATIO))
+            for k in published_drives
+        ]
+    )
+    running_logs = [
+        np.log(k.running_torque / (k.size / REFERENCE_SIZE) ** SIZE_EXPONENT)
+        for k in published_drives
+        if k.running_torque is not None
+    ]
     design = np.stack([np.ones(len(starting_logs)), starting_logs[:, 0]], axis=1)
-    reference = _torque(design, starting_logs[:, 1], np.array([1.0, np.log(size / SIZE)]), 1.0)
+    reference = _scale_torque(
+        design, starting_logs[:, 1], np.array([1.0, np.log(size / REFERENCE_SIZE)]), 1.0
+    )
     ones = np.ones((len(running_logs), 1))
-    running = _torque(ones, np.array(running_logs), np.ones(1), (size / SIZE) ** POWER)
+    running = _scale_torque(
+        ones, np.array(running_logs), np.ones(1), (size / REFERENCE_SIZE) ** SIZE_EXPONENT
+    )
     rise = (max(x - reference.value, 0.0) for x in running)
-    starting = Scaled(*(RATIO / ratio * x for x in reference))
-    losses = (_mean([getattr(k, name) for k in drives]) for name in ("load_loss", "load_loss_back"))
-    return ScaledFriction(starting, Scaled(*rise), *losses)
+    starting = ScaledNumber(*(REFERENCE_RATIO / ratio * x for x in reference))
+    losses = (
+        _mean_loss([getattr(k, name) for k in published_drives]) for name in ("load_loss", "load_loss_back")
+    )
+    return ScaledFriction(starting, ScaledNumber(*rise), *losses)
 
 
-def _torque(design: Array, logarithms: Array, at: Array, factor: float) -> Scaled:
+def _scale_torque(design: Array, logarithms: Array, design_row: Array, factor: float) -> ScaledNumber:
     """Torque [N.m] from a linear regression of its logarithm, times a factor.
 
     design, logarithms : (n, k), (n) data of the regression
     design_row         : (k) of the drive
     """
-    value, half = _predicted(design, logarithms, at)
-    return Scaled(*(factor * float(np.exp(x)) for x in (value, value - half, value + half)))
+    value, half = _predict(design, logarithms, design_row)
+    return ScaledNumber(*(factor * float(np.exp(x)) for x in (value, value - half, value + half)))
 
 
-def _mean(values: Sequence[float | None]) -> Scaled:
+def _mean_loss(values: Sequence[float | None]) -> ScaledNumber:
     """Mean of the published values, with an interval that is cut at zero."""
     published = np.array([value for value in values if value is not None])
-    value, half = _predicted(np.ones((published.size, 1)), published, np.ones(1))
-    return Scaled(value, max(value - half, 0.0), value + half)
+    value, half = _predict(np.ones((published.size, 1)), published, np.ones(1))
+    return ScaledNumber(value, max(value - half, 0.0), value + half)
 
 
-def _predicted(design: Array, values: Array, at: Array) -> tuple[float, float]:
+def _predict(design: Array, values: Array, design_row: Array) -> tuple[float, float]:
     """Predict a value by linear regression; value, and half width of its prediction interval.
 
     design, values : (n, k), (n) data of the regression
@@ -121,20 +138,22 @@ def _predicted(design: Array, values: Array, at: Array) -> tuple[float, float]:
     law = np.linalg.lstsq(design, values)[0]
     freedom = values.size - law.size
     residuals = values - design @ law
-    deviation = np.sqrt(residuals @ residuals / freedom * (1.0 + at @ np.linalg.inv(design.T @ design) @ at))
-    return float(at @ law), float(stdtrit(freedom, 0.5 + 0.5 * LEVEL) * deviation)
+    deviation = np.sqrt(
+        residuals @ residuals / freedom * (1.0 + design_row @ np.linalg.inv(design.T @ design) @ design_row)
+    )
+    return float(design_row @ law), float(stdtrit(freedom, 0.5 + 0.5 * CONFIDENCE_LEVEL) * deviation)
 
 
-SPEED = 2000.0 * math.pi / 30.0
+QUOTED_SPEED = 2000.0 * math.pi / 30.0
 """Speed [rad/s] of the wave generator at which catalogues state running torque and efficiency: 2000
 rev/min."""
-QUOTED = ("starting_torque", "running_torque", "back_driving_torque", "efficiency")
+FRICTION_COLUMNS = ("starting_torque", "running_torque", "back_driving_torque", "efficiency")
 """Columns of the catalogue that describe friction."""
-_MET = 1e-5
+_LIMIT_TOLERANCE = 1e-5
 """Relative tolerance [1] of limits, so that a user can type a limit as an error message shows it."""
-_DIGITS = 12
+_INTERVAL_DECIMALS = 12
 """Decimals to which ends of intervals in SI units are rounded, so that round-off does not hide a zero."""
-SET_BY: Mapping[str, tuple[str, str]] = {
+PARAMETER_OF_COLUMN: Mapping[str, tuple[str, str]] = {
     "starting_torque": ("friction_coulomb", "starting torque"),
     "running_torque": ("friction_viscous", "rise from starting to running torque"),
     "back_driving_torque": ("load_loss_back", "back-driving torque"),
@@ -143,7 +162,9 @@ SET_BY: Mapping[str, tuple[str, str]] = {
 """{column: (parameter that follows from it, text for the source of the parameter)}."""
 
 
-def friction(printed: Mapping[str, Printed], stated: Collection[str] = ()) -> dict[str, Printed]:
+def friction_parameters(
+    numbers: Mapping[str, SourcedNumber], stated_names: Collection[str] = ()
+) -> dict[str, SourcedNumber]:
     """Friction parameters of a drive from catalogue numbers: {parameter: number}.
 
     numbers      : ratio, rated_torque and FRICTION_COLUMNS, as far as they are known
@@ -158,145 +179,154 @@ def friction(printed: Mapping[str, Printed], stated: Collection[str] = ()) -> di
 
     Raises ValueError if a stated number would make a parameter negative.
     """
-    if "starting_torque" not in printed:
+    if "starting_torque" not in numbers:
         return {}
-    start, running = printed["starting_torque"], printed.get("running_torque")
-    ratio, rated = abs(printed["ratio"].value), printed.get("rated_torque")
-    _check_met(printed, stated)
+    start, running = numbers["starting_torque"], numbers.get("running_torque")
+    ratio, rated = abs(numbers["ratio"].value), numbers.get("rated_torque")
+    _check_stated(numbers, stated_names)
     values: dict[str, tuple[Callable[[float], float], str]] = {"starting_torque": (lambda torque: torque, "")}
     if running is not None:
-        text = f" over {SPEED:.4g} rad/s"
-        values["running_torque"] = (lambda torque: (torque - start.value) / SPEED, text)
-    if (output := printed.get("efficiency")) is not None and rated is not None:
-        idle = _idle(printed)
+        text = f" over {QUOTED_SPEED:.4g} rad/s"
+        values["running_torque"] = (lambda torque: (torque - start.value) / QUOTED_SPEED, text)
+    if (output := numbers.get("efficiency")) is not None and rated is not None:
+        idle = _no_load_torque_ratio(numbers)
         values["efficiency"] = (
             lambda part: 1.0 / part - 1.0 - idle,
             f" {output.value:.4g}, less the running torque",
         )
-    if (back := printed.get("back_driving_torque")) is not None:
+    if (back := numbers.get("back_driving_torque")) is not None:
         values["back_driving_torque"] = (
             lambda torque: 1.0 - ratio * start.value / torque,
             f" {back.value:.4g} N.m over ratio times starting torque",
         )
-    parameters = {SET_BY[name][0]: _set(name, printed[name], *value) for name, value in values.items()}
+    parameters = {
+        PARAMETER_OF_COLUMN[name][0]: _make_parameter(name, numbers[name], *value)
+        for name, value in values.items()
+    }
     if "load_loss_back" in parameters and "load_loss" not in parameters:
         parameters["load_loss"] = parameters["load_loss_back"]
     return parameters
 
 
-def _idle(printed: Mapping[str, Printed]) -> float:
+def _no_load_torque_ratio(numbers: Mapping[str, SourcedNumber]) -> float:
     """Running torque over rated torque at the motor [1]; starting torque if no running torque is known."""
-    torque = printed.get("running_torque", printed["starting_torque"]).value
-    return torque * abs(printed["ratio"].value) / printed["rated_torque"].value
+    torque = numbers.get("running_torque", numbers["starting_torque"]).value
+    return torque * abs(numbers["ratio"].value) / numbers["rated_torque"].value
 
 
-def _check_met(printed: Mapping[str, Printed], stated: Collection[str]) -> None:
+def _check_stated(numbers: Mapping[str, SourcedNumber], stated_names: Collection[str]) -> None:
     """Check stated numbers. Raises ValueError if one of them would make a friction parameter negative."""
-    start, ratio = printed["starting_torque"].value, abs(printed["ratio"].value)
+    start, ratio = numbers["starting_torque"].value, abs(numbers["ratio"].value)
     ends = {
         "running_torque": (start, "the starting torque"),
         "back_driving_torque": (ratio * start, "ratio times starting torque"),
     }
     for name, (lowest, bound_text) in ends.items():
-        if name in stated and printed[name].value < (1.0 - _MET) * lowest:
-            value = f"{flag(name)} = {printed[name].value:g} N.m"
+        if name in stated_names and numbers[name].value < (1.0 - _LIMIT_TOLERANCE) * lowest:
+            value = f"{option_flag(name)} = {numbers[name].value:g} N.m"
             raise ValueError(f"{value} is outside [{lowest:.6g}, inf) N.m: it is at least {bound_text}")
-    if "efficiency" in stated and "rated_torque" in printed:
-        highest, stated_value = 1.0 / (1.0 + _idle(printed)), printed["efficiency"].value
-        if stated_value > (1.0 + _MET) * highest:
+    if "efficiency" in stated_names and "rated_torque" in numbers:
+        highest, stated_value = 1.0 / (1.0 + _no_load_torque_ratio(numbers)), numbers["efficiency"].value
+        if stated_value > (1.0 + _LIMIT_TOLERANCE) * highest:
             raise ValueError(
                 f"--efficiency = {stated_value:g} is outside (0, {highest:.6g}]: the torque without load "
                 "takes the rest"
             )
 
 
-def _set(column: str, number: Printed, value: Callable[[float], float], text: str) -> Printed:
+def _make_parameter(
+    column: str, number: SourcedNumber, convert: Callable[[float], float], text: str
+) -> SourcedNumber:
     """Friction parameter from a catalogue number, with source and interval.
 
     convert : number -> parameter
     """
     kind = "derived" if text and number.kind != "estimate" else number.kind
-    source, interval = f"{number.source}; {SET_BY[column][1]}{text}", None
+    source, interval = f"{number.source}; {PARAMETER_OF_COLUMN[column][1]}{text}", None
     if number.interval is not None:
-        low, high = sorted(max(round(value(end), _DIGITS), 0.0) for end in number.interval)
+        low, high = sorted(max(round(convert(end), _INTERVAL_DECIMALS), 0.0) for end in number.interval)
         interval = low, high
-        source += f"; {interval_text(interval)}"
-    return Printed(max(value(number.value), 0.0), kind, source, interval=interval)
+        source += f"; {describe_interval(interval)}"
+    return SourcedNumber(max(convert(number.value), 0.0), kind, source, interval=interval)
 
 
-def interval_text(interval: tuple[float, float]) -> str:
+def describe_interval(interval: tuple[float, float]) -> str:
     """Text of an interval for the source of a parameter."""
-    return f"{100.0 * LEVEL:g} % interval {interval[0]:.4g} to {interval[1]:.4g}"
+    return f"{100.0 * CONFIDENCE_LEVEL:g} % interval {interval[0]:.4g} to {interval[1]:.4g}"
 
 
-def efficiency(drive: Drive, temperature: float = REFERENCE) -> float:
+def rated_efficiency(drive: Drive, temperature: float = REFERENCE_TEMPERATURE) -> float:
     """Efficiency [1] of a drive at rated torque and QUOTED_SPEED, without hysteresis.
 
     temperature : [K] of the lubricant
     """
     transmitted = drive.rated_torque / abs(drive.ratio)
     load = -math.copysign(drive.rated_torque, drive.ratio)
-    friction_torque = limits(drive, SPEED, load, temperature)[0] + viscous(drive, SPEED, temperature)
+    friction_torque = friction_limits(drive, QUOTED_SPEED, load, temperature)[0] + viscous_torque(
+        drive, QUOTED_SPEED, temperature
+    )
     return float(transmitted / (transmitted + friction_torque))
 
 
-def known(items: Iterable[Item]) -> dict[str, tuple[PrintedFriction, str]]:
+def collect_published(entries: Iterable[CatalogueEntry]) -> dict[str, tuple[PublishedFriction, str]]:
     """Published friction {drive: (friction, maker)} of all drives with a published starting torque."""
     found = {}
-    for item in items:
+    for item in entries:
         printed = {name: number for name, number in item.numbers.items() if number.kind == "catalogue"}
         if "starting_torque" in printed:
             maker = printed["starting_torque"].source.partition(": ")[2].partition(",")[0]
-            found[item.name] = _known(item.name, item.numbers["ratio"].value, printed), maker
+            found[item.name] = _published_friction(item.name, item.numbers["ratio"].value, printed), maker
     return found
 
 
-def _known(name: str, ratio: float, printed: Mapping[str, Printed]) -> PrintedFriction:
+def _published_friction(name: str, ratio: float, numbers: Mapping[str, SourcedNumber]) -> PublishedFriction:
     """Published friction of one drive; the losses follow from its numbers by `friction_parameters`."""
-    losses = friction({"ratio": Printed(ratio, "catalogue", ""), **printed})
-    running = printed.get("running_torque")
-    return PrintedFriction(
-        size(name),
+    losses = friction_parameters({"ratio": SourcedNumber(ratio, "catalogue", ""), **numbers})
+    running = numbers.get("running_torque")
+    return PublishedFriction(
+        size_of_name(name),
         ratio,
-        printed["starting_torque"].value,
+        numbers["starting_torque"].value,
         running.value if running else None,
-        losses["load_loss"].value if "efficiency" in printed else None,
-        losses["load_loss_back"].value if "back_driving_torque" in printed else None,
+        losses["load_loss"].value if "efficiency" in numbers else None,
+        losses["load_loss_back"].value if "back_driving_torque" in numbers else None,
     )
 
 
-def size(name: str) -> float:
+def size_of_name(name: str) -> float:
     """Size [1] in the name SERIES-SIZE-RATIO of a drive; a letter after the size, as in 14A, is ignored."""
     match = re.search(r"-(\d+)[A-Z]?-\d+$", name)
     assert match, name
     return float(match[1])
 
 
-def with_friction(item: Item, drives: Mapping[str, tuple[PrintedFriction, str]]) -> Item:
+def add_friction_estimates(
+    entry: CatalogueEntry, published_drives: Mapping[str, tuple[PublishedFriction, str]]
+) -> CatalogueEntry:
     """Add estimates of the friction numbers that are not published for a drive.
 
     published_drives : result of `collect_published`
 
     Without a rated torque there is no estimate of the efficiency.
     """
-    numbers, ratio = dict(item.numbers), item.numbers["ratio"].value
-    law = scaled(size(item.name), ratio, [each for each, _ in drives.values()])
+    numbers, ratio = dict(entry.numbers), entry.numbers["ratio"].value
+    law = scale_friction(size_of_name(entry.name), ratio, [each for each, _ in published_drives.values()])
     makers: dict[str, list[str]] = {}
-    for name, (_, maker) in drives.items():
+    for name, (_, maker) in published_drives.items():
         makers.setdefault(maker, []).append(name)
     text = " and ".join(f"{maker} ({', '.join(names)})" for maker, names in makers.items())
     text += ", scaled by size and ratio"
 
-    def estimate(column: str, value: float, *ends: float) -> None:
+    def add_estimate(column: str, value: float, *ends: float) -> None:
         """Add the estimate of a column, unless the drive has this column."""
         interval = min(ends), max(ends)
-        numbers.setdefault(column, Printed(value, "estimate", text, interval=interval))
+        numbers.setdefault(column, SourcedNumber(value, "estimate", text, interval=interval))
 
-    estimate("starting_torque", *law.starting)
+    add_estimate("starting_torque", *law.starting_torque)
     start = numbers["starting_torque"].value
-    estimate("running_torque", *(start + x for x in law.rise))
-    estimate("back_driving_torque", *(ratio * start / (1.0 - x) for x in law.load_loss_back))
+    add_estimate("running_torque", *(start + x for x in law.viscous_torque))
+    add_estimate("back_driving_torque", *(ratio * start / (1.0 - x) for x in law.load_loss_back))
     if rated := numbers.get("rated_torque"):
         idle = 1.0 + numbers["running_torque"].value * ratio / rated.value
-        estimate("efficiency", *(1.0 / (idle + x) for x in law.load_loss))
-    return Item(item.name, numbers)
+        add_estimate("efficiency", *(1.0 / (idle + x) for x in law.load_loss))
+    return CatalogueEntry(entry.name, numbers)

@@ -11,31 +11,31 @@ from scipy.integrate import cumulative_simpson
 from jointfmu.joints import MODELS
 from jointfmu.joints.harmonic_drive.drive import HARMONICS
 
-from ...job.checks import deviation
-from ...laboratory.part import Example, LaboratoryModel, Shown, Turn
+from ...job.checks import relative_deviation
+from ...laboratory.part import Example, LaboratoryModel, PublishedQuantity, TransmissionView
 from ...published.reference import Point
 from ...published.validation import ValidatedPoint
 from ...ramps import ramp
 from ...ramps.ramp import RampResult
-from ...report.figure import Figure, Panel, Series, published
+from ...report.figure import Figure, Panel, Series, published_series
 from ...systems.master import Slave
 from ...systems.ringing import Axis, Body, Pull, Rest
 from . import efficiency
 
 
-def _compliance(folder: Path, result: ramp.RampResult) -> tuple[str, float]:
+def _check_compliance(folder: Path, result: ramp.RampResult) -> tuple[str, float]:
     c = result.columns
     phi = cumulative_simpson(1.0 / c["K_WTS"], x=c["tau"], initial=0.0)
-    return "phi_rel against the integral of dT/K_WTS (scipy, Simpson)", deviation(c["phi_rel"], phi)
+    return "phi_rel against the integral of dT/K_WTS (scipy, Simpson)", relative_deviation(c["phi_rel"], phi)
 
 
-def _work(folder: Path, result: ramp.RampResult) -> tuple[str, float]:
+def _check_stiffness(folder: Path, result: ramp.RampResult) -> tuple[str, float]:
     c = result.columns
     tau = cumulative_simpson(c["K_WTS"], x=c["phi_rel"], initial=0.0)
-    return "tau against the integral of K_WTS dphi (scipy, Simpson)", deviation(c["tau"], tau)
+    return "tau against the integral of K_WTS dphi (scipy, Simpson)", relative_deviation(c["tau"], tau)
 
 
-RAMPS = {"HarmonicDriveSpring": _work, "HarmonicDriveCompliance": _compliance}
+RAMPS = {"HarmonicDriveSpring": _check_stiffness, "HarmonicDriveCompliance": _check_compliance}
 """{FMU: check}, a check being (folder, ramp of the FMU) -> (text, largest relative deviation [1])."""
 
 
@@ -43,47 +43,47 @@ def through_fmu(point: Point, folder: Path) -> float | None:
     """Compute a published point by running an FMU of a folder; None if no FMU has this quantity."""
     where = point.where
 
-    def drive(column: str, **settings: float) -> float:
+    def run_drive(column: str, **settings: float) -> float:
         """Output of the FMU under the torque of the point, with other parameters."""
         torque = where["torque"]
         fmu = folder / "HarmonicDriveCompliance.fmu"
-        return float(ramp.run(fmu, "tau", torque, torque, settings).columns[column][-1])
+        return float(ramp.run_ramp(fmu, "tau", torque, torque, settings).columns[column][-1])
 
     if point.quantity == "K_TS":
         changes = {"radial_deformation": where["deformation"]} if "deformation" in where else {}
-        return drive("K_TS_pair", **changes)
+        return run_drive("K_TS_pair", **changes)
     if point.quantity == "K_TS_least":
         ends = (where["lower"], where["upper"])
-        return min(drive("K_TS_pair", radial_deformation=w) for w in ends)
+        return min(run_drive("K_TS_pair", radial_deformation=w) for w in ends)
     if point.quantity == "K_TS_change":
-        changed = drive("K_TS_pair", eccentricity=where["eccentricity"])
-        return 100.0 * (changed / drive("K_TS_pair") - 1.0)
+        changed = run_drive("K_TS_pair", eccentricity=where["eccentricity"])
+        return 100.0 * (changed / run_drive("K_TS_pair") - 1.0)
     if point.quantity == "K_WTS":
-        return drive("K_WTS")
+        return run_drive("K_WTS")
     if point.quantity == "peak_pressure":
-        return drive("p_max")
+        return run_drive("p_max")
     return None
 
 
-_FMU = "HarmonicDriveCompliance"
+_COMPLIANCE_FMU = "HarmonicDriveCompliance"
 
 
 def figures(outcome: Any) -> list[Figure]:
     """Figures of the harmonic drive, from the results of the main job (`JobResult`)."""
-    result = outcome.ramps[_FMU]
+    result = outcome.ramps[_COMPLIANCE_FMU]
     return [
         Figure(
             "Stiffness over torque",
             "K_WTS and the contact pair's part of it on the drive's scale, as the FMU gives them; then the "
             "pair on the scale of the paper's figures.",
-            stiffness(result, outcome.rows),
-            data=f"{_FMU}.csv",
+            stiffness_panels(result, outcome.rows),
+            data=f"{_COMPLIANCE_FMU}.csv",
         ),
         Figure(
             "Torque over wind-up",
             "The integral of dT/K_WTS, odd in the torque.",
-            [torque_angle(result)],
-            data=f"{_FMU}.csv",
+            [torque_angle_panel(result)],
+            data=f"{_COMPLIANCE_FMU}.csv",
         ),
         Figure(
             "What friction costs",
@@ -92,27 +92,27 @@ def figures(outcome: Any) -> list[Figure]:
             "motor. Starting and running torque fix friction_coulomb and friction_viscous, the efficiency "
             "load_loss, the back-driving torque load_loss_back. Of the CSF drives the running torque is an "
             "estimate, and the back-driving torque fixes both where that is not below 0.",
-            friction(_spring(outcome)),
+            friction_panels(_spring_fmu(outcome)),
         ),
     ]
 
 
-def _spring(outcome: Any) -> Path:
+def _spring_fmu(outcome: Any) -> Path:
     """Path of the FMU HarmonicDriveSpring, FMI 2.0."""
     paths: list[Path] = outcome.built
     return next(p for p in paths if (p.parent.name, p.stem) == ("fmi2", "HarmonicDriveSpring"))
 
 
-def friction(fmu: Path) -> list[Panel]:
+def friction_panels(fmu: Path) -> list[Panel]:
     """Panels of efficiency over load, and of back-driving torque, of the catalogue drives, by an FMU."""
     panels, published_torques, found_torques = [], [], []
-    drives, share = efficiency.printed_drives(), np.linspace(0.1, 1.0, 41) ** 2
+    drives, share = efficiency.drives_with_friction(), np.linspace(0.1, 1.0, 41) ** 2
     for drive in drives:
         rated, published_torque = (
             drive.numbers["rated_torque"].value,
             drive.numbers["back_driving_torque"].value,
         )
-        with efficiency.bench(fmu, efficiency.parameters(drive)) as bench:
+        with efficiency.open_fmu_test_rig(fmu, efficiency.friction_and_ratio(drive)) as bench:
             rows = {
                 rpm: [bench.efficiency(rpm * np.pi / 30.0, load) for load in rated * share]
                 for rpm in (500, 2000, 3500)
@@ -133,12 +133,12 @@ def friction(fmu: Path) -> list[Panel]:
     return [*panels, Panel("Back-driving torque", "published [N m]", "FMU [N m]", series_with_diagonal)]
 
 
-def stiffness(result: RampResult, rows: list[ValidatedPoint]) -> list[Panel]:
+def stiffness_panels(result: RampResult, rows: list[ValidatedPoint]) -> list[Panel]:
     """Panels of the stiffness of the drive and of the contact pair over torque, with published points."""
     c = result.columns
     points = [row.point for row in rows]
     drive = [Series(name, c["tau"], c[name]) for name in ("K_WTS", "K_TS")]
-    drive += published([p for p in points if p.quantity == "K_WTS"], "torque")
+    drive += published_series([p for p in points if p.quantity == "K_WTS"], "torque")
     least = [row for row in rows if row.point.quantity == "K_TS_least"]
     most = [r for r in rows if r.point.quantity == "K_TS" and "deformation" in r.point.where]
     ends = [*most, *least]
@@ -151,7 +151,7 @@ def stiffness(result: RampResult, rows: list[ValidatedPoint]) -> list[Panel]:
             "empty",
             titles=[r.point.id for r in ends],
         ),
-        *published([p for p in points if p.quantity in ("K_TS", "K_TS_least")], "torque"),
+        *published_series([p for p in points if p.quantity in ("K_TS", "K_TS_least")], "torque"),
     ]
     return [
         Panel("Stiffness of the drive", "torque [N m]", "K [N m/rad]", drive),
@@ -159,33 +159,33 @@ def stiffness(result: RampResult, rows: list[ValidatedPoint]) -> list[Panel]:
     ]
 
 
-def torque_angle(result: RampResult) -> Panel:
+def torque_angle_panel(result: RampResult) -> Panel:
     """Panel of the torque over the wind-up, for both directions."""
     tau, angle = result.columns["tau"], np.degrees(result.columns["phi_rel"]) * 60.0
     both = np.concatenate([-angle[::-1], angle]), np.concatenate([-tau[::-1], tau])
     return Panel("Torque over wind-up", "wind-up [arcmin]", "torque [N m]", [Series("torque", *both)])
 
 
-LOADING = (0.0, 0.1, 0.2, 0.4, 0.7, 1.0)
+TORQUE_RATIOS = (0.0, 0.1, 0.2, 0.4, 0.7, 1.0)
 """Torques over the rated torque [1] of the simulated free vibrations."""
 
 
-def _torques(path: Path, parameters: Mapping[str, float]) -> list[float]:
+def _vibration_torques(path: Path, parameters: Mapping[str, float]) -> list[float]:
     """Torques [N.m] of the simulated free vibrations, from zero to the rated torque."""
     with Slave(path, parameters, (), ("rated_torque",)) as drive:
         (rated,) = drive.get()
-    return [share * rated for share in LOADING]
+    return [share * rated for share in TORQUE_RATIOS]
 
 
-def _rest(path: Path, torque: float, parameters: Mapping[str, float]) -> Rest:
+def _vibration_at_rest(path: Path, torque: float, parameters: Mapping[str, float]) -> Rest:
     with Slave(path, {**parameters, "w2": 1.0}, ("w1",), ("tau",)) as dashpot:
         (damping,) = dashpot.get()
     with Slave(path, parameters, ("phi2", "w2"), ("tau", "K_WTS")) as law:
-        angle, stiffness = _wound_up(law, torque)
+        angle, stiffness = _wind_up_and_stiffness(law, torque)
     return Rest(torque, angle, stiffness, damping)
 
 
-def _wound_up(drive: Slave, torque: float) -> tuple[float, float]:
+def _wind_up_and_stiffness(drive: Slave, torque: float) -> tuple[float, float]:
     """Wind-up [rad] and stiffness [N.m/rad] of a drive under a torque [N.m]."""
 
     def torque_and_stiffness(angle: float) -> tuple[float, float]:
@@ -196,7 +196,7 @@ def _wound_up(drive: Slave, torque: float) -> tuple[float, float]:
     def transmitted_torque(angle: float) -> float:
         return torque_and_stiffness(angle)[0]
 
-    angle = efficiency.wound_up(transmitted_torque, torque, torque_and_stiffness(0.0)[1])
+    angle = efficiency.solve_wind_up(transmitted_torque, torque, torque_and_stiffness(0.0)[1])
     return angle, torque_and_stiffness(angle)[1]
 
 
@@ -206,9 +206,9 @@ RINGING = Body(
     force="tau2",
     partner="RotationalInertia",
     over="tau",
-    loads=_torques,
+    loads=_vibration_torques,
     start=lambda torque: {},
-    rest=_rest,
+    rest=_vibration_at_rest,
     release=1e-3,
     load=Axis("torque", "N m", 1.0),
     deflection=Axis("wind-up", "urad", 1e6),
@@ -219,7 +219,7 @@ RINGING = Body(
 )
 
 
-_SPANS = {
+_SLIDER_SPANS = {
     "hysteresis_loss": (0.0, 1e-3),
     "hysteresis_stiffness": (0.0, 2e4),
     "lost_motion": (0.0, 1e-3),
@@ -236,10 +236,10 @@ _SPANS = {
     **{f"error_{n}": (0.0, 1e-3) for n in HARMONICS},
     **{f"error_{n}_phase": (-math.pi, math.pi) for n in HARMONICS},
 }
-_ARGUMENTS = {"torque": "tau", "deformation": "radial_deformation", "eccentricity": "eccentricity"}
+_POINT_INPUTS = {"torque": "tau", "deformation": "radial_deformation", "eccentricity": "eccentricity"}
 
-_TURN = Turn(
-    driven="phi1",
+_TRANSMISSION = TransmissionView(
+    input_angle="phi1",
     speed="w1",
     follower="phi2",
     follower_speed="w2",
@@ -248,26 +248,28 @@ _TURN = Turn(
     error="phi_error",
     ratio="ratio",
     rated="rated_torque",
-    usual=200.0,
+    default_speed=200.0,
 )
-_LOOP = MODELS["HarmonicDriveSpring"].loop
-_PRINTED = efficiency.printed_drives()[0]
+_LOAD_CYCLE = MODELS["HarmonicDriveSpring"].loop
+_EXAMPLE_DRIVE = efficiency.drives_with_friction()[0]
 _EXAMPLE = Example(
-    f"friction of the catalogue's {_PRINTED.name}, 1 arcmin of hysteresis and of kinematic error",
-    {k: v for k, v in efficiency.parameters(_PRINTED).items() if k != "ratio"}
-    | {k: float(v) for k, v in (_LOOP.settings if _LOOP else {}).items()}
+    f"friction of the catalogue's {_EXAMPLE_DRIVE.name}, 1 arcmin of hysteresis and of kinematic error",
+    {k: v for k, v in efficiency.friction_and_ratio(_EXAMPLE_DRIVE).items() if k != "ratio"}
+    | {k: float(v) for k, v in (_LOAD_CYCLE.settings if _LOAD_CYCLE else {}).items()}
     | {"error_2": 1.5e-4},
 )
 
 LABORATORY = {
-    "HarmonicDriveSpring": LaboratoryModel(spans=_SPANS, path=("phi2",), turn=_TURN, example=_EXAMPLE),
+    "HarmonicDriveSpring": LaboratoryModel(
+        slider_spans=_SLIDER_SPANS, path_inputs=("phi2",), transmission=_TRANSMISSION, example=_EXAMPLE
+    ),
     "HarmonicDriveCompliance": LaboratoryModel(
-        spans=_SPANS,
-        path=("tau",),
-        points={
-            "K_TS": Shown("K_TS_pair", _ARGUMENTS),
-            "K_WTS": Shown("K_WTS", _ARGUMENTS),
-            "peak_pressure": Shown("p_max", _ARGUMENTS),
+        slider_spans=_SLIDER_SPANS,
+        path_inputs=("tau",),
+        published_points={
+            "K_TS": PublishedQuantity("K_TS_pair", _POINT_INPUTS),
+            "K_WTS": PublishedQuantity("K_WTS", _POINT_INPUTS),
+            "peak_pressure": PublishedQuantity("p_max", _POINT_INPUTS),
         },
     ),
 }

@@ -43,19 +43,19 @@ class DriveJoint(Joint):
 
     def wind_up(self, torque: ArrayLike) -> Array:
         """Wind-up (n) [rad] of the output under torques (n) [N.m]; odd in the torque."""
-        return self._curve.odd_inverse(torque)[()]
+        return self._midline.odd_inverse(torque)[()]
 
     def torque(self, wind_up: ArrayLike) -> Array:
         """Torque (n) [N.m] at wind-ups (n) [rad]; odd in the wind-up."""
         phi = np.asarray(wind_up, dtype=np.float64)
-        return np.asarray(np.copysign(self._curve.derivatives(np.abs(phi), 1)[0], phi))[()]
+        return np.asarray(np.copysign(self._midline.derivatives(np.abs(phi), 1)[0], phi))[()]
 
     def stiffness(self, torque: ArrayLike) -> Array:
         """Tangent stiffness K_WTS (n) [N.m/rad] under torques (n) [N.m]."""
-        return np.asarray(self._curve.derivatives(np.abs(self.wind_up(torque)), 1)[1])[()]
+        return np.asarray(self._midline.derivatives(np.abs(self.wind_up(torque)), 1)[1])[()]
 
     @property
-    def _curve(self) -> Curve:
+    def _midline(self) -> Curve:
         """Midline: torque over wind-up, for positive values."""
         curve = self.spring.curve
         assert isinstance(curve, Curve)
@@ -67,12 +67,12 @@ CLASS = DriveJoint
 
 def TRANSMISSION(name: str, drive: Drive) -> Transmission:
     """Transmission of a robot with the spring and friction of a drive."""
-    spring = HarmonicDriveSpring.of(drive)
+    spring = HarmonicDriveSpring.tabulate(drive)
 
     def wind_up(torques: ArrayLike) -> Array:
-        memory, found = spring.rest(), []
+        memory, found = spring.initial_history(), []
         for torque in np.asarray(torques, dtype=np.float64):
-            out, memory = spring.loaded(torque, memory)
+            out, memory = spring.advance_torque(torque, memory)
             found.append(float(out["phi_rel"]))
         return np.array(found)
 
@@ -88,15 +88,16 @@ def TRANSMISSION(name: str, drive: Drive) -> Transmission:
         stribeck_speed=drive.stribeck_speed,
         presliding=drive.presliding,
         wind_up=wind_up,
-        lacks=tuple(_lacks(drive)),
+        lacks=tuple(_list_missing_effects(drive)),
     )
 
 
-def _lacks(drive: Drive) -> Iterator[str]:
+def _list_missing_effects(drive: Drive) -> Iterator[str]:
     """Effects of the drive that the model `Transmission` lacks, as text."""
-    if drive.load_loss or drive.loss_back:
+    if drive.load_loss or drive.effective_load_loss_back:
         loss, back = (
-            share * drive.rated_torque / abs(drive.ratio) for share in (drive.load_loss, drive.loss_back)
+            share * drive.rated_torque / abs(drive.ratio)
+            for share in (drive.load_loss, drive.effective_load_loss_back)
         )
         yield (
             "friction that grows with the load: at rated torque "
@@ -109,10 +110,10 @@ def _lacks(drive: Drive) -> Iterator[str]:
         yield f"the kinematic error, up to {error:.3g} rad"
 
 
-def _torque(drive: Drive, _: None, error: float) -> "LoadTable":
-    from ...export.tables import odd_table
+def _torque_table(drive: Drive, _: None, max_error: float) -> "LoadTable":
+    from ...export.tables import tabulate_odd_curve
 
-    return odd_table(HarmonicDriveSpring.of(drive).curve, error)
+    return tabulate_odd_curve(HarmonicDriveSpring.tabulate(drive).curve, max_error)
 
 
 EXPORTS = Exports(
@@ -120,29 +121,35 @@ EXPORTS = Exports(
         meaning="torque over wind-up at the output, wave generator locked",
         columns=tuple(KIND.variables[name] for name in ("phi_rel", "tau", "K_WTS")),
         name="torque",
-        table=_torque,
+        compute_table=_torque_table,
     ),
-    lacks={"contact": "its stiffness is a sum over the nodes of a mesh, not over an area; export its curve"},
+    missing_reasons={
+        "contact": "its stiffness is a sum over the nodes of a mesh, not over an area; export its curve"
+    },
 )
 
 
-_Any = HarmonicDrive | RoughHarmonicDrive
+_ContactPairDrive = HarmonicDrive | RoughHarmonicDrive
 
 
-def _peak(drive: _Any, torque: float) -> float:
+def _peak_pressure(drive: _ContactPairDrive, torque: float) -> float:
     return float(peak_pressure(drive, torque)[0])
 
 
-def _mean(drive: _Any, torque: float) -> float:
-    return drive.mean_over_peak * _peak(drive, torque)
+def _mean_pressure(drive: _ContactPairDrive, torque: float) -> float:
+    return drive.mean_over_peak * _peak_pressure(drive, torque)
 
 
-def _scale(drive: _Any, torque: float) -> float:
+def _stiffness_ratio(drive: _ContactPairDrive, torque: float) -> float:
     """K_TS of the drive over K_T radius^2 [1], the torsional stiffness of a pair with K_T of the law."""
-    tangential = at_pressure(drive.law, _mean(drive, torque))["K_T"]
+    tangential = at_pressure(drive.law, _mean_pressure(drive, torque))["K_T"]
     return float(pair_stiffness(drive, torque)[0] / (tangential * drive.radius**2))
 
 
 PRESSURE = NominalPressure(
-    load="tau", usual=lambda drive: drive.rated_torque, mean=_mean, peak=_peak, scale=_scale
+    load_variable="tau",
+    default_load=lambda drive: drive.rated_torque,
+    mean_pressure=_mean_pressure,
+    peak_pressure=_peak_pressure,
+    stiffness_ratio=_stiffness_ratio,
 )

@@ -4,198 +4,221 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from jointfmu.joints.harmonic_drive.friction import limits, viscous
+from jointfmu.joints.harmonic_drive.friction import friction_limits, viscous_torque
 from jointfmu.quantity.units import KELVIN_AT_ZERO
 
-from ...catalogue import Printed
-from ...command_line.common import flag
-from ...drawing.part import Drawing, Given, NewJoint
-from ...drawing.reading import number, temperature
+from ...catalogue import SourcedNumber
+from ...command_line.common import option_flag
+from ...drawing.part import DrawingOptions, NewJoint, NewJointCommand
+from ...drawing.reading import parse_number, parse_temperature
 from ...joint_parts import Option
-from .catalogue import COLUMNS, LINES, ROW, find
-from .friction import QUOTED, SPEED, efficiency, friction, interval_text
+from .catalogue import COLUMNS, STIFFNESS_COLUMNS, STIFFNESS_NAMES, find_drive
+from .friction import FRICTION_COLUMNS, QUOTED_SPEED, describe_interval, friction_parameters, rated_efficiency
 
 if TYPE_CHECKING:
-    from .fit.drive import Row
+    from .fit.drive import CatalogueRow
 
-_STATED = ("ratio", *LINES, "rated_torque", *QUOTED)
+_OPTION_COLUMNS = ("ratio", *STIFFNESS_NAMES, "rated_torque", *FRICTION_COLUMNS)
 """Columns of the catalogue that the user can state."""
-_UNITS = {column.name: column.unit for column in COLUMNS if column.name in _STATED}
+_DEFAULT_UNITS = {column.name: column.unit for column in COLUMNS if column.name in _OPTION_COLUMNS}
 """{column: unit of a number without a unit}."""
-DAMPING = 1e-4
+DAMPING_TIME = 1e-4
 """Damping d over K1 [s]: a damping ratio of 2 % for a natural frequency of 60 Hz."""
-FIXED: Mapping[str, str] = {
+FIXED_PARTS: Mapping[str, str] = {
     "circular-spline": "circular spline fixed, output the flexspline: it turns against the motor",
     "flexspline": "flexspline fixed, output the circular spline: with the motor, one more than printed",
     "wave-generator": "wave generator fixed, from flexspline to circular spline: 1 + 1/(ratio printed)",
 }
 """{fixed part of the drive: effect on the ratio}."""
-PEAK = 4.0
+PEAK_TORQUE_RATIO = 4.0
 """max_torque over rated torque [1], if no repeated peak torque is known; about that of catalogue drives."""
 
 
-def _drive(given: Given) -> NewJoint:
-    source = given["source"] or given["catalogue"] or "catalogue"
-    printed = dict(find(given["catalogue"]).numbers) if given["catalogue"] else {}
-    for name, unit in _UNITS.items():
-        if given[name] is not None:
-            value = number(name, given[name], _unit(given, name), unit, None if name == "ratio" else 0.0)
+def _make_joint(options: DrawingOptions) -> NewJoint:
+    source = options["source"] or options["catalogue"] or "catalogue"
+    printed = dict(find_drive(options["catalogue"]).numbers) if options["catalogue"] else {}
+    for name, unit in _DEFAULT_UNITS.items():
+        if options[name] is not None:
+            value = parse_number(
+                name, options[name], _default_unit(options, name), unit, None if name == "ratio" else 0.0
+            )
             if value == 0.0:
                 raise ValueError("--ratio = 0 is outside (-inf, 0) and (0, inf)")
-            printed[name] = _stated(given, value)
-    if given["hysteresis"] is not None:
-        printed["hysteresis_loss"] = _stated(
-            given, number("hysteresis", given["hysteresis"], "arcmin", "rad")
+            printed[name] = _stated_number(options, value)
+    if options["hysteresis"] is not None:
+        printed["hysteresis_loss"] = _stated_number(
+            options, parse_number("hysteresis", options["hysteresis"], "arcmin", "rad")
         )
-    if missing := [flag(name) for name in ("ratio", *LINES) if name not in printed]:
+    if missing := [option_flag(name) for name in ("ratio", *STIFFNESS_NAMES) if name not in printed]:
         raise ValueError(f"{', '.join(missing)} missing: state the row of the catalogue, or --catalogue NAME")
     if "rated_torque" not in printed:
         text = "no rated torque given; T2 of the catalogue"
-        printed["rated_torque"] = Printed(printed["T2"].value, "estimate", text)
-    friction_numbers, (printed["ratio"], ratio_text) = _brakes(given, printed), _held(given, printed["ratio"])
-    printed = {name: number for name, number in printed.items() if name not in QUOTED}
-    if given["corner"] is not None:
-        if given["law"] == "hu2023":
+        printed["rated_torque"] = SourcedNumber(printed["T2"].value, "estimate", text)
+    friction_numbers, (printed["ratio"], ratio_text) = (
+        _friction_parameters(options, printed),
+        _signed_ratio(options, printed["ratio"]),
+    )
+    printed = {name: number for name, number in printed.items() if name not in FRICTION_COLUMNS}
+    if options["corner"] is not None:
+        if options["law"] == "hu2023":
             raise ValueError("--corner is of the catalogue's lines; --law hu2023 has no corners")
-        corner = number("corner", given["corner"], "1", "1", None)
-        printed["corner"] = Printed(corner, "user", "stated" if corner else "stated: the lines, with kinks")
-    joint = (_of_pair if given["law"] == "hu2023" else _of_lines)(printed, friction_numbers, source)
+        corner = parse_number("corner", options["corner"], "1", "1", None)
+        printed["corner"] = SourcedNumber(
+            corner, "user", "stated" if corner else "stated: the lines, with kinks"
+        )
+    joint = (_make_pair_joint if options["law"] == "hu2023" else _make_line_joint)(
+        printed, friction_numbers, source
+    )
     joint = replace(joint, facts={"ratio": (printed["ratio"].value, "1", ratio_text), **joint.facts})
-    return joint if given["temperature"] is None else _at(joint, given["temperature"])
+    return joint if options["temperature"] is None else _set_temperature(joint, options["temperature"])
 
 
-def _at(made: NewJoint, text: str) -> NewJoint:
+def _set_temperature(joint: NewJoint, text: str) -> NewJoint:
     """Set the start temperature of the lubricant, and compute the friction facts at this temperature.
 
     text : temperature as the user states it
     """
-    kelvin, drive = temperature("temperature", text), made.file.values
+    kelvin, drive = parse_temperature("temperature", text), joint.file.values
     file = replace(
-        made.file,
-        inputs={**made.file.inputs, "temperature": kelvin},
-        origins={**made.file.origins, "inputs.temperature": "user"},
-        sources={**made.file.sources, "inputs.temperature": f"stated: {text}"},
+        joint.file,
+        inputs={**joint.file.inputs, "temperature": kelvin},
+        origins={**joint.file.origins, "inputs.temperature": "user"},
+        sources={**joint.file.sources, "inputs.temperature": f"stated: {text}"},
     )
-    dry = float(limits(drive, 0.0, 0.0, kelvin)[0])
+    dry = float(friction_limits(drive, 0.0, 0.0, kelvin)[0])
     text = f"{kelvin - KELVIN_AT_ZERO:g} degrees C"
     facts = {"starting_torque": (dry, "N.m", f"at the wave generator, at {text}")}
-    wet = float(limits(drive, SPEED, 0.0, kelvin)[0] + viscous(drive, SPEED, kelvin))
+    wet = float(
+        friction_limits(drive, QUOTED_SPEED, 0.0, kelvin)[0] + viscous_torque(drive, QUOTED_SPEED, kelvin)
+    )
     facts["running_torque"] = (wet, "N.m", f"the same at 2000 rev/min, at {text}")
-    if "efficiency" in made.facts:
-        what = f"{made.facts['efficiency'][2]}, at {text}"
-        facts["efficiency"] = (efficiency(drive, kelvin), "1", what)
-    return replace(made, file=file, facts={**made.facts, **facts})
+    if "efficiency" in joint.facts:
+        what = f"{joint.facts['efficiency'][2]}, at {text}"
+        facts["efficiency"] = (rated_efficiency(drive, kelvin), "1", what)
+    return replace(joint, file=file, facts={**joint.facts, **facts})
 
 
-def _held(given: Given, ratio: Printed) -> tuple[Printed, str]:
+def _signed_ratio(options: DrawingOptions, ratio: SourcedNumber) -> tuple[SourcedNumber, str]:
     """Speed ratio of input to output, from the published ratio and the fixed part; and an explanation."""
     if ratio.value < 0.0:
-        if given["fixed"]:
+        if options["fixed"]:
             raise ValueError(
-                f"--fixed {given['fixed']} beside --ratio = {ratio.value:g}, whose sign is stated; expected "
+                f"--fixed {options['fixed']} beside --ratio = {ratio.value:g}, whose sign is stated; expected "
                 "the ratio as catalogues print it, above 0"
             )
         return ratio, "as stated, with its sign"
-    fixed = given["fixed"] or next(iter(FIXED))
+    fixed = options["fixed"] or next(iter(FIXED_PARTS))
     value = {
         "circular-spline": -ratio.value,
         "flexspline": ratio.value + 1.0,
         "wave-generator": 1.0 + 1.0 / ratio.value,
     }[fixed]
     source = f"{ratio.source}; {fixed.replace('-', ' ')} fixed"
-    return ratio._replace(value=value, source=source), FIXED[fixed]
+    return ratio._replace(value=value, source=source), FIXED_PARTS[fixed]
 
 
-def _brakes(given: Given, printed: Mapping[str, Printed]) -> dict[str, Printed]:
+def _friction_parameters(
+    options: DrawingOptions, numbers: Mapping[str, SourcedNumber]
+) -> dict[str, SourcedNumber]:
     """Friction parameters of the drive, from stated numbers and those of the catalogue.
 
     Empty for a fixed wave generator. Raises ValueError for stated numbers that contradict each other.
     """
-    stated = [name for name in QUOTED if given[name] is not None]
-    if "efficiency" in stated and not printed["efficiency"].value < 1.0:
-        raise ValueError(f"--efficiency = {given['efficiency']!r} is outside (0, 1)")
-    if given["fixed"] == "wave-generator":
+    stated = [name for name in FRICTION_COLUMNS if options[name] is not None]
+    if "efficiency" in stated and not numbers["efficiency"].value < 1.0:
+        raise ValueError(f"--efficiency = {options['efficiency']!r} is outside (0, 1)")
+    if options["fixed"] == "wave-generator":
         if stated:
             raise ValueError(
-                f"{flag(stated[0])} is of the wave generator, which stands with --fixed wave-generator"
+                f"{option_flag(stated[0])} is of the wave generator, which stands with --fixed wave-generator"
             )
         return {}
-    if "starting_torque" not in printed and stated:
-        raise ValueError(f"{flag(stated[0])} needs {flag('starting_torque')}: without it no friction acts")
+    if "starting_torque" not in numbers and stated:
+        raise ValueError(
+            f"{option_flag(stated[0])} needs {option_flag('starting_torque')}: without it no friction acts"
+        )
     if "starting_torque" in stated:  # scaled numbers belong to another starting torque; others must be met
-        printed = {n: p for n, p in printed.items() if n not in QUOTED or p.kind != "estimate"}
-        stated = [name for name in QUOTED if name in printed]
-    return _with_drag(friction(printed, stated), given["motor_drag"])
+        numbers = {n: p for n, p in numbers.items() if n not in FRICTION_COLUMNS or p.kind != "estimate"}
+        stated = [name for name in FRICTION_COLUMNS if name in numbers]
+    return _add_motor_drag(friction_parameters(numbers, stated), options["motor_drag"])
 
 
-def _with_drag(brakes: dict[str, Printed], stated: str | None) -> dict[str, Printed]:
+def _add_motor_drag(
+    friction_numbers: dict[str, SourcedNumber], drag_text: str | None
+) -> dict[str, SourcedNumber]:
     """Add the dry friction of the motor's bearings and seals to friction_coulomb.
 
     drag_text : as the user states it; None: no motor drag
     """
-    if stated is None:
-        return brakes
-    drag = number("motor_drag", stated, "N.m", "N.m", None)
+    if drag_text is None:
+        return friction_numbers
+    drag = parse_number("motor_drag", drag_text, "N.m", "N.m", None)
     if drag < 0.0:
-        raise ValueError(f"--motor-drag = {stated!r} is outside [0, inf) N.m")
+        raise ValueError(f"--motor-drag = {drag_text!r} is outside [0, inf) N.m")
     text = f"motor drag {drag:g} N.m, stated"
-    dry_friction = brakes.get("friction_coulomb")
+    dry_friction = friction_numbers.get("friction_coulomb")
     if dry_friction is None:
-        return {**brakes, "friction_coulomb": Printed(drag, "user", text)}
+        return {**friction_numbers, "friction_coulomb": SourcedNumber(drag, "user", text)}
     source, interval = dry_friction.source, dry_friction.interval
     if interval is not None:
         interval = interval[0] + drag, interval[1] + drag
-        source = f"{source.rpartition('; ')[0]}; {interval_text(interval)}"
-    total = Printed(dry_friction.value + drag, dry_friction.kind, f"{source}; with {text}", interval=interval)
-    return {**brakes, "friction_coulomb": total}
+        source = f"{source.rpartition('; ')[0]}; {describe_interval(interval)}"
+    total = SourcedNumber(
+        dry_friction.value + drag, dry_friction.kind, f"{source}; with {text}", interval=interval
+    )
+    return {**friction_numbers, "friction_coulomb": total}
 
 
-def _stated(given: Given, value: float) -> Printed:
+def _stated_number(options: DrawingOptions, value: float) -> SourcedNumber:
     """Number that the user states, with its source: a catalogue row, or a replacement for a named drive."""
-    kind = "user" if given["catalogue"] and not given["source"] else "catalogue"
-    return Printed(value, kind, given["source"] or "stated")
+    kind = "user" if options["catalogue"] and not options["source"] else "catalogue"
+    return SourcedNumber(value, kind, options["source"] or "stated")
 
 
-def _unit(given: Given, name: str) -> str:
+def _default_unit(options: DrawingOptions, name: str) -> str:
     """Unit of a stated number without a unit."""
-    return given["stiffness_unit"] or _UNITS[name] if name.startswith("K") else _UNITS[name]
+    return options["stiffness_unit"] or _DEFAULT_UNITS[name] if name.startswith("K") else _DEFAULT_UNITS[name]
 
 
-def _of_lines(printed: dict[str, Printed], brakes: Mapping[str, Printed], name: str) -> NewJoint:
+def _make_line_joint(
+    numbers: dict[str, SourcedNumber], friction_numbers: Mapping[str, SourcedNumber], name: str
+) -> NewJoint:
     """Make a drive with the three lines of the catalogue as stiffness (law `catalogue`)."""
     from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 
-    from .efficiency import LOST_MOTION, lost_motion
+    from .efficiency import LOST_MOTION_RATIO, lost_motion
     from .fit import catalogue
 
-    _row(printed)  # raises ValueError for an implausible row
-    rated, peak = printed["rated_torque"].value, printed.pop("peak_torque", None)
+    _catalogue_row(numbers)  # raises ValueError for an implausible row
+    rated, peak = numbers["rated_torque"].value, numbers.pop("peak_torque", None)
     if peak is None:
-        peak = Printed(PEAK * rated, "estimate", f"{PEAK:g} times rated_torque")
-    printed["max_torque"] = peak
+        peak = SourcedNumber(
+            PEAK_TORQUE_RATIO * rated, "estimate", f"{PEAK_TORQUE_RATIO:g} times rated_torque"
+        )
+    numbers["max_torque"] = peak
     facts = {}
-    if "hysteresis_loss" in printed and printed["hysteresis_loss"].bound:
-        bound = printed["hysteresis_loss"]
-        text = f"{_short(bound)}; off unless --hysteresis is stated"
+    if "hysteresis_loss" in numbers and numbers["hysteresis_loss"].bound:
+        bound = numbers["hysteresis_loss"]
+        text = f"{_short_source(bound)}; off unless --hysteresis is stated"
         facts["hysteresis_bound"] = (bound.value, "rad", text)
-        printed["hysteresis_loss"] = Printed(0.0, "user", f"default choice: none; {bound.source}")
-    printed_angle = printed.pop("lost_motion", None)
-    text = f"not published; {DAMPING:g} s times K1, 2 % of critical at 60 Hz"
-    printed["d"] = Printed(DAMPING * printed["K1"].value, "estimate", text)
-    printed |= brakes
-    file = catalogue.made(name, printed)
-    spring = HarmonicDriveSpring.of(file.values)
+        numbers["hysteresis_loss"] = SourcedNumber(0.0, "user", f"default choice: none; {bound.source}")
+    printed_angle = numbers.pop("lost_motion", None)
+    text = f"not published; {DAMPING_TIME:g} s times K1, 2 % of critical at 60 Hz"
+    numbers["d"] = SourcedNumber(DAMPING_TIME * numbers["K1"].value, "estimate", text)
+    numbers |= friction_numbers
+    file = catalogue.make_line_drive(name, numbers)
+    spring = HarmonicDriveSpring.tabulate(file.values)
     angle = float(spring.curve.inverse(rated))
     facts["wind_up"] = (angle, "rad", f"at the rated torque {rated:g} N.m, of the midline")
-    text = f"of this drive, midway in its loop between +-{LOST_MOTION:g} times the rated torque"
+    text = f"of this drive, midway in its loop between +-{LOST_MOTION_RATIO:g} times the rated torque"
     computed_angle = lost_motion(spring)
     if printed_angle:
         relation = "below" if computed_angle < printed_angle.value else "above"
-        text += f"; {relation} {printed_angle.value:.4g} rad: {_short(printed_angle)}"
+        text += f"; {relation} {printed_angle.value:.4g} rad: {_short_source(printed_angle)}"
     facts["lost_motion"] = (computed_angle, "rad", text)
-    if brakes:
-        facts["efficiency"] = (efficiency(file.values), "1", "at rated torque and 2000 rev/min")
-    kinds = {name: number.kind for name, number in printed.items() if name in file.flat}
+    if friction_numbers:
+        facts["efficiency"] = (rated_efficiency(file.values), "1", "at rated torque and 2000 rev/min")
+    kinds = {name: number.kind for name, number in numbers.items() if name in file.values_by_name}
     guessed = ", ".join(sorted(name for name, kind in kinds.items() if kind == "estimate"))
     notes = [f"estimates, not of the catalogue's row: {guessed}"]
     if file.values.corner == 0.0:
@@ -205,36 +228,40 @@ def _of_lines(printed: dict[str, Printed], brakes: Mapping[str, Printed], name: 
     return NewJoint(file, facts, notes)
 
 
-def _of_pair(printed: Mapping[str, Printed], brakes: Mapping[str, Printed], name: str) -> NewJoint:
+def _make_pair_joint(
+    numbers: Mapping[str, SourcedNumber], friction_numbers: Mapping[str, SourcedNumber], name: str
+) -> NewJoint:
     """Make a drive with the law of Hu 2023, fitted to the row."""
     from .fit import catalogue
 
-    kind, ratio = printed["rated_torque"].kind, printed["ratio"].value
-    row = _row(printed)
-    found = catalogue.fit_pair(row, printed=catalogue.stated_numbers(row, kind, ratio, name), source=name)
+    kind, ratio = numbers["rated_torque"].kind, numbers["ratio"].value
+    row = _catalogue_row(numbers)
+    found = catalogue.fit_pair(row, numbers=catalogue.source_numbers(row, kind, ratio, name), source=name)
     file = replace(found.parameters, name=name)
-    loss = printed.get("hysteresis_loss")
+    loss = numbers.get("hysteresis_loss")
     if loss is not None and loss.kind != "estimate":
-        brakes = {"hysteresis_loss": loss, **brakes}
-    for label, stated in brakes.items():
+        friction_numbers = {"hysteresis_loss": loss, **friction_numbers}
+    for label, stated in friction_numbers.items():
         file = file.with_values({label: stated.value}, stated.kind, stated.source)
     return NewJoint(file, found.facts, found.warnings())
 
 
-def _short(number: Printed) -> str:
+def _short_source(number: SourcedNumber) -> str:
     """Source of a number without the part in brackets."""
     return number.source.split(" (", 1)[0]
 
 
-def _row(printed: Mapping[str, Printed]) -> "Row":
+def _catalogue_row(numbers: Mapping[str, SourcedNumber]) -> "CatalogueRow":
     """Catalogue row of the numbers. Raises ValueError for an implausible row."""
-    from .fit.drive import Row
+    from .fit.drive import CatalogueRow
 
-    return Row(**{name: printed[name].value for name in LINES}, rated=printed["rated_torque"].value)
+    return CatalogueRow(
+        **{name: numbers[name].value for name in STIFFNESS_NAMES}, rated=numbers["rated_torque"].value
+    )
 
 
-NEW = Drawing(
-    text="a harmonic drive by its name in the catalogue, or from the numbers of a catalogue row",
+NEW = NewJointCommand(
+    description="a harmonic drive by its name in the catalogue, or from the numbers of a catalogue row",
     example="--catalogue CSG-17-100",
     options=(
         Option("catalogue", "name of the drive, see jointfmu catalogue", "NAME"),
@@ -242,9 +269,12 @@ NEW = Drawing(
         Option(
             "fixed",
             "part that is fixed; it decides the sign of the ratio (circular-spline: negative)",
-            choices=tuple(FIXED),
+            choices=tuple(FIXED_PARTS),
         ),
-        *(Option(column.name, f"{column.text} [{column.unit}]", column.name[0]) for column in ROW),
+        *(
+            Option(column.name, f"{column.meaning} [{column.unit}]", column.name[0])
+            for column in STIFFNESS_COLUMNS
+        ),
         Option(
             "stiffness_unit",
             "unit of K1, K2, K3 given without one, as '1e4 N.m/rad' or kgf.m/arcmin (default: N.m/rad)",
@@ -287,5 +317,5 @@ NEW = Drawing(
             choices=("catalogue", "hu2023"),
         ),
     ),
-    run=_drive,
+    make_joint=_make_joint,
 )

@@ -10,7 +10,7 @@ from jointfmu.contact.laws import kogut_etsion
 from jointfmu.contact.surface import hardness_coefficient
 from jointfmu.joints.harmonic_drive.law import HarmonicDrive, drive_stiffness, pair_stiffness, peak_pressure
 
-from ...published.computed import CalibrationFit, Published
+from ...published.computed import CalibrationFit, PublishedNumbers
 
 
 def K_TS(
@@ -27,12 +27,12 @@ def K_TS(
     return float(pair_stiffness(changed, torque)[0] / drive.drive_scale)
 
 
-def K_TS_least(drive: HarmonicDrive, torque: float, lower: float, upper: float) -> float:
+def smallest_K_TS(drive: HarmonicDrive, torque: float, lower: float, upper: float) -> float:
     """Smallest K_TS [N.m/rad] at a torque [N.m], over 41 radial deformations from `lower` to `upper` [m]."""
     return min(K_TS(drive, torque, w) for w in np.linspace(lower, upper, 41).tolist())
 
 
-def K_TS_change(drive: HarmonicDrive, torque: float, eccentricity: float) -> float:
+def relative_K_TS_change(drive: HarmonicDrive, torque: float, eccentricity: float) -> float:
     """Relative change [%] of K_TS by an eccentricity [m], at a torque [N.m] and the nominal deformation."""
     return 100.0 * (K_TS(drive, torque, eccentricity=eccentricity) / K_TS(drive, torque) - 1.0)
 
@@ -47,7 +47,7 @@ def drive_peak_pressure(drive: HarmonicDrive, torque: float) -> float:
     return float(peak_pressure(drive, torque)[0])
 
 
-def kogut_etsion_product(drive: HarmonicDrive, product: str, stage: int) -> float:
+def kogut_etsion_constant(drive: HarmonicDrive, product: str, stage: int) -> float:
     """Constant [1] of an elastic-plastic stage of Kogut and Etsion, written as a function of the spot area.
 
     product : "load" or "stiffness": factor of the power law; "area": area at the end of the stage over that
@@ -55,8 +55,10 @@ def kogut_etsion_product(drive: HarmonicDrive, product: str, stage: int) -> floa
     stage   : 1 or 2
     """
     if product == "area":
-        return float((kogut_etsion.SECOND_AREA, kogut_etsion.PLASTIC_AREA)[stage - 1])
-    powers = kogut_etsion.by_area((kogut_etsion.FIRST, kogut_etsion.SECOND)[stage - 1])
+        return float((kogut_etsion.SECOND_STAGE_AREA, kogut_etsion.PLASTIC_AREA)[stage - 1])
+    powers = kogut_etsion.eliminate_deformation(
+        (kogut_etsion.FIRST_STAGE, kogut_etsion.SECOND_STAGE)[stage - 1]
+    )
     return powers.A if product == "load" else powers.B
 
 
@@ -65,7 +67,7 @@ def plastic_onset_pressure(drive: HarmonicDrive, nu: float) -> float:
 
     nu : Poisson's ratio [1]
     """
-    stage, w = kogut_etsion.SECOND, kogut_etsion.PLASTIC_ONSET
+    stage, w = kogut_etsion.SECOND_STAGE, kogut_etsion.PLASTIC_ONSET
     load_per_area = stage.c * w**stage.d / (stage.m * w**stage.n)
     return float(2.0 / 3.0 * hardness_coefficient(nu) * load_per_area)
 
@@ -78,17 +80,19 @@ def shear_over_friction(drive: HarmonicDrive, stage: str) -> float:
     stage : end of "elastic", of the "first" or of the "second" elastic-plastic stage
     """
     law = drive.law
-    first, second = (kogut_etsion.by_area(s) for s in (kogut_etsion.FIRST, kogut_etsion.SECOND))
+    first, second = (
+        kogut_etsion.eliminate_deformation(s) for s in (kogut_etsion.FIRST_STAGE, kogut_etsion.SECOND_STAGE)
+    )
     load, area = {
         "elastic": (1.0, 1.0),
-        "first": (first.A * kogut_etsion.SECOND_AREA**first.p, kogut_etsion.SECOND_AREA),
+        "first": (first.A * kogut_etsion.SECOND_STAGE_AREA**first.p, kogut_etsion.SECOND_STAGE_AREA),
         "second": (second.A * kogut_etsion.PLASTIC_AREA**second.p, kogut_etsion.PLASTIC_AREA),
     }[stage]
     pressure = 2.0 / 3.0 * hardness_coefficient(law.side1.nu) * law.hardness * load / area
     return float(law.sigma_y / np.sqrt(3.0) / (law.mu * pressure))
 
 
-def least_mean_pressure(drive: HarmonicDrive) -> float:
+def smallest_mean_pressure(drive: HarmonicDrive) -> float:
     """Mean pressure F_r/S_r [Pa] on the spots, if the largest spot has the critical area s_ec.
 
     Then all spots are elastic. This is the smallest F_r/S_r of all larger spots.
@@ -97,18 +101,18 @@ def least_mean_pressure(drive: HarmonicDrive) -> float:
     return float(state["F"] / state["A_r"])
 
 
-PUBLISHED = Published(
+PUBLISHED = PublishedNumbers(
     papers=("hu2023",),
     observables={
         "K_TS": K_TS,
-        "K_TS_least": K_TS_least,
-        "K_TS_change": K_TS_change,
+        "K_TS_least": smallest_K_TS,
+        "K_TS_change": relative_K_TS_change,
         "K_WTS": K_WTS,
         "peak_pressure": drive_peak_pressure,
-        "kogut_etsion": kogut_etsion_product,
+        "kogut_etsion": kogut_etsion_constant,
         "plastic_onset_pressure": plastic_onset_pressure,
         "shear_over_friction": shear_over_friction,
-        "least_mean_pressure": least_mean_pressure,
+        "least_mean_pressure": smallest_mean_pressure,
     },
     calibration=(
         CalibrationFit(

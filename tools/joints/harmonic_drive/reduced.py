@@ -7,15 +7,15 @@ from typing import Any
 import numpy as np
 
 from jointfmu.joints.harmonic_drive import KIND
-from jointfmu.joints.harmonic_drive.drive import Drive, play
+from jointfmu.joints.harmonic_drive.drive import Drive, lost_motion_angle
 from jointfmu.joints.harmonic_drive.given import CatalogueDrive, TableDrive
-from jointfmu.joints.harmonic_drive.law import PairDrive, drive_stiffness
+from jointfmu.joints.harmonic_drive.law import ContactPairDrive, drive_stiffness
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring, torque_curve
 from jointfmu.quantity import Array
 
 from ...batch import approach
 from ...batch.approach import columns
-from ...uncertainty.problem import Reduced
+from ...uncertainty.problem import ReducedCurves
 
 RAMP = 33
 """Torques [1] between which K_WTS is a polynomial in asinh(T/T_s)."""
@@ -31,16 +31,16 @@ def evaluate(
     values : by structured name, numbers or samples (n)
     """
     drive = columns(parameters, values, 1)
-    if isinstance(drive, PairDrive):
+    if isinstance(drive, ContactPairDrive):
         return _pair(drive, loads, factor)
     torque = factor * loads
     K, phi = _lines(drive, torque) if isinstance(drive, CatalogueDrive) else _table(drive, torque)
-    angle, compliance, _ = play(drive, torque)
+    angle, compliance, _ = lost_motion_angle(drive, torque)
     found = {"K_WTS": K / (1.0 + K * compliance), "phi_rel": phi + angle}
     return {name: np.broadcast_to(value, torque.shape) for name, value in found.items()}
 
 
-def _pair(drive: PairDrive, loads: Array, factor: Array) -> dict[str, Array]:
+def _pair(drive: ContactPairDrive, loads: Array, factor: Array) -> dict[str, Array]:
     """Of drives with a contact pair."""
     smoothing = float(np.median(drive.torque_smoothing))
     xi = np.arcsinh(loads / smoothing)
@@ -48,7 +48,7 @@ def _pair(drive: PairDrive, loads: Array, factor: Array) -> dict[str, Array]:
     rate = smoothing * xi[-1] * np.cosh(span)
     K = drive_stiffness(drive, factor * smoothing * np.sinh(span))[0]
     K = np.broadcast_to(K, (factor.size, RAMP))
-    angle, compliance, _ = play(drive, factor * loads)
+    angle, compliance, _ = lost_motion_angle(drive, factor * loads)
     tangent = K @ approach.interpolation(RAMP, xi / xi[-1])
     wound_up = factor * ((rate / K) @ approach.integration(RAMP, xi / xi[-1]))
     return {"K_WTS": tangent / (1.0 + tangent * compliance), "phi_rel": wound_up + angle}
@@ -82,15 +82,15 @@ def _lines(drive: CatalogueDrive, torque: Array) -> tuple[Array, Array]:
 
 def exact(joint: Drive, loads: Array) -> dict[str, Array]:
     """K_WTS and phi_rel (m) of the exported spring's midline at torques (m) [N.m]."""
-    state = HarmonicDriveSpring.of(replace(joint, hysteresis_loss=0.0)).windup(loads)
+    state = HarmonicDriveSpring.tabulate(replace(joint, hysteresis_loss=0.0)).evaluate_torque(loads)
     return {name: state[name] for name in REDUCED.units}
 
 
-REDUCED = Reduced(
+REDUCED = ReducedCurves(
     load=KIND.variables["tau"],
     outputs=tuple(KIND.variables[name] for name in ("K_WTS", "phi_rel")),
-    to=lambda drive: float(drive.rated_torque),
-    most=lambda drive: drive.reach,
+    default_end=lambda drive: float(drive.rated_torque),
+    max_load=lambda drive: drive.reach,
     evaluate=evaluate,
     exact=exact,
 )

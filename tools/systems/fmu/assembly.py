@@ -26,10 +26,10 @@ def assembly(system: System) -> SystemModel:
     parts = []
     for name, part in system.components.items():
         model = model_of(part)
-        if model.states:
+        if model.state_count:
             model = replace(model, hidden=LAGS)
         file = part.file or partner_parameters(part.model).with_values(part.parameters, "user", system.name)
-        start = {v.name: file.start(v.name) for v in model.inputs} | part.state
+        start = {v.name: file.start_value(v.name) for v in model.inputs} | part.state
         parts.append(SystemComponent(name, model, file, feeds[name], start))
     if not any(part.model.states for part in parts):
         raise ValueError(

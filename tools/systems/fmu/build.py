@@ -6,14 +6,14 @@ from pathlib import Path
 from jointfmu_fmu_src.archive import pack, workshop
 from jointfmu_fmu_src.joint_parts.data import NO_TABLES, Split
 from jointfmu_fmu_src.licence import licences
-from jointfmu_fmu_src.native.build import core
+from jointfmu_fmu_src.native.build import fmu_members
 from jointfmu_fmu_src.native.compiled.compiler import TARGETS, exported, libraries
 from jointfmu_fmu_src.native.data import data_of
 from jointfmu_fmu_src.native.page import plain_page
 
 from jointfmu.files.outputs import ARCHIVE, check_outputs
 
-from ...host import runs
+from ...host import is_needed_to_run
 from .code import sources
 from .model import SystemModel
 from .proof import proof
@@ -58,10 +58,10 @@ def build_system(
     written, found = [], None
     for version, target in zip(versions, files_out, strict=True):
         built = libraries(model.name, files, exported(sorted(files), version), platforms)
-        members = core(model, parameters, version, files, token, built) | pages
+        members = fmu_members(model, parameters, version, files, token, built) | pages
         with workshop(target) as work:
             if found is None:  # the first FMU computes what both carry
-                pack({path: it for path, it in members.items() if runs(path)}, work / target.name)
+                pack({path: it for path, it in members.items() if is_needed_to_run(path)}, work / target.name)
                 found = proof(model, assembly.stop, assembly.own_interval, work / target.name)
             pack(members | found, work / target.name)
         written.append(target)

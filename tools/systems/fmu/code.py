@@ -28,7 +28,7 @@ def sources(assembly: SystemModel) -> dict[str, str]:
     parts: dict[str, dict[str, str]] = {}  # by prefix
     prefixes = {}
     for part in assembly.components:
-        own = _part(part)
+        own = _component_code(part)
         same = [prefix for prefix, known in parts.items() if known == own]
         prefixes[part.name] = same[0] if same else f"p{len(parts) + 1}_"
         parts.setdefault(prefixes[part.name], own)
@@ -43,12 +43,15 @@ def sources(assembly: SystemModel) -> dict[str, str]:
     return dict(sorted(files.items()))
 
 
-def _part(part: SystemComponent) -> dict[str, str]:
+def _component_code(component: SystemComponent) -> dict[str, str]:
     """The C of a component without the layers of FMI, which the system has."""
-    given = split(part.model, part.parameters)
-    count = 1 + len(part.model.inputs) + len(part.model.outputs) + len(given.exposed)
+    given = split(component.model, component.parameters)
+    count = 1 + len(component.model.inputs) + len(component.model.outputs) + len(given.exposed)
     own = block("part", "", [0.0] * count, list(given.fixed.values()), given.tables)
-    files = code(part.model, part.parameters, given) | {"data.h": own.header(), "data.c": own.source()}
+    files = code(component.model, component.parameters, given) | {
+        "data.h": own.header(),
+        "data.c": own.source(),
+    }
     return {name: text for name, text in files.items() if name.rpartition(".")[0] not in _LAYERS}
 
 
@@ -72,7 +75,7 @@ def _prefixed(prefix: str, files: Mapping[str, str]) -> dict[str, str]:
 
 def _header(assembly: SystemModel) -> str:
     memory = sum(native_part(p.model).memory.size for p in assembly.components)
-    events = sum(_events(p) for p in assembly.components)
+    events = sum(_event_count(p) for p in assembly.components)
     wires = sum(len(p.model.inputs) + len(p.model.outputs) for p in assembly.components)
     counts = {
         "N_INPUTS": len(assembly.inputs),
@@ -89,8 +92,12 @@ def _header(assembly: SystemModel) -> str:
     return f"#ifndef JOINTFMU_MODEL_H\n#define JOINTFMU_MODEL_H\n\n{macros}\nenum {{ {listed} }};\n\n#endif\n"
 
 
-def _events(part: SystemComponent) -> int:
-    return len(part.model.events(part.parameters.values)) if part.model.events else 0
+def _event_count(component: SystemComponent) -> int:
+    return (
+        len(component.model.find_event_times(component.parameters.values))
+        if component.model.find_event_times
+        else 0
+    )
 
 
 def _components(assembly: SystemModel, prefixes: Mapping[str, str]) -> str:
@@ -107,19 +114,19 @@ def _components(assembly: SystemModel, prefixes: Mapping[str, str]) -> str:
         fed = [part.feeds.get(v.name, (part.name, v.name)) for v in model.inputs]
         wires += [str(reference[".".join(feed)] if feed else 0) for feed in fed]
         wires += [str(reference[f"{part.name}.{v.name}"]) for v in model.outputs]
-        events = _events(part)
+        events = _event_count(part)
         if events:
             declared.append(f"void {prefix}joint_events(Joint *joint, double *times);\n")
         functions = [f"{prefix}joint_{name}" for name in _FUNCTIONS]
         functions.append(f"{prefix}joint_events" if events else "NULL")
-        counts = [len(model.inputs), len(model.outputs), model.states, events, *place.values()]
+        counts = [len(model.inputs), len(model.outputs), model.state_count, events, *place.values()]
         rows.append("{" + ", ".join([string(part.name), *functions, *map(str, counts)]) + "}")
         inputs, outputs = len(model.inputs), len(model.outputs)
         place["parameters"] += len(part.exposed)
         place["memory"] += native_part(model).memory.size
         place["row"] += 1 + inputs + outputs
         place["wire"] += inputs + outputs
-        place["warnings"] += len(model.outside)
+        place["warnings"] += len(model.validity_limits)
     if place["warnings"] > _WARNINGS:
         raise ValueError(
             f"{assembly.name}: its joints have {place['warnings']} warnings; "

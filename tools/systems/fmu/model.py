@@ -4,10 +4,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, make_dataclass, replace
 from typing import Any, NamedTuple
 
-from jointfmu.joints.model import Model, Ramp, Variable
+from jointfmu.joints.model import LoadRamp, Model, Variable
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import flat_fields
-from jointfmu.quantity.declaration import group
+from jointfmu.quantity.declaration import group_field
 
 SYSTEM = "system"
 """What stands for the kind of joint in the model of a system."""
@@ -67,7 +67,7 @@ class SystemModel:
     @property
     def bodies(self) -> list[SystemComponent]:
         """Components with states."""
-        return [part for part in self.components if part.model.states]
+        return [part for part in self.components if part.model.state_count]
 
     @property
     def inputs(self) -> list[tuple[SystemComponent, Variable]]:
@@ -80,12 +80,12 @@ class SystemModel:
         bodies = self.bodies
         moving = [(part, part.model.outputs[k]) for k in range(3) for part in bodies]
         return moving + [
-            (part, v) for part in self.components if not part.model.states for v in part.model.outputs
+            (part, v) for part in self.components if not part.model.state_count for v in part.model.outputs
         ]
 
     def model(self) -> Model:
         """What is exported; variables are called COMPONENT.VARIABLE."""
-        sets = [(p.name, type(p.parameters.values), group(p.model.doc)) for p in self.components]
+        sets = [(p.name, type(p.parameters.values), group_field(p.model.doc)) for p in self.components]
         hidden = [
             f"{p.name}.{name}"
             for p in self.components
@@ -97,18 +97,18 @@ class SystemModel:
             joint=SYSTEM,
             doc=self.doc,
             parameters=make_dataclass("SystemParameters", sets, frozen=True, kw_only=True),
-            spring=lambda values: values,
-            inputs=[named(part, v) for part, v in self.inputs],
-            outputs=[named(part, v) for part, v in self.outputs],
+            tabulate=lambda values: values,
+            inputs=[with_component_name(part, v) for part, v in self.inputs],
+            outputs=[with_component_name(part, v) for part, v in self.outputs],
             evaluate=_not_in_python,
-            outside=(),
-            ramp=Ramp("", self.stop, self.interval, self.interval),
+            validity_limits=(),
+            ramp=LoadRamp("", self.stop, self.interval, self.interval),
             dependencies=self._dependencies(),
-            hidden=hidden,
-            states=2 * len(self.bodies),
-            moves=True,
-            rest=_not_in_python if any(p.model.rest for p in self.components) else None,
-            evolve=_not_in_python if any(p.model.rest for p in self.components) else None,
+            fixed_parameters=hidden,
+            state_count=2 * len(self.bodies),
+            is_time_dependent=True,
+            initial_history=_not_in_python if any(p.model.initial_history for p in self.components) else None,
+            advance=_not_in_python if any(p.model.initial_history for p in self.components) else None,
         )
 
     def parameters(self, model: Model) -> ParameterFile:
@@ -132,10 +132,10 @@ class SystemModel:
             for v in part.model.outputs[:2]:
                 found[f"{part.name}.{v.name}"] = {f"{part.name}.{v.name}": None}
         for part in self.components:
-            states = {v.name for v in part.model.outputs[: part.model.states]}
-            for v in part.model.outputs[part.model.states :]:
+            states = {v.name for v in part.model.outputs[: part.model.state_count]}
+            for v in part.model.outputs[part.model.state_count :]:
                 reached: dict[str, None] = {}
-                for name in part.model.depends(v.name):
+                for name in part.model.list_dependencies(v.name):
                     feed = part.feeds.get(name)
                     if name in states or name not in part.feeds:
                         reached[f"{part.name}.{name}"] = None
@@ -145,9 +145,9 @@ class SystemModel:
         return {name: [*reached] for name, reached in found.items()}
 
 
-def named(part: SystemComponent, v: Variable) -> Variable:
+def with_component_name(component: SystemComponent, v: Variable) -> Variable:
     """A variable of a component with the component's name before its own."""
-    return replace(v, name=f"{part.name}.{v.name}", doc=f"{v.doc} ({part.name})")
+    return replace(v, name=f"{component.name}.{v.name}", doc=f"{v.doc} ({component.name})")
 
 
 def _not_in_python(*given: object) -> Any:

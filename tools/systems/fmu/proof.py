@@ -10,7 +10,7 @@ from xml.etree.ElementTree import Element, SubElement
 
 import numpy as np
 from jointfmu_fmu_src.proof import standard
-from jointfmu_fmu_src.proof.files import TEXT, RelatedFile, placed
+from jointfmu_fmu_src.proof.files import TEXT, RelatedFile, proof_members
 from jointfmu_fmu_src.proof.series import TimeSeries, text
 from jointfmu_fmu_src.proof.standard import CO_SIMULATION, MODEL_EXCHANGE
 from jointfmu_fmu_src.xml_parts import serialized
@@ -18,7 +18,7 @@ from jointfmu_fmu_src.xml_parts import serialized
 from jointfmu import __version__
 from jointfmu.joints.model import Model
 
-from ...host import unpacked
+from ...host import unpack_fmu
 from ...proof import exchange
 from ...proof.task import Task
 
@@ -32,7 +32,7 @@ STEP, LONGER = 1e-3, 10
 FINE, MOST_STEPS, ROWS = 3, 100_000, 200
 """Steps of model exchange in an interval of the system, after each of which memory is accepted; of them at
 most: a longer experiment is proved up to there; about the rows of a file."""
-JUMP, NEAR = 10.0, 3
+JUMP, JUMP_DISTANCE = 10.0, 3
 """An output jumps where it changes by more than TOLERANCE between two fine steps, and by this many times [1]
 what it changes before and after: a stiffness does where motion turns. A step that is right finds the turn a
 little earlier or later, so within so many intervals of a jump nothing is compared."""
@@ -71,17 +71,17 @@ def proof(model: Model, stop: float, interval: float, fmu: Path) -> dict[str, by
     try:
         times = fine * np.arange(count * parts + 1)
         found, rough = (_exchanged(model, fmu, times, tolerance) for tolerance in (SOLVER, HOST))
-        while (parted := _parted(model, found, rough)) < found.time.size:
+        while (parted := _first_difference(model, found, rough)) < found.time.size:
             count = (parted - 1) // (LONGER * parts) * LONGER
             if not count:
                 raise RuntimeError("its own experiment is too sensitive from the start")
-            found = _until(found, count * parts + 1)
+            found = _first_rows(found, count * parts + 1)
     except Exception as error:  # fmpy raises bare Exception
         return {TEXT: f"There is no proof inside this FMU: where it was built {error}\n".encode()}
     scales = _scales(model, found)
-    smooth = _smooth(found, scales)
+    smooth = _is_smooth(found, scales)
     short, long = (f"experiments/{model.title}_{n}_ref.csv" for n in (1, LONGER))
-    members = {path: _rows(found, smooth, n * parts) for path, n in ((short, 1), (long, LONGER))}
+    members = {path: _result_file(found, smooth, n * parts) for path, n in ((short, 1), (long, LONGER))}
     runs = {
         CO_SIMULATION: [(step, short), (LONGER * step, long)],
         MODEL_EXCHANGE: [(fine, short)],
@@ -111,41 +111,43 @@ def proof(model: Model, stop: float, interval: float, fmu: Path) -> dict[str, by
         fine=fine,
         tolerance=TOLERANCE,
         small=SMALL,
-        near=FINE * NEAR * fine,
+        near=FINE * JUMP_DISTANCE * fine,
         end=count * step,
         stop=stop,
         host=HOST,
     )
-    return placed(members, related, page)
+    return proof_members(members, related, page)
 
 
-def _scales(model: Model, found: TimeSeries) -> dict[str, float]:
+def _scales(model: Model, results: TimeSeries) -> dict[str, float]:
     """{output: its scale}."""
-    return {v.name: max(float(np.abs(found.columns[v.name]).max()), SMALL * v.nominal) for v in model.outputs}
+    return {
+        v.name: max(float(np.abs(results.columns[v.name]).max()), SMALL * v.nominal) for v in model.outputs
+    }
 
 
-def _parted(model: Model, found: TimeSeries, rough: TimeSeries) -> int:
+def _first_difference(model: Model, fine: TimeSeries, coarse: TimeSeries) -> int:
     """The row of results at which rougher ones part from them, the number of rows if they do not."""
-    scales, rows = _scales(model, found), found.time.size
+    scales, rows = _scales(model, fine), fine.time.size
     apart = [
-        np.abs(column - rough.columns[name][:rows]) > TOLERANCE * scales[name]
-        for name, column in found.columns.items()
+        np.abs(column - coarse.columns[name][:rows]) > TOLERANCE * scales[name]
+        for name, column in fine.columns.items()
     ]
-    missed = np.flatnonzero(np.any(apart, axis=0) & _smooth(found, scales))
+    missed = np.flatnonzero(np.any(apart, axis=0) & _is_smooth(fine, scales))
     return int(missed[0]) if missed.size else rows
 
 
-def _until(found: TimeSeries, rows: int) -> TimeSeries:
+def _first_rows(results: TimeSeries, rows: int) -> TimeSeries:
     """The first rows."""
-    return TimeSeries(found.time[:rows], {name: column[:rows] for name, column in found.columns.items()})
+    return TimeSeries(results.time[:rows], {name: column[:rows] for name, column in results.columns.items()})
 
 
 def _exchanged(model: Model, fmu: Path, times: np.ndarray, tolerance: float) -> TimeSeries:
     """All outputs at the times, by model exchange; raises whatever prevents it."""
     names, said = [v.name for v in model.outputs], list[str]()
-    if not exchange.available():
+    if not exchange.has_solver():
         raise RuntimeError("fmpy has no solver for model exchange")
-    with unpacked(fmu, exchange=True) as (folder, _):
+    with unpack_fmu(fmu, exchange=True) as (folder, _):
         task = Task(
             str(fmu),
             folder,
@@ -156,31 +158,31 @@ def _exchanged(model: Model, fmu: Path, times: np.ndarray, tolerance: float) -> 
             tolerance=tolerance,
         )
         try:
-            rows = exchange.fmpy(task, said)
+            rows = exchange.run_fmpy_exchange(task, said)
         except Exception as error:
             raise RuntimeError(f"its own experiment failed: {said[0] if said else error}") from None
     return TimeSeries(times, dict(zip(names, np.array(rows).T, strict=True)))
 
 
-def _smooth(found: TimeSeries, scales: Mapping[str, float]) -> np.ndarray:
+def _is_smooth(results: TimeSeries, scales: Mapping[str, float]) -> np.ndarray:
     """Whether no output jumps near a time."""
-    jumps = np.zeros(found.time.size - 1, dtype=bool)
-    for name, column in found.columns.items():
+    jumps = np.zeros(results.time.size - 1, dtype=bool)
+    for name, column in results.columns.items():
         change = np.abs(np.diff(column))
         around = np.maximum(np.append(change[1:], 0.0), np.append(0.0, change[:-1]))
         jumps |= (change > TOLERANCE * scales[name]) & (change > JUMP * around)
-    near = np.convolve(jumps, np.ones(2 * FINE * NEAR, dtype=int))[FINE * NEAR - 1 :]
-    smooth = np.asarray(near[: found.time.size] == 0)
+    near = np.convolve(jumps, np.ones(2 * FINE * JUMP_DISTANCE, dtype=int))[FINE * JUMP_DISTANCE - 1 :]
+    smooth = np.asarray(near[: results.time.size] == 0)
     smooth[0] = True  # nothing has moved yet
     return smooth
 
 
-def _rows(found: TimeSeries, smooth: np.ndarray, step: int) -> bytes:
+def _result_file(results: TimeSeries, smooth: np.ndarray, step: int) -> bytes:
     """A file of the results at some ends of steps of so many fine ones."""
     rows = step * np.flatnonzero(smooth[::step])
     rows = rows[:: -(-rows.size // ROWS)]
-    columns = {name: column[rows] for name, column in found.columns.items()}
-    times = np.array([float(f"{time:.12g}") for time in found.time[rows]])
+    columns = {name: column[rows] for name, column in results.columns.items()}
+    times = np.array([float(f"{time:.12g}") for time in results.time[rows]])
     return text(TimeSeries(times, columns), DIGITS).encode()
 
 

@@ -13,8 +13,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...quantity import Checked, Number, choice, group, quantity
-from ..powerlaw import Power, Slip, Spots, Term
+from ...quantity import CheckedParameters, Number, choice_field, group_field, quantity_field
+from ..powerlaw import PowerTerm, RegimeTerm, SlipTerm, SpotDistribution
 from ..surface import (
     ArealSurface,
     Elastic,
@@ -24,28 +24,28 @@ from ..surface import (
     hardness_coefficient,
 )
 from . import mindlin
-from .kogut_etsion import FIRST, PLASTIC_AREA, SECOND, SECOND_AREA, by_area
+from .kogut_etsion import FIRST_STAGE, PLASTIC_AREA, SECOND_STAGE, SECOND_STAGE_AREA, eliminate_deformation
 
 
 @dataclass(frozen=True, kw_only=True)
-class Hu2023(Checked):
+class Hu2023(CheckedParameters):
     """Parameters of the interface law of Hu 2023; `side1` is the softer body."""
 
-    surface: ArealSurface = group("equivalent rough surface")
-    side1: Elastic = group("softer body")
-    side2: Elastic = group("harder body")
-    sigma_y: float = quantity("Pa", "yield strength of the softer body", gt=0.0)
-    mu: float = quantity("1", "coefficient of static friction", gt=0.0)
-    traction_ratio: float = quantity("1", "shear over friction limit, x = T/(mu P)", ge=0.0, lt=1.0)
-    A_0: float = quantity("m2", "nominal contact area", gt=0.0)
-    shear_traction: float = quantity(
+    surface: ArealSurface = group_field("equivalent rough surface")
+    side1: Elastic = group_field("softer body")
+    side2: Elastic = group_field("harder body")
+    sigma_y: float = quantity_field("Pa", "yield strength of the softer body", gt=0.0)
+    mu: float = quantity_field("1", "coefficient of static friction", gt=0.0)
+    traction_ratio: float = quantity_field("1", "shear over friction limit, x = T/(mu P)", ge=0.0, lt=1.0)
+    A_0: float = quantity_field("m2", "nominal contact area", gt=0.0)
+    shear_traction: float = quantity_field(
         "Pa", "shear traction on the real area, used if traction is real_area", gt=0.0
     )
-    traction: str = choice(
+    traction: str = choice_field(
         "ratio", "real_area", doc="shear of a spot: the node's traction ratio, or a traction on the real area"
     )
 
-    reading: str = choice(
+    reading: str = choice_field(
         "corrected", "printed", doc="pressure of Eq. 28: load over nominal area, or over real area as printed"
     )
 
@@ -54,9 +54,9 @@ class Hu2023(Checked):
         """Hardness H = 2.8 sigma_y [Pa], below Eq. 7 (sigma_s there)."""
         return 2.8 * self.sigma_y
 
-    def spots(self) -> Spots:
+    def spots(self) -> SpotDistribution:
         """Regimes of a spot and size distribution (Eq. 17) of the chosen reading; reference area s_min."""
-        return spots(self) if self.reading == "corrected" else printed_spots(self)
+        return corrected_spots(self) if self.reading == "corrected" else printed_spots(self)
 
     def state(self, u: Number) -> dict[str, Number]:
         """Contact quantities at the log-area u [1] of the largest spot.
@@ -104,7 +104,7 @@ def elastic_pressure(law: Hu2023) -> Number:
     return 2.0 / 3.0 * hardness_coefficient(law.side1.nu) * law.hardness * (3.0 - D) / (4.0 - D)
 
 
-def printed_spots(law: Hu2023) -> Spots:
+def printed_spots(law: Hu2023) -> SpotDistribution:
     r"""Spots of the law as printed, all of them elastic. With the area s_l of the largest spot
 
         P = F_r/S_r = \frac{4 E (3 - D)}{3 pi^{3/2} R (4 - D)} s_l^{1/2}    (Eqs. 9, 18, 23, 28)
@@ -120,27 +120,29 @@ def printed_spots(law: Hu2023) -> Spots:
     P = 4.0 / 3.0 * E * (3.0 - s.D) / (4.0 - s.D) * edge / (np.pi * curvature_radius(law))
     full_stick = 8.0 * contact_shear_modulus(law.side1, law.side2) * edge
     if law.traction == "ratio":
-        tangential: Term = Power(0.0 - full_stick * mindlin.stick_root(law.traction_ratio)[0], 0.5)
+        tangential: RegimeTerm = PowerTerm(
+            0.0 - full_stick * mindlin.stick_radius_ratio(law.traction_ratio)[0], 0.5
+        )
     else:
-        slip = law.shear_traction * s.s_min / (law.mu * _elastic_load(law))
-        tangential = Slip(c=full_stick, p=0.5, h=slip, q=0.5, lower=-np.inf, upper=np.inf)
-    terms: dict[str, tuple[Term, ...]] = {
-        "load": (Power(law.A_0 * P * (0.5 - m) / (m * weight), 0.5),),
-        "normal": (Power(-2.0 * E * edge, 0.5),),
+        slip = law.shear_traction * s.s_min / (law.mu * _smallest_spot_load(law))
+        tangential = SlipTerm(c=full_stick, p=0.5, h=slip, q=0.5, lower=-np.inf, upper=np.inf)
+    terms: dict[str, tuple[RegimeTerm, ...]] = {
+        "load": (PowerTerm(law.A_0 * P * (0.5 - m) / (m * weight), 0.5),),
+        "normal": (PowerTerm(-2.0 * E * edge, 0.5),),
         "tangential": (tangential,),
-        "area": (Power(s.s_min, 1.0),),
-        "elastic_area": (Power(s.s_min, 1.0),),
+        "area": (PowerTerm(s.s_min, 1.0),),
+        "elastic_area": (PowerTerm(s.s_min, 1.0),),
     }
-    return Spots(reference=s.s_min, m=m, weight=weight, terms=terms)
+    return SpotDistribution(reference=s.s_min, m=m, weight=weight, terms=terms)
 
 
-def _elastic_load(law: Hu2023) -> Number:
+def _smallest_spot_load(law: Hu2023) -> Number:
     """Elastic load f_e [N] of a spot of area s_min, Eq. 9."""
     s_min, E = law.surface.s_min, contact_modulus(law.side1, law.side2)
     return 4.0 / 3.0 * E * (s_min / np.pi) ** 1.5 / curvature_radius(law)
 
 
-def spots(law: Hu2023) -> Spots:
+def corrected_spots(law: Hu2023) -> SpotDistribution:
     """Spots of the corrected law: size distribution (Eq. 17) and four regimes.
 
     Load and area are sums over all spots (Eqs. 18-27). The stiffness is the sum over the spots above s_min;
@@ -152,33 +154,33 @@ def spots(law: Hu2023) -> Spots:
     f_ec, H = critical_load(law), law.hardness
     k_ec = f_ec / critical_deformation(law)
     edge = np.log(s_ec / s_min)  # log-area of the end of the elastic regime
-    ends = [edge, edge + np.log(SECOND_AREA), edge + np.log(PLASTIC_AREA)]
+    ends = [edge, edge + np.log(SECOND_STAGE_AREA), edge + np.log(PLASTIC_AREA)]
     bounds = [None, *ends]
-    stages = [by_area(FIRST), by_area(SECOND)]
+    stages = [eliminate_deformation(FIRST_STAGE), eliminate_deformation(SECOND_STAGE)]
 
-    def regime(c: Number, p: float, i: int, smallest: Number = None) -> Power:
+    def regime(c: Number, p: float, i: int, smallest: Number = None) -> PowerTerm:
         """Power law `c (s/s_ec)^p` of regime i, relative to s_min; the first regime begins at `smallest`."""
         lower = bounds[i] if i else smallest
         upper = bounds[i + 1] if i < 3 else None
-        return Power(c * np.exp(-p * edge), p, lower, upper)
+        return PowerTerm(c * np.exp(-p * edge), p, lower, upper)
 
     load = [regime(f_ec, 1.5, 0), *(regime(f_ec * st.A, st.p, i + 1) for i, st in enumerate(stages))]
     normal = [regime(1.5 * k_ec, 0.5, 0, 0.0)]
     normal += [regime(k_ec * st.B, st.q, i + 1) for i, st in enumerate(stages)]
     normal = [replace(t, lower=np.maximum(t.lower, 0.0), upper=np.maximum(t.upper, 0.0)) for t in normal]
-    terms: dict[str, tuple[Term, ...]] = {
+    terms: dict[str, tuple[RegimeTerm, ...]] = {
         "load": (*load, regime(H * s_ec, 1.0, 3)),
         "normal": tuple(normal),
-        "tangential": _tangential(law, load, bounds),
-        "area": (Power(s_min, 1.0),),
-        "elastic_area": (Power(s_min, 1.0, None, bounds[1]),),
+        "tangential": _tangential_terms(law, load, bounds),
+        "area": (PowerTerm(s_min, 1.0),),
+        "elastic_area": (PowerTerm(s_min, 1.0, None, bounds[1]),),
     }
     D = law.surface.D
     weight = domain_extension_fit(D) ** (1.5 - 0.5 * D)
-    return Spots(reference=s_min, m=0.5 * D - 0.5, weight=weight, terms=terms)
+    return SpotDistribution(reference=s_min, m=0.5 * D - 0.5, weight=weight, terms=terms)
 
 
-def _tangential(law: Hu2023, load: list[Power], bounds: list[Number]) -> tuple[Term, ...]:
+def _tangential_terms(law: Hu2023, load: list[PowerTerm], bounds: list[Number]) -> tuple[RegimeTerm, ...]:
     """Tangential stiffness k_t = 8 G' r (1 - t/(mu f))^(1/3) of the three regimes that are not fully plastic.
 
     Eqs. 39, 41-43. The shear force t of a spot depends on the choice `traction`:
@@ -189,10 +191,10 @@ def _tangential(law: Hu2023, load: list[Power], bounds: list[Number]) -> tuple[T
     """
     full_stick = 8.0 * contact_shear_modulus(law.side1, law.side2) * np.sqrt(law.surface.s_min / np.pi)
     if law.traction == "ratio":
-        stick, _ = mindlin.stick_root(law.traction_ratio)
-        return (Power(full_stick * stick, 0.5, 0.0, np.maximum(bounds[3], 0.0)),)
+        stick, _ = mindlin.stick_radius_ratio(law.traction_ratio)
+        return (PowerTerm(full_stick * stick, 0.5, 0.0, np.maximum(bounds[3], 0.0)),)
     return tuple(
-        Slip(
+        SlipTerm(
             c=full_stick,
             p=0.5,
             h=law.shear_traction * law.surface.s_min / (law.mu * term.c),

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 
-class Stage(NamedTuple):
+class PlasticStage(NamedTuple):
     """One stage of the fit: area factor m and exponent n, load factor c and exponent d [1]."""
 
     m: float
@@ -16,16 +16,16 @@ class Stage(NamedTuple):
     d: float
 
 
-FIRST = Stage(m=0.93, n=1.136, c=1.03, d=1.425)
-SECOND = Stage(m=0.94, n=1.146, c=1.40, d=1.263)
-SECOND_ONSET = 6.0
+FIRST_STAGE = PlasticStage(m=0.93, n=1.136, c=1.03, d=1.425)
+SECOND_STAGE = PlasticStage(m=0.94, n=1.146, c=1.40, d=1.263)
+SECOND_STAGE_ONSET = 6.0
 """Deformation w/w_c [1] at the start of the second stage."""
 PLASTIC_ONSET = 110.0
 """Deformation w/w_c [1] from which on the spot is fully plastic."""
 
 
 @dataclass(frozen=True, slots=True)
-class ByArea:
+class AreaPowers:
     """One stage over the spot area a: `load = f_c A (a/a_c)^p`, `stiffness = (f_c/w_c) B (a/a_c)^q`."""
 
     A: float
@@ -34,13 +34,13 @@ class ByArea:
     q: float
 
 
-def by_area(stage: Stage) -> ByArea:
+def eliminate_deformation(stage: PlasticStage) -> AreaPowers:
     """Convert a stage to powers of the area: p = d/n, q = (d - 1)/n [1], from area/a_c = m (w/w_c)^n."""
     p, q = stage.d / stage.n, (stage.d - 1.0) / stage.n
-    return ByArea(stage.c * stage.m**-p, p, stage.c * stage.d * stage.m**-q, q)
+    return AreaPowers(stage.c * stage.m**-p, p, stage.c * stage.d * stage.m**-q, q)
 
 
-SECOND_AREA = FIRST.m * SECOND_ONSET**FIRST.n
+SECOND_STAGE_AREA = FIRST_STAGE.m * SECOND_STAGE_ONSET**FIRST_STAGE.n
 """Area a/a_c = 7.1197 [1] at the start of the second stage."""
-PLASTIC_AREA = SECOND.m * PLASTIC_ONSET**SECOND.n
+PLASTIC_AREA = SECOND_STAGE.m * PLASTIC_ONSET**SECOND_STAGE.n
 """Area a/a_c = 205.38 [1] from which on the spot is fully plastic."""

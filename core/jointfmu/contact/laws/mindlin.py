@@ -9,33 +9,33 @@ import numpy as np
 from ...quantity import Number
 
 
-def stick_root(x: Number) -> tuple[Number, Number]:
+def stick_radius_ratio(x: Number) -> tuple[Number, Number]:
     """Stick radius ratio v = (1 - x)^(1/3) [1] and 1 - v [1], without cancellation; 0 <= x < 1."""
     log = np.log1p(-x) / 3.0
     return np.exp(log), -np.expm1(log)
 
 
-def loop(x: Number) -> Number:
+def dissipation_function(x: Number) -> Number:
     """Function H1 [1] of the dissipated energy, Zhao 2018, Eq. 23.
 
     H1 = 1 - v^5 - (5x/6)(1 + v^2) = (1 - v)^3 (1 + 3v + v^2)/6.
     """
-    v, slip = stick_root(x)
+    v, slip = stick_radius_ratio(x)
     return slip**3 * (1.0 + 3.0 * v + v**2) / 6.0
 
 
-def storage(x: Number) -> Number:
+def storage_function(x: Number) -> Number:
     """Function H2 [1] of the stored energy, Zhao 2018, Eq. 25.
 
     H2 = 3/5 + (2/5) v^5 - v^2 = (1 - v)^2 (3 + 6v + 4v^2 + 2v^3)/5.
     """
-    v, slip = stick_root(x)
+    v, slip = stick_radius_ratio(x)
     return slip**2 * (3.0 + 6.0 * v + 4.0 * v**2 + 2.0 * v**3) / 5.0
 
 
 def loss_ratio(x: Number) -> Number:
     """Ratio W_d/W [1]: dissipated energy of a cycle over 2 pi times the stored energy, 12 H1/(5 pi H2)."""
-    v, slip = stick_root(x)
+    v, slip = stick_radius_ratio(x)
     return 2.0 / np.pi * slip * (1.0 + 3.0 * v + v**2) / (3.0 + 6.0 * v + 4.0 * v**2 + 2.0 * v**3)
 
 
@@ -45,7 +45,7 @@ def loss_factor(x: Number) -> Number:
     return ratio / (1.0 - ratio)
 
 
-def viscous_equivalent(loss_factor: Number, mass: Number, stiffness: Number) -> Number:
+def equivalent_damping(loss_factor: Number, mass: Number, stiffness: Number) -> Number:
     """Equivalent viscous damping C = eta sqrt(m K) [N.s/m] (Zhao 2018, Eqs. 20, 29).
 
     It dissipates as much as the loss factor eta [1] if a mass m [kg] vibrates at resonance on the stiffness

@@ -9,13 +9,13 @@ from statistics import NormalDist
 
 import numpy as np
 
-from ...quantity import Number, erf, where
+from ...quantity import Number, erf, select
 
-_SHORT = 0.2
+_MAX_IMAGE_VARIANCE = 0.2
 """Variance over squared hardness [1] up to which the series of images converges faster than that of modes."""
 
 
-def contact_shares(pressure: Number, hardness: Number, spread: Number) -> tuple[Number, Number]:
+def contact_shares(pressure: Number, hardness: Number, deviation: Number) -> tuple[Number, Number]:
     """Shares [1] of the nominal area in elastic and in plastic contact at pressures (...) [Pa].
 
     hardness  : [Pa], above the pressure
@@ -25,13 +25,18 @@ def contact_shares(pressure: Number, hardness: Number, spread: Number) -> tuple[
     load that the elastic one does not.
     """
     x = np.minimum(pressure / hardness, 1.0)
-    t = (spread / hardness) ** 2
-    image_series, mode_series = _images(x, np.minimum(t, _SHORT)), _waves(x, np.maximum(t, _SHORT))
-    elastic, load = (where(t < _SHORT, a, b) for a, b in zip(image_series, mode_series, strict=True))
+    t = (deviation / hardness) ** 2
+    image_series, mode_series = (
+        _image_series(x, np.minimum(t, _MAX_IMAGE_VARIANCE)),
+        _mode_series(x, np.maximum(t, _MAX_IMAGE_VARIANCE)),
+    )
+    elastic, load = (
+        select(t < _MAX_IMAGE_VARIANCE, a, b) for a, b in zip(image_series, mode_series, strict=True)
+    )
     return elastic, np.maximum(x - load, 0.0)
 
 
-def _waves(x: Number, t: Number) -> tuple[Number, Number]:
+def _mode_series(x: Number, t: Number) -> tuple[Number, Number]:
     """Elastic share and its load over the hardness [1]: series of diffusion modes between both boundaries.
 
     x : pressure over hardness [1]
@@ -46,7 +51,7 @@ def _waves(x: Number, t: Number) -> tuple[Number, Number]:
     return share, load
 
 
-def _images(x: Number, t: Number) -> tuple[Number, Number]:
+def _image_series(x: Number, t: Number) -> tuple[Number, Number]:
     """Elastic share and its load over the hardness [1]: series of images, see `_mode_series`."""
     spread = np.sqrt(2.0 * t)
     share: Number = 0.0

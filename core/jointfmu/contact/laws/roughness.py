@@ -10,25 +10,25 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...quantity import Checked, Number, group, quantity
-from ..powerlaw import Power, Spots
-from ..roughness import ROUGHEST
+from ...quantity import CheckedParameters, Number, group_field, quantity_field
+from ..powerlaw import PowerTerm, SpotDistribution
+from ..roughness import MAX_HEIGHT
 from ..surface import Elastic, contact_modulus, contact_shear_modulus
 from .persson import bearing_curve, contact_shares
 
-FEW_SPOTS = 0.3
+FEW_SPOTS_FACTOR = 0.3
 """Factor C [1] of the stiffness at small load, see `Roughness.spots`; fitted to boundary elements
 (benchmarks/roughness_law.py)."""
-FIRST_TOUCH = 1e-6
+ONSET_LOAD_RATIO = 1e-6
 """Load over E* h longest_wave [1] at which the stiffness begins: far below the load of a single hill."""
-FEWEST = 0.3
+MIN_LOAD_RATIO = 0.3
 """Smallest load over E* h longest_wave [1] at which the law was compared with boundary elements: below, a
 single hill is in contact (docs/validity.md).
 """
-FLATTEST = 1.5
+MAX_PRESSURE_RATIO = 1.5
 """Largest pressure over E* h/longest_wave [1] at which the law was compared with boundary elements: above,
 the longest wave is flattened."""
-_SIZE = 0.25
+_SIZE_EXPONENT = 0.25
 """Exponent m [1] of the formal size distribution, smaller than the exponent of any quantity; m cancels."""
 
 
@@ -36,35 +36,35 @@ _SIZE = 0.25
 class RoughSurfaces:
     """Surface parameters of the law `roughness`."""
 
-    h: float = quantity(
+    h: float = quantity_field(
         "m",
         "rms height of both surfaces together, of all waves up to longest_wave",
         gt=0.0,
-        le=1e3 * ROUGHEST,  # the law holds at any scale; this rejects wrong units
+        le=1e3 * MAX_HEIGHT,  # the law holds at any scale; this rejects wrong units
     )
-    gamma: float = quantity("1", "approach over h by which the pressure grows e-fold", gt=0.0)
-    longest_wave: float = quantity("m", "longest wave of the roughness", gt=0.0)
-    hurst: float = quantity("1", "Hurst exponent of the roughness", gt=0.0, lt=1.0)
-    slope: float = quantity("1", "rms slope of both surfaces together; for the real area", gt=0.0)
+    gamma: float = quantity_field("1", "approach over h by which the pressure grows e-fold", gt=0.0)
+    longest_wave: float = quantity_field("m", "longest wave of the roughness", gt=0.0)
+    hurst: float = quantity_field("1", "Hurst exponent of the roughness", gt=0.0, lt=1.0)
+    slope: float = quantity_field("1", "rms slope of both surfaces together; for the real area", gt=0.0)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Roughness(RoughSurfaces, Checked):
+class RoughnessLaw(RoughSurfaces, CheckedParameters):
     """Parameters of the interface law `roughness`."""
 
-    side1: Elastic = group("first body")
-    side2: Elastic = group("second body")
-    H: float = quantity("Pa", "hardness of the softer body", gt=0.0)
-    mu: float = quantity("1", "coefficient of static friction", gt=0.0)
-    traction_ratio: float = quantity("1", "shear over friction limit, x = T/(mu P)", ge=0.0, lt=1.0)
-    A_0: float = quantity("m2", "nominal contact area", gt=0.0)
+    side1: Elastic = group_field("first body")
+    side2: Elastic = group_field("second body")
+    H: float = quantity_field("Pa", "hardness of the softer body", gt=0.0)
+    mu: float = quantity_field("1", "coefficient of static friction", gt=0.0)
+    traction_ratio: float = quantity_field("1", "shear over friction limit, x = T/(mu P)", ge=0.0, lt=1.0)
+    A_0: float = quantity_field("m2", "nominal contact area", gt=0.0)
 
     @property
     def hardness(self) -> Number:
         """Hardness H [Pa] of the softer body."""
         return self.H
 
-    def spots(self) -> Spots:
+    def spots(self) -> SpotDistribution:
         """Quantities of the nominal area A_0 as sums of powers of the pressure p; exp(u) = p/p_1.
 
         load       : [N] p A_0
@@ -73,48 +73,48 @@ class Roughness(RoughSurfaces, Checked):
         elastic_work : [J] gamma h p A_0, the energy of p ~ exp(approach/(gamma h))
         plastic_work : [J] 0: the surfaces have carried the load before
         """
-        p, A, rho = first_pressure(self), self.A_0, self.shear_ratio()
+        p, A, rho = onset_pressure(self), self.A_0, self.shear_ratio()
         many_spots = p * A / (self.gamma * self.h)
-        few_spots = FEW_SPOTS * p * A / self.h * FIRST_TOUCH ** (-self.hurst / (1.0 + self.hurst))
+        few_spots = FEW_SPOTS_FACTOR * p * A / self.h * ONSET_LOAD_RATIO ** (-self.hurst / (1.0 + self.hurst))
         power = 1.0 / (1.0 + self.hurst)
-        return Spots(
+        return SpotDistribution(
             reference=A,
-            m=_SIZE,
-            weight=1.0 / _SIZE,
+            m=_SIZE_EXPONENT,
+            weight=1.0 / _SIZE_EXPONENT,
             terms={
-                "load": (_grown(p * A, 1.0),),
-                "normal": (_grown(many_spots, 1.0), _grown(few_spots, power)),
-                "tangential": (_grown(rho * many_spots, 1.0), _grown(rho * few_spots, power)),
-                "elastic_work": (_grown(self.gamma * self.h * p * A, 1.0),),
-                "plastic_work": (_grown(0.0, 1.0),),
+                "load": (_sum_term(p * A, 1.0),),
+                "normal": (_sum_term(many_spots, 1.0), _sum_term(few_spots, power)),
+                "tangential": (_sum_term(rho * many_spots, 1.0), _sum_term(rho * few_spots, power)),
+                "elastic_work": (_sum_term(self.gamma * self.h * p * A, 1.0),),
+                "plastic_work": (_sum_term(0.0, 1.0),),
             },
-            onset=0.0,
-            sized=False,
+            onset_log_area=0.0,
+            has_spot_area=False,
         )
 
-    def areas(self, pressure: Number) -> tuple[Number, Number]:
+    def real_area(self, pressure: Number) -> tuple[Number, Number]:
         """Real area (...) [m2] and its elastic fraction [1] at pressures (...) [Pa] (Persson 2001)."""
         deviation = 0.5 * contact_modulus(self.side1, self.side2) * self.slope
         elastic, plastic = contact_shares(pressure, self.H, deviation)
         return self.A_0 * (elastic + plastic), elastic / (elastic + plastic)
 
-    def unproven(self, least: float, most: float) -> list[str]:
+    def find_range_violations(self, lowest: float, highest: float) -> list[str]:
         """Messages if pressures from `lowest` to `highest` [Pa] leave the validated range, one line each."""
         scale = contact_modulus(self.side1, self.side2) * self.h
         min_pressure, max_pressure = (
-            FEWEST * scale * self.longest_wave / self.A_0,
-            FLATTEST * scale / self.longest_wave,
+            MIN_LOAD_RATIO * scale * self.longest_wave / self.A_0,
+            MAX_PRESSURE_RATIO * scale / self.longest_wave,
         )
         messages = []
-        if least < min_pressure:
+        if lowest < min_pressure:
             messages.append(
-                f"a pressure of {least:.4g} Pa is below {min_pressure:.3g} Pa, from where the law roughness "
+                f"a pressure of {lowest:.4g} Pa is below {min_pressure:.3g} Pa, from where the law roughness "
                 "is proven: one hill carries, and surfaces of the same roughness differ by half and more "
                 "(docs/validity.md)"
             )
-        if most > max_pressure:
+        if highest > max_pressure:
             messages.append(
-                f"a pressure of {most:.4g} Pa is above {max_pressure:.3g} Pa, up to which the law roughness "
+                f"a pressure of {highest:.4g} Pa is above {max_pressure:.3g} Pa, up to which the law roughness "
                 "is proven: the longest wave is pressed flat, the rest to its end is an extrapolation "
                 "(docs/validity.md)"
             )
@@ -140,9 +140,9 @@ class Roughness(RoughSurfaces, Checked):
         elastic_fraction [1]; eta_n = 0 and eta_t [1] loss factors; friction_limit = mu F [N]; slip_length
         s_0 = mu gamma h/rho [m] of the contact of many spots.
         """
-        s, p = self.spots(), first_pressure(self) * np.exp(u)
+        s, p = self.spots(), onset_pressure(self) * np.exp(u)
         F, K_N = s.total("load", u), s.total("normal", u)
-        A_r, elastic = self.areas(p)
+        A_r, elastic = self.real_area(p)
         flowing = np.minimum((1.0 - elastic) * A_r * self.H / F, 1.0)
         loading = 1.0 / (1.0 / K_N + flowing * self.h / (F * bearing_curve(p / self.H)))
         return {
@@ -160,14 +160,14 @@ class Roughness(RoughSurfaces, Checked):
         }
 
 
-def first_pressure(law: Roughness) -> Number:
+def onset_pressure(law: RoughnessLaw) -> Number:
     """Pressure p_1 [Pa] at u = 0: ONSET_LOAD_RATIO E* h longest_wave/A_0."""
-    return FIRST_TOUCH * contact_modulus(law.side1, law.side2) * law.h * law.longest_wave / law.A_0
+    return ONSET_LOAD_RATIO * contact_modulus(law.side1, law.side2) * law.h * law.longest_wave / law.A_0
 
 
-def _grown(c: Number, power: Number) -> Power:
+def _sum_term(c: Number, power: Number) -> PowerTerm:
     """Term of a spot law whose sum over all spots is c exp(power u)."""
-    return Power(c * (power - _SIZE), power)
+    return PowerTerm(c * (power - _SIZE_EXPONENT), power)
 
 
 def loss_factor(x: Number) -> Number:
@@ -185,8 +185,8 @@ def loss_factor(x: Number) -> Number:
     return 4.0 / np.pi * np.where(small, series, closed_form)
 
 
-def approach(law: Roughness, p: Number) -> Number:
+def approach(law: RoughnessLaw, p: Number) -> Number:
     """Approach [m] of the two bodies from zero pressure to p [Pa]: integral of dp/k."""
     x = p * law.A_0 / (contact_modulus(law.side1, law.side2) * law.h * law.longest_wave)
     bend = law.hurst / (1.0 + law.hurst)
-    return law.gamma * law.h / bend * np.log1p(x**bend / (law.gamma * FEW_SPOTS))
+    return law.gamma * law.h / bend * np.log1p(x**bend / (law.gamma * FEW_SPOTS_FACTOR))

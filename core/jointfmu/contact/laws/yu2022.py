@@ -10,8 +10,8 @@ from functools import cached_property
 
 import numpy as np
 
-from ...quantity import Checked, Number, choice, group, quantity, where
-from ..powerlaw import Power, Smooth, Spots
+from ...quantity import CheckedParameters, Number, choice_field, group_field, quantity_field, select
+from ..powerlaw import PowerTerm, SmoothTerm, SpotDistribution
 from ..surface import (
     Elastic,
     FlankSurface,
@@ -20,30 +20,38 @@ from ..surface import (
     contact_modulus,
     hardness_coefficient,
 )
-from .kogut_etsion import FIRST, PLASTIC_AREA, PLASTIC_ONSET, SECOND, SECOND_AREA, SECOND_ONSET, Stage
+from .kogut_etsion import (
+    FIRST_STAGE,
+    PLASTIC_AREA,
+    PLASTIC_ONSET,
+    SECOND_STAGE,
+    SECOND_STAGE_AREA,
+    SECOND_STAGE_ONSET,
+    PlasticStage,
+)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Yu2022(Checked):
+class Yu2022(CheckedParameters):
     """Parameters of the interface law of Yu 2022."""
 
-    surface1: FlankSurface = group("fractal parameters along the major axis")
-    surface2: FlankSurface = group("fractal parameters along the minor axis")
-    surface: Spectrum = group("frequency ratio of both directions")
-    e: float = quantity("1", "eccentricity of the contact ellipses", ge=0.0, lt=1.0)
-    lambda_: float = quantity("1", "contact coefficient of the curved flanks", gt=0.0, le=1.0)
-    side1: Elastic = group("first body")
-    side2: Elastic = group("second body")
-    sigma_y: float = quantity("Pa", "yield strength of the softer body", gt=0.0)
-    mu: float = quantity("1", "coefficient of static friction; does not enter this law", gt=0.0)
-    traction_ratio: float = quantity(
+    surface1: FlankSurface = group_field("fractal parameters along the major axis")
+    surface2: FlankSurface = group_field("fractal parameters along the minor axis")
+    surface: Spectrum = group_field("frequency ratio of both directions")
+    e: float = quantity_field("1", "eccentricity of the contact ellipses", ge=0.0, lt=1.0)
+    lambda_: float = quantity_field("1", "contact coefficient of the curved flanks", gt=0.0, le=1.0)
+    side1: Elastic = group_field("first body")
+    side2: Elastic = group_field("second body")
+    sigma_y: float = quantity_field("Pa", "yield strength of the softer body", gt=0.0)
+    mu: float = quantity_field("1", "coefficient of static friction; does not enter this law", gt=0.0)
+    traction_ratio: float = quantity_field(
         "1", "shear over friction limit; does not enter this law", ge=0.0, lt=1.0
     )
-    A_0: float = quantity("m2", "nominal contact area", gt=0.0)
-    rigid_flat: bool = choice(
+    A_0: float = quantity_field("m2", "nominal contact area", gt=0.0)
+    rigid_flat: bool = choice_field(
         True, False, doc="true: the first body meets a rigid flat; false: both bodies deform (Eq. 21)"
     )
-    plastic_area: str = choice(
+    plastic_area: str = choice_field(
         "geometric",
         "kogut_etsion",
         doc="how the area of an elastic-plastic spot gives its deformation",
@@ -54,22 +62,22 @@ class Yu2022(Checked):
         """Hardness H = 2.8 sigma_y [Pa], Eq. 25."""
         return 2.8 * self.sigma_y
 
-    def spots(self) -> Spots:
+    def spots(self) -> SpotDistribution:
         """Regimes of a spot and size distribution (Eqs. 44, 46); reference area a_nec, the onset of yield."""
         return self._spots
 
     @cached_property
-    def _spots(self) -> Spots:
+    def _spots(self) -> SpotDistribution:
         """Size distribution (lambda times Eq. 44) and four regimes of a spot, cached.
 
         Quantities: load [N], Eqs. 38, 36, 34, 64; normal [N/m], Eqs. 72-75; area, elastic_area [m2].
         """
-        stages, areas = _stages(self)
+        stages, areas = _plastic_stages(self)
         log_nec = critical_log_area(self, 1.0)
         plastic, middle = (critical_log_area(self, area) - log_nec for area in areas)
         a = np.exp(log_nec)
         f1, f2 = shape_factors(self.e)
-        E = modulus(self)
+        E = effective_modulus(self)
         (b1, p1), (b2, p2) = curvature_terms(self)
         c1, c2 = b1 * np.exp(-p1 * log_nec), b2 * np.exp(-p2 * log_nec)
         elastic = 2.0 * f2 * E / 3.0 * (a / (np.pi * f1)) ** 1.5
@@ -79,44 +87,44 @@ class Yu2022(Checked):
             """Sum of curvatures 1/R_x + 1/R_y over its value at a_nec [1], at the log-area t."""
             return (c1 * np.exp(-p1 * t) + c2 * np.exp(-p2 * t)) / (c1 + c2)
 
-        def stage_load(stage: Stage, lower: Number, upper: Number) -> Smooth:
+        def stage_load(stage: PlasticStage, lower: Number, upper: Number) -> SmoothTerm:
             def load(t: Number) -> Number:
                 sharp = sharpness(t)
                 ratio = np.exp(t) * sharp**2  # a/a_nec of this spot's own curvature
                 return elastic * (c1 + c2) * stage.c * (ratio / stage.m) ** (stage.d / stage.n) / sharp**2
 
-            return Smooth(load, lower, upper)
+            return SmoothTerm(load, lower, upper)
 
-        def stage_stiffness(stage: Stage, lower: Number, upper: Number) -> Smooth:
+        def stage_stiffness(stage: PlasticStage, lower: Number, upper: Number) -> SmoothTerm:
             def stiffness(t: Number) -> Number:
                 sharp = sharpness(t)
                 ratio = np.exp(t) * sharp**2
                 power = (ratio / stage.m) ** ((stage.d - 1.0) / stage.n)
                 return hertz / 1.5 * stage.c * stage.d * power / sharp
 
-            return Smooth(stiffness, lower, upper)
+            return SmoothTerm(stiffness, lower, upper)
 
         first, second = stages
         H = self.hardness
-        return Spots(
+        return SpotDistribution(
             reference=a,
             m=size_exponent(self),
             weight=self.lambda_,
             terms={
                 "load": (
-                    Power(H * a, 1.0, upper=plastic),
+                    PowerTerm(H * a, 1.0, upper=plastic),
                     stage_load(second, plastic, middle),
                     stage_load(first, middle, 0.0),
-                    Power(elastic * c1, 1.5 - p1, 0.0),
-                    Power(elastic * c2, 1.5 - p2, 0.0),
+                    PowerTerm(elastic * c1, 1.5 - p1, 0.0),
+                    PowerTerm(elastic * c2, 1.5 - p2, 0.0),
                 ),
                 "normal": (
                     stage_stiffness(second, plastic, middle),
                     stage_stiffness(first, middle, 0.0),
-                    Power(hertz, 0.5, 0.0),
+                    PowerTerm(hertz, 0.5, 0.0),
                 ),
-                "area": (Power(a, 1.0),),
-                "elastic_area": (Power(a, 1.0, 0.0),),
+                "area": (PowerTerm(a, 1.0),),
+                "elastic_area": (PowerTerm(a, 1.0, 0.0),),
             },
         )
 
@@ -126,7 +134,7 @@ class Yu2022(Checked):
         F [N] Eq. 60; K_N [N/m] Eq. 76; A_r [m2] Eq. 54; elastic_fraction [1].
         """
         s = self.spots()
-        area, elastic = areas(s, u)
+        area, elastic = real_area(s, u)
         return {
             "F": s.total("load", u),
             "K_N": s.total("normal", u),
@@ -135,16 +143,16 @@ class Yu2022(Checked):
         }
 
 
-def areas(spots: Spots, u: Number) -> tuple[Number, Number]:
+def real_area(spots: SpotDistribution, u: Number) -> tuple[Number, Number]:
     """Real area [m2], Eq. 54, and its elastic fraction [1]."""
     area = spots.total("area", u)
     return area, spots.total("elastic_area", u) / area
 
 
-def modulus(law: Yu2022) -> Number:
+def effective_modulus(law: Yu2022) -> Number:
     """Contact modulus E' [Pa], Eq. 21; with a rigid flat only the first body deforms."""
     single_body = law.side1.E / (1.0 - law.side1.nu**2)
-    return where(law.rigid_flat, single_body, contact_modulus(law.side1, law.side2))
+    return select(law.rigid_flat, single_body, contact_modulus(law.side1, law.side2))
 
 
 def shape_factors(e: Number) -> tuple[Number, Number]:
@@ -180,18 +188,18 @@ def yield_scale(law: Yu2022) -> Number:
     """Value of a (1/R_x + 1/R_y)^2 [1] at the onset of yield: 4 pi f1 K(e) E(e) (K H/E')^2, Eq. 28."""
     K, E = complete_elliptic(law.e)
     f1, _ = shape_factors(law.e)
-    strain = hardness_coefficient(law.side1.nu) * law.hardness / modulus(law)
+    strain = hardness_coefficient(law.side1.nu) * law.hardness / effective_modulus(law)
     return 4.0 * np.pi * f1 * K * E * strain**2
 
 
-def critical_log_area(law: Yu2022, multiple: float) -> Number:
+def critical_log_area(law: Yu2022, onset_ratio: float) -> Number:
     """Log-area ln a [ln m2] of the spot with a (1/R_x + 1/R_y)^2 = onset_ratio yield_scale, Eqs. 28, 31, 32.
 
     Newton's method in ln a. The function is convex and decreases with a slope between 1 - max(D) and
     1 - min(D), so twelve steps reach round-off.
     """
     (b1, p1), (b2, p2) = curvature_terms(law)
-    target = np.log(multiple * yield_scale(law))
+    target = np.log(onset_ratio * yield_scale(law))
     mean = 0.5 * (p1 + p2)
     t = (target - 2.0 * np.log(b1 + b2)) / (1.0 - 2.0 * mean)
     for _ in range(12):
@@ -201,7 +209,7 @@ def critical_log_area(law: Yu2022, multiple: float) -> Number:
     return t
 
 
-def _stages(law: Yu2022) -> tuple[tuple[Stage, Stage], tuple[float, float]]:
+def _plastic_stages(law: Yu2022) -> tuple[tuple[PlasticStage, PlasticStage], tuple[float, float]]:
     """Two elastic-plastic stages, and the limits of plastic and second stage as areas over a_nec(R_m) [1].
 
     They depend on the choice `plastic_area`, the relation between area a and deformation w of a spot:
@@ -211,6 +219,6 @@ def _stages(law: Yu2022) -> tuple[tuple[Stage, Stage], tuple[float, float]]:
     kogut_etsion : a = a_nec(R_m) m (w/w_nec)^n as in Eqs. 33 and 35; limits 7.1197 and 205.38
     """
     if law.plastic_area == "kogut_etsion":
-        return (FIRST, SECOND), (PLASTIC_AREA, SECOND_AREA)
-    plain = (FIRST._replace(m=1.0, n=1.0), SECOND._replace(m=1.0, n=1.0))
-    return plain, (PLASTIC_ONSET, SECOND_ONSET)
+        return (FIRST_STAGE, SECOND_STAGE), (PLASTIC_AREA, SECOND_STAGE_AREA)
+    plain = (FIRST_STAGE._replace(m=1.0, n=1.0), SECOND_STAGE._replace(m=1.0, n=1.0))
+    return plain, (PLASTIC_ONSET, SECOND_STAGE_ONSET)

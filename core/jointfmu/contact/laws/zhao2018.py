@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...quantity import Checked, Number, choice, group, quantity
-from ..powerlaw import Power, Spots
+from ...quantity import CheckedParameters, Number, choice_field, group_field, quantity_field
+from ..powerlaw import PowerTerm, SpotDistribution
 from ..surface import (
     Elastic,
     ProfileSurface,
@@ -22,23 +22,23 @@ from . import mindlin
 
 
 @dataclass(frozen=True, kw_only=True)
-class Zhao2018(Checked):
+class Zhao2018(CheckedParameters):
     """Parameters of the interface law of Zhao 2018."""
 
-    surface: ProfileSurface = group("equivalent rough surface")
-    side1: Elastic = group("first body")
-    side2: Elastic = group("second body")
-    H: float = quantity("Pa", "hardness of the softer body", gt=0.0)
-    mu: float = quantity("1", "coefficient of static friction", gt=0.0)
-    traction_ratio: float = quantity("1", "shear over friction limit, x = T/(mu P)", ge=0.0, lt=1.0)
-    A_0: float = quantity("m2", "nominal contact area", gt=0.0)
-    mass: float = quantity(
+    surface: ProfileSurface = group_field("equivalent rough surface")
+    side1: Elastic = group_field("first body")
+    side2: Elastic = group_field("second body")
+    H: float = quantity_field("Pa", "hardness of the softer body", gt=0.0)
+    mu: float = quantity_field("1", "coefficient of static friction", gt=0.0)
+    traction_ratio: float = quantity_field("1", "shear over friction limit, x = T/(mu P)", ge=0.0, lt=1.0)
+    A_0: float = quantity_field("m2", "nominal contact area", gt=0.0)
+    mass: float = quantity_field(
         "kg", "mass of the structure, used for the equivalent viscous damping C_N, C_T", gt=0.0
     )
-    critical_area: str = choice(
+    critical_area: str = choice_field(
         "continuity", "printed", "yield", doc="area below which a spot is plastic (Eq. 4)"
     )
-    spot_stiffness: str = choice(
+    spot_stiffness: str = choice_field(
         "hertz", "family", doc="stiffness of an elastic spot: Hertz, or along the size family (Eq. 13)"
     )
 
@@ -47,7 +47,7 @@ class Zhao2018(Checked):
         """Hardness H [Pa] of the softer body."""
         return self.H
 
-    def spots(self) -> Spots:
+    def spots(self) -> SpotDistribution:
         """Size distribution (Eq. 2) and regimes of a spot: elastic for t > 0, plastic for t <= 0.
 
         Quantities: load [N]; normal, tangential [N/m]; area [m2] real; plastic_work [J] (Eq. 15);
@@ -59,16 +59,19 @@ class Zhao2018(Checked):
         modulus = contact_modulus(self.side1, self.side2)
         work = 8.0 / 15.0 * modulus * np.sqrt(radius) * delta**2.5
         terms = {
-            "load": (Power(self.H * a, 1.0, upper=0.0), Power(elastic_load(self, a), 1.5 - 0.5 * D, 0.0)),
-            "normal": (Power(normal_stiffness(self, a), 0.5, 0.0),),
-            "tangential": (Power(tangential_stiffness(self, a), 0.5, 0.0),),
-            "area": (Power(a, 1.0, upper=0.0), Power(0.5 * a, 1.0, 0.0)),
-            "plastic_work": (Power(self.H * a * delta, 2.0 - 0.5 * D, upper=0.0),),
-            "elastic_work": (Power(work, 2.5 - D, 0.0),),
-            "loop_area": (Power(a**1.5, 1.5, 0.0),),
+            "load": (
+                PowerTerm(self.H * a, 1.0, upper=0.0),
+                PowerTerm(elastic_load(self, a), 1.5 - 0.5 * D, 0.0),
+            ),
+            "normal": (PowerTerm(normal_stiffness(self, a), 0.5, 0.0),),
+            "tangential": (PowerTerm(tangential_stiffness(self, a), 0.5, 0.0),),
+            "area": (PowerTerm(a, 1.0, upper=0.0), PowerTerm(0.5 * a, 1.0, 0.0)),
+            "plastic_work": (PowerTerm(self.H * a * delta, 2.0 - 0.5 * D, upper=0.0),),
+            "elastic_work": (PowerTerm(work, 2.5 - D, 0.0),),
+            "loop_area": (PowerTerm(a**1.5, 1.5, 0.0),),
         }
         weight = domain_extension(D) ** (1.0 - 0.5 * D)
-        return Spots(reference=a, m=0.5 * D, weight=weight, terms=terms)
+        return SpotDistribution(reference=a, m=0.5 * D, weight=weight, terms=terms)
 
     def shear_ratio(self) -> Number:
         """Stiffness ratio K_T/K_N [1], independent of pressure: both sum sqrt(a') over elastic spots."""
@@ -91,7 +94,7 @@ class Zhao2018(Checked):
         plastic, elastic = s.total("plastic_work", u), s.total("elastic_work", u)
         with np.errstate(divide="ignore", invalid="ignore"):
             eta_n = np.where(elastic > 0.0, plastic / np.where(elastic > 0.0, elastic, 1.0), np.inf)
-            C_N = np.where(K_N > 0.0, mindlin.viscous_equivalent(eta_n, self.mass, K_N), 0.0)
+            C_N = np.where(K_N > 0.0, mindlin.equivalent_damping(eta_n, self.mass, K_N), 0.0)
         W_d, W = shear_energies(self, F, A_r, s.total("loop_area", u))
         eta_t = self.loss_factor()
         return {
@@ -107,7 +110,7 @@ class Zhao2018(Checked):
             "W": W,
             "W_e": W - W_d,
             "eta_t": eta_t + 0.0 * F,
-            "C_T": mindlin.viscous_equivalent(eta_t, self.mass, K_T),
+            "C_T": mindlin.equivalent_damping(eta_t, self.mass, K_T),
         }
 
 
@@ -168,7 +171,7 @@ def normal_stiffness(law: Zhao2018, a: Number) -> Number:
 def tangential_stiffness(law: Zhao2018, a: Number) -> Number:
     """Tangential stiffness k_t = 8 G' r (1 - x)^(1/3) [N/m] of an elastic spot of area a', Eqs. 21-22."""
     modulus = contact_shear_modulus(law.side1, law.side2)
-    stick, _ = mindlin.stick_root(law.traction_ratio)
+    stick, _ = mindlin.stick_radius_ratio(law.traction_ratio)
     return 8.0 * modulus * np.sqrt(a / (2.0 * np.pi)) * stick
 
 
@@ -179,6 +182,6 @@ def shear_energies(law: Zhao2018, F: Number, A_r: Number, loop_area: Number) -> 
     """
     traction = law.mu * F / A_r
     common = traction**2 * np.sqrt(np.pi / 8.0) / contact_shear_modulus(law.side1, law.side2) * loop_area
-    dissipated = 0.9 * common * mindlin.loop(law.traction_ratio)
-    stored = 0.375 * np.pi * common * mindlin.storage(law.traction_ratio)
+    dissipated = 0.9 * common * mindlin.dissipation_function(law.traction_ratio)
+    stored = 0.375 * np.pi * common * mindlin.storage_function(law.traction_ratio)
     return dissipated, stored

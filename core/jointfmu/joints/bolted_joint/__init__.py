@@ -1,16 +1,16 @@
 """Bolted joint: an interface under the uneven pressure of its bolts."""
 
-from ..kind import Kind, RoughSurface
+from ..kind import JointKind, RoughSurface
 from .law import BoltedJoint, RoughBoltedJoint, contradictions
 from .variables import MODELS
 
-KIND = Kind(
+KIND = JointKind(
     name="bolted_joint",
     package=__name__,
-    default="box_specimen",
+    default_stem="box_specimen",
     laws={"zhao2018": BoltedJoint, "roughness": RoughBoltedJoint},
     models=MODELS,
     surfaces=(RoughSurface("surface"),),
     working_point=("preload", "moment"),
-    contradictions=contradictions,
+    find_contradictions=contradictions,
 )

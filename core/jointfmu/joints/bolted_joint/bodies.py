@@ -9,16 +9,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...quantity import Array, check, choice, quantity, series
+from ...quantity import Array, check_fields, choice_field, quantity_field, series_field
 
 MODES = 16
 """Most modes of the bodies [1]."""
 DIGITS = 4
 """Decimals of what modes move [1]: at most 1, and as many as the reduction is worth."""
-BESIDE = 1e-6
+POSITION_TOLERANCE = 1e-6
 """Distance [m] by which patches may lie beside those that the modes were computed for."""
-_MOVED = ("opening", "patch_x", "patch_y", "patch_around", "stretch")
-_PLACES = ("x", "y", "bolt_x", "bolt_y")
+_MODAL_SERIES = ("opening", "patch_x", "patch_y", "patch_around", "stretch")
+_POSITION_SERIES = ("x", "y", "bolt_x", "bolt_y")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -33,48 +33,48 @@ class ElasticBodies:
     Raises ValueError if the lists do not fit together.
     """
 
-    stiffness: tuple[float, ...] = series("N/m", "stiffness of each mode", gt=0.0)
-    opening: tuple[float, ...] = series(
+    stiffness: tuple[float, ...] = series_field("N/m", "stiffness of each mode", gt=0.0)
+    opening: tuple[float, ...] = series_field(
         "1", "how far the points of the contact come apart, of each all modes", ge=-1.0, le=1.0
     )
-    patch_x: tuple[float, ...] = series(
+    patch_x: tuple[float, ...] = series_field(
         "1", "how far the sides of the patches shift along x, of each all modes", ge=-1.0, le=1.0
     )
-    patch_y: tuple[float, ...] = series("1", "the same along y", ge=-1.0, le=1.0)
-    patch_around: tuple[float, ...] = series(
+    patch_y: tuple[float, ...] = series_field("1", "the same along y", ge=-1.0, le=1.0)
+    patch_around: tuple[float, ...] = series_field(
         "1", "the same of their sliders around the centre of each, on its circle", ge=-1.0, le=1.0
     )
-    stretch: tuple[float, ...] = series(
+    stretch: tuple[float, ...] = series_field(
         "1", "how far the seats of the bolts come apart, of each all modes", ge=-1.0, le=1.0
     )
-    x: tuple[float, ...] = series("m", "places of the patches along the rows, from the centroid")
-    y: tuple[float, ...] = series("m", "places of the patches across the rows, from the centroid")
-    bolt_x: tuple[float, ...] = series("m", "places of the bolts along the rows, from the centroid")
-    bolt_y: tuple[float, ...] = series("m", "places of the bolts across the rows, from the centroid")
-    attached: str = choice(
+    x: tuple[float, ...] = series_field("m", "places of the patches along the rows, from the centroid")
+    y: tuple[float, ...] = series_field("m", "places of the patches across the rows, from the centroid")
+    bolt_x: tuple[float, ...] = series_field("m", "places of the bolts along the rows, from the centroid")
+    bolt_y: tuple[float, ...] = series_field("m", "places of the bolts across the rows, from the centroid")
+    attached: str = choice_field(
         "unstated", "faces", "edge", "heads", doc="what of the bodies moves with what the joint connects"
     )
-    thickness: tuple[float, ...] = series(
+    thickness: tuple[float, ...] = series_field(
         "m", "thickness of side 1 and 2 at the bolts, for pictures", gt=0.0, optional=True
     )
-    outline: tuple[float, ...] = series(
+    outline: tuple[float, ...] = series_field(
         "m", "lowest x and y, highest x and y of the contact, from its centroid, for pictures", optional=True
     )
-    hole_diameter: float = quantity("m", "clearance hole, for pictures", ge=0.0, default=0.0)
-    head_diameter: float = quantity(
+    hole_diameter: float = quantity_field("m", "clearance hole, for pictures", ge=0.0, default=0.0)
+    head_diameter: float = quantity_field(
         "m", "outer diameter of what lies under heads and nuts, for pictures", ge=0.0, default=0.0
     )
-    thread_depth: float = quantity(
+    thread_depth: float = quantity_field(
         "m", "depth of the threads in side 2, for pictures; 0: bolts go through", ge=0.0, default=0.0
     )
 
     def __post_init__(self) -> None:
-        check(self)
+        check_fields(self)
         modes, patches, bolts = len(self.stiffness), len(self.x), len(self.bolt_x)
         if modes > MODES:
             raise ValueError(f"bodies.stiffness has {modes} numbers, expected at most {MODES}")
         counts = {"y": patches, "bolt_y": bolts, "stretch": bolts * modes}
-        counts |= {name: patches * modes for name in _MOVED if name.startswith("patch_")}
+        counts |= {name: patches * modes for name in _MODAL_SERIES if name.startswith("patch_")}
         counts["opening"] = modes * max(len(self.opening) // modes, 1)
         counts |= {name: n for name, n in (("thickness", 2), ("outline", 4)) if getattr(self, name)}
         for name, count in counts.items():
@@ -95,12 +95,12 @@ class Modes:
 
     stiffness: Array
     opening: Array
-    patch: Array
-    stretch: Array
+    patch_displacement: Array
+    bolt_elongation: Array
     bolts: Array
 
     @classmethod
-    def none(cls, points: int, patches: int) -> "Modes":
+    def for_rigid_bodies(cls, points: int, patches: int) -> "Modes":
         """Of rigid bodies."""
         shear = np.zeros((3, patches, 0))
         return cls(np.zeros(0), np.zeros((points, 0)), shear, np.zeros((0, 0)), np.zeros((0, 2)))
@@ -112,19 +112,21 @@ class Modes:
         Raises ValueError if they were computed for others.
         """
         if isinstance(bodies, RigidBodies):
-            return cls.none(points, len(patches))
-        each = {name: np.array(getattr(bodies, name)) for name in (*_MOVED, *_PLACES, "stiffness")}
+            return cls.for_rigid_bodies(points, len(patches))
+        each = {
+            name: np.array(getattr(bodies, name)) for name in (*_MODAL_SERIES, *_POSITION_SERIES, "stiffness")
+        }
         count = len(bodies.stiffness)
         there = np.stack([each["x"], each["y"]], axis=1)
         if len(each["opening"]) != points * count or there.shape != patches.shape:
             stated = f"{len(each['opening']) // count} points and {len(there)} patches"
             raise ValueError(f"[bodies] has {stated}, the contact {points} and {len(patches)}")
-        if (away := float(np.max(np.abs(there - patches)))) > BESIDE:
+        if (away := float(np.max(np.abs(there - patches)))) > POSITION_TOLERANCE:
             raise ValueError(
                 f"[bodies] lies {away:.3g} m beside the contact: it was computed for another one, expected "
-                f"at most {BESIDE:g} m"
+                f"at most {POSITION_TOLERANCE:g} m"
             )
-        moved = {name: each[name].reshape(-1, count) for name in _MOVED}
+        moved = {name: each[name].reshape(-1, count) for name in _MODAL_SERIES}
         return cls(
             each["stiffness"],
             moved["opening"],

@@ -44,11 +44,13 @@ class BoltSprings:
     lift_off: float
 
     @classmethod
-    def of(cls, joint: Bolted, closed: float) -> "BoltSprings":
+    def of(cls, joint: Bolted, closure_pressure: float) -> "BoltSprings":
         """The bolts of a joint; closed [Pa]: pressure at which its contact closes."""
         position = bolt_positions(joint)
         count = float(joint.n_bolts) / len(position)
-        return cls(position, count, float(joint.bolt_stiffness), LIFT_OFF_RATIO * closed * float(joint.A_0))
+        return cls(
+            position, count, float(joint.bolt_stiffness), LIFT_OFF_RATIO * closure_pressure * float(joint.A_0)
+        )
 
     @cached_property
     def lever(self) -> Array:
@@ -61,23 +63,23 @@ class BoltSprings:
         x, y = self.position.T
         return np.stack([np.ones_like(x), y, -x], axis=-1)
 
-    def tightened(self, joint: Bolted, preload: float, moment: float) -> Array:
+    def preload_force(self, joint: Bolted, preload: float, moment: float) -> Array:
         """Force (b) [N] of each bolt at tightening: working preload and share of the moment, at least 0."""
         return np.asarray(np.maximum(working_preload(joint, preload) + moment * self.lever, 0.0))
 
-    def gap(self, tightened: Array, elongation: Array) -> Array:
+    def gap(self, preload_force: Array, elongation: Array) -> Array:
         """Gap h (b) [m] under the heads at elongations (b) [m] from tightened forces (b) [N]."""
         if self.stiffness == 0.0:
             return np.zeros_like(elongation)
-        return np.maximum(-(tightened + self.stiffness * elongation), 0.0) / self.stiffness
+        return np.maximum(-(preload_force + self.stiffness * elongation), 0.0) / self.stiffness
 
-    def force(self, tightened: Array, elongation: Array) -> Array:
+    def force(self, preload_force: Array, elongation: Array) -> Array:
         """Force F (b) [N] of each bolt, at least 0."""
-        return np.maximum(tightened + self.stiffness * elongation, 0.0)
+        return np.maximum(preload_force + self.stiffness * elongation, 0.0)
 
-    def tangent(self, tightened: Array, elongation: Array) -> Array:
+    def tangent(self, preload_force: Array, elongation: Array) -> Array:
         """Stiffness dF/de (b) [N/m] of each bolt; at lift-off the mean of both sides."""
-        force = tightened + self.stiffness * elongation
+        force = preload_force + self.stiffness * elongation
         pulling = np.where(force > self.lift_off, 1.0, np.where(force < -self.lift_off, 0.0, AT_LIFT_OFF))
         return np.asarray(self.stiffness * pulling)
 

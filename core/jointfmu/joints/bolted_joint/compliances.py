@@ -12,10 +12,10 @@ if TYPE_CHECKING:
 
 DIRECTIONS = {"x": "N/m", "y": "N/m", "z": "N/m", "rx": "N.m/rad", "ry": "N.m/rad", "rz": "N.m/rad"}
 """{force along or moment about an axis: unit of its stiffness}."""
-PARTS = ("interface", "members", "bolts")
-MATTERS = 0.1
+COMPONENTS = ("interface", "members", "bolts")
+MIN_INTERFACE_SHARE = 0.1
 """Part of the whole's compliance [1] from which on the interface is worth a law of its own."""
-ROUND_OFF = 1e-9
+RELATIVE_ROUND_OFF = 1e-9
 """Stiffness of bolts over that of the whole [1] up to which it is that of places rounded off an axis."""
 
 
@@ -31,48 +31,48 @@ class Compliances(NamedTuple):
                  other motions free
     """
 
-    parts: Array
-    rigid: Array
-    bolts: Array
+    components: Array
+    interface_stiffness: Array
+    bolt_stiffness: Array
     bolt_force: Array
 
     @classmethod
     def of(cls, spring: "BoltedJointSpring", preload: float, moment: float = 0.0) -> "Compliances":
         """Of a joint with elastic sides, tightened by the force of each bolt [N] and a moment [N.m]."""
-        whole, modes = spring.whole, spring.modes
-        bolt_force = spring.bolts.tightened(spring.joint, preload, moment)
+        whole, modes = spring.assembly, spring.modes
+        bolt_force = spring.bolts.preload_force(spring.joint, preload, moment)
         bolt = spring.bolts.tangent(bolt_force, np.zeros_like(bolt_force))[:, None]
-        H = spring.slope(preload, moment)
-        K, follow = whole.condensed(H), -np.linalg.solve(H[6:, 6:], H[6:, :6])
-        stretch = modes.stretch @ follow
-        stretch[:, 2:5] += whole.seats
+        H = spring.tangent_stiffness(preload, moment)
+        K, follow = whole.condense(H), -np.linalg.solve(H[6:, 6:], H[6:, :6])
+        stretch = modes.bolt_elongation @ follow
+        stretch[:, 2:5] += whole.bolt_elongation
         members, bolts = modes.stiffness @ follow**2, np.sum(bolt * stretch**2, axis=0)
         held, shanks = np.diag(K), np.zeros(6)
-        shanks[2:5] = np.sum(bolt * whole.seats**2, axis=0)
+        shanks[2:5] = np.sum(bolt * whole.bolt_elongation**2, axis=0)
         parts = np.stack([held - members - bolts, members, bolts]) / held**2
         return cls(parts, 1.0 / (np.diag(H)[:6] - shanks), shanks, bolt * stretch @ np.linalg.inv(K))
 
     @property
-    def whole(self) -> Array:
+    def total(self) -> Array:
         """(6) of the joint."""
-        return np.asarray(self.parts.sum(axis=0))
+        return np.asarray(self.components.sum(axis=0))
 
     @property
     def shares(self) -> Array:
         """(3, 6) [1] of interface, members and bolts in the compliance."""
-        return self.parts / self.whole
+        return self.components / self.total
 
     @property
-    def members(self) -> Array:
+    def member_stiffness(self) -> Array:
         """Stiffness (6) [N/m, N.m/rad] of the members: springs in series with the rest."""
-        return np.asarray(1.0 / self.parts[1])
+        return np.asarray(1.0 / self.components[1])
 
     def rows(self) -> list[tuple[str, str, list[float], list[float]]]:
         """Each direction's name and unit, stiffness of the whole, interface, members and bolts (0: none),
         and their shares [1] in the compliance."""
-        whole = 1.0 / self.whole
-        bolts = np.where(self.bolts > ROUND_OFF * whole, self.bolts, 0.0)
-        each = np.stack([whole, 1.0 / self.rigid, self.members, bolts])
+        whole = 1.0 / self.total
+        bolts = np.where(self.bolt_stiffness > RELATIVE_ROUND_OFF * whole, self.bolt_stiffness, 0.0)
+        each = np.stack([whole, 1.0 / self.interface_stiffness, self.member_stiffness, bolts])
         return [
             (_stiffness_name(name), unit, each[:, i].tolist(), self.shares[:, i].tolist())
             for i, (name, unit) in enumerate(DIRECTIONS.items())
@@ -81,7 +81,7 @@ class Compliances(NamedTuple):
     @property
     def matters(self) -> bool:
         """Whether the interface has a say in the stiffness along or about any axis."""
-        return bool(np.max(self.shares[0]) >= MATTERS)
+        return bool(np.max(self.shares[0]) >= MIN_INTERFACE_SHARE)
 
     @property
     def load_factor(self) -> float:

@@ -7,12 +7,23 @@ from typing import ClassVar, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...contact.laws.roughness import Roughness
+from ...contact.laws.roughness import RoughnessLaw
 from ...contact.laws.zhao2018 import Zhao2018
-from ...mechanics.footprint.bolts import BoltPattern, PressureSource
+from ...mechanics.footprint.bolts import BoltedFrame, PressureSource
 from ...mechanics.footprint.plate import BoltedPlate
-from ...mechanics.footprint.shape import MergedShape, NodalField, PressureShape
-from ...quantity import Array, Interval, Limit, Number, check, check_limits, choice, group, quantity, where
+from ...mechanics.footprint.shape import MergedDistribution, NodalField, PressureDistribution
+from ...quantity import (
+    Array,
+    Interval,
+    Number,
+    ParameterLimit,
+    check_fields,
+    check_limits,
+    choice_field,
+    group_field,
+    quantity_field,
+    select,
+)
 from .bodies import ElasticBodies, RigidBodies
 
 ELASTIC_NEEDS = {
@@ -25,38 +36,38 @@ ELASTIC_NEEDS = {
 class Bolts:
     """The bolts of a joint and how they spread their force."""
 
-    n_bolts: float = quantity("1", "number of bolts", ge=1.0, whole=True)
-    row_bolts: float = quantity(
-        "1", "bolts in each of the two rows that carry the moment", ge=1.0, whole=True
+    n_bolts: float = quantity_field("1", "number of bolts", ge=1.0, is_integer=True)
+    row_bolts: float = quantity_field(
+        "1", "bolts in each of the two rows that carry the moment", ge=1.0, is_integer=True
     )
-    row_distance: float = quantity("m", "distance L_a of the two bolt rows", gt=0.0)
-    bolt_stiffness: float = quantity("N/m", "stiffness of each bolt", ge=0.0, default=0.0)
-    embedding: float = quantity(
+    row_distance: float = quantity_field("m", "distance L_a of the two bolt rows", gt=0.0)
+    bolt_stiffness: float = quantity_field("N/m", "stiffness of each bolt", ge=0.0, default=0.0)
+    embedding: float = quantity_field(
         "N", "preload that each bolt loses by embedding (VDI 2230)", ge=0.0, default=0.0
     )
-    memory: bool = choice(
+    memory: bool = choice_field(
         True, False, doc="friction with partial slip and memory; without it an elastic joint"
     )
-    damping: bool = choice(False, True, doc="the dashpots C_xx, C_yy, C_zz of Zhao 2018 act")
-    sides: str = choice(
+    damping: bool = choice_field(False, True, doc="the dashpots C_xx, C_yy, C_zz of Zhao 2018 act")
+    sides: str = choice_field(
         "rigid",
         "elastic",
         doc="rigid: the interface alone; elastic: the whole joint between its attachments, with [bodies]",
     )
-    bodies: RigidBodies | ElasticBodies = group(
+    bodies: RigidBodies | ElasticBodies = group_field(
         "how the members give way between their attachments", rigid=RigidBodies, bodies=ElasticBodies
     )
-    pattern: PressureSource = group(
+    pattern: PressureSource = group_field(
         "what gives the pressure: the decay around each bolt of a frame, the cones of the bolts of a plate, "
         "or the points of a field",
-        pattern=BoltPattern,
+        pattern=BoltedFrame,
         plate=BoltedPlate,
         field=NodalField,
     )
 
     def __post_init__(self) -> None:
-        check(self)
-        check_limits(self, self.limits())
+        check_fields(self)
+        check_limits(self, self.find_limits())
         if self.elastic:
             self._check_elastic()
 
@@ -77,32 +88,39 @@ class Bolts:
                     f"{name} = {wrong} beside sides = elastic: expected {not wrong}, {why}".lower()
                 )
 
-    def limits(self) -> list[Limit]:
+    def find_limits(self) -> list[ParameterLimit]:
         """Intervals that other parameters decide."""
         why = "two rows hold at most half of n_bolts each; set row_bolts = 1 where all bolts make one row"
-        rows = Limit("row_bolts", Interval.of(ge=1.0, le=np.maximum(0.5 * self.n_bolts, 1.0)), why)
+        rows = ParameterLimit(
+            "row_bolts", Interval.from_bounds(ge=1.0, le=np.maximum(0.5 * self.n_bolts, 1.0)), why
+        )
         if not isinstance(self.bodies, ElasticBodies) or not self.elastic:
             return [rows]
         seats = float(len(self.bodies.bolt_x))
-        return [Limit("n_bolts", Interval.of(ge=seats, le=seats), "the bolts that [bodies] has"), rows]
+        return [
+            ParameterLimit(
+                "n_bolts", Interval.from_bounds(ge=seats, le=seats), "the bolts that [bodies] has"
+            ),
+            rows,
+        ]
 
 
 @dataclass(frozen=True, kw_only=True)
 class BoltedJoint(Bolts, Zhao2018):
     """Parameters of the bolted joint with the law of Zhao 2018."""
 
-    plastic_damping: bool = choice(
+    plastic_damping: bool = choice_field(
         False, True, doc="normal damping by the plastic work of first loading (Zhao 2018, Eqs. 19-20)"
     )
 
 
 @dataclass(frozen=True, kw_only=True)
-class RoughBoltedJoint(Bolts, Roughness):
+class RoughBoltedJoint(Bolts, RoughnessLaw):
     """Parameters of the bolted joint with the law `roughness`, which has no plastic work."""
 
     plastic_damping: ClassVar[bool] = False
 
-    mass: float = quantity("kg", "mass of the structure, for the viscous equivalent", gt=0.0)
+    mass: float = quantity_field("kg", "mass of the structure, for the viscous equivalent", gt=0.0)
 
 
 Bolted: TypeAlias = BoltedJoint | RoughBoltedJoint
@@ -114,12 +132,12 @@ def interface_alone(joint: Bolted) -> Bolted:
     return replace(joint, sides="rigid") if joint.elastic else joint
 
 
-def bolt_pattern(joint: Bolted) -> BoltPattern:
+def bolt_pattern(joint: Bolted) -> BoltedFrame:
     """The frame of a joint whose pressure is that of a pattern of bolts.
 
     Raises ValueError if the joint has a plate or a nodal field instead.
     """
-    if isinstance(joint.pattern, BoltPattern):
+    if isinstance(joint.pattern, BoltedFrame):
         return joint.pattern
     if isinstance(joint.pattern, BoltedPlate):
         has = f"[plate], a plate with {len(joint.pattern.x)} bolts"
@@ -128,9 +146,9 @@ def bolt_pattern(joint: Bolted) -> BoltPattern:
     raise ValueError(f"the joint has {has}; expected [pattern], a frame of bolts")
 
 
-AREA = 0.01
+AREA_TOLERANCE = 0.01
 """Largest difference of A_0 from the area that the plate or the frame has without its holes [1]."""
-LEVER = 1e-3
+ROW_DISTANCE_TOLERANCE = 1e-3
 """Largest difference of row_distance from that of the bolts [1]."""
 
 
@@ -139,23 +157,23 @@ def contradictions(joint: Bolted) -> Iterator[str]:
     if isinstance(joint.pattern, NodalField):
         return
     section, pattern = ("plate" if isinstance(joint.pattern, BoltedPlate) else "pattern"), joint.pattern
-    count, (row_bolts, row_distance) = len(pattern.bolts), pattern.rows
+    count, (row_bolts, row_distance) = len(pattern.bolts), pattern.equivalent_rows
     if joint.n_bolts != count:
         yield f"n_bolts = {joint.n_bolts:g} contradicts [{section}], which has {count} bolts"
-    if abs(joint.A_0 / pattern.area - 1.0) > AREA:
+    if abs(joint.A_0 / pattern.area - 1.0) > AREA_TOLERANCE:
         yield (
             f"A_0 = {joint.A_0:g} m2 contradicts [{section}], which has {pattern.area:.6g} m2 without its "
-            f"holes; allowed is within {AREA:.0%}"
+            f"holes; allowed is within {AREA_TOLERANCE:.0%}"
         )
     if joint.row_bolts != row_bolts:
         yield f"row_bolts = {joint.row_bolts:g} contradicts [{section}], whose rows have {row_bolts:g}"
-    if abs(joint.row_distance / row_distance - 1.0) > LEVER:
+    if abs(joint.row_distance / row_distance - 1.0) > ROW_DISTANCE_TOLERANCE:
         stated = f"row_distance = {joint.row_distance:g} m"
         yield f"{stated} contradicts [{section}], where it is {row_distance:.6g} m"
 
 
-def pressures(
-    joint: Bolted, shape: PressureShape | MergedShape, preload: ArrayLike, moment: ArrayLike
+def preload_pressure(
+    joint: Bolted, shape: PressureDistribution | MergedDistribution, preload: ArrayLike, moment: ArrayLike
 ) -> Array:
     """Node pressures (..., n) [Pa] of the tightened joint, preload [N] per bolt, moment [N.m] (...).
 
@@ -164,22 +182,24 @@ def pressures(
     node is open.
     """
     force, bending = np.asarray(preload)[..., None], np.asarray(moment)[..., None]
-    return np.asarray(node_pressure(joint, shape.equal, shape.tilt, force, bending))
+    return np.asarray(node_pressure(joint, shape.preload_shape, shape.moment_shape, force, bending))
 
 
-def node_pressure(joint: Bolted, equal: Number, tilt: Number, preload: Number, moment: Number) -> Number:
+def node_pressure(
+    joint: Bolted, preload_shape: Number, moment_shape: Number, preload: Number, moment: Number
+) -> Number:
     """Pressure [Pa] of a node of the pressure shape."""
-    return shaped_pressure(equal, tilt, *bolt_pressures(joint, preload, moment))
+    return shaped_pressure(preload_shape, moment_shape, *bolt_pressures(joint, preload, moment))
 
 
 def working_preload(joint: Bolted, preload: Number) -> Number:
     """Force [N] that embedding leaves of a bolt's preload (...) [N]: none of one that is no larger."""
-    return where(preload >= joint.embedding, preload - joint.embedding, 0.0 * preload)
+    return select(preload >= joint.embedding, preload - joint.embedding, 0.0 * preload)
 
 
-def slip_force(joint: Bolted, left: Number) -> Number:
+def slip_force(joint: Bolted, working_force: Number) -> Number:
     """Shear [N] at which all of the interface slips, mu n F, under bolt forces left (...) [N]."""
-    return joint.mu * joint.n_bolts * left
+    return joint.mu * joint.n_bolts * working_force
 
 
 def bolt_pressures(joint: Bolted, preload: Number, moment: Number) -> tuple[Number, Number]:
@@ -188,9 +208,9 @@ def bolt_pressures(joint: Bolted, preload: Number, moment: Number) -> tuple[Numb
     return left * joint.n_bolts / joint.A_0, moment / joint.row_distance / joint.A_0
 
 
-def shaped_pressure(equal: Number, tilt: Number, mean: Number, shift: Number) -> Number:
+def shaped_pressure(preload_shape: Number, moment_shape: Number, mean: Number, shift: Number) -> Number:
     """Pressure [Pa] of a node of the pressure shape, given `bolt_pressures`; none where it is open."""
-    return np.maximum(mean * equal + shift * tilt, 0.0)
+    return np.maximum(mean * preload_shape + shift * moment_shape, 0.0)
 
 
 def row_forces(joint: Bolted, preload: float, moment: float) -> tuple[float, float]:

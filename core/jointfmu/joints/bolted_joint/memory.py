@@ -4,18 +4,18 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ...mechanics.memory import Layout
-from ...mechanics.sliders import SLIDERS
+from ...mechanics.memory import HistoryLayout
+from ...mechanics.sliders import FOUNDATION_SLIDERS
 from ...quantity import Array
 from .bodies import MODES
 
-Memory = Mapping[str, Array]
+History = Mapping[str, Array]
 
-UNKNOWN, RESTING, ALONG, FREE = range(4)
+UNKNOWN, FULL_STICK, SLIP_1D, SLIP_2D = range(4)
 """How friction has moved so far, see `memory_of`."""
 
 
-def memory_of(patches: int) -> Layout:
+def history_layout(patches: int) -> HistoryLayout:
     """What friction remembers on so many patches.
 
     state     : UNKNOWN: the path begins at the present approach, which is the reference as well, without a
@@ -33,7 +33,7 @@ def memory_of(patches: int) -> Layout:
     tangent   : (m, 6) [Pa/m] of the patches, see `Moved`
     """
     one = (patches,)
-    return Layout(
+    return HistoryLayout(
         {
             "state": (),
             "loss": (),
@@ -41,7 +41,7 @@ def memory_of(patches: int) -> Layout:
             "reference": one,
             "lowest": one,
             "approach": one,
-            "force": (*one, 2, SLIDERS),
+            "force": (*one, 2, FOUNDATION_SLIDERS),
             "apart": (3,),
             "amplitude": (MODES,),
             "tangent": (*one, 6),
@@ -49,12 +49,12 @@ def memory_of(patches: int) -> Layout:
     )
 
 
-def moved_on(before: Memory, rigid: Array) -> int:
+def slip_state(history: History, tangential: Array) -> int:
     """How friction has moved after the way to a shift and turn, where it is no longer at rest."""
-    free = before["state"] == FREE or np.any(before["force"][:, 1, :2])
-    return FREE if free or not np.array_equal(rigid[1:], before["rigid"][1:]) else ALONG
+    free = history["state"] == SLIP_2D or np.any(history["force"][:, 1, :2])
+    return SLIP_2D if free or not np.array_equal(tangential[1:], history["rigid"][1:]) else SLIP_1D
 
 
-def resting(force: Array) -> Array:
+def full_stick_force(force: Array) -> Array:
     """Forces (m, 3) of all sliders of patches at rest, see `together`, from those in the memory (m, 2, n)."""
     return np.column_stack([force[..., 0], force[:, 1, 1]])

@@ -5,8 +5,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from ...contact.laws import mindlin
-from ...mechanics.steps import STEPS, stable_steps
-from ...quantity import Number, where
+from ...mechanics.steps import STABLE_STEP_OUTPUTS, largest_stable_steps
+from ...quantity import Number, select
 from .law import Bolted
 
 SUMS = (
@@ -45,11 +45,11 @@ def bolt_force_name(bolt: int) -> str:
     return f"F_bolt[{bolt + 1}]"
 
 
-def outputs(
+def joint_outputs(
     joint: Bolted,
     sums: Mapping[str, Number],
-    shift: Sequence[Number],
-    turn: Sequence[Number],
+    displacement: Sequence[Number],
+    rotation: Sequence[Number],
     rates: Sequence[Number],
     p_max: Number,
 ) -> dict[str, Number]:
@@ -63,20 +63,21 @@ def outputs(
     bolts, (_, _, bolt_x2, bolt_y2, _) = joint.n_bolts * joint.bolt_stiffness, joint.pattern.bolt_means
     K_n = area * sums["stiffness"]
     eta_n, eta_t = sums["plastic"] / sums["elastic"], joint.loss_factor()
-    first_loading = mindlin.viscous_equivalent(eta_n, joint.mass, K_n)
-    C_n = where(joint.plastic_damping, first_loading, 0.0 * K_n)
-    C_t = mindlin.viscous_equivalent(eta_t, joint.mass, rho * K_n)
-    viscous = [where(joint.damping, part, 0.0 * part) for part in _viscous(area, sums, C_t, C_n, rates)]
-    tension = _tension(bolts, joint.pattern.bolt_means, shift[2], turn)
+    first_loading = mindlin.equivalent_damping(eta_n, joint.mass, K_n)
+    C_n = select(joint.plastic_damping, first_loading, 0.0 * K_n)
+    C_t = mindlin.equivalent_damping(eta_t, joint.mass, rho * K_n)
+    viscous = [select(joint.damping, part, 0.0 * part) for part in _viscous(area, sums, C_t, C_n, rates)]
+    tension = _tension(bolts, joint.pattern.bolt_means, displacement[2], rotation)
     pulled = [joint.bolt_stiffness * sums[name] for name in STRETCHES]
     f_x, f_y, m_z = (-area * sums[name] for name in ("traction_x", "traction_y", "torsion"))
     eta_loop = _ratio(sums["loop_work"], 2.0 * np.pi * sums["loop_energy"])
     K_zz = np.maximum(area * sums["normal_stiffness"] + bolts, 0.0)  # not below by round-off
     K = [area * sums["tangent_x"], area * sums["tangent_y"], K_zz]
-    damped = [where(joint.damping, part, 0.0 * part) for part in (C_t, C_t, C_n)]
-    steps = [stable_steps(k, c, 1.0 / joint.mass) for k, c in zip(K, damped, strict=True)]
+    damped = [select(joint.damping, part, 0.0 * part) for part in (C_t, C_t, C_n)]
+    steps = [largest_stable_steps(k, c, 1.0 / joint.mass) for k, c in zip(K, damped, strict=True)]
     shortest = {
-        name: np.minimum(np.minimum(x, y), z) for (name, _), x, y, z in zip(STEPS, *steps, strict=True)
+        name: np.minimum(np.minimum(x, y), z)
+        for (name, _), x, y, z in zip(STABLE_STEP_OUTPUTS, *steps, strict=True)
     }
     return {
         "f_x": f_x + viscous[0],
@@ -101,13 +102,13 @@ def outputs(
         "slip": _slip(sums, joint.mu),
         "E_loss": area * sums["loss"],
         "eta_loop": eta_loop,
-        "C_loop": mindlin.viscous_equivalent(eta_loop, joint.mass, K[0] if joint.elastic else rho * K_n),
+        "C_loop": mindlin.equivalent_damping(eta_loop, joint.mass, K[0] if joint.elastic else rho * K_n),
         **shortest,
     }
 
 
 def _tension(
-    stiffness: Number, means: Sequence[Number], s_z: Number, turn: Sequence[Number]
+    stiffness: Number, means: Sequence[Number], s_z: Number, rotation: Sequence[Number]
 ) -> tuple[Number, Number, Number]:
     """f_z, m_x, m_y [N, N.m] of bolts without gaps, each elongated by s_z + theta_x y - theta_y x.
 
@@ -115,23 +116,23 @@ def _tension(
     """
     x, y, x2, y2, xy = means
     return (
-        -stiffness * (s_z + y * turn[0] - x * turn[1]),
-        -stiffness * (y * s_z + y2 * turn[0] - xy * turn[1]),
-        stiffness * (x * s_z + xy * turn[0] - x2 * turn[1]),
+        -stiffness * (s_z + y * rotation[0] - x * rotation[1]),
+        -stiffness * (y * s_z + y2 * rotation[0] - xy * rotation[1]),
+        stiffness * (x * s_z + xy * rotation[0] - x2 * rotation[1]),
     )
 
 
-def _ratio(part: Number, whole: Number) -> Number:
+def _ratio(numerator: Number, denominator: Number) -> Number:
     """part/whole [1], 0 of nothing."""
-    some = whole > 0.0
-    return where(some, part / where(some, whole, 1.0), 0.0 * part)
+    some = denominator > 0.0
+    return select(some, numerator / select(some, denominator, 1.0), 0.0 * numerator)
 
 
 def _slip(sums: Mapping[str, Number], mu: Number) -> Number:
     """Shear force over its limit [1]."""
     square = sums["traction_x"] ** 2 + sums["traction_y"] ** 2
     shears = square > 0.0
-    return _ratio(where(shears, np.sqrt(where(shears, square, 1.0)), 0.0 * square), mu * sums["pressure"])
+    return _ratio(select(shears, np.sqrt(select(shears, square, 1.0)), 0.0 * square), mu * sums["pressure"])
 
 
 def _viscous(

@@ -5,42 +5,46 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...mechanics.jenkins import Moved
-from ...mechanics.sliders import together
+from ...mechanics.jenkins import SliderUpdate
+from ...mechanics.sliders import resultant
 from ...quantity import Array
-from .contact import Place
-from .memory import RESTING, Memory, resting
+from .contact import RelativeDisplacement
+from .memory import FULL_STICK, History, full_stick_force
 
 if TYPE_CHECKING:
     from .spring import BoltedJointSpring
 
-DIFFERENCE = 1e-7
+DIFFERENCE_STEP = 1e-7
 """Part of the largest approach at tightening [1] by which patches move to find the slopes of their tractions;
 or of the approach at which the contact has closed, if it is larger: without preload all patches are open."""
 
 
 @dataclass(frozen=True, slots=True)
-class Way:
+class FrictionUpdate:
     """How the patches came to where they are: state and (m) [m] reference, lowest, approach of `memory_of`.
 
     stick : (m) [Pa/m] of all sliders
     """
 
     state: int
-    reference: Array
-    lowest: Array
+    onset_approach: Array
+    min_approach: Array
     approach: Array
-    moved: Moved
-    stick: Array
+    slider_update: SliderUpdate
+    stick_stiffness: Array
 
     @property
     def traction(self) -> Array:
         """(m, 3) [Pa] against the shift, see `together`."""
-        return resting(self.moved.force) if self.state == RESTING else together(self.moved.force)
+        return (
+            full_stick_force(self.slider_update.force)
+            if self.state == FULL_STICK
+            else resultant(self.slider_update.force)
+        )
 
 
 @dataclass(frozen=True, slots=True)
-class Trial:
+class TrialState:
     """A joint with amplitudes of its modes.
 
     derivatives : of the pressure (n) [Pa] over the approach of the points
@@ -50,7 +54,7 @@ class Trial:
 
     derivatives: list[Array]
     approach: Array
-    way: Way | None
+    friction: FrictionUpdate | None
 
     @property
     def pressure(self) -> Array:
@@ -65,18 +69,18 @@ class Trial:
     @property
     def traction(self) -> Array:
         """(m, 3) [Pa] against the shift, see `together`."""
-        assert self.way
-        return self.way.traction
+        assert self.friction
+        return self.friction.traction
 
     @property
     def tangent(self) -> Array:
         """(m, 6) [Pa/m], see `Moved`."""
-        assert self.way
-        return self.way.moved.tangent
+        assert self.friction
+        return self.friction.slider_update.tangent
 
 
 @dataclass(frozen=True, slots=True)
-class Trials:
+class LoadStep:
     """The joint on its way from a memory to a place.
 
     starts : approaches [m] of points (n) and patches (m) at tightening
@@ -84,65 +88,80 @@ class Trials:
     """
 
     spring: "BoltedJointSpring"
-    starts: tuple[Array, Array]
-    end: Place
-    before: Memory
-    told: str
+    preloaded_approaches: tuple[Array, Array]
+    end: RelativeDisplacement
+    history: History
+    input_summary: str
 
-    def place(self, part: float) -> Place:
+    def displacement_at(self, load_factor: float) -> RelativeDisplacement:
         """Where it is after a part [1] of the way."""
-        if part == 1.0:
+        if load_factor == 1.0:
             return self.end
-        before = self.before
+        before = self.history
         first = np.array([*before["rigid"][:2], *before["apart"], before["rigid"][2]])
-        return Place(first + part * (self.end.six - first))
+        return RelativeDisplacement(first + load_factor * (self.end.components - first))
 
-    def approaches(self, place: Place, amplitude: Array) -> tuple[Array, Array]:
+    def approaches(self, displacement: RelativeDisplacement, modal_coordinates: Array) -> tuple[Array, Array]:
         """Approaches [m] of points (n) and patches (m)."""
-        spring, (points, patches) = self.spring, self.starts
-        there = points - (place.apart(spring.shape) + spring.modes.opening @ amplitude)
+        spring, (points, patches) = self.spring, self.preloaded_approaches
+        there = points - (displacement.opening(spring.shape) + spring.modes.opening @ modal_coordinates)
         if spring.joint.elastic:
-            return there, spring.pressed(there)
-        return there, patches - place.apart(spring.patches)
+            return there, spring.patch_approach(there)
+        return there, patches - displacement.opening(spring.patches)
 
-    def at(self, place: Place, amplitude: Array) -> Trial:
+    def evaluate(self, displacement: RelativeDisplacement, modal_coordinates: Array) -> TrialState:
         """At a place with amplitudes (k) [m]."""
-        points, patches = self.approaches(place, amplitude)
-        way = self._way(place, amplitude, patches, np.zeros(3)) if self.spring.joint.memory else None
-        return Trial(self.spring.curve.derivatives(points, 3), patches, way)
+        points, patches = self.approaches(displacement, modal_coordinates)
+        way = (
+            self._friction_update(displacement, modal_coordinates, patches, np.zeros(3))
+            if self.spring.joint.memory
+            else None
+        )
+        return TrialState(self.spring.curve.derivatives(points, 3), patches, way)
 
-    def _way(self, place: Place, amplitude: Array, approach: Array, further: Array) -> Way:
-        spring, before = self.spring, self.before
-        shift = spring.shift(place.rigid - before["rigid"], amplitude - before["amplitude"][: amplitude.size])
-        shift += further
-        return spring.way(before, approach, shift, place.rigid)
+    def _friction_update(
+        self,
+        displacement: RelativeDisplacement,
+        modal_coordinates: Array,
+        approach: Array,
+        extra_displacement: Array,
+    ) -> FrictionUpdate:
+        spring, before = self.spring, self.history
+        shift = spring.patch_displacement(
+            displacement.tangential - before["rigid"],
+            modal_coordinates - before["amplitude"][: modal_coordinates.size],
+        )
+        shift += extra_displacement
+        return spring.update_friction(before, approach, shift, displacement.tangential)
 
-    def apart(self, at: Trial) -> Array:
+    def modal_opening(self, state: TrialState) -> Array:
         """How far the patches come apart by the modes (m, k) [1], as the points that press on them do."""
-        spring, stiffness = self.spring, self.spring.curve.derivatives(at.approach, 1)[1][:, None]
+        spring, stiffness = self.spring, self.spring.curve.derivatives(state.approach, 1)[1][:, None]
         touches = stiffness > 0.0
-        rows = (spring.pressing * at.stiffness) @ spring.modes.opening
+        rows = (spring.pressure_transfer * state.stiffness) @ spring.modes.opening
         return np.asarray(np.where(touches, rows / np.where(touches, stiffness, 1.0), 0.0))
 
-    def slopes(self, place: Place, amplitude: Array) -> Array:
+    def traction_derivatives(self, displacement: RelativeDisplacement, modal_coordinates: Array) -> Array:
         """Derivatives (m, 3, 4) [Pa/m] of the traction by shifts along x, y and around the centres, and by
         coming apart.
 
         By differences, at the end of the way; FMUs have the derivative of the rule.
         """
-        approach = self.approaches(place, amplitude)[1]
+        approach = self.approaches(displacement, modal_coordinates)[1]
         first = self.spring.curve.displacement[0]
-        step = DIFFERENCE * float(np.max(np.maximum(self.starts[1], 0.0) - first))
+        step = DIFFERENCE_STEP * float(np.max(np.maximum(self.preloaded_approaches[1], 0.0) - first))
 
-        def traction(further: Array) -> Array:
-            return self._way(place, amplitude, approach - further[3], further[:3]).traction
+        def traction(extra_displacement: Array) -> Array:
+            return self._friction_update(
+                displacement, modal_coordinates, approach - extra_displacement[3], extra_displacement[:3]
+            ).traction
 
         here = traction(np.zeros(4))
         return np.stack([(traction(motion) - here) / step for motion in step * np.eye(4)], axis=-1)
 
 
-def told(preload: float, moment: float, place: Place) -> str:
+def summarise_inputs(preload: float, moment: float, displacement: RelativeDisplacement) -> str:
     """Inputs that are not zero, as text."""
     names = ("preload", "moment", "s_rel_x", "s_rel_y", "s_rel_z", "theta_x", "theta_y", "theta_z")
-    values = dict(zip(names, (preload, moment, *place.six), strict=True))
+    values = dict(zip(names, (preload, moment, *displacement.components), strict=True))
     return ", ".join(f"{name} = {value:g}" for name, value in values.items() if value)

@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from ...mechanics.steps import STEPS
-from ...quantity import Number, where
-from ..model import BEYOND, Loop, Model, Outside, Ramp, Values, Variable
-from .contact import Place
+from ...mechanics.steps import STABLE_STEP_OUTPUTS
+from ...quantity import Number, select
+from ..model import EXTRAPOLATION_WARNING, LoadCycle, LoadRamp, Model, ValidityLimit, Values, Variable
+from .contact import RelativeDisplacement
 from .law import Bolted, BoltedJoint, working_preload
 from .outputs import bolt_force_name
 from .spring import BoltedJointSpring
@@ -21,9 +21,9 @@ _PRELOAD = 30e3
 """Least end of the ramp [N] where no preload is stated: bolts are tightened near to yield."""
 _LOOP_PRELOAD = 9e3
 """Least preload [N] of loops where none is stated: that of the published pressures."""
-_APART = ("preload", "moment", "s_rel_z", "theta_x", "theta_y")
+_NORMAL_INPUTS = ("preload", "moment", "s_rel_z", "theta_x", "theta_y")
 _INTERFACE = ("C_xx", "C_yy", "C_zz", "eta_t", "eta_n")
-_PLACE = (*_APART, "s_rel_x", "s_rel_y", "theta_z")
+_MOTION_INPUTS = (*_NORMAL_INPUTS, "s_rel_x", "s_rel_y", "theta_z")
 
 
 def _three(v: Values, name: str) -> tuple[float, float, float]:
@@ -31,9 +31,9 @@ def _three(v: Values, name: str) -> tuple[float, float, float]:
 
 
 def _evolve(spring: BoltedJointSpring, v: Values, memory: Any) -> tuple[Mapping[str, float], Any]:
-    place = Place(np.array([*_three(v, "s_rel"), *_three(v, "theta")]))
+    place = RelativeDisplacement(np.array([*_three(v, "s_rel"), *_three(v, "theta")]))
     rates = (*_three(v, "v_rel"), *_three(v, "omega"))
-    return spring.evolve(v["preload"], v["moment"], place, rates, memory)
+    return spring.advance(v["preload"], v["moment"], place, rates, memory)
 
 
 def _reach(spring: BoltedJointSpring, v: Values) -> tuple[float, float]:
@@ -61,10 +61,10 @@ def _variant(model: Model, joint: Bolted) -> Model:
     """
     assert model.loop
     loop = replace(model.loop, settings={"preload": max(_LOOP_PRELOAD, 2.0 * joint.embedding)})
-    return _whole(replace(model, loop=loop), joint)
+    return _with_bolt_forces(replace(model, loop=loop), joint)
 
 
-def _whole(model: Model, joint: Bolted) -> Model:
+def _with_bolt_forces(model: Model, joint: Bolted) -> Model:
     """With the forces of the bolts where the sides are elastic; then all outputs follow all motions, but
     eta and C of a vibration, which are those of the interface.
     """
@@ -77,7 +77,7 @@ def _whole(model: Model, joint: Bolted) -> Model:
     forces = [
         Variable(bolt_force_name(j), "N", meaning.format(j + 1), 1e4) for j in range(round(joint.n_bolts))
     ]
-    inputs = ("preload", "moment", *_PLACE[2:])
+    inputs = ("preload", "moment", *_MOTION_INPUTS[2:])
     known = {
         name: (*inputs, *(v for v in given if v not in inputs)) for name, given in model.dependencies.items()
     }
@@ -95,9 +95,9 @@ MODELS = (
         joint="bolted_joint",
         doc="Bolted joint under uneven pressure: motion in, force out",
         parameters=BoltedJoint,
-        spring=BoltedJointSpring.of,
+        tabulate=BoltedJointSpring.of,
         inputs=(
-            Variable("preload", "N", "pre-tightening force of each bolt", 1e4, low=0.0),
+            Variable("preload", "N", "pre-tightening force of each bolt", 1e4, minimum=0.0),
             Variable("moment", "N.m", "bending moment on the joint", 1e3),
             Variable("s_rel_x", "m", "displacement from the tightened state, along the rows", 1e-6),
             Variable("s_rel_y", "m", "displacement from the tightened state, across the rows", 1e-6),
@@ -145,38 +145,41 @@ MODELS = (
             Variable("eta_loop", "1", "loss factor of the loop whose amplitude is the present shift"),
             # nominal as of eta_loop = 1, whose round-off it has: sqrt(mass K)
             Variable("C_loop", "N.s/m", "its viscous equivalent, as C_xx is that of eta_t", 1e6),
-            *(Variable(name, "s", f"{doc}: along x, y or z, with `mass` on it", 1e-4) for name, doc in STEPS),
+            *(
+                Variable(name, "s", f"{doc}: along x, y or z, with `mass` on it", 1e-4)
+                for name, doc in STABLE_STEP_OUTPUTS
+            ),
         ),
         evaluate=lambda s, v: _evolve(s, v, s.at_rest())[0],
-        rest=BoltedJointSpring.at_rest,
-        evolve=_evolve,
-        outside=(
-            Outside(
+        initial_history=BoltedJointSpring.initial_history,
+        advance=_evolve,
+        validity_limits=(
+            ValidityLimit(
                 "moment",
                 lambda j, end, v: (-_row_moment(j, v["preload"]), _row_moment(j, v["preload"])),
                 "a bolt force would be negative; the contact is open where the pressure would be",
             ),
-            Outside("p_max", lambda j, end, v: (-math.inf, end[1]), BEYOND),
-            Outside(
+            ValidityLimit("p_max", lambda j, end, v: (-math.inf, end[1]), EXTRAPOLATION_WARNING),
+            ValidityLimit(
                 "slip",
-                lambda j, end, v: (-math.inf, where(j.memory, 2.0, LINEAR)),
+                lambda j, end, v: (-math.inf, select(j.memory, 2.0, LINEAR)),
                 "the shear is beyond what friction holds: none if open; without memory the joint would slip",
             ),
         ),
-        ramp=Ramp("preload", _PRELOAD, 100.0, reach=_reach),
-        loop=Loop("s_rel_x", 5e-6, {"preload": _LOOP_PRELOAD}),
+        ramp=LoadRamp("preload", _PRELOAD, 100.0, find_range=_reach),
+        loop=LoadCycle("s_rel_x", 5e-6, {"preload": _LOOP_PRELOAD}),
         dependencies={
-            "f_x": (*_PLACE, "v_rel_x", "omega_z"),
-            "f_y": (*_PLACE, "v_rel_y", "omega_z"),
-            "m_z": (*_PLACE, "v_rel_x", "v_rel_y", "omega_z"),
-            **dict.fromkeys(("f_z", "m_x", "m_y"), (*_PLACE, "v_rel_z", "omega_x", "omega_y")),
-            **dict.fromkeys(("K_xx", "K_yy", "K_rz", "slip", "E_loss", "eta_loop", "C_loop"), _PLACE),
-            **{name: _PLACE for name, _ in STEPS},
-            **dict.fromkeys(("K_zz", "K_rx", "K_ry"), _PLACE),
+            "f_x": (*_MOTION_INPUTS, "v_rel_x", "omega_z"),
+            "f_y": (*_MOTION_INPUTS, "v_rel_y", "omega_z"),
+            "m_z": (*_MOTION_INPUTS, "v_rel_x", "v_rel_y", "omega_z"),
+            **dict.fromkeys(("f_z", "m_x", "m_y"), (*_MOTION_INPUTS, "v_rel_z", "omega_x", "omega_y")),
+            **dict.fromkeys(("K_xx", "K_yy", "K_rz", "slip", "E_loss", "eta_loop", "C_loop"), _MOTION_INPUTS),
+            **{name: _MOTION_INPUTS for name, _ in STABLE_STEP_OUTPUTS},
+            **dict.fromkeys(("K_zz", "K_rx", "K_ry"), _MOTION_INPUTS),
             "eta_t": (),
-            **dict.fromkeys(("C_xx", "C_yy", "C_zz", "eta_n", "p_mean", "p_max"), _APART),
+            **dict.fromkeys(("C_xx", "C_yy", "C_zz", "eta_n", "p_mean", "p_max"), _NORMAL_INPUTS),
         },
-        hidden=("pattern", "plate", "field", "bodies"),
-        variant=_variant,
+        fixed_parameters=("pattern", "plate", "field", "bodies"),
+        make_variant=_variant,
     ),
 )

@@ -2,11 +2,11 @@
 
 import math
 
-from ..kind import Kind, RoughSurface
-from ..model import BEYOND, Model, Outside, Ramp, Variable
+from ..kind import JointKind, RoughSurface
+from ..model import EXTRAPOLATION_WARNING, LoadRamp, Model, ValidityLimit, Variable
 from .spring import GearContact, GearContactSpring, RoughGearContact
 
-_PART = 0.05
+_RAMP_PRESSURE_RATIO = 0.05
 """Mean pressure over the hardness [1] at the end of the load ramp, or beyond: at twice a stated load."""
 
 MODELS = (
@@ -15,7 +15,7 @@ MODELS = (
         joint="gear_contact",
         doc="Tooth contact of a gear: force in, motion out",
         parameters=GearContact,
-        spring=GearContactSpring.of,
+        tabulate=GearContactSpring.tabulate,
         inputs=(Variable("f", "N", "normal load of the tooth contact", 1e3),),
         outputs=(
             Variable("s_rel", "m", "approach of the two flanks from first touch", 1e-6),
@@ -24,22 +24,30 @@ MODELS = (
             Variable("elastic_fraction", "1", "elastic part of the real contact area"),
         ),
         evaluate=lambda s, v: s.approach(v["f"]),
-        outside=(
-            Outside("f", lambda j, end, v: (0.0, math.inf), "the force is tensile, the flanks are separated"),
-            Outside("f", lambda j, end, v: (-math.inf, j.A_0 * end[1]), BEYOND),
+        validity_limits=(
+            ValidityLimit(
+                "f", lambda j, end, v: (0.0, math.inf), "the force is tensile, the flanks are separated"
+            ),
+            ValidityLimit("f", lambda j, end, v: (-math.inf, j.A_0 * end[1]), EXTRAPOLATION_WARNING),
         ),
-        ramp=Ramp(
-            "f", 3e3, 10.0, reach=lambda s, v: (0.0, max(2.0 * v["f"], _PART * s.joint.A_0 * s.curve.end[1]))
+        ramp=LoadRamp(
+            "f",
+            3e3,
+            10.0,
+            find_range=lambda s, v: (
+                0.0,
+                max(2.0 * v["f"], _RAMP_PRESSURE_RATIO * s.joint.A_0 * s.curve.end[1]),
+            ),
         ),
         dependencies={},
-        hidden=("mu", "traction_ratio"),
+        fixed_parameters=("mu", "traction_ratio"),
     ),
 )
 
-KIND = Kind(
+KIND = JointKind(
     name="gear_contact",
     package=__name__,
-    default="beveloid",
+    default_stem="beveloid",
     laws={"yu2022": GearContact, "roughness": RoughGearContact},
     models=MODELS,
     surfaces=(RoughSurface("surface1", direction="x"), RoughSurface("surface2", direction="y")),

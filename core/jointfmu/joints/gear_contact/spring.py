@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...contact.interface import at_pressure
-from ...contact.laws.roughness import Roughness
+from ...contact.laws.roughness import RoughnessLaw
 from ...contact.laws.yu2022 import Yu2022
-from ...mechanics.curve import Curve, approach_curve
+from ...mechanics.curve import Curve, tabulate_approach
 from ...quantity import Array, Number
 
 
@@ -19,11 +19,11 @@ class GearContact(Yu2022):
 
 
 @dataclass(frozen=True, kw_only=True)
-class RoughGearContact(Roughness):
+class RoughGearContact(RoughnessLaw):
     """Parameters of the gear contact with the law `roughness`."""
 
 
-Contact: TypeAlias = GearContact | RoughGearContact
+ContactParameters: TypeAlias = GearContact | RoughGearContact
 """Parameter set of a gear contact with either law."""
 
 
@@ -31,20 +31,20 @@ Contact: TypeAlias = GearContact | RoughGearContact
 class GearContactSpring:
     """Tabulated gear contact: normal force in, approach out."""
 
-    joint: Contact
+    joint: ContactParameters
     curve: Curve
 
     @classmethod
-    def of(cls, joint: Contact) -> "GearContactSpring":
+    def tabulate(cls, joint: ContactParameters) -> "GearContactSpring":
         """Tabulate a parameter set."""
-        return cls(joint, approach_curve(joint))
+        return cls(joint, tabulate_approach(joint))
 
     @property
     def max_force(self) -> float:
         """Force at the end of the table [N]: the hardness on the whole nominal area."""
         return self.joint.A_0 * self.curve.end[1]
 
-    def approach(self, f: ArrayLike) -> dict[str, Array]:
+    def evaluate(self, f: ArrayLike) -> dict[str, Array]:
         """Outputs at normal forces f (...) [N].
 
         s_rel [m] approach from first contact, K_N [N/m], A_r [m2], elastic_fraction [1]. For a tensile force
@@ -56,11 +56,18 @@ class GearContactSpring:
         contact_force = np.where(force > 0.0, force, self.max_force)  # any force that the law accepts
         state = at_pressure(self.joint, contact_force / self.joint.A_0)
         first = self.curve.displacement[0]
-        return contact(self.joint, force, delta - first, stiffness, state["A_r"], state["elastic_fraction"])
+        return contact_outputs(
+            self.joint, force, delta - first, stiffness, state["A_r"], state["elastic_fraction"]
+        )
 
 
-def contact(
-    joint: Contact, f: Number, approach: Number, stiffness: Number, area: Number, elastic: Number
+def contact_outputs(
+    joint: ContactParameters,
+    f: Number,
+    approach: Number,
+    stiffness: Number,
+    area: Number,
+    elastic_fraction: Number,
 ) -> dict[str, Number]:
     """Outputs of the gear contact at a normal force f [N].
 
@@ -73,5 +80,5 @@ def contact(
         "s_rel": approach,
         "K_N": joint.A_0 * stiffness,
         "A_r": np.where(f > 0.0, area, 0.0),
-        "elastic_fraction": np.where(f > 0.0, elastic, 0.0),
+        "elastic_fraction": np.where(f > 0.0, elastic_fraction, 0.0),
     }

@@ -1,20 +1,20 @@
 """Gear mesh: tooth pairs with rough flanks (Yu 2022) and bending teeth between two wheels."""
 
-from ...mechanics.steps import STEPS
-from ..kind import Kind, RoughSurface
-from ..model import BEYOND, Model, Outside, Ramp, Values, Variable
+from ...mechanics.steps import STABLE_STEP_OUTPUTS
+from ..kind import JointKind, RoughSurface
+from ..model import EXTRAPOLATION_WARNING, LoadRamp, Model, ValidityLimit, Values, Variable
 from .spring import GearMesh, GearMeshSpring, RoughGearMesh
 
 _ANGLES = ("phi1", "phi2")
-_PART = 0.3
+_RAMP_DEFLECTION_RATIO = 0.3
 """Deflection at the end of the load ramp over that at the end of the table [1]: gears are loaded less."""
 
 
-def _reach(spring: GearMeshSpring, v: Values) -> tuple[float, float]:
+def _ramp_range(spring: GearMeshSpring, v: Values) -> tuple[float, float]:
     """Angles phi1 [rad] at which the driving flanks touch, and at which the load ramp ends."""
     mesh = spring.joint
     touch = 0.5 * mesh.backlash - mesh.r_b2 * v["phi2"]
-    return touch / mesh.r_b1, (touch + _PART * spring.curve.end[0]) / mesh.r_b1
+    return touch / mesh.r_b1, (touch + _RAMP_DEFLECTION_RATIO * spring.curve.end[0]) / mesh.r_b1
 
 
 MODELS = (
@@ -23,7 +23,7 @@ MODELS = (
         joint="gear_mesh",
         doc="Mesh of two gear wheels with rough flanks and backlash: motion in, torque out",
         parameters=GearMesh,
-        spring=GearMeshSpring.of,
+        tabulate=GearMeshSpring.tabulate,
         inputs=(
             Variable("phi1", "rad", "angle of wheel 1; wheels roll with r_b1 phi1 + r_b2 phi2 = 0"),
             Variable("w1", "rad/s", "speed of wheel 1"),
@@ -40,20 +40,25 @@ MODELS = (
             Variable("K", "N/m", "stiffness df/ds_rel at the present phase of the mesh cycle", 1e8),
             Variable("pairs", "1", "tooth pairs in contact at the present phase, if the flanks touch"),
             Variable("E", "J", "elastic energy of the mesh", 1e-2),
-            *(Variable(name, "s", f"{doc}: with inertia1, inertia2, K, d", 1e-3) for name, doc in STEPS),
+            *(
+                Variable(name, "s", f"{doc}: with inertia1, inertia2, K, d", 1e-3)
+                for name, doc in STABLE_STEP_OUTPUTS
+            ),
         ),
         evaluate=lambda s, v: s.motion(v["phi1"], v["w1"], v["phi2"], v["w2"]),
-        outside=(Outside("s_rel", lambda j, end, v: (-end[0], end[0]), BEYOND),),
-        ramp=Ramp("phi1", 1.5e-3, 5e-6, reach=_reach),
-        dependencies=dict.fromkeys(("s_rel", "K", "pairs", "E", *(name for name, _ in STEPS)), _ANGLES),
-        hidden=("mu", "traction_ratio"),
+        validity_limits=(ValidityLimit("s_rel", lambda j, end, v: (-end[0], end[0]), EXTRAPOLATION_WARNING),),
+        ramp=LoadRamp("phi1", 1.5e-3, 5e-6, find_range=_ramp_range),
+        dependencies=dict.fromkeys(
+            ("s_rel", "K", "pairs", "E", *(name for name, _ in STABLE_STEP_OUTPUTS)), _ANGLES
+        ),
+        fixed_parameters=("mu", "traction_ratio"),
     ),
 )
 
-KIND = Kind(
+KIND = JointKind(
     name="gear_mesh",
     package=__name__,
-    default="beveloid_pair",
+    default_stem="beveloid_pair",
     laws={"yu2022": GearMesh, "roughness": RoughGearMesh},
     models=MODELS,
     surfaces=(RoughSurface("surface1", direction="x"), RoughSurface("surface2", direction="y")),

@@ -8,43 +8,45 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...contact.laws.roughness import Roughness
+from ...contact.laws.roughness import RoughnessLaw
 from ...contact.laws.yu2022 import Yu2022
-from ...mechanics.curve import Curve, approach_curve, assemble, refined
-from ...mechanics.steps import mobility, stable_steps
-from ...quantity import Array, Number, quantity, smooth_step, smooth_step_integral, smooth_step_slopes
+from ...mechanics.curve import Curve, assemble_curve, refine_curve, tabulate_approach
+from ...mechanics.steps import largest_stable_steps, mobility
+from ...quantity import Array, Number, quantity_field, smooth_step, smooth_step_integral, smooth_step_slopes
 
 CLOSING_STEPS = 96
 """Steps of a tooth pair's table over the closing of the contact [1]; doubled until the table is accurate."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class Wheels:
+class GearWheels:
     """Geometry, inertia, damping and tooth stiffness of the two wheels."""
 
-    r_b1: float = quantity("m", "base radius of wheel 1", gt=0.0)
-    r_b2: float = quantity("m", "base radius of wheel 2", gt=0.0)
-    teeth1: float = quantity("1", "number of teeth of wheel 1", ge=1.0, whole=True)
-    backlash: float = quantity("m", "backlash along the line of action", ge=0.0)
-    K_tooth: float = quantity("N/m", "bending stiffness of one tooth pair, in series with its flanks", gt=0.0)
-    contact_ratio: float = quantity("1", "mean number of tooth pairs in contact", ge=1.0, lt=3.0)
-    engagement: float = quantity(
+    r_b1: float = quantity_field("m", "base radius of wheel 1", gt=0.0)
+    r_b2: float = quantity_field("m", "base radius of wheel 2", gt=0.0)
+    teeth1: float = quantity_field("1", "number of teeth of wheel 1", ge=1.0, is_integer=True)
+    backlash: float = quantity_field("m", "backlash along the line of action", ge=0.0)
+    K_tooth: float = quantity_field(
+        "N/m", "bending stiffness of one tooth pair, in series with its flanks", gt=0.0
+    )
+    contact_ratio: float = quantity_field("1", "mean number of tooth pairs in contact", ge=1.0, lt=3.0)
+    engagement: float = quantity_field(
         "1",
         "time in which a pair takes up its load, over the shorter of the times with and without it",
         gt=0.0,
         le=1.0,
     )
-    d: float = quantity("N.s/m", "damping along the line of action while the flanks touch", ge=0.0)
-    overlap_ratio: float = quantity(
+    d: float = quantity_field("N.s/m", "damping along the line of action while the flanks touch", ge=0.0)
+    overlap_ratio: float = quantity_field(
         "1", "face width over the axial pitch of a helical mesh, 0 of a spur one", ge=0.0, default=0.0
     )
-    inertia1: float = quantity(
+    inertia1: float = quantity_field(
         "kg.m2",
         "inertia of wheel 1 and its load, used only for the stable steps; 0: fixed",
         ge=0.0,
         default=0.0,
     )
-    inertia2: float = quantity(
+    inertia2: float = quantity_field(
         "kg.m2",
         "inertia of wheel 2 and its load, used only for the stable steps; 0: fixed",
         ge=0.0,
@@ -53,25 +55,25 @@ class Wheels:
 
 
 @dataclass(frozen=True, kw_only=True)
-class GearMesh(Wheels, Yu2022):
+class GearMesh(GearWheels, Yu2022):
     """Parameters of the gear mesh with flanks by the law of Yu 2022."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class RoughGearMesh(Wheels, Roughness):
+class RoughGearMesh(GearWheels, RoughnessLaw):
     """Parameters of the gear mesh with flanks by the law `roughness`."""
 
 
-Mesh: TypeAlias = GearMesh | RoughGearMesh
+MeshParameters: TypeAlias = GearMesh | RoughGearMesh
 """Parameter set of a gear mesh with either law."""
 
 
-def base_pitch(mesh: Mesh) -> Number:
+def base_pitch(mesh: MeshParameters) -> Number:
     """Base pitch [m]: distance of adjacent teeth along the line of action."""
     return 2.0 * np.pi * mesh.r_b1 / mesh.teeth1
 
 
-def deflection(mesh: Mesh, motion: Sequence[Number]) -> Number:
+def deflection(mesh: MeshParameters, motion: Sequence[Number]) -> Number:
     """Deflection s_rel [m] along the line of action at (phi1, w1, phi2, w2) [rad, rad/s].
 
     It is r_b1 phi1 + r_b2 phi2 minus half the backlash, with its sign; 0 within the backlash.
@@ -82,14 +84,14 @@ def deflection(mesh: Mesh, motion: Sequence[Number]) -> Number:
     return rolling - np.minimum(np.maximum(rolling, 0.0 - half_backlash), half_backlash)
 
 
-def phase(mesh: Mesh, motion: Sequence[Number]) -> Number:
+def mesh_phase(mesh: MeshParameters, motion: Sequence[Number]) -> Number:
     """Phase xi [1] of the mesh cycle at (phi1, w1, phi2, w2): mean rolling distance over the base pitch."""
     phi1, _, phi2, _ = motion
     return 0.5 * (mesh.r_b1 * phi1 - mesh.r_b2 * phi2) / base_pitch(mesh)
 
 
-def in_series(
-    mesh: Mesh, approach: Number, pressure: Number, stiffness: Number, bend: Number
+def combine_in_series(
+    mesh: MeshParameters, approach: Number, pressure: Number, stiffness: Number, d2p: Number
 ) -> tuple[Number, Number, Number, Number]:
     """Deflection [m], load [N], stiffness [N/m] and its derivative [N/m2] of flanks and teeth in series.
 
@@ -100,10 +102,10 @@ def in_series(
     """
     load, contact = mesh.A_0 * pressure, mesh.A_0 * stiffness
     share = mesh.K_tooth / (contact + mesh.K_tooth)  # of the flanks in the deflection
-    return approach + load / mesh.K_tooth, load, contact * share, mesh.A_0 * bend * share**3
+    return approach + load / mesh.K_tooth, load, contact * share, mesh.A_0 * d2p * share**3
 
 
-def pair_curve(mesh: Mesh) -> tuple[Curve, float]:
+def tabulate_pair(mesh: MeshParameters) -> tuple[Curve, float]:
     """Table of load [N] over deflection [m] of a tooth pair, and the deflection [m] at the end of closing.
 
     Closing is the first part of the contact, see `curve.closing_pressure`. Deflections count from first
@@ -112,29 +114,29 @@ def pair_curve(mesh: Mesh) -> tuple[Curve, float]:
 
     Raises ValueError and RuntimeError as `curve.approach_curve` and `curve.refine_curve` do.
     """
-    flanks = approach_curve(mesh)
+    flanks = tabulate_approach(mesh)
     length = -flanks.displacement[0]
-    closing = in_series(mesh, length, flanks.closed, 0.0, 0.0)[0]
-    return refined(lambda parts: _tabulate(mesh, flanks, parts), 1), float(closing)
+    closing = combine_in_series(mesh, length, flanks.closing_end_load, 0.0, 0.0)[0]
+    return refine_curve(lambda parts: _tabulate_pair(mesh, flanks, parts), 1), float(closing)
 
 
-def _tabulate(mesh: Mesh, flanks: Curve, parts: int) -> Curve:
+def _tabulate_pair(mesh: MeshParameters, flanks: Curve, divisions: int) -> Curve:
     """Table of a tooth pair; each segment of the flanks' curve is divided into `divisions` steps."""
     nodes = flanks.displacement
     closing_index = int(np.searchsorted(nodes, 0.0))
-    t = np.linspace(0.0, 1.0, CLOSING_STEPS * parts + 1)
-    kinks = 1 + np.flatnonzero(flanks.bend_end[:-1] != flanks.bend_start[1:])
+    t = np.linspace(0.0, 1.0, CLOSING_STEPS * divisions + 1)
+    kinks = 1 + np.flatnonzero(flanks.slope_end[:-1] != flanks.slope_start[1:])
     ends = [closing_index, *(int(i) for i in kinks if i > closing_index), nodes.size - 1]
     abscissas = [(t**2 - 1.0) * -nodes[0]]
     for first, end in pairwise(ends):
-        steps = np.diff(nodes[first : end + 1])[:, None] * np.arange(parts) / parts
+        steps = np.diff(nodes[first : end + 1])[:, None] * np.arange(divisions) / divisions
         abscissas.append(np.append((nodes[first:end, None] + steps).ravel(), nodes[end]))
     pieces = []
     for x, end in zip(abscissas, ends, strict=True):
         pressure, stiffness, bend = flanks.derivatives(x, 2)
-        bend[-1] = flanks.bend_end[end - 1]  # from below: the derivative jumps where a regime ends
-        pieces.append(in_series(mesh, x - nodes[0], pressure, stiffness, bend))
-    return assemble(pieces, flanks.error)
+        bend[-1] = flanks.slope_end[end - 1]  # from below: the derivative jumps where a regime ends
+        pieces.append(combine_in_series(mesh, x - nodes[0], pressure, stiffness, bend))
+    return assemble_curve(pieces, flanks.error)
 
 
 @dataclass(frozen=True, slots=True)
@@ -152,30 +154,30 @@ class GearMeshSpring:
     closing_end : [m] deflection at which the closing of the contact ends
     """
 
-    joint: Mesh
+    joint: MeshParameters
     curve: Curve
-    closing: float
+    closing_end: float
 
     @classmethod
-    def of(cls, mesh: Mesh) -> "GearMeshSpring":
+    def tabulate(cls, mesh: MeshParameters) -> "GearMeshSpring":
         """Tabulate a parameter set."""
-        return cls(mesh, *pair_curve(mesh))
+        return cls(mesh, *tabulate_pair(mesh))
 
-    def motion(self, phi1: ArrayLike, w1: ArrayLike, phi2: ArrayLike, w2: ArrayLike) -> dict[str, Array]:
+    def evaluate(self, phi1: ArrayLike, w1: ArrayLike, phi2: ArrayLike, w2: ArrayLike) -> dict[str, Array]:
         """Outputs at wheel angles phi1, phi2 (...) [rad] and speeds w1, w2 (...) [rad/s]."""
         motion = tuple(np.asarray(x, dtype=np.float64) for x in (phi1, w1, phi2, w2))
         s = np.abs(deflection(self.joint, motion))
         load, stiffness = self.curve.derivatives(s, 1)
-        return torques(self.joint, motion, load, stiffness, self.curve.energy(s), self.closing)
+        return mesh_outputs(self.joint, motion, load, stiffness, self.curve.energy(s), self.closing_end)
 
 
-def torques(
-    mesh: Mesh,
+def mesh_outputs(
+    mesh: MeshParameters,
     motion: Sequence[Number],
     load: Number,
     stiffness: Number,
     energy: Number,
-    closing: Number,
+    closing_end: Number,
 ) -> dict[str, Number]:
     """Outputs of the gear mesh at a motion (phi1, w1, phi2, w2).
 
@@ -184,11 +186,13 @@ def torques(
     """
     _, w1, _, w2 = motion
     s = deflection(mesh, motion)
-    count, slope = pairs(mesh.contact_ratio, mesh.engagement, mesh.overlap_ratio, phase(mesh, motion))
-    contact_factor = smooth_step(np.abs(s) / closing)
+    count, slope = pairs_in_contact(
+        mesh.contact_ratio, mesh.engagement, mesh.overlap_ratio, mesh_phase(mesh, motion)
+    )
+    contact_factor = smooth_step(np.abs(s) / closing_end)
     force = count * load * np.sign(s) + mesh.d * contact_factor * (mesh.r_b1 * w1 + mesh.r_b2 * w2)
     w = mobility(mesh.inertia1, mesh.r_b1) + mobility(mesh.inertia2, mesh.r_b2)
-    at_once, side_by_side = stable_steps(count * stiffness, mesh.d * contact_factor, w)
+    at_once, side_by_side = largest_stable_steps(count * stiffness, mesh.d * contact_factor, w)
     change = 0.5 * slope * energy / base_pitch(mesh)  # -dU/d(r_b phi) of one wheel by the change of the phase
     return {
         "tau1": 0.0 - mesh.r_b1 * (force + change),
@@ -203,14 +207,14 @@ def torques(
     }
 
 
-_NARROW = 1e-6
+_MIN_OVERLAP_RATIO = 1e-6
 """Overlap ratio [1] below which a helical mesh counts as a spur mesh. The mean over the face width then
 differs from the value at mid-width by less than round-off: by 1/24 of the squared ratio times the curvature,
 which is at most 6/width^2.
 """
 
 
-def pairs(
+def pairs_in_contact(
     contact_ratio: Number, engagement: Number, overlap_ratio: Number, phase: Number
 ) -> tuple[Number, Number]:
     """Number of tooth pairs in contact [1] at phases (...) [1] of the mesh cycle, and its derivative [1].
@@ -219,18 +223,18 @@ def pairs(
     are spread evenly over `overlap_ratio` cycles, so the number of pairs is the mean over this range. Its
     mean over a cycle stays the contact ratio; its fluctuation is smaller than that of a spur mesh.
     """
-    helical = overlap_ratio > _NARROW
+    helical = overlap_ratio > _MIN_OVERLAP_RATIO
     length = np.where(helical, overlap_ratio, 1.0)
-    spur_pairs, slope, _ = _section(contact_ratio, engagement, phase)
-    pairs_after, _, integral_after = _section(contact_ratio, engagement, phase + 0.5 * length)
-    pairs_before, _, integral_before = _section(contact_ratio, engagement, phase - 0.5 * length)
+    spur_pairs, slope, _ = _section_pairs(contact_ratio, engagement, phase)
+    pairs_after, _, integral_after = _section_pairs(contact_ratio, engagement, phase + 0.5 * length)
+    pairs_before, _, integral_before = _section_pairs(contact_ratio, engagement, phase - 0.5 * length)
     mean = contact_ratio + (integral_after - integral_before) / length
     return np.where(helical, mean, spur_pairs), np.where(
         helical, (pairs_after - pairs_before) / length, slope
     )
 
 
-def _section(contact_ratio: Number, engagement: Number, phase: Number) -> tuple[Number, Number, Number]:
+def _section_pairs(contact_ratio: Number, engagement: Number, phase: Number) -> tuple[Number, Number, Number]:
     """Number N of tooth pairs in a transverse section [1], dN/d(phase), integral of N - contact_ratio.
 
     floor(contact_ratio) pairs are always in contact. One more pair is in contact during the fractional part

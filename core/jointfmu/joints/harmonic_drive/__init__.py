@@ -1,21 +1,21 @@
 """Harmonic drive: torsional stiffness, hysteresis, friction, lost motion and kinematic error."""
 
-from ..kind import Kind, RoughSurface
+from ..kind import JointKind, RoughSurface
 from .given import CatalogueDrive, TableDrive
 from .law import HarmonicDrive, RoughHarmonicDrive
 from .variables import MODELS
 
-KIND = Kind(
+KIND = JointKind(
     name="harmonic_drive",
     package=__name__,
-    default="cd_14_100",
+    default_stem="cd_14_100",
     laws={
         "hu2023": HarmonicDrive,
         "roughness": RoughHarmonicDrive,
         "catalogue": CatalogueDrive,
         "table": TableDrive,
     },
-    law_of=lambda drive: drive.law,
+    extract_law=lambda drive: drive.law,
     models=MODELS,
     surfaces=(RoughSurface("surface", areal=True),),
 )

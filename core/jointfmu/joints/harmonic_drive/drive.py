@@ -26,13 +26,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...quantity import Interval, Limit, Number, check, check_limits, quantity, where
+from ...quantity import Interval, Number, ParameterLimit, check_fields, check_limits, quantity_field, select
 
 HARMONICS = (1, 2, 4)
 """Periods of the kinematic error per turn of the wave generator."""
-WIDTH = 0.01
+PLAY_WIDTH_RATIO = 0.01
 """T_p over rated torque [1]: at 4 % of rated torque the play has reached 99.93 % of its final value."""
-MOST_COEFFICIENT = 0.2
+MAX_TEMPERATURE_COEFFICIENT = 0.2
 """Largest relative change of friction per kelvin [1/K]: twice that of the most viscous cylinder oil."""
 
 
@@ -40,93 +40,93 @@ MOST_COEFFICIENT = 0.2
 class Drive(ABC):
     """Parameters of a harmonic drive except those of its midline: torque over wind-up without hysteresis."""
 
-    ratio: float = quantity(
+    ratio: float = quantity_field(
         "1", "speed ratio of wave generator and output; negative: they turn in opposite senses; not 0"
     )
-    d: float = quantity("N.m.s/rad", "viscous damping at the output", ge=0.0)
-    rated_torque: float = quantity("N.m", "rated torque", gt=0.0)
-    hysteresis_loss: float = quantity(
+    d: float = quantity_field("N.m.s/rad", "viscous damping at the output", ge=0.0)
+    rated_torque: float = quantity_field("N.m", "rated torque", gt=0.0)
+    hysteresis_loss: float = quantity_field(
         "rad", "angle between the branches at zero torque, after rated torque; 0: none", ge=0.0, default=0.0
     )
-    hysteresis_stiffness: float = quantity(
+    hysteresis_stiffness: float = quantity_field(
         "N.m/rad",
         "extra stiffness for small motions, before friction slips; 0: K_WTS at zero torque, or as needed",
         ge=0.0,
         default=0.0,
     )
-    lost_motion: float = quantity(
+    lost_motion: float = quantity_field(
         "rad", "play of the output around zero torque, from end to end; 0: none", ge=0.0, default=0.0
     )
-    friction_coulomb: float = quantity("N.m", "dry friction at the wave generator", ge=0.0, default=0.0)
-    friction_stribeck: float = quantity(
+    friction_coulomb: float = quantity_field("N.m", "dry friction at the wave generator", ge=0.0, default=0.0)
+    friction_stribeck: float = quantity_field(
         "N.m", "extra dry friction at standstill that vanishes with speed (Stribeck)", ge=0.0, default=0.0
     )
-    stribeck_speed: float = quantity(
+    stribeck_speed: float = quantity_field(
         "rad/s",
         "speed of the wave generator at which friction_stribeck has decreased to 1/e",
         gt=0.0,
         default=10.0,
     )
-    friction_viscous: float = quantity(
+    friction_viscous: float = quantity_field(
         "N.m.s/rad", "viscous friction coefficient at the wave generator", ge=0.0, default=0.0
     )
-    load_loss: float = quantity(
+    load_loss: float = quantity_field(
         "1", "dry friction at the wave generator over the torque transmitted to it", ge=0.0, default=0.0
     )
-    load_loss_back: float = quantity(
+    load_loss_back: float = quantity_field(
         "1", "load_loss while the load drives the motor; negative: equal to load_loss", default=-1.0
     )
-    presliding: float = quantity(
+    presliding: float = quantity_field(
         "rad",
         "angle of the wave generator over which dry friction builds up to 1 - 1/e",
         gt=0.0,
         default=0.01,
     )
-    temperature_factor: float = quantity("1", "factor of all friction", ge=0.0, default=1.0)
-    viscous_temperature_coefficient: float = quantity(
+    temperature_factor: float = quantity_field("1", "factor of all friction", ge=0.0, default=1.0)
+    viscous_temperature_coefficient: float = quantity_field(
         "1/K",
         "relative decrease of friction_viscous per kelvin above 293.15 K; 0: none",
-        ge=-MOST_COEFFICIENT,
-        le=MOST_COEFFICIENT,
+        ge=-MAX_TEMPERATURE_COEFFICIENT,
+        le=MAX_TEMPERATURE_COEFFICIENT,
         default=0.0,
     )
-    dry_temperature_coefficient: float = quantity(
+    dry_temperature_coefficient: float = quantity_field(
         "1/K",
         "relative decrease of dry friction per kelvin above 293.15 K; 0: none",
-        ge=-MOST_COEFFICIENT,
-        le=MOST_COEFFICIENT,
+        ge=-MAX_TEMPERATURE_COEFFICIENT,
+        le=MAX_TEMPERATURE_COEFFICIENT,
         default=0.0,
     )
-    inertia1: float = quantity(
+    inertia1: float = quantity_field(
         "kg.m2",
         "inertia of the motor on the wave generator, used only for the stable steps; 0: fixed",
         ge=0.0,
         default=0.0,
     )
-    inertia2: float = quantity(
+    inertia2: float = quantity_field(
         "kg.m2",
         "inertia of the body on the output, used only for the stable steps; 0: fixed",
         ge=0.0,
         default=1.0,
     )
-    error_1: float = quantity(
+    error_1: float = quantity_field(
         "rad",
         "kinematic error at the output, amplitude, one period per turn of the wave generator",
         default=0.0,
     )
-    error_1_phase: float = quantity("rad", "phase of error_1 at phi1 = 0", default=0.0)
-    error_2: float = quantity(
+    error_1_phase: float = quantity_field("rad", "phase of error_1 at phi1 = 0", default=0.0)
+    error_2: float = quantity_field(
         "rad", "kinematic error at the output, amplitude, two periods per turn", default=0.0
     )
-    error_2_phase: float = quantity("rad", "phase of error_2 at phi1 = 0", default=0.0)
-    error_4: float = quantity(
+    error_2_phase: float = quantity_field("rad", "phase of error_2 at phi1 = 0", default=0.0)
+    error_4: float = quantity_field(
         "rad", "kinematic error at the output, amplitude, four periods per turn", default=0.0
     )
-    error_4_phase: float = quantity("rad", "phase of error_4 at phi1 = 0", default=0.0)
+    error_4_phase: float = quantity_field("rad", "phase of error_4 at phi1 = 0", default=0.0)
 
     def __post_init__(self) -> None:
-        check(self)
-        check_limits(self, self.limits())
+        check_fields(self)
+        check_limits(self, self.find_limits())
 
     @property
     @abstractmethod
@@ -135,7 +135,7 @@ class Drive(ABC):
 
     @property
     @abstractmethod
-    def reach(self) -> Number:
+    def max_table_torque(self) -> Number:
         """Torque [N.m] at the end of the tabulated midline."""
 
     @property
@@ -153,26 +153,26 @@ class Drive(ABC):
         """Peak pressure (...) [Pa] of the contact pair at torques (...) [N.m]; 0 without a contact pair."""
 
     @property
-    def loss_back(self) -> Number:
+    def effective_load_loss_back(self) -> Number:
         """load_loss_back [1], or load_loss if load_loss_back is negative."""
-        return where(self.load_loss_back < 0.0, self.load_loss, self.load_loss_back)
+        return select(self.load_loss_back < 0.0, self.load_loss, self.load_loss_back)
 
     @property
-    def pair_units(self) -> Number:
+    def pair_scale(self) -> Number:
         """Ratio [1] of K_TS of the drive to K_TS in the figures of the paper (K_TS_pair)."""
         return 1.0
 
-    def limits(self) -> list[Limit]:
+    def find_limits(self) -> list[ParameterLimit]:
         """Intervals of parameters that depend on other parameters."""
-        any_sign = Interval.of(gt=np.minimum(2.0 * self.ratio, 0.0))
-        return [Limit("ratio", any_sign, "allowed are (-inf, 0) and (0, inf)")]
+        any_sign = Interval.from_bounds(gt=np.minimum(2.0 * self.ratio, 0.0))
+        return [ParameterLimit("ratio", any_sign, "allowed are (-inf, 0) and (0, inf)")]
 
-    def table_limits(self) -> list[Limit]:
+    def find_table_limits(self) -> list[ParameterLimit]:
         """Additional intervals that a table up to its last torque requires."""
         return []
 
 
-def amplitudes(drive: Drive) -> list[Number]:
+def error_amplitudes(drive: Drive) -> list[Number]:
     """Amplitudes [rad] of the kinematic error, one for each of HARMONICS."""
     return [getattr(drive, f"error_{n}") for n in HARMONICS]
 
@@ -180,16 +180,16 @@ def amplitudes(drive: Drive) -> list[Number]:
 def kinematic_error(drive: Drive, phi1: Number) -> tuple[Number, Number, Number]:
     """phi_error (...) [rad] at angles phi1 (...) [rad], and its first [1] and second derivative [1/rad]."""
     error = slope = bend = 0.0
-    for n, amplitude in zip(HARMONICS, amplitudes(drive), strict=True):
+    for n, amplitude in zip(HARMONICS, error_amplitudes(drive), strict=True):
         angle = n * phi1 + getattr(drive, f"error_{n}_phase")
         wave, wave_slope = amplitude * np.sin(angle), n * amplitude * np.cos(angle)
         error, slope, bend = error + wave, slope + wave_slope, bend - n * n * wave
     return error, slope, bend
 
 
-def play(drive: Drive, torque: Number) -> tuple[Number, Number, Number]:
+def lost_motion_angle(drive: Drive, torque: Number) -> tuple[Number, Number, Number]:
     """phi_p (...) [rad] at torques (...) [N.m], its first [rad/(N.m)] and second derivative [rad/(N.m)2]."""
-    width, half = WIDTH * drive.rated_torque, 0.5 * drive.lost_motion
+    width, half = PLAY_WIDTH_RATIO * drive.rated_torque, 0.5 * drive.lost_motion
     share = np.tanh(torque / width)
     slope = half * (1.0 - share * share) / width
     return half * share, slope, -2.0 * share * slope / width

@@ -26,36 +26,38 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...mechanics.jenkins import Moved, Sliders
-from ...mechanics.memory import Layout
+from ...mechanics.jenkins import Sliders, SliderUpdate
+from ...mechanics.memory import HistoryLayout
 from ...quantity import Array, Number
-from .drive import WIDTH, Drive
-from .hysteresis import shares
+from .drive import PLAY_WIDTH_RATIO, Drive
+from .hysteresis import slider_shares
 
-BRAKES = 8
+FRICTION_SLIDERS = 8
 """Number of sliders: friction from the virgin state is then within 1 % of M of Dahl's curve."""
-MEMORY = Layout({"brake": (BRAKES,), "angle": (), "limit": (2,), "begun": ()})
+HISTORY_LAYOUT = HistoryLayout({"brake": (FRICTION_SLIDERS,), "angle": (), "limit": (2,), "begun": ()})
 """History variables: slider torques [N.m], phi1 [rad], friction limits [N.m], 1 after the first step."""
-_LEFT = (*(np.linspace(1.0, 0.0, BRAKES, endpoint=False) ** 2).tolist(), 0.0)
-_SHARES = shares(1.0, _LEFT)
-SPRINGS, LIMITS = np.array(_SHARES[0]), np.array(_SHARES[1])
+_REMAINING_SHARES = (*(np.linspace(1.0, 0.0, FRICTION_SLIDERS, endpoint=False) ** 2).tolist(), 0.0)
+_SLIDER_SHARES = slider_shares(1.0, _REMAINING_SHARES)
+STIFFNESS_SHARES, LIMIT_SHARES = np.array(_SLIDER_SHARES[0]), np.array(_SLIDER_SHARES[1])
 """Shares [1] of the sliders in the total spring stiffness M/presliding and in the total limit M."""
-REFERENCE = 293.15
+REFERENCE_TEMPERATURE = 293.15
 """Temperature [K] at which the friction parameters hold: 20 degrees C, as in the catalogues."""
-TURNED = 0.1
+PRIOR_ROTATION_TIME = 0.1
 """Time [s] for which a drive is assumed to have rotated at its initial speed before initialization."""
 
 
-def dry_factor(drive: Drive, temperature: Number) -> Number:
+def dry_friction_factor(drive: Drive, temperature: Number) -> Number:
     """Factor (...) [1] on the limit of dry friction at temperatures (...) [K]."""
-    return drive.temperature_factor * _thinning(drive.dry_temperature_coefficient, temperature)
+    return drive.temperature_factor * _temperature_factor(drive.dry_temperature_coefficient, temperature)
 
 
-def _thinning(coefficient: Number, temperature: Number) -> Number:
-    return np.exp(-coefficient * (temperature - REFERENCE))
+def _temperature_factor(coefficient: Number, temperature: Number) -> Number:
+    return np.exp(-coefficient * (temperature - REFERENCE_TEMPERATURE))
 
 
-def limits(drive: Drive, w1: Number, tau: Number, temperature: Number = REFERENCE) -> tuple[Number, Number]:
+def friction_limits(
+    drive: Drive, w1: Number, tau: Number, temperature: Number = REFERENCE_TEMPERATURE
+) -> tuple[Number, Number]:
     """Friction limits M (...) [N.m] of positive and of negative friction.
 
     w1          : (...) [rad/s] speed of the wave generator
@@ -65,42 +67,46 @@ def limits(drive: Drive, w1: Number, tau: Number, temperature: Number = REFERENC
     Both functions of the sign of tau are smooth, with t = PLAY_WIDTH_RATIO rated_torque: |tau| is
     tau tanh(tau/t), and the weight of load_loss_back is (1 +- tanh(tau/t))/2.
     """
-    load_sign = np.tanh(tau / (WIDTH * drive.rated_torque))
+    load_sign = np.tanh(tau / (PLAY_WIDTH_RATIO * drive.rated_torque))
     size = tau * load_sign / np.abs(drive.ratio)
     stribeck = drive.friction_stribeck * np.exp(-((w1 / drive.stribeck_speed) ** 2))
-    difference = drive.loss_back - drive.load_loss
+    difference = drive.effective_load_loss_back - drive.load_loss
     back = 0.5 * (1.0 + load_sign * drive.ratio / np.abs(drive.ratio))
     sides = (drive.load_loss + difference * weight for weight in (back, 1.0 - back))
     constant = drive.friction_coulomb + stribeck
-    factor = dry_factor(drive, temperature)
+    factor = dry_friction_factor(drive, temperature)
     positive, negative = (factor * (constant + loss * size) for loss in sides)
     return positive, negative
 
 
-def viscous(drive: Drive, w1: Number, temperature: Number = REFERENCE) -> Number:
+def viscous_torque(drive: Drive, w1: Number, temperature: Number = REFERENCE_TEMPERATURE) -> Number:
     """Viscous friction torque (...) [N.m] at speeds w1 (...) [rad/s] and temperatures (...) [K]."""
-    factor = drive.temperature_factor * _thinning(drive.viscous_temperature_coefficient, temperature)
+    factor = drive.temperature_factor * _temperature_factor(
+        drive.viscous_temperature_coefficient, temperature
+    )
     return factor * drive.friction_viscous * w1
 
 
-def stiffness(drive: Drive) -> Number:
+def sticking_stiffness(drive: Drive) -> Number:
     """Total spring stiffness [N.m/rad] of the sliders: M/presliding.
 
     M is the larger limit at zero speed, rated torque and REFERENCE_TEMPERATURE.
     """
-    return np.maximum(*limits(drive, 0.0, drive.rated_torque)) / drive.presliding
+    return np.maximum(*friction_limits(drive, 0.0, drive.rated_torque)) / drive.presliding
 
 
 @dataclass(frozen=True, slots=True)
-class Friction(Sliders):
+class FrictionSliders(Sliders):
     """Sliders of the dry friction of a drive; `stiffness` (n) [N.m/rad], all zero without dry friction."""
 
     @classmethod
-    def of(cls, drive: Drive) -> "Friction":
+    def for_drive(cls, drive: Drive) -> "FrictionSliders":
         """Sliders for the parameters of a drive."""
-        return cls(float(stiffness(drive)) * SPRINGS)
+        return cls(float(sticking_stiffness(drive)) * STIFFNESS_SHARES)
 
-    def moved(self, memory: Array, phi1: ArrayLike, w1: ArrayLike, most: Sequence[ArrayLike]) -> Moved:
+    def advance(
+        self, history: Array, phi1: ArrayLike, w1: ArrayLike, limits: Sequence[ArrayLike]
+    ) -> SliderUpdate:
         """Advance the sliders on a straight path to phi1.
 
         history : (..., n) history variables at the start of the path, see HISTORY_LAYOUT
@@ -111,24 +117,26 @@ class Friction(Sliders):
         The sign of the elastic predictor of a slider selects the limit that holds for it. The first step
         initializes the sliders: they advance by PRIOR_ROTATION_TIME w1, whatever phi1 is, without loss.
         """
-        start, now = MEMORY.split(memory), np.stack(np.broadcast_arrays(*most), axis=-1)
-        if not self.acts:
+        start, now = HISTORY_LAYOUT.split(history), np.stack(np.broadcast_arrays(*limits), axis=-1)
+        if not self.is_active:
             none = np.zeros(now.shape[:-1])
-            return Moved(np.zeros((*none.shape, self.stiffness.size)), none, none)
+            return SliderUpdate(np.zeros((*none.shape, self.stiffness.size)), none, none)
         begun, force = start["begun"] > 0.0, start["brake"]
-        way = np.where(begun, np.asarray(phi1) - start["angle"], TURNED * np.asarray(w1))
+        way = np.where(begun, np.asarray(phi1) - start["angle"], PRIOR_ROTATION_TIME * np.asarray(w1))
         negative = force + self.stiffness * way[..., None] < 0.0
         before, after = (
-            np.where(negative, ends[..., 1, None], ends[..., 0, None]) * LIMITS
+            np.where(negative, ends[..., 1, None], ends[..., 0, None]) * LIMIT_SHARES
             for ends in (start["limit"], now)
         )
-        moved = self.along(force, way, before, after)
+        moved = self.advance_1d(force, way, before, after)
         return replace(moved, loss=np.where(begun, moved.loss, 0.0))
 
-    def after(self, braked: Moved, phi1: ArrayLike, most: Sequence[ArrayLike]) -> Array:
+    def pack_history(self, update: SliderUpdate, phi1: ArrayLike, limits: Sequence[ArrayLike]) -> Array:
         """New history variables (..., n) after the path; all zero without dry friction."""
-        shape = braked.loss.shape
-        if not self.acts:
-            return np.zeros((*shape, MEMORY.size))
-        limit = np.stack(np.broadcast_arrays(*most), axis=-1)
-        return MEMORY.joined({"brake": braked.force, "angle": phi1, "limit": limit, "begun": 1.0}, *shape)
+        shape = update.loss.shape
+        if not self.is_active:
+            return np.zeros((*shape, HISTORY_LAYOUT.size))
+        limit = np.stack(np.broadcast_arrays(*limits), axis=-1)
+        return HISTORY_LAYOUT.join(
+            {"brake": update.force, "angle": phi1, "limit": limit, "begun": 1.0}, *shape
+        )

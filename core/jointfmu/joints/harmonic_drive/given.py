@@ -11,31 +11,41 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...quantity import Array, Interval, Limit, Number, check, group, quantity, series, where
-from .drive import WIDTH, Drive, play
+from ...quantity import (
+    Array,
+    Interval,
+    Number,
+    ParameterLimit,
+    check_fields,
+    group_field,
+    quantity_field,
+    select,
+    series_field,
+)
+from .drive import PLAY_WIDTH_RATIO, Drive, lost_motion_angle
 
-CORNER = 0.04
+DEFAULT_CORNER = 0.04
 """Default half-width of a smoothed corner over its wind-up [1]: for catalogue drives the angle at a corner is
 then within 0.4 % of the lines."""
-SHARPEST = 1e-6
+MIN_CORNER = 1e-6
 """Smallest half-width [1], used if `corner` is 0: the angle at a corner is within 1e-7 of the lines."""
-STIFFEST = 1e12
+MAX_STIFFNESS = 1e12
 """Largest stiffness of a drive [N.m/rad]: more than that of a solid steel shaft of its size."""
-MOST_POINTS = 1000
+MAX_POINTS = 1000
 """Largest number of points of a measured table."""
-LEAST_SLOPE, LARGEST_SLOPE = 1.0 / 3.0, 3.0
+MIN_END_STIFFNESS_RATIO, MAX_END_STIFFNESS_RATIO = 1.0 / 3.0, 3.0
 """Bounds of the stiffness at the last point over the mean stiffness of the last segment [1]."""
-SOFTEST = 0.5
+MIN_STIFFNESS_RATIO = 0.5
 """Smallest stiffness inside a segment, over its mean or its end stiffness [1], for which the derivative of
 the stiffness is made continuous at its points."""
-PLAY_NODES = 60
+PLAY_NODE_COUNT = 60
 """Nodes for the play on the first line of a catalogue drive: the torque error is below 1e-8 rated_torque."""
-SPENT = 8.0
+PLAY_END_RATIO = 8.0
 """Torque over T_p of the play [1] at which the play has ended: 2e-7 of lost_motion is missing."""
-_INNER = np.linspace(0.0, 1.0, 33)
+_SAMPLE_POINTS = np.linspace(0.0, 1.0, 33)
 
 
-class Node(NamedTuple):
+class SplineNode(NamedTuple):
     """Node of the quintic spline of the midline.
 
     angle, torque, stiffness : wind-up [rad], torque [N.m] and stiffness [N.m/rad]
@@ -45,12 +55,12 @@ class Node(NamedTuple):
     angle: Number
     torque: Number
     stiffness: Number
-    before: Number = 0.0
-    after: Number = 0.0
+    slope_before: Number = 0.0
+    slope_after: Number = 0.0
 
 
 @dataclass(frozen=True, kw_only=True)
-class Given(Drive):
+class PrescribedDrive(Drive):
     """Harmonic drive whose midline is a quintic spline through nodes.
 
     The parts K_FTS and K_TS of the stiffness are unknown. K_FTS is set to twice the largest K_WTS: so K_TS
@@ -58,7 +68,7 @@ class Given(Drive):
     """
 
     @abstractmethod
-    def nodes(self) -> Sequence[Node]:
+    def make_nodes(self) -> Sequence[SplineNode]:
         """Nodes of the midline from zero wind-up on; the midline is odd."""
 
     @property
@@ -69,7 +79,7 @@ class Given(Drive):
     @property
     def ramp_torque(self) -> Number:
         """Torque [N.m] at the end of load ramps: the last torque of the table."""
-        return self.reach
+        return self.max_table_torque
 
     def pressure(self, torque: Number) -> Number:
         """Contact pressure: 0 [Pa]."""
@@ -77,7 +87,7 @@ class Given(Drive):
 
 
 @dataclass(frozen=True, kw_only=True)
-class CatalogueDrive(Given):
+class CatalogueDrive(PrescribedDrive):
     """Parameters of a harmonic drive with the stiffnesses K1, K2, K3 of its catalogue.
 
     The angle theta(T) has the slope 1/K1 up to the torque T1, 1/K2 up to T2, and 1/K3 beyond. Around the
@@ -87,35 +97,44 @@ class CatalogueDrive(Given):
     lines, and the stiffness jumps at T1 and T2 (within MIN_CORNER): a kink without an event.
     """
 
-    K1: float = quantity("N.m/rad", "stiffness below T1", gt=0.0, le=STIFFEST)
-    K2: float = quantity("N.m/rad", "stiffness between T1 and T2", gt=0.0, le=STIFFEST)
-    K3: float = quantity("N.m/rad", "stiffness above T2", gt=0.0, le=STIFFEST)
-    T1: float = quantity("N.m", "torque at the first corner", gt=0.0)
-    T2: float = quantity("N.m", "torque at the second corner", gt=0.0)
-    corner: float = quantity(
+    K1: float = quantity_field("N.m/rad", "stiffness below T1", gt=0.0, le=MAX_STIFFNESS)
+    K2: float = quantity_field("N.m/rad", "stiffness between T1 and T2", gt=0.0, le=MAX_STIFFNESS)
+    K3: float = quantity_field("N.m/rad", "stiffness above T2", gt=0.0, le=MAX_STIFFNESS)
+    T1: float = quantity_field("N.m", "torque at the first corner", gt=0.0)
+    T2: float = quantity_field("N.m", "torque at the second corner", gt=0.0)
+    corner: float = quantity_field(
         "1",
         "half-width of the two smooth corners over their wind-up; 0: the lines themselves, with kinks",
         ge=0.0,
         lt=1.0,
-        default=CORNER,
+        default=DEFAULT_CORNER,
     )
-    max_torque: float = quantity("N.m", "end of the tabulated law, at least past the second corner", gt=0.0)
+    max_torque: float = quantity_field(
+        "N.m", "end of the tabulated law, at least past the second corner", gt=0.0
+    )
 
-    def limits(self) -> list[Limit]:
+    def find_limits(self) -> list[ParameterLimit]:
         """Intervals that other parameters decide."""
         first, second = self.corners
         return [
-            *super().limits(),
-            Limit("T2", Interval.of(gt=self.T1), "it must exceed T1"),
-            Limit(
+            *super().find_limits(),
+            ParameterLimit("T2", Interval.from_bounds(gt=self.T1), "it must exceed T1"),
+            ParameterLimit(
                 "corner",
-                Interval.of(ge=0.0, lt=(second - first) / (second + first)),
+                Interval.from_bounds(ge=0.0, lt=(second - first) / (second + first)),
                 "corners must not meet",
             ),
-            Limit(
+            ParameterLimit(
                 "lost_motion",
-                Interval.of(ge=0.0, le=where(self._straight > SPENT * WIDTH * self.rated_torque, 1.0, 0.0)),
-                f"the first line must reach beyond {SPENT * WIDTH:g} rated_torque, where play ends",
+                Interval.from_bounds(
+                    ge=0.0,
+                    le=select(
+                        self._first_line_torque > PLAY_END_RATIO * PLAY_WIDTH_RATIO * self.rated_torque,
+                        1.0,
+                        0.0,
+                    ),
+                ),
+                f"the first line must reach beyond {PLAY_END_RATIO * PLAY_WIDTH_RATIO:g} rated_torque, where play ends",
             ),
         ]
 
@@ -128,10 +147,10 @@ class CatalogueDrive(Given):
     @property
     def half_width(self) -> Number:
         """Half-width of the corners over their wind-up [1], at least MIN_CORNER."""
-        return np.maximum(self.corner, SHARPEST)
+        return np.maximum(self.corner, MIN_CORNER)
 
     @property
-    def reach(self) -> Number:
+    def max_table_torque(self) -> Number:
         """Torque [N.m] at the end of the table: max_torque, but at least T2 plus the width of its corner."""
         return np.maximum(self.max_torque, self.T2 + 2.0 * self.half_width * self.corners[1] * self.K3)
 
@@ -141,54 +160,61 @@ class CatalogueDrive(Given):
         return 2.0 * np.maximum(np.maximum(self.K1, self.K2), self.K3)
 
     @property
-    def _straight(self) -> Number:
+    def _first_line_torque(self) -> Number:
         """Torque [N.m] at the end of the first line, where the first corner begins."""
         return self.T1 - self.K1 * self.half_width * self.corners[0]
 
-    def nodes(self) -> list[Node]:
+    def make_nodes(self) -> list[SplineNode]:
         """Nodes of the first line with the play, then both ends of each corner, then the end of the table."""
         (first, second), (K1, K2, K3) = self.corners, (self.K1, self.K2, self.K3)
-        first_width, second_width, end = self.half_width * first, self.half_width * second, self.reach
-        play_angle = play(self, self._straight)[0]
+        first_width, second_width, end = (
+            self.half_width * first,
+            self.half_width * second,
+            self.max_table_torque,
+        )
+        play_angle = lost_motion_angle(self, self._first_line_torque)[0]
         return [
-            *self._with_play(),
-            Node(first - first_width + play_angle, self._straight, K1),
-            Node(first + first_width + play_angle, self.T1 + K2 * first_width, K2),
-            Node(second - second_width + play_angle, self.T2 - K2 * second_width, K2),
-            Node(second + second_width + play_angle, self.T2 + K3 * second_width, K3),
-            Node(second + (end - self.T2) / K3 + play_angle, end, K3),
+            *self._play_nodes(),
+            SplineNode(first - first_width + play_angle, self._first_line_torque, K1),
+            SplineNode(first + first_width + play_angle, self.T1 + K2 * first_width, K2),
+            SplineNode(second - second_width + play_angle, self.T2 - K2 * second_width, K2),
+            SplineNode(second + second_width + play_angle, self.T2 + K3 * second_width, K3),
+            SplineNode(second + (end - self.T2) / K3 + play_angle, end, K3),
         ]
 
-    def _with_play(self) -> list[Node]:
+    def _play_nodes(self) -> list[SplineNode]:
         """Nodes of the first line with the play in series, denser at small torque."""
-        end_torque, nodes = np.minimum(SPENT * WIDTH * self.rated_torque, self._straight), []
-        for position in np.arange(PLAY_NODES) / PLAY_NODES:
+        end_torque, nodes = (
+            np.minimum(PLAY_END_RATIO * PLAY_WIDTH_RATIO * self.rated_torque, self._first_line_torque),
+            [],
+        )
+        for position in np.arange(PLAY_NODE_COUNT) / PLAY_NODE_COUNT:
             torque = end_torque * float(position) ** 2
-            angle, compliance, change = play(self, torque)
+            angle, compliance, change = lost_motion_angle(self, torque)
             softer = 1.0 + self.K1 * compliance
             bend = -(self.K1**3) * change / softer**3
-            nodes.append(Node(torque / self.K1 + angle, torque, self.K1 / softer, bend, bend))
+            nodes.append(SplineNode(torque / self.K1 + angle, torque, self.K1 / softer, bend, bend))
         return nodes
 
 
 @dataclass(frozen=True, kw_only=True)
-class TorqueAngle:
+class MeasuredMidline:
     """Points of a measured midline without the point at zero load; torque and angle increase.
 
     Raises ValueError if both columns do not have the same number of points, 2 to MAX_POINTS, or do not
     increase.
     """
 
-    torque: tuple[float, ...] = series("N.m", "torque of each point, rising", gt=0.0)
-    angle: tuple[float, ...] = series("rad", "wind-up of each point, rising", gt=0.0)
+    torque: tuple[float, ...] = series_field("N.m", "torque of each point, rising", gt=0.0)
+    angle: tuple[float, ...] = series_field("rad", "wind-up of each point, rising", gt=0.0)
 
     def __post_init__(self) -> None:
-        check(self)
+        check_fields(self)
         counts = len(self.torque), len(self.angle)
-        if counts[0] != counts[1] or not 2 <= counts[0] <= MOST_POINTS:
+        if counts[0] != counts[1] or not 2 <= counts[0] <= MAX_POINTS:
             raise ValueError(
                 f"table.torque and table.angle have {counts[0]} and {counts[1]} points, "
-                f"allowed is 2 to {MOST_POINTS}, the same of both"
+                f"allowed is 2 to {MAX_POINTS}, the same of both"
             )
         for name, unit in (("torque", "N.m"), ("angle", "rad")):
             values = getattr(self, name)
@@ -199,17 +225,19 @@ class TorqueAngle:
                 )
 
 
-class Measured(Given):
+class MeasuredDrive(PrescribedDrive):
     """Harmonic drive with a measured midline, which already contains the lost motion."""
 
-    def limits(self) -> list[Limit]:
+    def find_limits(self) -> list[ParameterLimit]:
         """Intervals that other parameters decide."""
-        no_play = Limit("lost_motion", Interval.of(ge=0.0, le=0.0), "a measured midline has it already")
-        return [*super().limits(), no_play]
+        no_play = ParameterLimit(
+            "lost_motion", Interval.from_bounds(ge=0.0, le=0.0), "a measured midline has it already"
+        )
+        return [*super().find_limits(), no_play]
 
 
 @dataclass(frozen=True, kw_only=True)
-class TableDrive(Measured):
+class TableDrive(MeasuredDrive):
     """Parameters of a harmonic drive with a measured midline, a table of torque and angle.
 
     The torque between the points is a monotone spline with the stiffnesses of Fritsch and Butland 1984
@@ -217,66 +245,80 @@ class TableDrive(Measured):
     stays well above zero (MIN_STIFFNESS_RATIO).
     """
 
-    table: TorqueAngle = group("measured midline, without the point at zero load")
+    table: MeasuredMidline = group_field("measured midline, without the point at zero load")
 
     @property
-    def reach(self) -> float:
+    def max_table_torque(self) -> float:
         """Torque [N.m] at the last point."""
         return self.table.torque[-1]
 
     @property
     def max_torque(self) -> float:
         """Torque [N.m] at the last point."""
-        return self.reach
+        return self.max_table_torque
 
     @cached_property
     def K_FTS(self) -> float:
         """Stiffness K_FTS [N.m/rad]: twice the largest stiffness of the midline."""
-        columns = np.array(self.nodes(), dtype=np.float64).T
+        columns = np.array(self.make_nodes(), dtype=np.float64).T
         x, y, s, slope_before, slope_after = columns
-        return 2.0 * float(np.max(_stiffness(np.diff(x), np.diff(y), s, slope_after[:-1], slope_before[1:])))
+        return 2.0 * float(
+            np.max(_sample_stiffness(np.diff(x), np.diff(y), s, slope_after[:-1], slope_before[1:]))
+        )
 
-    def nodes(self) -> list[Node]:
+    def make_nodes(self) -> list[SplineNode]:
         """Nodes at zero and at each point of the table."""
         x, y = (np.array([0.0, *values]) for values in (self.table.angle, self.table.torque))
         h, torque_steps = np.diff(x), np.diff(y)
-        s = _slopes(h, torque_steps / h)
+        s = _node_stiffness(h, torque_steps / h)
         slope_after = (
             6.0 * torque_steps / h - 4.0 * s[:-1] - 2.0 * s[1:]
         ) / h  # of the cubic Hermite segments
         slope_before = (-6.0 * torque_steps / h + 2.0 * s[:-1] + 4.0 * s[1:]) / h
         mean = (h[1:] * slope_before[:-1] + h[:-1] * slope_after[1:]) / (h[:-1] + h[1:])
         common_slope = np.concatenate([[0.0], mean, slope_before[-1:]])
-        smallest = np.min(_stiffness(h, torque_steps, s, common_slope[:-1], common_slope[1:]), axis=0)
-        is_stiff = smallest > SOFTEST * np.minimum(np.minimum(s[:-1], s[1:]), torque_steps / h)
+        smallest = np.min(_sample_stiffness(h, torque_steps, s, common_slope[:-1], common_slope[1:]), axis=0)
+        is_stiff = smallest > MIN_STIFFNESS_RATIO * np.minimum(np.minimum(s[:-1], s[1:]), torque_steps / h)
         slope_after, slope_before = (
             np.where(is_stiff, common_slope[:-1], slope_after),
             np.where(is_stiff, common_slope[1:], slope_before),
         )
         ends = np.concatenate([[0.0], slope_before]), np.concatenate([slope_after, [0.0]])
-        return [Node(*row) for row in np.column_stack([x, y, s, *ends]).tolist()]
+        return [SplineNode(*row) for row in np.column_stack([x, y, s, *ends]).tolist()]
 
 
-def _slopes(h: Array, d: Array) -> Array:
+def _node_stiffness(h: Array, secants: Array) -> Array:
     """Stiffness (n + 1) at the points, from widths h (n) and secant stiffnesses d (n); the curve is odd."""
     weight_left, weight_right = 2.0 * h[1:] + h[:-1], h[1:] + 2.0 * h[:-1]
-    inner = (weight_left + weight_right) / (weight_left / d[:-1] + weight_right / d[1:])
-    end_stiffness = ((2.0 * h[-1] + h[-2]) * d[-1] - h[-1] * d[-2]) / (h[-1] + h[-2])
+    inner = (weight_left + weight_right) / (weight_left / secants[:-1] + weight_right / secants[1:])
+    end_stiffness = ((2.0 * h[-1] + h[-2]) * secants[-1] - h[-1] * secants[-2]) / (h[-1] + h[-2])
     return np.concatenate(
-        [d[:1], inner, [np.clip(end_stiffness, LEAST_SLOPE * d[-1], LARGEST_SLOPE * d[-1])]]
+        [
+            secants[:1],
+            inner,
+            [
+                np.clip(
+                    end_stiffness,
+                    MIN_END_STIFFNESS_RATIO * secants[-1],
+                    MAX_END_STIFFNESS_RATIO * secants[-1],
+                )
+            ],
+        ]
     )
 
 
-def _stiffness(h: Array, rise: Array, s: Array, after: Array, before: Array) -> Array:
+def _sample_stiffness(
+    h: Array, torque_steps: Array, s: Array, slope_after: Array, slope_before: Array
+) -> Array:
     """Stiffness (m, n) at m sample points inside each of n quintic segments.
 
     h, torque_steps           : (n) widths and torque increments of the segments
     s                         : (n + 1) stiffness at the nodes
     slope_after, slope_before : (n) derivative of the stiffness at the start and at the end of each segment
     """
-    t = _INNER[:, None]
+    t = _SAMPLE_POINTS[:, None]
     first, last = s[:-1], s[1:]
-    a2, c0, c1 = rise / h, 0.5 * h * after, 0.5 * h * before
+    a2, c0, c1 = torque_steps / h, 0.5 * h * slope_after, 0.5 * h * slope_before
     cubic = 30.0 * a2 - 18.0 * first - 12.0 * last - 9.0 * c0 + 3.0 * c1
     quartic = -60.0 * a2 + 32.0 * first + 28.0 * last + 12.0 * c0 - 8.0 * c1
     quintic = 30.0 * a2 - 15.0 * first - 15.0 * last - 5.0 * c0 + 5.0 * c1

@@ -20,69 +20,71 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...contact.interface import MOST_STEPS
+from ...contact.interface import MAX_ITERATIONS
 from ...contact.powerlaw import exprel
 from ...mechanics.curve import Curve
-from ...mechanics.jenkins import Moved, Sliders
-from ...mechanics.memory import Layout
+from ...mechanics.jenkins import Sliders, SliderUpdate
+from ...mechanics.memory import HistoryLayout
 from ...quantity import Array, Number
 from .drive import Drive
-from .law import PairDrive, pair_log_area
+from .law import ContactPairDrive, pair_argument
 
-SLIDERS = 44
+HYSTERESIS_SLIDERS = 44
 """Number of sliders: virgin curve within 0.2 % of M_f, loop area within 1 % for amplitudes above 0.1 M_f."""
-_CROWDING, _POWER = 3.5, 2.5
+_GRADING, _GRADING_POWER = 3.5, 2.5
 """Grading of REMAINING_SHARES [1]: fine where the first sliders slip, coarse where the last ones do."""
-_USED = np.expm1(_CROWDING * np.arange(SLIDERS) / SLIDERS) / np.expm1(_CROWDING)
-MEMORY = Layout({"force": (SLIDERS,), "wind_up": (), "loss": ()})
+_USED_SHARES = np.expm1(_GRADING * np.arange(HYSTERESIS_SLIDERS) / HYSTERESIS_SLIDERS) / np.expm1(_GRADING)
+HISTORY_LAYOUT = HistoryLayout({"force": (HYSTERESIS_SLIDERS,), "wind_up": (), "loss": ()})
 """History variables of the hysteresis: slider torques [N.m], wind-up [rad], loss [J]."""
-LEFT = (*((1.0 - _USED) ** _POWER).tolist(), 0.0)
+REMAINING_SHARES = (*((1.0 - _USED_SHARES) ** _GRADING_POWER).tolist(), 0.0)
 """Values of s [1], from 1 down to 0, that separate the sliders."""
-NEAREST = 4e-16
+WIND_UP_TOLERANCE = 4e-16
 """Change of the wind-up [1], over the sum of wind-up and M_f/K_h, below which its iteration stops."""
-REVERSAL = 4.0
+MIN_REVERSAL_RATIO = 4.0
 """Smallest K_h phi/(2 M_f) [1] on the unloading path from rated torque to zero, if hysteresis_stiffness is 0:
 at zero torque the friction has then reversed to 1 - 2 exp(-4) = 0.96 of its limit."""
-SETTLED, MOST_CORRECTIONS = 1e-13, 400
+LIMIT_TOLERANCE, MAX_LIMIT_ITERATIONS = 1e-13, 400
 """Relative change of M_f [1] at which its iteration has converged, and the largest number of iterations. More
 would mean that the loop can hardly open as far as required."""
 
 
-def exponent(drive: Drive) -> Number:
+def stiffness_exponent(drive: Drive) -> Number:
     """Exponent m [1] of K_N ~ P^m of the contact pair at zero torque; 1 for a drive without a contact pair.
 
     m = 1 holds for rough surfaces at any pressure and for Hu's law: T_h = M_f (1 - exp(-K_h phi/M_f)), as in
     Dahl's friction model.
     """
-    if not isinstance(drive, PairDrive):
+    if not isinstance(drive, ContactPairDrive):
         return 1.0
-    spots, u = drive.pair_law.spots(), pair_log_area(drive, 0.0)
+    spots, u = drive.pair_law.spots(), pair_argument(drive, 0.0)
     power = spots.log_total("load", 0.0)[1]
-    return spots.slope("normal", u) / (spots.total("normal", u) * power)
+    return spots.total_derivative("normal", u) / (spots.total("normal", u) * power)
 
 
-def shares(m: Number, places: Sequence[float] = LEFT) -> tuple[list[Number], list[Number]]:
+def slider_shares(
+    m: Number, remaining_shares: Sequence[float] = REMAINING_SHARES
+) -> tuple[list[Number], list[Number]]:
     """Shares of the sliders in K_h and in M_f [1], each with the sum 1.
 
     m                : exponent of K_N ~ P^m
     remaining_shares : values of s [1], decreasing from 1 to 0, that separate the sliders
     """
-    rate = [remaining**m if remaining else 0.0 for remaining in places]
+    rate = [remaining**m if remaining else 0.0 for remaining in remaining_shares]
     used_shares = [
-        1.0 - remaining - _travel(remaining, m) * r if remaining else 1.0
-        for remaining, r in zip(places, rate, strict=True)
+        1.0 - remaining - _relative_wind_up(remaining, m) * r if remaining else 1.0
+        for remaining, r in zip(remaining_shares, rate, strict=True)
     ]
     return [a - b for a, b in pairwise(rate)], [b - a for a, b in pairwise(used_shares)]
 
 
-def _travel(left: float, m: Number) -> Number:
+def _relative_wind_up(remaining_share: float, m: Number) -> Number:
     """K_h phi/M_f [1] on the virgin curve at the remaining share s [1]: (1 - s^(1 - m))/(1 - m)."""
-    logarithm = float(np.log(left))
+    logarithm = float(np.log(remaining_share))
     return -logarithm * exprel((1.0 - m) * logarithm)
 
 
 @dataclass(frozen=True, slots=True)
-class Hysteresis(Sliders):
+class HysteresisSliders(Sliders):
     """Sliders of the hysteresis of a drive.
 
     stiffness : (n) [N.m/rad] of the springs
@@ -92,7 +94,7 @@ class Hysteresis(Sliders):
     limit: Array
 
     @classmethod
-    def of(cls, drive: Drive, curve: Curve) -> "Hysteresis":
+    def for_drive(cls, drive: Drive, curve: Curve) -> "HysteresisSliders":
         """Sliders for a drive with the odd midline `curve`.
 
         Raises ValueError if no loop through rated torque can open by hysteresis_loss.
@@ -104,43 +106,47 @@ class Hysteresis(Sliders):
                 f"[0, {2.0 * float(curve.inverse(0.5 * drive.rated_torque)):g}) rad: "
                 "friction would hold half of the rated torque"
             )
-        springs, friction = (np.array(share, dtype=np.float64) for share in shares(exponent(drive)))
-        unit_sliders = cls(_extra_stiffness(drive, curve, half_loop_torque) * springs, friction)
-        return replace(unit_sliders, limit=_limit(drive, curve, unit_sliders, half_loop_torque) * friction)
+        springs, friction = (
+            np.array(share, dtype=np.float64) for share in slider_shares(stiffness_exponent(drive))
+        )
+        unit_sliders = cls(_initial_stiffness(drive, curve, half_loop_torque) * springs, friction)
+        return replace(
+            unit_sliders, limit=_find_limit_torque(drive, curve, unit_sliders, half_loop_torque) * friction
+        )
 
     @property
-    def acts(self) -> bool:
+    def is_active(self) -> bool:
         """Whether the drive has hysteresis."""
         return bool(self.limit[-1] > 0.0)
 
     @property
-    def length(self) -> float:
+    def characteristic_wind_up(self) -> float:
         """Characteristic wind-up M_f/K_h [rad] of the hysteresis."""
         return float(np.sum(self.limit) / np.sum(self.stiffness))
 
-    def opening(self, curve: Curve, torque: float, half: float) -> float:
+    def unloading_friction(self, curve: Curve, torque: float, half_opening: float) -> float:
         """Negative friction torque [N.m] on unloading from a torque [N.m], at the wind-up half_opening [rad].
 
         By Masing's rule. If it equals the torque of the midline at half_opening, the total torque is zero
         there: the branches of the loop are then 2 half_opening apart at zero torque.
         """
-        turn_wind_up = float(self.wind_up(curve, MEMORY.rest(), torque))
-        friction_back, friction_at_turn = self.moved(
-            MEMORY.rest(), [0.5 * (turn_wind_up - half), turn_wind_up]
+        turn_wind_up = float(self.solve_wind_up(curve, HISTORY_LAYOUT.virgin_history(), torque))
+        friction_back, friction_at_turn = self.advance(
+            HISTORY_LAYOUT.virgin_history(), [0.5 * (turn_wind_up - half_opening), turn_wind_up]
         ).traction
         return float(2.0 * friction_back - friction_at_turn)
 
-    def moved(self, memory: Array, phi: ArrayLike) -> Moved:
+    def advance(self, history: Array, phi: ArrayLike) -> SliderUpdate:
         """Advance the sliders from history variables (..., n) on a path to wind-ups phi (...) [rad]."""
-        variables = MEMORY.split(memory)
+        variables = HISTORY_LAYOUT.split(history)
         increment = np.asarray(phi, dtype=np.float64) - variables["wind_up"]
-        return self.along(variables["force"], increment, self.limit, self.limit)
+        return self.advance_1d(variables["force"], increment, self.limit, self.limit)
 
-    def after(self, moved: Moved, phi: ArrayLike, loss: Array) -> Array:
+    def pack_history(self, update: SliderUpdate, phi: ArrayLike, loss: Array) -> Array:
         """New history variables (..., n) after the path to phi (...) [rad]; loss (...) [J] is the total."""
-        return MEMORY.joined({"force": moved.force, "wind_up": phi, "loss": loss}, *loss.shape)
+        return HISTORY_LAYOUT.join({"force": update.force, "wind_up": phi, "loss": loss}, *loss.shape)
 
-    def wind_up(self, curve: Curve, memory: Array, torque: ArrayLike) -> Array:
+    def solve_wind_up(self, curve: Curve, history: Array, torque: ArrayLike) -> Array:
         """Wind-up (...) [rad] at torques (...) [N.m] of midline plus friction, from a history (..., n).
 
         Safeguarded Newton iteration: the total torque increases monotonically with the wind-up. The iteration
@@ -148,31 +154,33 @@ class Hysteresis(Sliders):
         """
         tau, friction_sum = np.asarray(torque, dtype=np.float64), float(np.sum(self.limit))
         slipping = curve.odd_inverse(np.stack([tau - friction_sum, tau + friction_sum]))
-        phi = np.clip(MEMORY.split(memory)["wind_up"], *slipping)
+        phi = np.clip(HISTORY_LAYOUT.split(history)["wind_up"], *slipping)
         low, high = np.full(tau.shape, -np.inf), np.full(tau.shape, np.inf)
-        for _ in range(MOST_STEPS):
+        for _ in range(MAX_ITERATIONS):
             load, stiffness = curve.derivatives(np.abs(phi), 1)
-            update = self.moved(memory, phi)
+            update = self.advance(history, phi)
             residual = tau - (np.copysign(load, phi) + update.traction)
             low, high = np.where(residual > 0.0, phi, low), np.where(residual < 0.0, phi, high)
             step = phi + residual / (stiffness + update.tangent)
             with np.errstate(invalid="ignore"):
                 new = np.where((step >= low) & (step <= high), step, 0.5 * (low + high))
             change, phi = np.abs(new - phi), new
-            if np.all(change <= NEAREST * (np.abs(phi) + self.length)):
+            if np.all(change <= WIND_UP_TOLERANCE * (np.abs(phi) + self.characteristic_wind_up)):
                 break
         return phi
 
 
-def _extra_stiffness(drive: Drive, curve: Curve, least: float) -> float:
+def _initial_stiffness(drive: Drive, curve: Curve, half_loop_torque: float) -> float:
     """K_h [N.m/rad]; half_loop_torque [N.m] is the midline's torque at half of hysteresis_loss."""
     if drive.hysteresis_stiffness > 0.0:
         return drive.hysteresis_stiffness
-    back = float(curve.inverse(drive.rated_torque - least)) - 0.5 * drive.hysteresis_loss
-    return max(float(curve.stiffness[0]), 2.0 * REVERSAL * least / back)
+    back = float(curve.inverse(drive.rated_torque - half_loop_torque)) - 0.5 * drive.hysteresis_loss
+    return max(float(curve.stiffness[0]), 2.0 * MIN_REVERSAL_RATIO * half_loop_torque / back)
 
 
-def _limit(drive: Drive, curve: Curve, drawn: Hysteresis, least: float) -> float:
+def _find_limit_torque(
+    drive: Drive, curve: Curve, unit_sliders: HysteresisSliders, half_loop_torque: float
+) -> float:
     """M_f [N.m] for which the loop through rated torque opens by hysteresis_loss, by fixed-point iteration.
 
     unit_sliders     : sliders with the sum of limits 1 N.m
@@ -181,16 +189,19 @@ def _limit(drive: Drive, curve: Curve, drawn: Hysteresis, least: float) -> float
 
     Raises ValueError if hysteresis_stiffness is too small for such a loop.
     """
-    limit = least
-    for _ in range(MOST_CORRECTIONS):
+    limit = half_loop_torque
+    for _ in range(MAX_LIMIT_ITERATIONS):
         if limit == 0.0:
             return limit
-        sliders = replace(drawn, limit=limit * drawn.limit)
-        previous, opening = limit, sliders.opening(curve, drive.rated_torque, 0.5 * drive.hysteresis_loss)
-        limit *= least / opening if opening > 0.0 else np.inf
+        sliders = replace(unit_sliders, limit=limit * unit_sliders.limit)
+        previous, opening = (
+            limit,
+            sliders.unloading_friction(curve, drive.rated_torque, 0.5 * drive.hysteresis_loss),
+        )
+        limit *= half_loop_torque / opening if opening > 0.0 else np.inf
         if not limit < drive.rated_torque:
             break
-        if abs(limit - previous) <= SETTLED * limit:
+        if abs(limit - previous) <= LIMIT_TOLERANCE * limit:
             return previous
     raise ValueError(
         f"hysteresis_stiffness = {drive.hysteresis_stiffness:g} N.m/rad is too small for a loop through "

@@ -6,67 +6,67 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...contact.laws.hu2023 import Hu2023, elastic_pressure
-from ...contact.laws.roughness import Roughness, RoughSurfaces
+from ...contact.laws.roughness import RoughnessLaw, RoughSurfaces
 from ...contact.surface import ArealSurface, Elastic, ElasticPlastic
-from ...quantity import Interval, Limit, Number, choice, group, quantity, where
-from .drive import Drive, play
+from ...quantity import Interval, Number, ParameterLimit, choice_field, group_field, quantity_field, select
+from .drive import Drive, lost_motion_angle
 
-SETTLED = 2.0
+SATURATION_TORQUE_RATIO = 2.0
 """T_m over rated torque [1]: the contact pressure tends to its value at T_m for larger torques."""
-_SCANNED = 0.5e-3
+_SCAN_LENGTH = 0.5e-3
 """Scan length [m] of the profile in Hu 2023, section 2.3."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class PairDrive(Drive):
+class ContactPairDrive(Drive):
     """Parameters of a harmonic drive with a contact pair, except those of the pair's interface law.
 
     Fields with calibration=True were fitted to published points.
     """
 
-    mu: float = quantity("1", "coefficient of static friction, if traction is real_area", gt=0.0)
-    traction_ratio: float = quantity("1", "shear over friction limit, x = T/(mu P)", ge=0.0, lt=1.0)
-    A_0: float = quantity("m2", "nominal area of the contact pair", gt=0.0)
-    mean_over_peak: float = quantity("1", "mean contact pressure over peak pressure", gt=0.0, le=1.0)
-    radius: float = quantity("m", "mean radius of the contact pair", gt=0.0)
-    radial_deformation: float = quantity("m", "radial deformation w of the flexspline", gt=0.0, lt=2e-3)
-    eccentricity: float = quantity(
+    mu: float = quantity_field("1", "coefficient of static friction, if traction is real_area", gt=0.0)
+    traction_ratio: float = quantity_field("1", "shear over friction limit, x = T/(mu P)", ge=0.0, lt=1.0)
+    A_0: float = quantity_field("m2", "nominal area of the contact pair", gt=0.0)
+    mean_over_peak: float = quantity_field("1", "mean contact pressure over peak pressure", gt=0.0, le=1.0)
+    radius: float = quantity_field("m", "mean radius of the contact pair", gt=0.0)
+    radial_deformation: float = quantity_field("m", "radial deformation w of the flexspline", gt=0.0, lt=2e-3)
+    eccentricity: float = quantity_field(
         "m", "installation eccentricity of flexspline and bearing", ge=0.0, lt=1e-3
     )
-    K_FTS0: float = quantity(
+    K_FTS0: float = quantity_field(
         "N.m/rad", "stiffness K_FTS of circular spline and flexspline", gt=0.0, calibration=True
     )
-    max_torque: float = quantity("N.m", "end of the tabulated law", gt=0.0)
-    zero_torque_pressure: float = quantity(
+    max_torque: float = quantity_field("N.m", "end of the tabulated law", gt=0.0)
+    zero_torque_pressure: float = quantity_field(
         "Pa", "peak contact pressure without torque, at the optimum deformation", gt=0.0, calibration=True
     )
-    rated_pressure: float = quantity(
+    rated_pressure: float = quantity_field(
         "Pa", "peak contact pressure at rated torque, at the optimum deformation", gt=0.0, calibration=True
     )
-    torque_smoothing: float = quantity("N.m", "torque up to which the pressure hardly grows", gt=0.0)
-    optimum_deformation: float = quantity("m", "radial deformation of the largest pressure", gt=0.0)
-    deformation_loss: float = quantity(
+    torque_smoothing: float = quantity_field("N.m", "torque up to which the pressure hardly grows", gt=0.0)
+    optimum_deformation: float = quantity_field("m", "radial deformation of the largest pressure", gt=0.0)
+    deformation_loss: float = quantity_field(
         "Pa/m2",
         "loss of peak pressure per squared offset of radial_deformation from its optimum",
         ge=0.0,
         calibration=True,
     )
-    eccentricity_loss: float = quantity(
+    eccentricity_loss: float = quantity_field(
         "Pa/m", "loss of peak pressure per unit of eccentricity", ge=0.0, calibration=True
     )
 
     @property
     @abstractmethod
-    def pair_law(self) -> Hu2023 | Roughness:
+    def pair_law(self) -> Hu2023 | RoughnessLaw:
         """Interface law of the contact pair, whose load is a power of exp(u)."""
 
     @property
     @abstractmethod
-    def twist(self) -> Number:
+    def pair_stiffness_factor(self) -> Number:
         """Factor [m2] from the tangential stiffness [N/m] of the pair's law to K_TS [N.m/rad]."""
 
     @property
-    def reach(self) -> Number:
+    def max_table_torque(self) -> Number:
         """Torque [N.m] at the end of the table: max_torque."""
         return self.max_torque
 
@@ -79,43 +79,49 @@ class PairDrive(Drive):
         """Peak contact pressure (...) [Pa] at torques (...) [N.m]."""
         return peak_pressure(self, torque)[0]
 
-    def limits(self) -> list[Limit]:
+    def find_limits(self) -> list[ParameterLimit]:
         """Intervals of parameters that depend on other parameters."""
         no_contact = "beyond it the pair loses contact without torque"
         zero, loss, best = self.zero_torque_pressure, self.deformation_loss, self.optimum_deformation
         with np.errstate(over="ignore"):
             reach = np.sqrt(zero / np.maximum(loss, 1e-290))
-            reserve = (zero - self._deformation_loss) / np.maximum(self.eccentricity_loss, 1e-290)
+            reserve = (zero - self._deformation_pressure_loss) / np.maximum(self.eccentricity_loss, 1e-290)
         return [
-            *super().limits(),
-            Limit("rated_pressure", Interval.of(gt=zero), "it must exceed zero_torque_pressure"),
-            Limit("radial_deformation", Interval.of(gt=best - reach, lt=best + reach), no_contact),
-            Limit("eccentricity", Interval.of(ge=0.0, lt=reserve), no_contact),
+            *super().find_limits(),
+            ParameterLimit(
+                "rated_pressure", Interval.from_bounds(gt=zero), "it must exceed zero_torque_pressure"
+            ),
+            ParameterLimit(
+                "radial_deformation", Interval.from_bounds(gt=best - reach, lt=best + reach), no_contact
+            ),
+            ParameterLimit("eccentricity", Interval.from_bounds(ge=0.0, lt=reserve), no_contact),
         ]
 
     @property
-    def _deformation_loss(self) -> float:
+    def _deformation_pressure_loss(self) -> float:
         return self.deformation_loss * (self.radial_deformation - self.optimum_deformation) ** 2
 
     @property
     def pressure_loss(self) -> float:
         """Reduction of the peak pressure [Pa] by non-optimal radial deformation and by eccentricity."""
-        return self._deformation_loss + self.eccentricity_loss * self.eccentricity
+        return self._deformation_pressure_loss + self.eccentricity_loss * self.eccentricity
 
 
 @dataclass(frozen=True, kw_only=True)
-class HarmonicDrive(PairDrive):
+class HarmonicDrive(ContactPairDrive):
     """Parameters of the harmonic drive with the law of Hu 2023, read as printed."""
 
-    surface: ArealSurface = group("equivalent rough surface of the contact pair")
-    flexspline: ElasticPlastic = group("flexspline")
-    bearing: ElasticPlastic = group("outer ring of the flexible bearing")
-    shear_traction: float = quantity(
+    surface: ArealSurface = group_field("equivalent rough surface of the contact pair")
+    flexspline: ElasticPlastic = group_field("flexspline")
+    bearing: ElasticPlastic = group_field("outer ring of the flexible bearing")
+    shear_traction: float = quantity_field(
         "Pa", "shear traction on the real area, used if traction is real_area", gt=0.0
     )
-    node_area: float = quantity("m2", "nominal area with one set of spots: a mesh node of Eq. 45", gt=0.0)
-    drive_scale: float = quantity("1", "K_TS in Eq. 46 over the published K_TS", gt=0.0)
-    traction: str = choice(
+    node_area: float = quantity_field(
+        "m2", "nominal area with one set of spots: a mesh node of Eq. 45", gt=0.0
+    )
+    drive_scale: float = quantity_field("1", "K_TS in Eq. 46 over the published K_TS", gt=0.0)
+    traction: str = choice_field(
         "ratio", "real_area", doc="shear of a spot: the node's traction ratio, or a traction on the real area"
     )
 
@@ -124,11 +130,11 @@ class HarmonicDrive(PairDrive):
         """Law of Hu 2023 as printed, for the spots of one mesh node; side1 has the lower yield strength."""
         cup, ring = self.flexspline, self.bearing
         swap = ring.sigma_y < cup.sigma_y
-        E, nu = where(swap, ring.E, cup.E), where(swap, ring.nu, cup.nu)
+        E, nu = select(swap, ring.E, cup.E), select(swap, ring.nu, cup.nu)
         return Hu2023(
             surface=self.surface,
             side1=Elastic(E=E, nu=nu),
-            side2=Elastic(E=where(swap, cup.E, ring.E), nu=where(swap, cup.nu, ring.nu)),
+            side2=Elastic(E=select(swap, cup.E, ring.E), nu=select(swap, cup.nu, ring.nu)),
             sigma_y=np.minimum(cup.sigma_y, ring.sigma_y),
             mu=self.mu,
             traction_ratio=self.traction_ratio,
@@ -144,11 +150,11 @@ class HarmonicDrive(PairDrive):
 
         Its base radius r_m is half of the scan length: with r_m of the paper no spot would have stiffness.
         """
-        surface = replace(self.surface, r_m=0.5 * _SCANNED)
+        surface = replace(self.surface, r_m=0.5 * _SCAN_LENGTH)
         return replace(self.pair_law, surface=surface, A_0=self.A_0, reading="corrected")
 
     @property
-    def twist(self) -> Number:
+    def pair_stiffness_factor(self) -> Number:
         """Factor from K_T of a node to K_TS: drive_scale, number of nodes and diameter, Eq. 45 as printed.
 
         The sum of Eq. 45 has the unit newton; the paper reads it as N.m/rad, and so does this class.
@@ -156,34 +162,34 @@ class HarmonicDrive(PairDrive):
         return self.drive_scale * 2.0 * self.radius * self.A_0 / self.node_area
 
     @property
-    def pair_units(self) -> Number:
+    def pair_scale(self) -> Number:
         """Ratio [1] of K_TS of the drive to K_TS in the figures of the paper: drive_scale."""
         return self.drive_scale
 
-    def table_limits(self) -> list[Limit]:
+    def find_table_limits(self) -> list[ParameterLimit]:
         """Intervals for which all spots stay elastic up to max_torque, as the printed law assumes."""
         highest = peak_pressure(self, self.max_torque)[0]
         law = self.pair_law
         min_yield_strength = highest * law.sigma_y / elastic_pressure(law)
         why = "spots of the contact pair would yield below max_torque"
         return [
-            Limit(f"{side}.sigma_y", Interval.of(gt=min_yield_strength), why)
+            ParameterLimit(f"{side}.sigma_y", Interval.from_bounds(gt=min_yield_strength), why)
             for side in ("flexspline", "bearing")
         ]
 
 
 @dataclass(frozen=True, kw_only=True)
-class RoughHarmonicDrive(RoughSurfaces, PairDrive):
+class RoughHarmonicDrive(RoughSurfaces, ContactPairDrive):
     """Parameters of the harmonic drive with the law `roughness`; K_TS has no fitted scale factor."""
 
-    H: float = quantity("Pa", "hardness of the softer body", gt=0.0)
-    flexspline: Elastic = group("flexspline")
-    bearing: Elastic = group("outer ring of the flexible bearing")
+    H: float = quantity_field("Pa", "hardness of the softer body", gt=0.0)
+    flexspline: Elastic = group_field("flexspline")
+    bearing: Elastic = group_field("outer ring of the flexible bearing")
 
     @property
-    def pair_law(self) -> Roughness:
+    def pair_law(self) -> RoughnessLaw:
         """Law `roughness` of the whole contact pair, evaluated at its mean pressure."""
-        return Roughness(
+        return RoughnessLaw(
             h=self.h,
             gamma=self.gamma,
             longest_wave=self.longest_wave,
@@ -200,12 +206,12 @@ class RoughHarmonicDrive(RoughSurfaces, PairDrive):
     law = pair_law
 
     @property
-    def twist(self) -> Number:
+    def pair_stiffness_factor(self) -> Number:
         """Factor from K_T to K_TS: radius squared [m2]; the normal stiffness adds less than 1e-3."""
         return self.radius**2
 
 
-def peak_pressure(drive: PairDrive, torque: Number) -> tuple[Number, Number]:
+def peak_pressure(drive: ContactPairDrive, torque: Number) -> tuple[Number, Number]:
     """Peak contact pressure (...) [Pa] at torques (...) [N.m], and its derivative [Pa/(N.m)].
 
     Pressure at the major axis and the opening of the cup,
@@ -215,9 +221,9 @@ def peak_pressure(drive: PairDrive, torque: Number) -> tuple[Number, Number]:
     `t(T) = T/(1 + (T/T_m)^4)^(1/4)` tends to T_m = SATURATION_TORQUE_RATIO times the rated torque, because
     the stiffness of catalogue drives becomes constant. Beyond rated torque this is an extrapolation.
     """
-    smoothing, saturation = drive.torque_smoothing, SETTLED * drive.rated_torque
+    smoothing, saturation = drive.torque_smoothing, SATURATION_TORQUE_RATIO * drive.rated_torque
 
-    def settled(T: Number) -> tuple[Number, Number]:
+    def saturate(T: Number) -> tuple[Number, Number]:
         """Squared saturated torque t^2 [(N.m)^2], and t dt/dT [N.m]."""
         x = np.minimum(np.maximum(T / saturation, -1e3), 1e3)
         bend = 1.0 + x**4
@@ -231,42 +237,44 @@ def peak_pressure(drive: PairDrive, torque: Number) -> tuple[Number, Number]:
         return square / (distance(square) + smoothing)
 
     zero, rated = drive.zero_torque_pressure, drive.rated_pressure
-    factor = (rated**2 - zero**2) / growth(settled(drive.rated_torque)[0])
-    square, square_slope = settled(torque)
+    factor = (rated**2 - zero**2) / growth(saturate(drive.rated_torque)[0])
+    square, square_slope = saturate(torque)
     unreduced = np.sqrt(zero**2 + factor * growth(square))
     return unreduced - drive.pressure_loss, 0.5 * factor * square_slope / distance(square) / unreduced
 
 
-def pair_log_area(drive: PairDrive, torque: Number) -> Number:
+def pair_argument(drive: ContactPairDrive, torque: Number) -> Number:
     """Argument u (...) [1] of the pair's law at the mean pressure under torques (...) [N.m]."""
     law = drive.pair_law
     start, power = law.spots().log_total("load", 0.0)
     return (np.log(drive.mean_over_peak * peak_pressure(drive, torque)[0] * law.A_0) - start) / power
 
 
-def pair_stiffness(drive: PairDrive, torque: Number) -> tuple[Number, Number]:
+def pair_stiffness(drive: ContactPairDrive, torque: Number) -> tuple[Number, Number]:
     """Stiffness K_TS (...) [N.m/rad] of the contact pair at torques (...) [N.m], and dK_TS/dT [1/rad].
 
     Computed from the mean pressure: the tangential stiffness of a point is nearly proportional to its
     pressure.
     """
     peak, pressure_slope = peak_pressure(drive, torque)
-    spots, u = drive.pair_law.spots(), pair_log_area(drive, torque)
+    spots, u = drive.pair_law.spots(), pair_argument(drive, torque)
     power = spots.log_total("load", 0.0)[1]
-    slope = spots.slope("tangential", u) / (power * peak)
-    return drive.twist * spots.total("tangential", u), drive.twist * slope * pressure_slope
+    slope = spots.total_derivative("tangential", u) / (power * peak)
+    return drive.pair_stiffness_factor * spots.total(
+        "tangential", u
+    ), drive.pair_stiffness_factor * slope * pressure_slope
 
 
-def drive_stiffness(drive: PairDrive, torque: Number) -> tuple[Number, Number]:
+def drive_stiffness(drive: ContactPairDrive, torque: Number) -> tuple[Number, Number]:
     """Stiffness K_WTS (...) [N.m/rad] by Eq. 46, 1/K_WTS = 1/K_FTS + 1/K_TS, and dK_WTS/dT [1/rad]."""
     pair, growth = pair_stiffness(drive, torque)
     total = 1.0 / (1.0 / drive.K_FTS0 + 1.0 / pair)
     return total, (total / pair) ** 2 * growth
 
 
-def stiffness_with_play(drive: PairDrive, torque: Number) -> tuple[Number, Number]:
+def stiffness_with_play(drive: ContactPairDrive, torque: Number) -> tuple[Number, Number]:
     """Stiffness K_WTS (...) [N.m/rad] of the law and the lost motion in series, and dK_WTS/dT [1/rad]."""
     K, growth = drive_stiffness(drive, torque)
-    _, compliance, change = play(drive, torque)
+    _, compliance, change = lost_motion_angle(drive, torque)
     softer = 1.0 + K * compliance
     return K / softer, (growth - K * K * change) / softer**2

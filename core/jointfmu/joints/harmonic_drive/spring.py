@@ -6,22 +6,22 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...mechanics.curve import Curve, assemble, refined
-from ...mechanics.steps import mobility, stable_steps
+from ...mechanics.curve import Curve, assemble_curve, refine_curve
+from ...mechanics.steps import largest_stable_steps, mobility
 from ...quantity import Array, Number, check_limits
 from . import friction, hysteresis
 from .drive import Drive, kinematic_error
-from .friction import REFERENCE, Friction, limits, viscous
-from .given import Given
-from .hysteresis import Hysteresis
-from .law import PairDrive, stiffness_with_play
+from .friction import REFERENCE_TEMPERATURE, FrictionSliders, friction_limits, viscous_torque
+from .given import PrescribedDrive
+from .hysteresis import HysteresisSliders
+from .law import ContactPairDrive, stiffness_with_play
 
-STEPS = 160
+MIN_TABLE_STEPS = 160
 """Initial number of steps of the midline's table [1]; doubled until the table is accurate."""
-SOFTEST, STIFFEST = 1e-100, 1e-6
+MIN_STIFFNESS, MIN_STIFFNESS_MARGIN = 1e-100, 1e-6
 """Smallest K_WTS [N.m/rad], and smallest K_FTS0/K_TS [1], for which the table can be computed."""
-GAUSS = np.polynomial.legendre.leggauss(4)
-MEMORY = hysteresis.MEMORY | friction.MEMORY
+GAUSS_RULE = np.polynomial.legendre.leggauss(4)
+HISTORY_LAYOUT = hysteresis.HISTORY_LAYOUT | friction.HISTORY_LAYOUT
 """History variables of the drive: hysteresis, then friction."""
 
 
@@ -34,31 +34,31 @@ def torque_curve(drive: Drive) -> Curve:
 
     Raises ValueError if spots of a contact pair would yield within the table, or if K_WTS is out of range.
     """
-    check_limits(drive, drive.table_limits())
-    if isinstance(drive, PairDrive):
-        return refined(lambda steps: _windup(drive, steps), STEPS)
-    if isinstance(drive, Given):
-        x, y, s, slope_before, slope_after = np.array(drive.nodes(), dtype=np.float64).T
+    check_limits(drive, drive.find_table_limits())
+    if isinstance(drive, ContactPairDrive):
+        return refine_curve(lambda steps: _tabulate_midline(drive, steps), MIN_TABLE_STEPS)
+    if isinstance(drive, PrescribedDrive):
+        x, y, s, slope_before, slope_after = np.array(drive.make_nodes(), dtype=np.float64).T
         return Curve(x, y, s, slope_after[:-1], slope_before[1:])
     raise TypeError(f"{type(drive).__name__} is no PairDrive and not Given")
 
 
-def _windup(drive: PairDrive, steps: int) -> Curve:
+def _tabulate_midline(drive: ContactPairDrive, steps: int) -> Curve:
     """Table of the midline with `steps` steps, see `torque_curve`."""
     smoothing = drive.torque_smoothing
     xi = np.linspace(0.0, np.arcsinh(drive.max_torque / smoothing), steps + 1)
     T, half = smoothing * np.sinh(xi), 0.5 * xi[1]
     with np.errstate(all="ignore"):
         K, growth = stiffness_with_play(drive, T)
-    if not np.all((K > SOFTEST) & (K < (1.0 - STIFFEST) * drive.K_FTS0)):
+    if not np.all((K > MIN_STIFFNESS) & (K < (1.0 - MIN_STIFFNESS_MARGIN) * drive.K_FTS0)):
         raise ValueError(
             f"K_FTS0 = {drive.K_FTS0:g} N.m/rad and the contact pair give K_WTS = {K[-1]:g} N.m/rad, allowed "
-            f"is ({SOFTEST:g}, {drive.K_FTS0:g}) N.m/rad with K_TS at most {1.0 / STIFFEST:g} times K_FTS0"
+            f"is ({MIN_STIFFNESS:g}, {drive.K_FTS0:g}) N.m/rad with K_TS at most {1.0 / MIN_STIFFNESS_MARGIN:g} times K_FTS0"
         )
-    inner = xi[:-1, None] + half * (1.0 + GAUSS[0])
+    inner = xi[:-1, None] + half * (1.0 + GAUSS_RULE[0])
     rate = smoothing * np.cosh(inner) / stiffness_with_play(drive, smoothing * np.sinh(inner))[0]
-    phi = np.concatenate([[0.0], np.cumsum(half * rate @ GAUSS[1])])
-    return assemble([(phi, T, K, K * growth)])
+    phi = np.concatenate([[0.0], np.cumsum(half * rate @ GAUSS_RULE[1])])
+    return assemble_curve([(phi, T, K, K * growth)])
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,41 +73,41 @@ class HarmonicDriveSpring:
 
     joint: Drive
     curve: Curve
-    hysteresis: Hysteresis
-    friction: Friction
+    hysteresis: HysteresisSliders
+    friction: FrictionSliders
 
     @classmethod
-    def of(cls, drive: Drive) -> "HarmonicDriveSpring":
+    def tabulate(cls, drive: Drive) -> "HarmonicDriveSpring":
         """Tabulate a parameter set.
 
         Raises ValueError as `torque_curve` and `Hysteresis.for_drive` do.
         """
         curve = torque_curve(drive)
-        return cls(drive, curve, Hysteresis.of(drive, curve), Friction.of(drive))
+        return cls(drive, curve, HysteresisSliders.for_drive(drive, curve), FrictionSliders.for_drive(drive))
 
-    def motion(
+    def evaluate_motion(
         self,
         phi1: ArrayLike,
         w1: ArrayLike,
         phi2: ArrayLike,
         w2: ArrayLike,
-        temperature: ArrayLike = REFERENCE,
+        temperature: ArrayLike = REFERENCE_TEMPERATURE,
     ) -> dict[str, Array]:
         """Outputs at flange angles [rad], speeds [rad/s] and temperatures [K] (...), after a straight path
         from the virgin state.
         """
-        return self.driven((phi1, w1, phi2, w2), self.rest(), temperature)[0]
+        return self.advance_motion((phi1, w1, phi2, w2), self.initial_history(), temperature)[0]
 
-    def windup(self, tau: ArrayLike) -> dict[str, Array]:
+    def evaluate_torque(self, tau: ArrayLike) -> dict[str, Array]:
         """Outputs at torques (...) [N.m] after a path from the virgin state, wave generator locked."""
-        return self.loaded(tau, self.rest())[0]
+        return self.advance_torque(tau, self.initial_history())[0]
 
-    def rest(self) -> Array:
+    def initial_history(self) -> Array:
         """History variables (n) of the virgin state."""
-        return MEMORY.rest()
+        return HISTORY_LAYOUT.virgin_history()
 
-    def driven(
-        self, motion: Sequence[ArrayLike], memory: Array, temperature: ArrayLike = REFERENCE
+    def advance_motion(
+        self, motion: Sequence[ArrayLike], history: Array, temperature: ArrayLike = REFERENCE_TEMPERATURE
     ) -> tuple[dict[str, Array], Array]:
         """Outputs and new history variables after a straight path to a motion.
 
@@ -117,49 +117,51 @@ class HarmonicDriveSpring:
         """
         motion = tuple(np.asarray(x, dtype=np.float64) for x in motion)
         kelvin = np.asarray(temperature, dtype=np.float64)
-        hysteresis_history, friction_history = _parts(memory)
+        hysteresis_history, friction_history = _split_history(history)
         error, slope, _ = kinematic_error(self.joint, motion[0])
         phi = wind_up(self.joint, motion, error)
         load, stiffness = self.curve.derivatives(np.abs(phi), 1)
-        hysteresis_update = self.hysteresis.moved(hysteresis_history, phi)
+        hysteresis_update = self.hysteresis.advance(hysteresis_history, phi)
         load = np.copysign(load, phi)
-        state = State(phi, load, stiffness, hysteresis_update.traction, error, slope)
-        friction_limits_ = limits(self.joint, motion[1], transmitted(self.joint, motion, state), kelvin)
-        friction_update = self.friction.moved(friction_history, motion[0], motion[1], friction_limits_)
+        state = SpringState(phi, load, stiffness, hysteresis_update.traction, error, slope)
+        friction_limits_ = friction_limits(
+            self.joint, motion[1], transmitted_torque(self.joint, motion, state), kelvin
+        )
+        friction_update = self.friction.advance(friction_history, motion[0], motion[1], friction_limits_)
         loss = (
-            hysteresis.MEMORY.split(hysteresis_history)["loss"]
+            hysteresis.HISTORY_LAYOUT.split(hysteresis_history)["loss"]
             + hysteresis_update.loss
             + friction_update.loss
         )
-        out = exported(self.joint, motion, kelvin, state, friction_update.traction) | {"E_loss": loss}
-        new_friction = self.friction.after(friction_update, motion[0], friction_limits_)
+        out = motion_outputs(self.joint, motion, kelvin, state, friction_update.traction) | {"E_loss": loss}
+        new_friction = self.friction.pack_history(friction_update, motion[0], friction_limits_)
         return out, np.concatenate(
-            [self.hysteresis.after(hysteresis_update, phi, loss), new_friction], axis=-1
+            [self.hysteresis.pack_history(hysteresis_update, phi, loss), new_friction], axis=-1
         )
 
-    def loaded(self, tau: ArrayLike, memory: Array) -> tuple[dict[str, Array], Array]:
+    def advance_torque(self, tau: ArrayLike, history: Array) -> tuple[dict[str, Array], Array]:
         """Outputs and new history variables after a path to torques tau (...) [N.m], phi1 locked."""
-        hysteresis_history, friction_history = _parts(memory)
-        if self.hysteresis.acts:
-            phi = self.hysteresis.wind_up(self.curve, hysteresis_history, tau)
+        hysteresis_history, friction_history = _split_history(history)
+        if self.hysteresis.is_active:
+            phi = self.hysteresis.solve_wind_up(self.curve, hysteresis_history, tau)
         else:
             phi = self.curve.odd_inverse(tau)
         load, stiffness = self.curve.derivatives(np.abs(phi), 1)
-        update = self.hysteresis.moved(hysteresis_history, phi)
-        loss = hysteresis.MEMORY.split(hysteresis_history)["loss"] + update.loss
-        new = self.hysteresis.after(update, phi, loss)
+        update = self.hysteresis.advance(hysteresis_history, phi)
+        loss = hysteresis.HISTORY_LAYOUT.split(hysteresis_history)["loss"] + update.loss
+        new = self.hysteresis.pack_history(update, phi, loss)
         locked = np.broadcast_to(friction_history, (*new.shape[:-1], friction_history.shape[-1]))
-        out = {"phi_rel": phi, **parts(self.joint, load, stiffness), "E_loss": loss}
+        out = {"phi_rel": phi, **stiffness_outputs(self.joint, load, stiffness), "E_loss": loss}
         return out, np.concatenate([new, locked], axis=-1)
 
 
-def _parts(memory: Array) -> tuple[Array, Array]:
+def _split_history(history: Array) -> tuple[Array, Array]:
     """History variables (..., n) of the hysteresis and of the friction."""
-    return memory[..., : hysteresis.MEMORY.size], memory[..., hysteresis.MEMORY.size :]
+    return history[..., : hysteresis.HISTORY_LAYOUT.size], history[..., hysteresis.HISTORY_LAYOUT.size :]
 
 
 @dataclass(frozen=True, slots=True)
-class State:
+class SpringState:
     """State of the spring at a motion: numbers, arrays or symbols.
 
     phi_rel   : [rad] wind-up
@@ -184,8 +186,8 @@ def wind_up(drive: Drive, motion: Sequence[Number], error: Number) -> Number:
     return phi2 - phi1 / drive.ratio - error
 
 
-def exported(
-    drive: Drive, motion: Sequence[Number], temperature: Number, state: State, dry: Number
+def motion_outputs(
+    drive: Drive, motion: Sequence[Number], temperature: Number, state: SpringState, dry_friction: Number
 ) -> dict[str, Number]:
     """Outputs of the spring except E_loss, at a motion (phi1, w1, phi2, w2).
 
@@ -193,15 +195,18 @@ def exported(
     state        : state of the spring at this motion
     dry_friction : [N.m] at the wave generator
     """
-    tau, friction = transmitted(drive, motion, state), dry + viscous(drive, motion[1], temperature)
+    tau, friction = (
+        transmitted_torque(drive, motion, state),
+        dry_friction + viscous_torque(drive, motion[1], temperature),
+    )
     w = mobility(drive.inertia1, 1.0 / drive.ratio) + mobility(drive.inertia2)
-    at_once, side_by_side = stable_steps(state.stiffness, drive.d, w)
+    at_once, side_by_side = largest_stable_steps(state.stiffness, drive.d, w)
     return {
         "tau1": tau / drive.ratio + state.slope * tau - friction,
         "tau2": -tau,
         "phi_rel": state.phi_rel,
         "tau": tau,
-        **parts(drive, state.load, state.stiffness),
+        **stiffness_outputs(drive, state.load, state.stiffness),
         "tau_friction": friction,
         "phi_error": state.error,
         "step_at_once": at_once,
@@ -209,13 +214,13 @@ def exported(
     }
 
 
-def transmitted(drive: Drive, motion: Sequence[Number], state: State) -> Number:
+def transmitted_torque(drive: Drive, motion: Sequence[Number], state: SpringState) -> Number:
     """Torque tau [N.m] at the output: sum of midline, hysteresis and damping."""
     _, w1, _, w2 = motion
     return state.load + state.friction + drive.d * (w2 - w1 / drive.ratio - state.slope * w1)
 
 
-def parts(drive: Drive, load: Number, stiffness: Number) -> dict[str, Number]:
+def stiffness_outputs(drive: Drive, load: Number, stiffness: Number) -> dict[str, Number]:
     """Outputs K_WTS, K_TS, K_FTS, K_TS_pair [N.m/rad] and p_max [Pa] at a torque `load` of the midline.
 
     K_TS includes the lost motion; K_TS_pair is K_TS on the scale of Fig. 11 of Hu 2023.
@@ -225,6 +230,6 @@ def parts(drive: Drive, load: Number, stiffness: Number) -> dict[str, Number]:
         "K_WTS": stiffness,
         "K_TS": K_TS,
         "K_FTS": drive.K_FTS + 0.0 * stiffness,
-        "K_TS_pair": K_TS / drive.pair_units,
+        "K_TS_pair": K_TS / drive.pair_scale,
         "p_max": drive.pressure(load),
     }

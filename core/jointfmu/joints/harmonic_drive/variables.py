@@ -1,14 +1,14 @@
 """Models of the harmonic drive that are exported as FMUs, with their inputs and outputs."""
 
-from ...mechanics.steps import STEPS
-from ...quantity.units import LUBRICANTS
-from ..model import BEYOND, Loop, Model, Outside, Ramp, Values, Variable
+from ...mechanics.steps import STABLE_STEP_OUTPUTS
+from ...quantity.units import LUBRICANT_TEMPERATURES
+from ..model import EXTRAPOLATION_WARNING, LoadCycle, LoadRamp, Model, ValidityLimit, Values, Variable
 from .drive import HARMONICS
-from .friction import REFERENCE
+from .friction import REFERENCE_TEMPERATURE
 from .law import HarmonicDrive
 from .spring import HarmonicDriveSpring
 
-_CONTACT = (
+_STIFFNESS_OUTPUTS = (
     Variable("K_WTS", "N.m/rad", "tangent stiffness dT/dphi of the midline at the present wind-up", 5e3),
     Variable("K_TS", "N.m/rad", "stiffness of the contact pair: 1/K_WTS = 1/K_FTS + 1/K_TS", 5e3),
     Variable("K_FTS", "N.m/rad", "stiffness of circular spline and flexspline", 2e4),
@@ -19,14 +19,14 @@ _CONTACT = (
     ),
 )
 
-_MOTION = ("phi1", "phi2")
-_DRIVEN = ("phi1", "w1", "phi2", "w2")
-_HIDDEN = ("max_torque", "shear_traction", "table")
-_LOSSY = {"hysteresis_loss": 3e-4, "hysteresis_stiffness": 8e3}
+_ANGLES = ("phi1", "phi2")
+_FLANGE_MOTION = ("phi1", "w1", "phi2", "w2")
+_FIXED_PARAMETERS = ("max_torque", "shear_traction", "table")
+_LOOP_SETTINGS = {"hysteresis_loss": 3e-4, "hysteresis_stiffness": 8e3}
 """Parameters of the load cycle: hysteresis of one arcmin; the default drive has no hysteresis."""
-_DAMPED = {"w2": "parameters"}
-_ERROR = tuple(f"error_{n}{what}" for n in HARMONICS for what in ("", "_phase"))
-_FRICTION = (
+_LINEAR_IN_SPEED = {"w2": "parameters"}
+_ERROR_PARAMETERS = tuple(f"error_{n}{what}" for n in HARMONICS for what in ("", "_phase"))
+_FRICTION_PARAMETERS = (
     "friction_coulomb",
     "friction_stribeck",
     "stribeck_speed",
@@ -34,13 +34,24 @@ _FRICTION = (
     "load_loss",
     "load_loss_back",
 )
-_WARM = ("temperature_factor", "viscous_temperature_coefficient", "dry_temperature_coefficient")
-_SPRING_ONLY = (*_FRICTION, "presliding", *_WARM, *_ERROR, "inertia1", "inertia2")
+_TEMPERATURE_PARAMETERS = (
+    "temperature_factor",
+    "viscous_temperature_coefficient",
+    "dry_temperature_coefficient",
+)
+_SPRING_PARAMETERS = (
+    *_FRICTION_PARAMETERS,
+    "presliding",
+    *_TEMPERATURE_PARAMETERS,
+    *_ERROR_PARAMETERS,
+    "inertia1",
+    "inertia2",
+)
 
 
-def _driven(v: Values) -> tuple[float, ...]:
+def _flange_motion(v: Values) -> tuple[float, ...]:
     """Motion of both flanges: phi1, w1, phi2, w2."""
-    return tuple(v[name] for name in _DRIVEN)
+    return tuple(v[name] for name in _FLANGE_MOTION)
 
 
 MODELS = (
@@ -49,13 +60,20 @@ MODELS = (
         joint="harmonic_drive",
         doc="Torsional spring and damper of a harmonic drive: motion in, torque out",
         parameters=HarmonicDrive,
-        spring=HarmonicDriveSpring.of,
+        tabulate=HarmonicDriveSpring.tabulate,
         inputs=(
             Variable("phi1", "rad", "angle of the wave-generator (motor) flange"),
             Variable("w1", "rad/s", "speed of the wave-generator (motor) flange"),
             Variable("phi2", "rad", "angle of the output flange"),
             Variable("w2", "rad/s", "speed of the output flange"),
-            Variable("temperature", "K", "temperature of the lubricant", REFERENCE, low=0.0, start=REFERENCE),
+            Variable(
+                "temperature",
+                "K",
+                "temperature of the lubricant",
+                REFERENCE_TEMPERATURE,
+                minimum=0.0,
+                start=REFERENCE_TEMPERATURE,
+            ),
         ),
         outputs=(
             Variable(
@@ -66,7 +84,7 @@ MODELS = (
             Variable(
                 "tau", "N.m", "T(phi_rel) + T_h + d der(phi_rel), T_h the friction of the hysteresis", 5.0
             ),
-            *_CONTACT,
+            *_STIFFNESS_OUTPUTS,
             Variable(
                 "tau_friction",
                 "N.m",
@@ -74,55 +92,63 @@ MODELS = (
                 0.01,
             ),
             Variable("phi_error", "rad", "kinematic error at the output, a function of phi1", 1e-4),
-            *(Variable(name, "s", f"{doc}: with inertia1, inertia2, K_WTS, d", 1e-3) for name, doc in STEPS),
+            *(
+                Variable(name, "s", f"{doc}: with inertia1, inertia2, K_WTS, d", 1e-3)
+                for name, doc in STABLE_STEP_OUTPUTS
+            ),
         ),
-        evaluate=lambda s, v: s.motion(*_driven(v), v["temperature"]),
-        rest=lambda s: s.rest(),
-        evolve=lambda s, v, memory: s.driven(_driven(v), memory, v["temperature"]),
-        outside=(
-            Outside("phi_rel", lambda j, end, v: (-end[0], end[0]), BEYOND),
-            Outside(
+        evaluate=lambda s, v: s.motion(*_flange_motion(v), v["temperature"]),
+        initial_history=lambda s: s.rest(),
+        advance=lambda s, v, memory: s.driven(_flange_motion(v), memory, v["temperature"]),
+        validity_limits=(
+            ValidityLimit("phi_rel", lambda j, end, v: (-end[0], end[0]), EXTRAPOLATION_WARNING),
+            ValidityLimit(
                 "temperature",
-                lambda j, end, v: LUBRICANTS,
+                lambda j, end, v: LUBRICANT_TEMPERATURES,
                 "outside the range of lubricants; the unit is kelvin",
             ),
         ),
-        ramp=Ramp("phi2", 1.5e-3, 3e-6, reach=lambda s, v: (0.0, s.curve.inverse(s.joint.ramp_torque))),
-        loop=Loop("phi2", 1e-3, _LOSSY),
+        ramp=LoadRamp(
+            "phi2", 1.5e-3, 3e-6, find_range=lambda s, v: (0.0, s.curve.inverse(s.joint.ramp_torque))
+        ),
+        loop=LoadCycle("phi2", 1e-3, _LOOP_SETTINGS),
         dependencies={
-            "tau2": _DRIVEN,
-            "phi_rel": _MOTION,
-            "tau": _DRIVEN,
-            "K_WTS": _MOTION,
-            "K_TS": _MOTION,
+            "tau2": _FLANGE_MOTION,
+            "phi_rel": _ANGLES,
+            "tau": _FLANGE_MOTION,
+            "K_WTS": _ANGLES,
+            "K_TS": _ANGLES,
             "K_FTS": (),
-            "K_TS_pair": _MOTION,
-            "p_max": _MOTION,
-            **{name: _MOTION for name, _ in STEPS},
+            "K_TS_pair": _ANGLES,
+            "p_max": _ANGLES,
+            **{name: _ANGLES for name, _ in STABLE_STEP_OUTPUTS},
             "phi_error": ("phi1",),
         },
-        linear={
+        linear_factors={
             "phi_rel": {"phi2": "constant"},
-            "tau2": _DAMPED,
-            "tau": _DAMPED,
+            "tau2": _LINEAR_IN_SPEED,
+            "tau": _LINEAR_IN_SPEED,
         },
-        hidden=_HIDDEN,
+        fixed_parameters=_FIXED_PARAMETERS,
     ),
     Model(
         name="HarmonicDriveCompliance",
         joint="harmonic_drive",
         doc="Wind-up of a harmonic drive with the wave generator locked: torque in, motion out",
         parameters=HarmonicDrive,
-        spring=HarmonicDriveSpring.of,
+        tabulate=HarmonicDriveSpring.tabulate,
         inputs=(Variable("tau", "N.m", "torque at the output flange", 5.0),),
-        outputs=(Variable("phi_rel", "rad", "wind-up at the output, phi(tau - T_h)", 1e-3), *_CONTACT),
+        outputs=(
+            Variable("phi_rel", "rad", "wind-up at the output, phi(tau - T_h)", 1e-3),
+            *_STIFFNESS_OUTPUTS,
+        ),
         evaluate=lambda s, v: s.windup(v["tau"]),
-        rest=lambda s: s.rest(),
-        evolve=lambda s, v, memory: s.loaded(v["tau"], memory),
-        outside=(Outside("tau", lambda j, end, v: (-end[1], end[1]), BEYOND),),
-        ramp=Ramp("tau", 5.0, 0.01, reach=lambda s, v: (0.0, s.joint.ramp_torque)),
-        loop=Loop("tau", 5.0, _LOSSY),
+        initial_history=lambda s: s.rest(),
+        advance=lambda s, v, memory: s.loaded(v["tau"], memory),
+        validity_limits=(ValidityLimit("tau", lambda j, end, v: (-end[1], end[1]), EXTRAPOLATION_WARNING),),
+        ramp=LoadRamp("tau", 5.0, 0.01, find_range=lambda s, v: (0.0, s.joint.ramp_torque)),
+        loop=LoadCycle("tau", 5.0, _LOOP_SETTINGS),
         dependencies={"K_FTS": ()},
-        hidden=(*_HIDDEN, *_SPRING_ONLY),
+        fixed_parameters=(*_FIXED_PARAMETERS, *_SPRING_PARAMETERS),
     ),
 )

@@ -6,31 +6,31 @@ from typing import TypeAlias
 
 import numpy as np
 
-from ...quantity import Array, check, quantity
-from .plate import EDGE, BoltedPlate
-from .shape import Means, NodalField, PressureShape, means
+from ...quantity import Array, check_fields, quantity_field
+from .plate import EDGE_FACTOR, BoltedPlate
+from .shape import NodalField, PositionMeans, PressureDistribution, position_means
 
 CELLS_ACROSS = 7
 """Number of cells across the flange [1]: 1000 nodes for the default frame; Zhao's mesh has 1019."""
-_SUBCELLS = 8
+_CELL_SUBDIVISIONS = 8
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class BoltPattern:
+class BoltedFrame:
     """Rectangular frame with eight bolts on its centre line: two rows of three, and one between on each side.
 
     The rows lie at y = +-row_spacing/2 with bolts at x = -column_spacing/2, 0, +column_spacing/2.
     """
 
-    row_spacing: float = quantity("m", "distance of the two bolt rows", gt=0.0)
-    column_spacing: float = quantity("m", "distance of the outer bolts of a row", gt=0.0)
-    flange_width: float = quantity("m", "width of the contact frame", gt=0.0)
-    hole_diameter: float = quantity("m", "clearance hole of a bolt", gt=0.0)
-    decay_length: float = quantity("m", "length of the pressure decay", gt=0.0, calibration=True)
-    decay_exponent: float = quantity("1", "exponent of the pressure decay", gt=0.0, calibration=True)
+    row_spacing: float = quantity_field("m", "distance of the two bolt rows", gt=0.0)
+    column_spacing: float = quantity_field("m", "distance of the outer bolts of a row", gt=0.0)
+    flange_width: float = quantity_field("m", "width of the contact frame", gt=0.0)
+    hole_diameter: float = quantity_field("m", "clearance hole of a bolt", gt=0.0)
+    decay_length: float = quantity_field("m", "length of the pressure decay", gt=0.0, calibration=True)
+    decay_exponent: float = quantity_field("1", "exponent of the pressure decay", gt=0.0, calibration=True)
 
     def __post_init__(self) -> None:
-        check(self)
+        check_fields(self)
         if self.hole_diameter >= self.flange_width:
             raise ValueError(
                 f"hole_diameter = {self.hole_diameter:g} m is outside (0, {self.flange_width:g}): "
@@ -50,55 +50,55 @@ class BoltPattern:
         return frame - 0.25 * np.pi * len(self.bolts) * self.hole_diameter**2
 
     @property
-    def rows(self) -> tuple[float, float]:
+    def equivalent_rows(self) -> tuple[float, float]:
         """Bolts per row N_b [1] and distance L_a [m] of the two rows that carry a moment."""
         return 3.0, self.row_spacing
 
     @property
-    def bolt_means(self) -> Means:
+    def bolt_means(self) -> PositionMeans:
         """Means of x, y [m], x^2, y^2, x y [m2] of the bolts, from the centroid of the contact."""
-        return means(self.bolt_positions)
+        return position_means(self.bolt_positions)
 
     @property
     def bolt_positions(self) -> Array:
         """Positions (8, 2) [m] of the bolts, from the centroid of the contact."""
         return self.bolts
 
-    def decay(self, distance: Array) -> Array:
+    def pressure_decay(self, distance: Array) -> Array:
         """Pressure of one bolt over its value at the axis [1]: (1 + (r/decay_length)^2)^-decay_exponent.
 
         distance : r (...) [m] from the axis
         """
         return np.asarray((1.0 + (distance / self.decay_length) ** 2) ** -self.decay_exponent)
 
-    def shape(self) -> PressureShape:
+    def pressure_distribution(self) -> PressureDistribution:
         """Pressure distribution at the cells of the frame."""
-        areas, points = cells(self)
-        unit = unit_pressures(self, areas, points, points) * areas.sum()
+        areas, points = frame_cells(self)
+        unit = bolt_pressures(self, areas, points, points) * areas.sum()
         centroid = np.average(points, axis=0, weights=areas)
-        return PressureShape(
+        return PressureDistribution(
             share=areas / areas.sum(),
             position=points - centroid,
-            equal=unit.mean(axis=0),
-            tilt=unit[:3].mean(axis=0) - unit[5:].mean(axis=0),
+            preload_shape=unit.mean(axis=0),
+            moment_shape=unit[:3].mean(axis=0) - unit[5:].mean(axis=0),
         )
 
 
-def cells(pattern: BoltPattern) -> tuple[Array, Array]:
+def frame_cells(pattern: BoltedFrame) -> tuple[Array, Array]:
     """Areas (n) [m2] and centroids (n, 2) [m] of square cells of the frame, without the holes."""
     size = pattern.flange_width / CELLS_ACROSS
     half = 0.5 * np.array([pattern.column_spacing, pattern.row_spacing])
     outer, inner = half + 0.5 * pattern.flange_width, half - 0.5 * pattern.flange_width
     count = np.maximum(np.round(2.0 * outer / size).astype(int), 1)
-    sub = [(np.arange(n * _SUBCELLS) + 0.5) / (n * _SUBCELLS) for n in count]
+    sub = [(np.arange(n * _CELL_SUBDIVISIONS) + 0.5) / (n * _CELL_SUBDIVISIONS) for n in count]
     x, y = np.meshgrid(*(o * (2.0 * s - 1.0) for o, s in zip(outer, sub, strict=True)), indexing="ij")
-    solid = (np.abs(x) > inner[0] * EDGE) | (np.abs(y) > inner[1] * EDGE)
+    solid = (np.abs(x) > inner[0] * EDGE_FACTOR) | (np.abs(y) > inner[1] * EDGE_FACTOR)
     for bx, by in pattern.bolts:
-        solid &= np.hypot(x - bx, y - by) > 0.5 * pattern.hole_diameter * EDGE
+        solid &= np.hypot(x - bx, y - by) > 0.5 * pattern.hole_diameter * EDGE_FACTOR
     area = 4.0 * outer[0] * outer[1] / solid.size
 
     def total(values: Array) -> Array:
-        blocks = (values * solid).reshape(count[0], _SUBCELLS, count[1], _SUBCELLS)
+        blocks = (values * solid).reshape(count[0], _CELL_SUBDIVISIONS, count[1], _CELL_SUBDIVISIONS)
         return np.asarray(blocks.sum(axis=(1, 3)).ravel())
 
     points = total(np.ones_like(x))
@@ -107,25 +107,25 @@ def cells(pattern: BoltPattern) -> tuple[Array, Array]:
     return points[keep] * area, centroids
 
 
-def unit_pressures(pattern: BoltPattern, areas: Array, points: Array, at: Array) -> Array:
+def bolt_pressures(pattern: BoltedFrame, areas: Array, cell_points: Array, evaluation_points: Array) -> Array:
     """Pressure (8, k) [Pa] by 1 N in each of the eight bolts.
 
     areas, cell_points : (n) [m2], (n, 2) [m] of the cells; the pressure of each bolt sums to 1 N over them
     evaluation_points  : (k, 2) [m] at which the pressure is computed
     """
 
-    def decay(where: Array) -> Array:
-        offset = where[None, :, :] - pattern.bolts[:, None, :]
-        return pattern.decay(np.hypot(offset[..., 0], offset[..., 1]))
+    def decay(positions: Array) -> Array:
+        offset = positions[None, :, :] - pattern.bolts[:, None, :]
+        return pattern.pressure_decay(np.hypot(offset[..., 0], offset[..., 1]))
 
-    return np.asarray(decay(at) / np.sum(areas * decay(points), axis=1)[:, None])
+    return np.asarray(decay(evaluation_points) / np.sum(areas * decay(cell_points), axis=1)[:, None])
 
 
-PressureSource: TypeAlias = BoltPattern | BoltedPlate | NodalField
+PressureSource: TypeAlias = BoltedFrame | BoltedPlate | NodalField
 """Model of the pressure distribution of a bolted joint."""
 
 
 @lru_cache(maxsize=8)
-def pressure_shape(source: PressureSource) -> PressureShape:
+def pressure_distribution(source: PressureSource) -> PressureDistribution:
     """Pressure distribution of a source, cached."""
-    return source.shape()
+    return source.pressure_distribution()

@@ -10,28 +10,28 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...quantity import Array
-from .reproducible import combined, length, over, product
+from .reproducible import euclidean_norm, linear_combination, matrix_product, weighted_sums
 
-Nodes = NDArray[np.intp]
+NodeIndices = NDArray[np.intp]
 
-LEAST = 1e-11
+DEPENDENCE_TOLERANCE = 1e-11
 """Norm over the largest norm [1] below which the remainder of a vector counts as linearly dependent."""
-DEPENDENT = 1e-7
+CORRECTION_TOLERANCE = 1e-7
 """Norm over the largest norm [1] for linear dependence in the correction of sums; far above round-off."""
 
 
-def eliminated(values: Array, weights: Array) -> Array:
+def reduce_weights(values: Array, weights: Array) -> Array:
     """New weights (n), at most d of them nonzero, with the same weighted sums of values (n, d).
 
     weights : (n) >= 0
     """
-    basis, orthonormal = independent(values, values.shape[1])
-    rows = product(values, orthonormal)
-    inverse = _inverse(rows[basis])
+    basis, orthonormal = select_independent(values, values.shape[1])
+    rows = matrix_product(values, orthonormal)
+    inverse = _invert_triangle(rows[basis])
     basis_weights, out = weights[basis], np.zeros_like(weights)
     for node in np.setdiff1d(np.arange(len(values)), basis):
-        share = combined(rows[node], inverse)
-        leaving, transfer = _leaving(share, basis_weights, weights[node])
+        share = linear_combination(rows[node], inverse)
+        leaving, transfer = _find_leaving_node(share, basis_weights, weights[node])
         basis_weights = np.maximum(basis_weights + transfer * share, 0.0)
         if leaving is None:
             continue
@@ -43,7 +43,9 @@ def eliminated(values: Array, weights: Array) -> Array:
     return out
 
 
-def independent(vectors: Array, most: int, least: float = LEAST) -> tuple[Nodes, Array]:
+def select_independent(
+    vectors: Array, max_count: int, tolerance: float = DEPENDENCE_TOLERANCE
+) -> tuple[NodeIndices, Array]:
     """Select linearly independent vectors of (n, d) by pivoted Gram-Schmidt orthogonalisation, applied twice.
 
     max_count : largest number of vectors to select
@@ -53,21 +55,21 @@ def independent(vectors: Array, most: int, least: float = LEAST) -> tuple[Nodes,
     """
     remainder, basis, indices = vectors.copy(), np.empty((0, vectors.shape[1])), np.empty(0, np.intp)
     square = np.add.reduce(remainder * remainder, axis=1)
-    end = least * least * np.max(square)
-    while indices.size < most and np.max(square) > end:
+    end = tolerance * tolerance * np.max(square)
+    while indices.size < max_count and np.max(square) > end:
         pivot = int(np.argmax(square))
         axis = remainder[pivot] / np.sqrt(square[pivot])
-        axis -= combined(over(basis, axis), basis)
-        axis /= length(axis)
-        remainder -= over(remainder, axis)[:, None] * axis
+        axis -= linear_combination(weighted_sums(basis, axis), basis)
+        axis /= euclidean_norm(axis)
+        remainder -= weighted_sums(remainder, axis)[:, None] * axis
         square = np.add.reduce(remainder * remainder, axis=1)
         basis, indices = np.concatenate([basis, axis[None]]), np.append(indices, pivot)
     return indices, basis
 
 
-def solved(matrix: Array, right: Array) -> Array:
+def solve_linear(matrix: Array, right_side: Array) -> Array:
     """Solve a linear system with a positive definite matrix (n, n) by Gaussian elimination; solution (n)."""
-    rows, out = np.column_stack([matrix, right]), np.zeros_like(right)
+    rows, out = np.column_stack([matrix, right_side]), np.zeros_like(right_side)
     for k in range(len(out) - 1):
         rows[k + 1 :, k:] -= (rows[k + 1 :, k] / rows[k, k])[:, None] * rows[k, k:]
     for k in range(len(out))[::-1]:
@@ -75,29 +77,29 @@ def solved(matrix: Array, right: Array) -> Array:
     return out
 
 
-def changes(weights: Array, functions: Array, missing: Array) -> Array:
+def weight_changes(weights: Array, functions: Array, residual: Array) -> Array:
     """Changes (n) of weights (n) that change the weighted sums of functions (m, n) by `residual` (m).
 
     The sum of change^2/|weight| is minimal. Functions that depend linearly on others are ignored.
     """
     root = np.sqrt(np.abs(weights))
     rows = functions * root
-    places, base = independent(rows, len(rows), DEPENDENT)
-    factors = over(_inverse(product(rows[places], base)), missing[places])
-    return np.asarray(root * combined(factors, base))
+    places, base = select_independent(rows, len(rows), CORRECTION_TOLERANCE)
+    factors = weighted_sums(_invert_triangle(matrix_product(rows[places], base)), residual[places])
+    return np.asarray(root * linear_combination(factors, base))
 
 
-def _inverse(triangle: Array) -> Array:
+def _invert_triangle(triangle: Array) -> Array:
     """Inverse of a lower triangular matrix (r, r)."""
     out = np.zeros_like(triangle)
     for i, row in enumerate(triangle):
-        out[i, :i] = -combined(row[:i], out[:i, :i])
+        out[i, :i] = -linear_combination(row[:i], out[:i, :i])
         out[i, i] = 1.0
         out[i] /= row[i]
     return out
 
 
-def _leaving(share: Array, held: Array, weight: float) -> tuple[int | None, float]:
+def _find_leaving_node(share: Array, basis_weights: Array, weight: float) -> tuple[int | None, float]:
     """Ratio test: index of the node that leaves the basis, and weight transferred from the new node.
 
     share         : change of the basis weights per unit of transferred weight [1]
@@ -107,7 +109,9 @@ def _leaving(share: Array, held: Array, weight: float) -> tuple[int | None, floa
     The index is None if the basis can take the whole weight. A negative transfer moves weight from the basis
     to the new node.
     """
-    ratio = np.divide(held, np.abs(share), out=np.full_like(held, np.inf), where=share != 0.0)
+    ratio = np.divide(
+        basis_weights, np.abs(share), out=np.full_like(basis_weights, np.inf), where=share != 0.0
+    )
     decreasing = int(np.argmin(np.where(share < 0.0, ratio, np.inf)))
     if share[decreasing] >= 0.0 or ratio[decreasing] >= weight:
         return None, weight

@@ -20,66 +20,81 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...quantity import Array
-from .elimination import changes, solved
-from .patches import balanced, few_points, largest_moment
-from .reproducible import cleared, length, over, powers, ranks, root, rounded, squared, to_digits, to_power
-from .shape import FrictionPatches, PressureShape
+from .elimination import solve_linear, weight_changes
+from .patches import exact_functions, largest_moment, reduce_points
+from .reproducible import (
+    binary_power,
+    binary_root,
+    clear_round_off,
+    euclidean_norm,
+    gram_matrix,
+    rank_descending,
+    round_distribution,
+    round_to_digits,
+    successive_powers,
+    weighted_sums,
+)
+from .shape import FrictionPatches, PressureDistribution
 
-POWERS = (4.0, 8.0, 8.0, 16.0)
+LAW_EXPONENTS = (4.0, 8.0, 8.0, 16.0)
 """Exponents N of the laws p ~ delta^N [1], powers of 2; real laws: Hertz 1.5, default law 7, roughness 12."""
-CASES, POLES = 240, 200
+SLIP_CASES, GROSS_SLIP_CASES = 240, 200
 """Number of fitted cases [1]: partial slip from the virgin state, and gross slip about a pole."""
-UNTILTED = 0.4
+UNTILTED_SHARE = 0.4
 """Share of the cases of partial slip without normal displacement and tilt [1]."""
-APART, TILTED = 0.1, 0.2
+MAX_OPENING, MAX_TILT = 0.1, 0.2
 """Largest normal displacement, and largest opening by tilt at the edge, over the largest approach [1]."""
-MOST_MOMENT = 2.5
+MAX_MOMENT_RATIO = 2.5
 """Largest moment over that of `largest_moment` [1]."""
-LEAST_WAY, MOST_WAY = 0.05, 3.0
+MIN_DISTANCE, MAX_DISTANCE = 0.05, 3.0
 """Shortest and longest motion [1], over the motion at which a node at the radius of gyration has mobilised
 all but STUCK_SHARE of its friction."""
-STUCK = 2.0**-13
+STUCK_SHARE = 2.0**-13
 """Share of the friction that is not yet mobilised [1], for the scale of motions."""
-STEPS = 50
+MAX_ITERATIONS = 50
 """Iterations of the Levenberg-Marquardt method [1]."""
-FIRST_DAMPING, LEAST_DAMPING = 1e-2, 1e-6
+INITIAL_DAMPING, MIN_DAMPING = 1e-2, 1e-6
 """Initial and smallest damping, over the diagonal of the normal equations [1]."""
-LESS, MORE = 0.2, 5.0
+DAMPING_DECREASE, DAMPING_INCREASE = 0.2, 5.0
 """Factors on the damping after a successful and after a rejected step [1]."""
-LARGEST_STEP = 0.5
+MAX_RELATIVE_STEP = 0.5
 """Largest relative change of a share, position or pressure in one step [1]."""
-LEAST_DIAGONAL = 1e-9
+MIN_DIAGONAL_RATIO = 1e-9
 """Smallest diagonal of the normal equations used for damping, over the largest [1]."""
-HOLDS = 400.0
+EXACT_WEIGHT = 400.0
 """Weight of an exact sum over the weight of a case [1]."""
-DIFFERENCE = 1e-6
+RELATIVE_PERTURBATION = 1e-6
 """Relative perturbation of a position or pressure for finite differences [1]."""
-AT_ONCE = 2000
+BATCH_SIZE = 2000
 """Number of nodes whose friction is evaluated at once [1]."""
-BESIDE, FAR = 0.06, 1e3
+MAX_POLE_OFFSET, GROSS_SLIP_DISTANCE = 0.06, 1e3
 """Largest distance of a pole of gross slip from a loaded node, over the radius of gyration [1]; length of the
 motion in gross slip [1]."""
-TILTED_POLES = 8
+TILTED_POLE_PERIOD = 8
 """One of this number of cases of gross slip [1] has a tilted contact; the others have no moment."""
 POLE_WEIGHT, TORQUE_WEIGHT, SHIFT_WEIGHT = 12.0, 5.0, 4.0
 """Weights [1]: forces in gross slip; torques in gross slip; losses in gross slip and all values of
 translations and of rotations about the centre. All other values have the weight 1."""
-ON_CIRCLE = 4
+CIRCLE_POINT_COUNT = 4
 """Number of points on the circle of a patch that represent its sliders in the fit [1]."""
-LESS_SPREAD = 0.9
+CIRCLE_RADIUS_RATIO = 0.9
 """Radius of the circle over the radius of gyration of the friction of a patch [1]: in a rotation about a pole
 inside it, a disc acts like a smaller ring."""
-AT_REST, ROUNDS = 0.1, 5
+ADDED_PRESSURE, DIVISION_ITERATIONS = 0.1, 5
 """Pressure over mean pressure [1] that is added to that of each node for the division among patches, and
 number of iterations of the division [1]."""
-TINY = float(np.finfo(float).tiny)
-_RATIOS = powers(1.0 / 1.0969815577985598, 7)
+SMALLEST_FLOAT = float(np.finfo(float).tiny)
+_SEQUENCE_STEPS = successive_powers(1.0 / 1.0969815577985598, 7)
 """Increments of a low-discrepancy sequence in seven dimensions [1]: powers of the root of x^8 = x + 1."""
-CIRCLE = to_digits(np.exp(2j * np.pi * (np.arange(ON_CIRCLE) + 0.25) / ON_CIRCLE).view(float)).reshape(-1, 2)
+CIRCLE_POINTS = round_to_digits(
+    np.exp(2j * np.pi * (np.arange(CIRCLE_POINT_COUNT) + 0.25) / CIRCLE_POINT_COUNT).view(float)
+).reshape(-1, 2)
 """Points (CIRCLE_POINT_COUNT, 2) [1] on the unit circle that represent the sliders of a patch."""
 
 
-def friction_patches(shape: PressureShape, count: int, begin: PressureShape | None = None) -> FrictionPatches:
+def reduce_patches(
+    shape: PressureDistribution, count: int, start_points: PressureDistribution | None = None
+) -> FrictionPatches:
     """Reduce the friction of a contact to at most `count` patches; one per node if it has no more nodes.
 
     start_points : distribution from which the initial patches are selected; None: `shape`
@@ -91,32 +106,39 @@ def friction_patches(shape: PressureShape, count: int, begin: PressureShape | No
     """
     if shape.share.size <= count:
         return shape.as_patches()
-    rough = rounded(shape)
+    rough = round_distribution(shape)
     gyration = float(np.sqrt(np.add.reduce(rough.share * np.add.reduce(rough.position**2, axis=1))))
-    highest, steep = float(np.max(rough.equal)), max(float(np.max(np.abs(rough.tilt))), TINY)
+    highest, steep = (
+        float(np.max(rough.preload_shape)),
+        max(float(np.max(np.abs(rough.moment_shape))), SMALLEST_FLOAT),
+    )
     unit = np.array([1.0, gyration, gyration, highest, steep, gyration])[:, None]
-    few = few_points(rough if begin is None else rounded(begin), count)
-    first = _divided(rough, few.position)
+    few = reduce_points(rough if start_points is None else round_distribution(start_points), count)
+    first = _divide_nodes(rough, few.position)
     nodes, there, points = (
-        np.stack([each.share, *each.position.T, each.equal, each.tilt, each.radius]) / unit
+        np.stack([each.share, *each.position.T, each.preload_shape, each.moment_shape, each.radius]) / unit
         for each in (rough.as_patches(), shape.as_patches(), first)
     )
-    aim = _Aim.of(nodes, MOST_MOMENT * largest_moment(rough) * steep / highest)
-    moved = _balanced(_moved(points, aim), aim.reach, over(_exact(there, aim.reach), there[0]))
+    aim = _TargetSums.for_nodes(nodes, MAX_MOMENT_RATIO * largest_moment(rough) * steep / highest)
+    moved = _correct_exact_sums(
+        _fit_points(points, aim),
+        aim.extent,
+        weighted_sums(_scaled_exact_functions(there, aim.extent), there[0]),
+    )
     share, x, y, equal, tilt, radius = unit * moved
-    few = cleared(PressureShape(share, np.column_stack([x, y]), equal, tilt))
-    return replace(few.as_patches(), radius=radius * _opposite(share * equal * radius))
+    few = clear_round_off(PressureDistribution(share, np.column_stack([x, y]), equal, tilt))
+    return replace(few.as_patches(), radius=radius * _radius_signs(share * equal * radius))
 
 
-def _opposite(force: Array) -> Array:
+def _radius_signs(force: Array) -> Array:
     """Signs (m) [1] of the circle radii: negative for every second patch in descending order of forces (m).
 
     Their circles are turned by 180 degrees, so that errors of stepwise slip cancel between patches.
     """
-    return np.where(ranks(force) % 2 == 0, 1.0, -1.0)
+    return np.where(rank_descending(force) % 2 == 0, 1.0, -1.0)
 
 
-def _divided(shape: PressureShape, places: Array) -> FrictionPatches:
+def _divide_nodes(shape: PressureDistribution, centres: Array) -> FrictionPatches:
     """Divide the nodes among m patches by Lloyd's method.
 
     Each node belongs to the nearest patch. Each patch then moves to the centre of the friction of its nodes;
@@ -125,28 +147,32 @@ def _divided(shape: PressureShape, places: Array) -> FrictionPatches:
     centres : (m, 2) initial positions of the patches
     """
     share, (x, y) = shape.share, shape.position.T
-    weight, count = share * (shape.equal + AT_REST), len(places)
+    weight, count = share * (shape.preload_shape + ADDED_PRESSURE), len(centres)
 
     def sums(values: Array) -> Array:
         return np.asarray(np.bincount(nearest, values, count))
 
-    for _ in range(ROUNDS):
-        square = (x - places[:, :1]) ** 2 + (y - places[:, 1:]) ** 2
+    for _ in range(DIVISION_ITERATIONS):
+        square = (x - centres[:, :1]) ** 2 + (y - centres[:, 1:]) ** 2
         nearest = np.argmin(square, axis=0)
-        whole = np.maximum(sums(weight), TINY)
-        places = np.column_stack([sums(weight * x) / whole, sums(weight * y) / whole])
-    away = (x - places[nearest, 0]) ** 2 + (y - places[nearest, 1]) ** 2
-    area = np.maximum(sums(share), TINY)
+        whole = np.maximum(sums(weight), SMALLEST_FLOAT)
+        centres = np.column_stack([sums(weight * x) / whole, sums(weight * y) / whole])
+    away = (x - centres[nearest, 0]) ** 2 + (y - centres[nearest, 1]) ** 2
+    area = np.maximum(sums(share), SMALLEST_FLOAT)
     xx, xy, yy = (float(np.add.reduce(share * each)) for each in (x * x, x * y, y * y))
     thin = max(0.5 * (xx + yy - float(np.sqrt((xx - yy) ** 2 + 4.0 * xy * xy))), 0.0)  # 0 for nodes on a line
-    radius = np.minimum(LESS_SPREAD * np.sqrt(sums(weight * away) / whole), np.sqrt(thin))
+    radius = np.minimum(CIRCLE_RADIUS_RATIO * np.sqrt(sums(weight * away) / whole), np.sqrt(thin))
     return FrictionPatches(
-        area, places, sums(share * shape.equal) / area, sums(share * shape.tilt) / area, radius
+        area,
+        centres,
+        sums(share * shape.preload_shape) / area,
+        sums(share * shape.moment_shape) / area,
+        radius,
     )
 
 
 @dataclass(frozen=True, slots=True)
-class _Motions:
+class _SlipCases:
     """Cases (m, 1) of normal loading and tangential motion whose friction is fitted.
 
     Lengths are divided by the radius of gyration of the contact, pressures by the largest one.
@@ -161,14 +187,14 @@ class _Motions:
 
     power: Array
     moment: Array
-    apart: Array
-    about_x: Array
-    about_y: Array
-    along: Array
-    way: Array
+    opening: Array
+    tilt_x: Array
+    tilt_y: Array
+    direction: Array
+    distance: Array
 
     @classmethod
-    def of(cls, nodes: Array, largest_moment: float, reach: Array) -> "_Motions":
+    def sample(cls, nodes: Array, largest_moment: float, extent: Array) -> "_SlipCases":
         """Sample the cases evenly (low-discrepancy sequence) for a contact with nodes (6, n).
 
         Of the SLIP_CASES a quarter are translations, a quarter rotations about the centre, and
@@ -177,54 +203,61 @@ class _Motions:
         largest_moment : [1] largest factor on the pressure by a moment
         extent         : (2) [1] largest |x| and |y|
         """
-        number = np.arange(1, CASES + POLES + 1)
-        unit = (0.5 + number[:, None] * _RATIOS) % 1.0
+        number = np.arange(1, SLIP_CASES + GROSS_SLIP_CASES + 1)
+        unit = (0.5 + number[:, None] * _SEQUENCE_STEPS) % 1.0
         moment, apart, about_x, about_y, place, angle = 2.0 * unit[:, :6].T - 1.0
-        gross = number > CASES
-        moves = np.where(gross, number % TILTED_POLES == 0, number > UNTILTED * CASES)
+        gross = number > SLIP_CASES
+        moves = np.where(gross, number % TILTED_POLE_PERIOD == 0, number > UNTILTED_SHARE * SLIP_CASES)
         moment = np.where(gross & ~moves, 0.0, moment)
         kind = np.where(gross, 2, np.minimum(number % 4, 2))
         along = 2.0 * np.abs(angle) - 1.0  # on the square |along| + |across| = 1
         across = np.sign(angle) * (1.0 - np.abs(along))
         force, nothing, one = np.add.accumulate(nodes[0] * nodes[3]), 0.0 * along, np.ones_like(along)
         _, x, y, *_ = nodes[:, np.searchsorted(force, 0.5 * (1.0 + place) * force[-1])]
-        x, y = x + gross * BESIDE * angle, y + gross * BESIDE * (2.0 * unit[:, 6] - 1.0)
+        x, y = x + gross * MAX_POLE_OFFSET * angle, y + gross * MAX_POLE_OFFSET * (2.0 * unit[:, 6] - 1.0)
         shift_or_turn = ((along, nothing, y), (across, nothing, -x), (nothing, one, one))
         motion = np.stack([np.choose(kind, each) for each in shift_or_turn])
         motion /= np.sqrt(np.add.reduce(motion * motion, axis=0))
-        power = np.choose(number % len(POWERS), POWERS)
-        way = LEAST_WAY + (MOST_WAY - LEAST_WAY) * unit[:, 6] ** 2
+        power = np.choose(number % len(LAW_EXPONENTS), LAW_EXPONENTS)
+        way = MIN_DISTANCE + (MAX_DISTANCE - MIN_DISTANCE) * unit[:, 6] ** 2
         columns = (
             power,
             largest_moment * moment,
-            APART * apart * moves,
-            TILTED / reach[1] * about_x * moves,
-            TILTED / reach[0] * about_y * moves,
+            MAX_OPENING * apart * moves,
+            MAX_TILT / extent[1] * about_x * moves,
+            MAX_TILT / extent[0] * about_y * moves,
             motion,
-            np.where(gross, FAR, way * (1.0 - root(np.full((number.size, 1), STUCK), power[:, None])[:, 0])),
+            np.where(
+                gross,
+                GROSS_SLIP_DISTANCE,
+                way * (1.0 - binary_root(np.full((number.size, 1), STUCK_SHARE), power[:, None])[:, 0]),
+            ),
         )
         return cls(*(each[..., None] for each in columns))
 
-    def friction(self, points: Array) -> tuple[Array, Array]:
+    def evaluate_friction(self, points: Array) -> tuple[Array, Array]:
         """Friction per share of points (6, n) in all m cases.
 
         Returns force along x and y, moment about z and loss of a cycle (4 m, n) [1], and the scale (m, n)
         [1]: friction limit times displacement per length of the motion.
         """
         _, x, y, equal, tilt, radius = points
-        start = root(np.maximum(equal + self.moment * tilt, 0.0), self.power)
-        now = np.maximum(start - (self.apart + self.about_x * y - self.about_y * x), 0.0)
-        most, whole, turned = to_power(now, self.power), np.zeros((4, *now.shape)), np.zeros(now.shape)
-        places, stored = CIRCLE if np.any(radius) else CIRCLE[:1], now * most
+        start = binary_root(np.maximum(equal + self.moment * tilt, 0.0), self.power)
+        now = np.maximum(start - (self.opening + self.tilt_x * y - self.tilt_y * x), 0.0)
+        most, whole, turned = binary_power(now, self.power), np.zeros((4, *now.shape)), np.zeros(now.shape)
+        places, stored = CIRCLE_POINTS if np.any(radius) else CIRCLE_POINTS[:1], now * most
         for along, across in places:
             there_x, there_y = x + along * radius, y + across * radius
-            u, v = self.along[0] - self.along[2] * there_y, self.along[1] + self.along[2] * there_x
+            u, v = (
+                self.direction[0] - self.direction[2] * there_y,
+                self.direction[1] + self.direction[2] * there_x,
+            )
             size = np.sqrt(u * u + v * v)
-            way = self.way * size
+            way = self.distance * size
             then = np.maximum(now - way, 0.0)
-            rest = to_power(then, self.power)
+            rest = binary_power(then, self.power)
             force, work = most - rest, most * way - (stored - then * rest) / (self.power + 1.0)
-            part = force / np.maximum(size, TINY)
+            part = force / np.maximum(size, SMALLEST_FLOAT)
             each = part * u, part * v, part * (there_x * v - there_y * u), 8.0 * (work - 0.5 * force * way)
             for total, one in zip(whole, each, strict=True):
                 total += one / len(places)
@@ -233,7 +266,7 @@ class _Motions:
 
 
 @dataclass(frozen=True, slots=True)
-class _Aim:
+class _TargetSums:
     """Target of the fit: sums over all nodes. Points (6, n) are share, x, y, both pressure shapes, radius.
 
     cases       : cases whose friction is fitted
@@ -244,69 +277,78 @@ class _Aim:
     sums        : (m + 12) [1] all sums, weighted
     """
 
-    motions: _Motions
-    reach: Array
+    cases: _SlipCases
+    extent: Array
     scale: Array
-    hold: Array
-    held: Array
+    exact_scale: Array
+    exact_sums: Array
     sums: Array
 
     @classmethod
-    def of(cls, nodes: Array, largest_moment: float) -> "_Aim":
+    def for_nodes(cls, nodes: Array, largest_moment: float) -> "_TargetSums":
         """Compute the target sums of nodes (6, n)."""
-        reach = np.maximum(np.max(np.abs(nodes[1:3]), axis=1), TINY)
-        motions, share = _Motions.of(nodes, largest_moment, reach), nodes[0]
-        friction, gross = np.zeros(4 * (CASES + POLES)), np.zeros(CASES + POLES)
-        for first in range(0, share.size, AT_ONCE):
-            some = nodes[:, first : first + AT_ONCE]
-            each, most = motions.friction(some)
-            friction, gross = friction + over(each, some[0]), gross + over(most, some[0])
-        scale = 1.0 / np.maximum(np.concatenate([gross, gross, gross, friction[3 * gross.size :]]), TINY)
-        shift_x, shift_y, turn = motions.along[:, :, 0]
+        reach = np.maximum(np.max(np.abs(nodes[1:3]), axis=1), SMALLEST_FLOAT)
+        motions, share = _SlipCases.sample(nodes, largest_moment, reach), nodes[0]
+        friction, gross = (
+            np.zeros(4 * (SLIP_CASES + GROSS_SLIP_CASES)),
+            np.zeros(SLIP_CASES + GROSS_SLIP_CASES),
+        )
+        for first in range(0, share.size, BATCH_SIZE):
+            some = nodes[:, first : first + BATCH_SIZE]
+            each, most = motions.evaluate_friction(some)
+            friction, gross = friction + weighted_sums(each, some[0]), gross + weighted_sums(most, some[0])
+        scale = 1.0 / np.maximum(
+            np.concatenate([gross, gross, gross, friction[3 * gross.size :]]), SMALLEST_FLOAT
+        )
+        shift_x, shift_y, turn = motions.direction[:, :, 0]
         centred = (turn == 0.0) | ((shift_x == 0.0) & (shift_y == 0.0))
         weight = np.tile(np.where(centred, SHIFT_WEIGHT, 1.0), (4, 1))
-        weight[:, CASES:] = np.array([POLE_WEIGHT, POLE_WEIGHT, TORQUE_WEIGHT, SHIFT_WEIGHT])[:, None]
+        weight[:, SLIP_CASES:] = np.array([POLE_WEIGHT, POLE_WEIGHT, TORQUE_WEIGHT, SHIFT_WEIGHT])[:, None]
         scale *= weight.ravel()
-        exact = _exact(nodes, reach)
-        held, size = over(exact, share), over(np.abs(exact), share)
-        hold = np.divide(HOLDS, size, out=np.zeros_like(size), where=size > HOLDS * TINY)  # 0 for sums of 0
+        exact = _scaled_exact_functions(nodes, reach)
+        held, size = weighted_sums(exact, share), weighted_sums(np.abs(exact), share)
+        hold = np.divide(
+            EXACT_WEIGHT, size, out=np.zeros_like(size), where=size > EXACT_WEIGHT * SMALLEST_FLOAT
+        )  # 0 for sums of 0
         sums = np.concatenate([scale * friction, hold * held])
         return cls(motions, reach, scale, hold, held, sums)
 
-    def values(self, points: Array) -> Array:
+    def evaluate_functions(self, points: Array) -> Array:
         """Functions (m + 12, n) [1] of points (6, n); their sums, weighted by share, are to equal `sums`."""
-        friction = self.motions.friction(points)[0] * self.scale[:, None]
-        return np.concatenate([friction, _exact(points, self.reach) * self.hold[:, None]])
+        friction = self.cases.evaluate_friction(points)[0] * self.scale[:, None]
+        return np.concatenate(
+            [friction, _scaled_exact_functions(points, self.extent) * self.exact_scale[:, None]]
+        )
 
-    def missed(self, points: Array) -> tuple[Array, Array]:
+    def residual(self, points: Array) -> tuple[Array, Array]:
         """Weighted functions (m + 12, n) of points (6, n), and the residual (m + 12) of their sums."""
-        values = self.values(points)
-        return values, over(values, points[0]) - self.sums
+        values = self.evaluate_functions(points)
+        return values, weighted_sums(values, points[0]) - self.sums
 
 
-def _balanced(points: Array, reach: Array, sums: Array) -> Array:
+def _correct_exact_sums(points: Array, extent: Array, exact_sums: Array) -> Array:
     """Correct shares and pressure shapes of points (6, n) slightly, so that they have the exact sums (12)."""
     share, x, y, equal, tilt, radius = points
-    place = _exact(points, reach)[:6]
-    share = share + changes(share, place, sums[:6] - over(place, share))
+    place = _scaled_exact_functions(points, extent)[:6]
+    share = share + weight_changes(share, place, exact_sums[:6] - weighted_sums(place, share))
     force, place = share * equal, place[:3]
-    equal = equal + changes(force, place, sums[6:9] - over(place, force)) / share
+    equal = equal + weight_changes(force, place, exact_sums[6:9] - weighted_sums(place, force)) / share
     force = share * equal
-    tilt = tilt + changes(force, place, sums[9:] - over(place, share * tilt)) / share
+    tilt = tilt + weight_changes(force, place, exact_sums[9:] - weighted_sums(place, share * tilt)) / share
     return np.stack([share, x, y, equal, tilt, radius])
 
 
-def _exact(points: Array, reach: Array) -> Array:
+def _scaled_exact_functions(points: Array, extent: Array) -> Array:
     """Functions (12, n) of points (6, n) whose sums, weighted by share, must be exact."""
     _, x, y, equal, tilt, radius = points
-    each = balanced(x / reach[0], y / reach[1], equal, tilt)
-    for place, over_reach in zip((3, 5), radius / reach[:, None], strict=True):  # x^2 and y^2
+    each = exact_functions(x / extent[0], y / extent[1], equal, tilt)
+    for place, over_reach in zip((3, 5), radius / extent[:, None], strict=True):  # x^2 and y^2
         each[place] += 0.5 * over_reach * over_reach
     return each
 
 
 @dataclass(frozen=True, slots=True)
-class _Around:
+class _LinearProblem:
     """Linearised least-squares problem: residual of the sums as a function of relative changes of the points.
 
     residual : (m) residual of the sums [1]
@@ -315,47 +357,49 @@ class _Around:
     gradient : (5 n) gradient [1] of half the sum of squared residuals
     """
 
-    miss: Array
-    size: Array
-    square: Array
+    residual: Array
+    scale: Array
+    normal_matrix: Array
     gradient: Array
 
     @classmethod
-    def of(cls, points: Array, aim: _Aim, values: Array, miss: Array) -> "_Around":
+    def linearise(
+        cls, points: Array, target: _TargetSums, values: Array, residual: Array
+    ) -> "_LinearProblem":
         """Linearise at points (6, n) with constant radii.
 
         values, residual : result of `_TargetSums.residual` at these points
         """
         share, *_, equal, _, _ = points
         one = np.ones_like(share)
-        size = np.stack([share, *np.outer(aim.reach, one), equal, equal])
+        size = np.stack([share, *np.outer(target.extent, one), equal, equal])
         slopes = [values * share]
         for place in range(1, 5):
             moved = points.copy()
-            moved[place] += DIFFERENCE * size[place]
-            slopes.append((aim.values(moved) - values) / DIFFERENCE * share)
+            moved[place] += RELATIVE_PERTURBATION * size[place]
+            slopes.append((target.evaluate_functions(moved) - values) / RELATIVE_PERTURBATION * share)
         slope = np.concatenate(slopes, axis=1).T.copy()
-        return cls(miss, size, squared(slope), over(slope, miss))
+        return cls(residual, size, gram_matrix(slope), weighted_sums(slope, residual))
 
-    def step(self, damping: float) -> Array:
+    def solve_step(self, damping: float) -> Array:
         """Levenberg-Marquardt step: change (6, n) of the points for a damping [1]."""
-        own = np.diag(self.square)
-        diagonal = damping * (own + LEAST_DIAGONAL * np.max(own))
-        parts = solved(self.square + np.diag(diagonal), -self.gradient)
-        parts = np.clip(parts, -LARGEST_STEP, LARGEST_STEP).reshape(self.size.shape)
-        return np.concatenate([self.size * parts, np.zeros_like(self.size[:1])])
+        own = np.diag(self.normal_matrix)
+        diagonal = damping * (own + MIN_DIAGONAL_RATIO * np.max(own))
+        parts = solve_linear(self.normal_matrix + np.diag(diagonal), -self.gradient)
+        parts = np.clip(parts, -MAX_RELATIVE_STEP, MAX_RELATIVE_STEP).reshape(self.scale.shape)
+        return np.concatenate([self.scale * parts, np.zeros_like(self.scale[:1])])
 
 
-def _moved(points: Array, aim: _Aim) -> Array:
+def _fit_points(points: Array, target: _TargetSums) -> Array:
     """Fit points (6, n) by the Levenberg-Marquardt method with MAX_ITERATIONS iterations."""
-    here, damping = _Around.of(points, aim, *aim.missed(points)), FIRST_DAMPING
-    for _ in range(STEPS):
-        trial = _balanced(points + here.step(damping), aim.reach, aim.held)
-        values, miss = aim.missed(trial)
+    here, damping = _LinearProblem.linearise(points, target, *target.residual(points)), INITIAL_DAMPING
+    for _ in range(MAX_ITERATIONS):
+        trial = _correct_exact_sums(points + here.solve_step(damping), target.extent, target.exact_sums)
+        values, miss = target.residual(trial)
         allowed = np.all(trial[0] > 0.0) and np.all(trial[3] >= 0.0)
-        if allowed and length(miss) < length(here.miss):
-            points, here = trial, _Around.of(trial, aim, values, miss)
-            damping = max(LESS * damping, LEAST_DAMPING)
+        if allowed and euclidean_norm(miss) < euclidean_norm(here.residual):
+            points, here = trial, _LinearProblem.linearise(trial, target, values, miss)
+            damping = max(DAMPING_DECREASE * damping, MIN_DAMPING)
         else:
-            damping *= MORE
+            damping *= DAMPING_INCREASE
     return points

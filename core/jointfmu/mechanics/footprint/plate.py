@@ -4,20 +4,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...quantity import Array, check, quantity, series
-from .shape import Means, PressureShape, growing, means
+from ...quantity import Array, check_fields, quantity_field, series_field
+from .shape import PositionMeans, PressureDistribution, moment_pressure, position_means
 
-ACROSS = 5
+MIN_CELLS_PER_RADIUS = 5
 """Smallest number of cells [1] from the axis of a bolt to the edge R of its pressure."""
-COARSE = 8
+COARSE_CELLS = 8
 """Number of cells [1] along the longer side of the plate where there is no pressure."""
-_PARTS = 8
+_HOLE_SUBDIVISIONS = 8
 """Subdivisions of the side of a cell [1] for the area that a hole removes."""
-_ONE_ROW = 1e-6
+_ONE_ROW_TOLERANCE = 1e-6
 """Extent of the bolts along y over the width of the plate [1] below which they count as one row."""
-EDGE = 1.0 + 1e-9
+EDGE_FACTOR = 1.0 + 1e-9
 """Relative tolerance of comparisons with an edge: points on an edge then do not depend on round-off [1]."""
-_STEPS, _BALANCED = 50, 1e-13
+_MAX_ITERATIONS, _MOMENT_TOLERANCE = 50, 1e-13
 """Largest number of Newton iterations [1], and tolerance of the moment of a bolt's pressure over R [1]."""
 
 
@@ -40,15 +40,17 @@ class BoltedPlate:
     Valid for flat plates that do not bend, with a thickness of at least about half a bolt diameter.
     """
 
-    length: float = quantity("m", "length of the plate along x", gt=0.0)
-    width: float = quantity("m", "width of the plate along y", gt=0.0)
-    x: tuple[float, ...] = series("m", "positions of the bolts along x, from the middle of the plate")
-    y: tuple[float, ...] = series("m", "positions of the bolts along y, from the middle of the plate")
-    hole_diameter: float = quantity("m", "clearance hole of a bolt", gt=0.0)
-    cone_diameter: float = quantity("m", "diameter of a bolt's deformation cone at the interface", gt=0.0)
+    length: float = quantity_field("m", "length of the plate along x", gt=0.0)
+    width: float = quantity_field("m", "width of the plate along y", gt=0.0)
+    x: tuple[float, ...] = series_field("m", "positions of the bolts along x, from the middle of the plate")
+    y: tuple[float, ...] = series_field("m", "positions of the bolts along y, from the middle of the plate")
+    hole_diameter: float = quantity_field("m", "clearance hole of a bolt", gt=0.0)
+    cone_diameter: float = quantity_field(
+        "m", "diameter of a bolt's deformation cone at the interface", gt=0.0
+    )
 
     def __post_init__(self) -> None:
-        check(self)
+        check_fields(self)
         if len(self.y) != len(self.x):
             raise ValueError(f"y has {len(self.y)} numbers, expected as many as x has: {len(self.x)}")
         if not self.cone_diameter > self.hole_diameter:
@@ -64,7 +66,7 @@ class BoltedPlate:
         return np.column_stack([self.x, self.y])
 
     @property
-    def reach(self) -> float:
+    def pressure_radius(self) -> float:
         """Radius R [m] at which the pressure of a bolt ends.
 
         The condition on the mean square radius is a cubic equation for s = R - a with one positive root.
@@ -73,7 +75,7 @@ class BoltedPlate:
         a, square = 0.5 * self.hole_diameter, 0.125 * (self.hole_diameter**2 + self.cone_diameter**2)
         first, second, third = 4 / 35 * a, 0.3 * a**2 - 0.1 * square, 0.4 * a * (a**2 - square)
         s = 8.0 * float(np.sqrt(square))
-        for _ in range(_STEPS):
+        for _ in range(_MAX_ITERATIONS):
             s -= (((s / 56 + first) * s + second) * s + third) / ((s * 3 / 56 + 2.0 * first) * s + second)
         return a + s
 
@@ -88,9 +90,9 @@ class BoltedPlate:
         return np.asarray(-0.25 * np.pi * self.hole_diameter**2 / self.area * self.bolts.sum(axis=0))
 
     @property
-    def bolt_means(self) -> Means:
+    def bolt_means(self) -> PositionMeans:
         """Means of x, y [m], x^2, y^2, x y [m2] of the bolts, from the centroid of the contact."""
-        return means(self.bolt_positions)
+        return position_means(self.bolt_positions)
 
     @property
     def bolt_positions(self) -> Array:
@@ -98,36 +100,40 @@ class BoltedPlate:
         return np.asarray(self.bolts - self.centroid)
 
     @property
-    def rows(self) -> tuple[float, float]:
+    def equivalent_rows(self) -> tuple[float, float]:
         """Bolts per row N_b [1] and distance L_a [m] of two rows that are equivalent for a moment about x.
 
         See `equivalent_rows`. For bolts in one row N_b = 1, and N_b L_a times the force of a bolt is the
         moment at which the contact starts to open at its edge.
         """
-        if one_row(self):
-            return 1.0, _lever_of_one_row(self, *unit_pressures(self))
-        return lever(self.bolts[:, 1])
+        if is_one_row(self):
+            return 1.0, _one_row_length(self, *bolt_pressures(self))
+        return equivalent_rows(self.bolts[:, 1])
 
     @property
-    def coarse(self) -> Array:
+    def coarse_cell_counts(self) -> Array:
         """Number of cells (2) [1] along x and y before refinement."""
         plan = np.array([self.length, self.width])
-        return np.asarray(np.maximum(np.ceil(COARSE * plan / np.max(plan)), 2.0))
+        return np.asarray(np.maximum(np.ceil(COARSE_CELLS * plan / np.max(plan)), 2.0))
 
-    def shape(self) -> PressureShape:
+    def pressure_distribution(self) -> PressureDistribution:
         """Pressure distribution at the cells of the plate.
 
         A moment M about x changes the force of bolt i by M y_i/sum(y_j^2), y from the centre of the bolts
         (the plates stay plane); for two equal rows this is M/(L_a N_b). Bolts in one row cannot carry a
         moment by their forces: the pressure then changes linearly with the distance from their line.
         """
-        share, position, unit = unit_pressures(self)
+        share, position, unit = bolt_pressures(self)
         equal, y = unit.mean(axis=0), self.bolts[:, 1]
-        if one_row(self):
-            distance = _lever_of_one_row(self, share, position, unit)
-            return PressureShape(share, position, equal, distance * growing(share, position[:, 1], equal))
-        distances, distance = y - y.mean(), lever(y)[1]
-        return PressureShape(share, position, equal, distance / (distances @ distances) * (distances @ unit))
+        if is_one_row(self):
+            distance = _one_row_length(self, share, position, unit)
+            return PressureDistribution(
+                share, position, equal, distance * moment_pressure(share, position[:, 1], equal)
+            )
+        distances, distance = y - y.mean(), equivalent_rows(y)[1]
+        return PressureDistribution(
+            share, position, equal, distance / (distances @ distances) * (distances @ unit)
+        )
 
 
 def check_holes(plate: BoltedPlate) -> None:
@@ -149,12 +155,12 @@ def check_holes(plate: BoltedPlate) -> None:
             )
 
 
-def one_row(plate: BoltedPlate) -> bool:
+def is_one_row(plate: BoltedPlate) -> bool:
     """Whether all bolts lie on one line along x, so that a moment about x cannot change their forces."""
-    return bool(np.ptp(plate.bolts[:, 1]) <= _ONE_ROW * plate.width)
+    return bool(np.ptp(plate.bolts[:, 1]) <= _ONE_ROW_TOLERANCE * plate.width)
 
 
-def lever(y: Array) -> tuple[float, float]:
+def equivalent_rows(y: Array) -> tuple[float, float]:
     """Equivalent pair of bolt rows: bolts per row N_b [1] and distance L_a [m], for bolts at y (n) [m].
 
     A moment changes the force of a bolt in the equivalent rows by as much as that of the outermost bolts. N_b
@@ -169,43 +175,47 @@ def lever(y: Array) -> tuple[float, float]:
     return float(count), float(np.sum(distances * distances) / (count * max_distance))
 
 
-def cells(plate: BoltedPlate) -> tuple[Array, Array]:
+def plate_cells(plate: BoltedPlate) -> tuple[Array, Array]:
     """Areas (n) [m2] and centroids (n, 2) [m] of the cells of the plate, without the holes.
 
     Cells within the disc of a bolt are halved in both directions until they are small compared with R.
     """
-    reach, plan, count = plate.reach, np.array([plate.length, plate.width]), plate.coarse
+    reach, plan, count = (
+        plate.pressure_radius,
+        np.array([plate.length, plate.width]),
+        plate.coarse_cell_counts,
+    )
     index = np.stack(np.meshgrid(*(np.arange(n) for n in count), indexing="ij"), -1).reshape(-1, 2)
     side = plan / count
     middle = (index + 0.5) * side - 0.5 * plan
     done_middle, done_side = [], []
     while middle.size:
-        is_loaded = _distance(plate, middle, side) * EDGE < reach
-        split = is_loaded & (np.max(side) > reach / ACROSS * EDGE)
+        is_loaded = _bolt_distance(plate, middle, side) * EDGE_FACTOR < reach
+        split = is_loaded & (np.max(side) > reach / MIN_CELLS_PER_RADIUS * EDGE_FACTOR)
         done_middle.append(middle[~split])
         done_side.append(np.broadcast_to(side, middle[~split].shape))
         side = 0.5 * side
         quarters = 0.5 * side * np.array([[-1, -1], [-1, 1], [1, -1], [1, 1]])
         middle = (middle[split][:, None, :] + quarters).reshape(-1, 2)
-    return _solid(plate, np.concatenate(done_middle), np.concatenate(done_side))
+    return _remove_holes(plate, np.concatenate(done_middle), np.concatenate(done_side))
 
 
-def _distance(plate: BoltedPlate, middle: Array, side: Array) -> Array:
+def _bolt_distance(plate: BoltedPlate, centres: Array, side: Array) -> Array:
     """Distance (n) [m] from cells, with centres (n, 2) and sides (2) [m], to the nearest bolt axis."""
-    gap = np.maximum(np.abs(middle[:, None, :] - plate.bolts) - 0.5 * side, 0.0)
+    gap = np.maximum(np.abs(centres[:, None, :] - plate.bolts) - 0.5 * side, 0.0)
     return np.asarray(np.min(np.hypot(gap[..., 0], gap[..., 1]), axis=1))
 
 
-def _solid(plate: BoltedPlate, middle: Array, side: Array) -> tuple[Array, Array]:
+def _remove_holes(plate: BoltedPlate, centres: Array, side: Array) -> tuple[Array, Array]:
     """Areas [m2] and centroids [m] of cells without the holes; cells inside a hole are omitted."""
-    positions = (np.arange(_PARTS) + 0.5) / _PARTS - 0.5
+    positions = (np.arange(_HOLE_SUBDIVISIONS) + 0.5) / _HOLE_SUBDIVISIONS - 0.5
     grid = np.stack(np.meshgrid(positions, positions, indexing="ij"), -1).reshape(-1, 2)
-    areas, centroids = np.prod(side, axis=1), middle.copy()
+    areas, centroids = np.prod(side, axis=1), centres.copy()
     reach = 0.5 * np.hypot(*side.T) + 0.5 * plate.hole_diameter
     for bolt in plate.bolts:
-        affected = np.flatnonzero(np.hypot(*(middle - bolt).T) < reach)
-        points = middle[affected, None, :] + grid * side[affected, None, :]
-        solid = np.hypot(*np.moveaxis(points - bolt, -1, 0)) > 0.5 * plate.hole_diameter * EDGE
+        affected = np.flatnonzero(np.hypot(*(centres - bolt).T) < reach)
+        points = centres[affected, None, :] + grid * side[affected, None, :]
+        solid = np.hypot(*np.moveaxis(points - bolt, -1, 0)) > 0.5 * plate.hole_diameter * EDGE_FACTOR
         solid_share = solid.mean(axis=1)
         areas[affected] *= solid_share
         total = np.sum(points * solid[..., None], axis=1)
@@ -216,25 +226,25 @@ def _solid(plate: BoltedPlate, middle: Array, side: Array) -> tuple[Array, Array
     return areas[remaining], centroids[remaining]
 
 
-def decay(plate: BoltedPlate, distance: Array) -> Array:
+def pressure_decay(plate: BoltedPlate, distance: Array) -> Array:
     """Pressure of a bolt at distances (...) [m] from its axis, over that at the edge of its hole [1]."""
-    a, R = 0.5 * plate.hole_diameter, plate.reach
+    a, R = 0.5 * plate.hole_diameter, plate.pressure_radius
     r = np.clip(distance, a, R)
     return np.asarray((R - r) ** 3 * (3.0 * r + R - 4.0 * a) / (R - a) ** 4)
 
 
-def unit_pressures(plate: BoltedPlate) -> tuple[Array, Array, Array]:
+def bolt_pressures(plate: BoltedPlate) -> tuple[Array, Array, Array]:
     """Shares (k) [1] and positions (k, 2) [m] of the cells, and pressures (n, k) [1] of each bolt.
 
     Positions are relative to the centroid of the contact, pressures to their mean over the whole contact.
     """
-    areas, points = cells(plate)
-    unit = np.array([_balanced(plate, areas, points - bolt) for bolt in plate.bolts])
+    areas, points = plate_cells(plate)
+    unit = np.array([_balanced_pressure(plate, areas, points - bolt) for bolt in plate.bolts])
     share = areas / areas.sum()
     return share, points - share @ points, unit * areas.sum()
 
 
-def _lever_of_one_row(plate: BoltedPlate, share: Array, position: Array, unit: Array) -> float:
+def _one_row_length(plate: BoltedPlate, share: Array, position: Array, unit: Array) -> float:
     """Length L_a [m] of bolts in one row, see `BoltedPlate.rows`."""
     equal = unit.mean(axis=0)
     distances = position[:, 1] - share @ (equal * position[:, 1])
@@ -242,21 +252,21 @@ def _lever_of_one_row(plate: BoltedPlate, share: Array, position: Array, unit: A
     return float(len(plate.x) * (share @ (equal * distances**2)) / reach)
 
 
-def _balanced(plate: BoltedPlate, areas: Array, offset: Array) -> Array:
+def _balanced_pressure(plate: BoltedPlate, areas: Array, offset: Array) -> Array:
     """Pressure (n) [Pa] of a bolt with 1 N at offsets (n, 2) [m] from its axis, without a moment about it.
 
     Newton's method for the two coefficients of the exponential correction; the logarithm of the total force
     is a convex function of them.
     """
-    force = areas * decay(plate, np.hypot(*offset.T))
+    force = areas * pressure_decay(plate, np.hypot(*offset.T))
     is_loaded = force > 0.0
-    weight, relative = force[is_loaded], offset[is_loaded] / plate.reach
+    weight, relative = force[is_loaded], offset[is_loaded] / plate.pressure_radius
     factor = np.zeros(2)
-    for _ in range(_STEPS):
+    for _ in range(_MAX_ITERATIONS):
         share = weight * np.exp(relative @ factor)
         share /= share.sum()
         mean = share @ relative
-        if np.max(np.abs(mean)) < _BALANCED:
+        if np.max(np.abs(mean)) < _MOMENT_TOLERANCE:
             break
         factor -= np.linalg.solve((relative - mean).T @ (share[:, None] * (relative - mean)), mean)
     result = np.zeros_like(areas)

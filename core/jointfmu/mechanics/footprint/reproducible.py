@@ -11,108 +11,111 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...quantity import Array
-from .shape import PressureShape
+from .shape import PressureDistribution
 
-DIGITS = 20
+BINARY_DIGITS = 20
 """Binary digits to which numbers are rounded before comparisons [1]. 2^-20 = 1e-6 is far above differences
 between processors, and far below the accuracy of a choice of points."""
-NEARLY_HALF = 0.5 - 0.01 * np.sqrt(2.0)
+ROUNDING_OFFSET = 0.5 - 0.01 * np.sqrt(2.0)
 """Number added before truncation to an integer [1]: rounds up slightly above half a step."""
-TOGETHER = 22
+BLOCK_SIZE = 22
 """Block size [1] for symmetric products: nearly half of the matrix is copied instead of computed."""
-NOTHING = 2.0**-46
+ZERO_RATIO = 2.0**-46
 """Ratio to the largest number [1] below which a number counts as zero: round-off."""
 
 
-def rounded(shape: PressureShape, digits: int = DIGITS) -> PressureShape:
+def round_distribution(shape: PressureDistribution, digits: int = BINARY_DIGITS) -> PressureDistribution:
     """Round a pressure distribution to binary digits: each share to its own, other numbers to the largest's.
 
     Numbers are rounded up from slightly above half a step, where no short fraction lies. Rounding is
     symmetric about zero, so a symmetric distribution stays symmetric.
     """
     mantissa, exponent = np.frexp(shape.share)
-    share = np.ldexp(_steps(mantissa, digits), exponent)
-    rounded_values = (to_digits(values, digits) for values in (shape.position, shape.equal, shape.tilt))
-    return PressureShape(share, *rounded_values)
+    share = np.ldexp(_round_to_steps(mantissa, digits), exponent)
+    rounded_values = (
+        round_to_digits(values, digits)
+        for values in (shape.position, shape.preload_shape, shape.moment_shape)
+    )
+    return PressureDistribution(share, *rounded_values)
 
 
-def to_digits(values: Array, digits: int = DIGITS) -> Array:
+def round_to_digits(values: Array, digits: int = BINARY_DIGITS) -> Array:
     """Round values to a number of binary digits of the largest one."""
     exponent = np.frexp(np.max(np.abs(values)))[1]
-    return np.asarray(np.ldexp(_steps(np.ldexp(values, -exponent), digits), exponent))
+    return np.asarray(np.ldexp(_round_to_steps(np.ldexp(values, -exponent), digits), exponent))
 
 
-def ranks(values: Array) -> NDArray[np.intp]:
+def rank_descending(values: Array) -> NDArray[np.intp]:
     """Ranks (n) of values in descending order, after rounding; equal values keep their order."""
-    return np.argsort(np.argsort(-to_digits(values), kind="stable"), kind="stable")
+    return np.argsort(np.argsort(-round_to_digits(values), kind="stable"), kind="stable")
 
 
-def _steps(values: Array, digits: int) -> Array:
+def _round_to_steps(values: Array, digits: int) -> Array:
     """Round values of size up to 1 to multiples of 2^-digits."""
-    sizes = np.floor(np.ldexp(np.abs(values), digits) + NEARLY_HALF)
+    sizes = np.floor(np.ldexp(np.abs(values), digits) + ROUNDING_OFFSET)
     return np.asarray(np.ldexp(np.copysign(sizes, values) + 0.0, -digits))
 
 
-def cleared(shape: PressureShape) -> PressureShape:
+def clear_round_off(shape: PressureDistribution) -> PressureDistribution:
     """Replace round-off in a pressure distribution by exact zeros, see ZERO_RATIO."""
 
     def zeros(values: Array) -> Array:
-        return np.where(np.abs(values) > NOTHING * np.max(np.abs(values)), values, 0.0)
+        return np.where(np.abs(values) > ZERO_RATIO * np.max(np.abs(values)), values, 0.0)
 
     position = np.column_stack([zeros(values) for values in shape.position.T])
-    return PressureShape(shape.share, position, zeros(shape.equal), zeros(shape.tilt))
+    return PressureDistribution(shape.share, position, zeros(shape.preload_shape), zeros(shape.moment_shape))
 
 
-def over(rows: Array, weights: Array) -> Array:
+def weighted_sums(rows: Array, weights: Array) -> Array:
     """Weighted sums (m) of rows (m, n) with weights (n)."""
     return np.asarray(np.add.reduce(rows * weights, axis=1))
 
 
-def combined(weights: Array, rows: Array) -> Array:
+def linear_combination(weights: Array, rows: Array) -> Array:
     """Linear combination (n) of rows (m, n) with weights (m)."""
     return np.asarray(np.add.reduce(weights[:, None] * rows, axis=0))
 
 
-def product(one: Array, other: Array) -> Array:
+def matrix_product(a: Array, b: Array) -> Array:
     """Matrix product a b^T (m, k) of a (m, n) and b (k, n)."""
-    out = np.zeros((len(one), len(other)))
-    for left, right in zip(one.T.copy(), other.T.copy(), strict=True):
+    out = np.zeros((len(a), len(b)))
+    for left, right in zip(a.T.copy(), b.T.copy(), strict=True):
         out += left[:, None] * right
     return out
 
 
-def squared(rows: Array) -> Array:
+def gram_matrix(rows: Array) -> Array:
     """Symmetric matrix product a a^T (m, m) of rows a (m, n)."""
     columns, out = rows.T.copy(), np.empty((len(rows), len(rows)))
-    for first in range(0, len(rows), TOGETHER):
-        last = first + TOGETHER
+    for first in range(0, len(rows), BLOCK_SIZE):
+        last = first + BLOCK_SIZE
         for out_row, row in zip(out[first:last], rows[first:last], strict=True):
             out_row[:last] = np.add.reduce(row[:, None] * columns[:, :last], axis=0)
         out[:first, first:last] = out[first:last, :first].T
     return out
 
 
-def length(vector: Array) -> float:
+def euclidean_norm(vector: Array) -> float:
     """Euclidean norm of a vector (n)."""
     return float(np.sqrt(np.add.reduce(vector * vector)))
 
 
-def powers(base: float, count: int) -> Array:
+def successive_powers(base: float, count: int) -> Array:
     """Powers base, base^2, ... (count)."""
     return np.multiply.accumulate(np.full(count, base))
 
 
-def root(values: Array, power: Array) -> Array:
+def binary_root(values: Array, power: Array) -> Array:
     """Roots values^(1/power) (m, n) of values >= 0 (m, n) or (m, 1); power (m, 1) of 2, 4, 8, ... 64."""
-    return _again(np.sqrt, values, power)
+    return _apply_repeatedly(np.sqrt, values, power)
 
 
-def to_power(values: Array, power: Array) -> Array:
+def binary_power(values: Array, power: Array) -> Array:
     """Powers values^power (m, n) of values (m, n); power (m, 1) of 2, 4, 8, ... 64."""
-    return _again(np.square, values, power)
+    return _apply_repeatedly(np.square, values, power)
 
 
-def _again(function: np.ufunc, values: Array, power: Array) -> Array:
+def _apply_repeatedly(function: np.ufunc, values: Array, power: Array) -> Array:
     """Apply a function to values repeatedly: log2(power) times. Returns an array (m, n)."""
     out = np.broadcast_to(values, np.broadcast_shapes(values.shape, power.shape)).copy()
     for k in range(6):

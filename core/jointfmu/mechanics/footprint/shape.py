@@ -6,16 +6,16 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from ...quantity import Array, check, quantity, series
+from ...quantity import Array, check_fields, quantity_field, series_field
 
-BALANCE = 1e-6
+BALANCE_TOLERANCE = 1e-6
 """Largest error of the sums and means of a nodal field [1]."""
-ALIKE = 11
+PRESSURE_DECIMALS = 11
 """Decimals to which pressures of nodes are compared [1]: symmetric nodes then agree."""
 
 
 @dataclass(frozen=True, slots=True)
-class PressureShape:
+class PressureDistribution:
     """Pressure distribution of a bolted contact at n nodes.
 
     share         : (n)    [1] share of the node in the nominal area, with the sum 1
@@ -27,32 +27,36 @@ class PressureShape:
 
     share: Array
     position: Array
-    equal: Array
-    tilt: Array
+    preload_shape: Array
+    moment_shape: Array
 
-    def part(self, nodes: "slice | NDArray[np.intp]") -> "PressureShape":
+    def select_nodes(self, nodes: "slice | NDArray[np.intp]") -> "PressureDistribution":
         """Distribution at a subset of the nodes, with unchanged shares."""
-        return PressureShape(self.share[nodes], self.position[nodes], self.equal[nodes], self.tilt[nodes])
+        return PressureDistribution(
+            self.share[nodes], self.position[nodes], self.preload_shape[nodes], self.moment_shape[nodes]
+        )
 
     def as_patches(self) -> "FrictionPatches":
         """Friction patches, one per node, with the radius 0."""
-        return FrictionPatches(self.share, self.position, self.equal, self.tilt, np.zeros_like(self.share))
+        return FrictionPatches(
+            self.share, self.position, self.preload_shape, self.moment_shape, np.zeros_like(self.share)
+        )
 
-    def merged(self, moment: bool = True) -> "MergedShape":
+    def merge_nodes(self, with_moment: bool = True) -> "MergedDistribution":
         """Merge nodes that have the same pressure at every preload and moment.
 
         with_moment : False: merge nodes with the same pressure at every preload, without moment
         """
-        tilt = self.tilt if moment else 0.0 * self.tilt
-        keys = np.round(np.column_stack([self.equal, tilt]), ALIKE)
+        tilt = self.moment_shape if with_moment else 0.0 * self.moment_shape
+        keys = np.round(np.column_stack([self.preload_shape, tilt]), PRESSURE_DECIMALS)
         _, first, group = np.unique(keys, axis=0, return_index=True, return_inverse=True)
         share = np.asarray(np.bincount(group.ravel(), self.share), dtype=np.float64)
         x2, y2 = (np.bincount(group.ravel(), self.share * x**2) / share for x in self.position.T)
-        return MergedShape(share, self.equal[first], tilt[first], x2, y2)
+        return MergedDistribution(share, self.preload_shape[first], tilt[first], x2, y2)
 
 
 @dataclass(frozen=True, slots=True)
-class FrictionPatches(PressureShape):
+class FrictionPatches(PressureDistribution):
     """Patches that represent the friction of a contact, each for the nodes around it.
 
     radius : (n) [m] radius of the circle around the centre of a patch on which its sliders lie; negative: the
@@ -62,7 +66,7 @@ class FrictionPatches(PressureShape):
     radius: Array
 
 
-def growing(share: Array, y: Array, equal: Array) -> Array:
+def moment_pressure(share: Array, y: Array, preload_shape: Array) -> Array:
     """Pressure (n) [1/m] by a moment of 1 N.m on an area of 1 m2, linear in the distance from the centre.
 
     It is p (y - y_p)/sum(share p (y - y_p)^2), with p = preload_shape and y_p the centre of pressure.
@@ -70,20 +74,20 @@ def growing(share: Array, y: Array, equal: Array) -> Array:
 
     Raises ValueError if all nodes in contact have the same y.
     """
-    force = share * equal
+    force = share * preload_shape
     distances = y - force @ y
     second_moment = float(force @ distances**2)
     if not second_moment > 0.0:
         raise ValueError("all nodes that touch have the same y, expected a contact across the bolt rows")
-    return np.asarray(equal * distances / second_moment)
+    return np.asarray(preload_shape * distances / second_moment)
 
 
-BOLT_MEANS = ("bolt_x", "bolt_y", "bolt_x2", "bolt_y2", "bolt_xy")
+BOLT_MEAN_NAMES = ("bolt_x", "bolt_y", "bolt_x2", "bolt_y2", "bolt_xy")
 """Entries of a nodal field for the positions of its bolts, in the order of `position_means`."""
-Means: TypeAlias = tuple[float, float, float, float, float]
+PositionMeans: TypeAlias = tuple[float, float, float, float, float]
 
 
-def means(points: Array) -> Means:
+def position_means(points: Array) -> PositionMeans:
     """Means of x, y [m], x^2, y^2 and x y [m2] of points (n, 2) [m]."""
     x, y = points.T
     first, second, xx, yy, xy = (float(np.mean(values)) for values in (x, y, x * x, y * y, x * y))
@@ -91,32 +95,38 @@ def means(points: Array) -> Means:
 
 
 @dataclass(frozen=True, slots=True)
-class MergedShape:
+class MergedDistribution:
     """Nodes with different pressures, merged from a PressureShape; share and pressures (n) [1] as there.
 
     x2, y2 : (n) [m2] mean squared distances from the centroid along and across the bolt rows
     """
 
     share: Array
-    equal: Array
-    tilt: Array
+    preload_shape: Array
+    moment_shape: Array
     x2: Array
     y2: Array
 
 
-_POINTS = ("share", "x", "y", "equal", "tilt")
+_POINT_ENTRIES = ("share", "x", "y", "equal", "tilt")
 """Entries of a nodal field for its points."""
-PATCH = "patch_"
+PATCH_PREFIX = "patch_"
 """Prefix of the entries of a nodal field for its friction patches."""
-PATCHES = 22
+MAX_PATCHES = 22
 """Largest number of friction patches of a joint [1], each with sliders."""
 
 
-def as_lists(shape: PressureShape) -> dict[str, tuple[float, ...]]:
+def field_entries(shape: PressureDistribution) -> dict[str, tuple[float, ...]]:
     """{entry of a nodal field: values} for the points, or for friction patches."""
-    rows = dict(zip(_POINTS, (shape.share, *shape.position.T, shape.equal, shape.tilt), strict=True))
+    rows = dict(
+        zip(
+            _POINT_ENTRIES,
+            (shape.share, *shape.position.T, shape.preload_shape, shape.moment_shape),
+            strict=True,
+        )
+    )
     if isinstance(shape, FrictionPatches):
-        rows = {PATCH + name: row for name, row in (rows | {"radius": shape.radius}).items()}
+        rows = {PATCH_PREFIX + name: row for name, row in (rows | {"radius": shape.radius}).items()}
     return {name: tuple(row.tolist()) for name, row in rows.items()}
 
 
@@ -131,62 +141,68 @@ class NodalField:
     of `equal` is 1, the mean of `tilt` is 0.
     """
 
-    share: tuple[float, ...] = series("1", "shares of the points in the nominal area, which sum to 1", gt=0.0)
-    x: tuple[float, ...] = series("m", "positions along the bolt rows, from the centroid")
-    y: tuple[float, ...] = series("m", "positions across the bolt rows, from the centroid")
-    equal: tuple[float, ...] = series("1", "pressures over mean pressure with equal bolt forces", ge=0.0)
-    tilt: tuple[float, ...] = series(
+    share: tuple[float, ...] = series_field(
+        "1", "shares of the points in the nominal area, which sum to 1", gt=0.0
+    )
+    x: tuple[float, ...] = series_field("m", "positions along the bolt rows, from the centroid")
+    y: tuple[float, ...] = series_field("m", "positions across the bolt rows, from the centroid")
+    equal: tuple[float, ...] = series_field(
+        "1", "pressures over mean pressure with equal bolt forces", ge=0.0
+    )
+    tilt: tuple[float, ...] = series_field(
         "1", "pressures that a moment adds, over the mean pressure of one row's share of it"
     )
-    patch_share: tuple[float, ...] = series(
+    patch_share: tuple[float, ...] = series_field(
         "1", "shares of the friction patches in the nominal area, which sum to 1", gt=0.0, optional=True
     )
-    patch_x: tuple[float, ...] = series(
+    patch_x: tuple[float, ...] = series_field(
         "m", "positions of the friction patches along the bolt rows, from the centroid", optional=True
     )
-    patch_y: tuple[float, ...] = series(
+    patch_y: tuple[float, ...] = series_field(
         "m", "positions of the friction patches across the bolt rows, from the centroid", optional=True
     )
-    patch_equal: tuple[float, ...] = series(
+    patch_equal: tuple[float, ...] = series_field(
         "1",
         "pressures at the friction patches over mean pressure with equal bolt forces",
         ge=0.0,
         optional=True,
     )
-    patch_tilt: tuple[float, ...] = series(
+    patch_tilt: tuple[float, ...] = series_field(
         "1", "pressures at the friction patches that a moment adds, as tilt", optional=True
     )
-    patch_radius: tuple[float, ...] = series(
+    patch_radius: tuple[float, ...] = series_field(
         "m",
         "radii of the circles on which the sliders of a patch lie; negative: circle turned by 180 degrees",
         optional=True,
     )
-    bolt_x: float = quantity("m", "mean position of the bolts along the rows, from the centroid", default=0.0)
-    bolt_y: float = quantity(
+    bolt_x: float = quantity_field(
+        "m", "mean position of the bolts along the rows, from the centroid", default=0.0
+    )
+    bolt_y: float = quantity_field(
         "m", "mean position of the bolts across the rows, from the centroid", default=0.0
     )
-    bolt_x2: float = quantity(
+    bolt_x2: float = quantity_field(
         "m2", "mean square of the bolts' distances along the rows, from the centroid", ge=0.0, default=0.0
     )
-    bolt_y2: float = quantity(
+    bolt_y2: float = quantity_field(
         "m2", "mean square of the bolts' distances across the rows, from the centroid", ge=0.0, default=0.0
     )
-    bolt_xy: float = quantity(
+    bolt_xy: float = quantity_field(
         "m2", "mean product of the bolts' positions along and across the rows, from the centroid", default=0.0
     )
-    each_bolt_x: tuple[float, ...] = series(
+    each_bolt_x: tuple[float, ...] = series_field(
         "m", "position of each bolt along the rows, from the centroid", optional=True
     )
-    each_bolt_y: tuple[float, ...] = series(
+    each_bolt_y: tuple[float, ...] = series_field(
         "m", "position of each bolt across the rows, from the centroid", optional=True
     )
 
     def __post_init__(self) -> None:
-        check(self)
-        for prefix in ("", PATCH):
+        check_fields(self)
+        for prefix in ("", PATCH_PREFIX):
             self._check_points(prefix)
-        if (count := len(self.patch_share)) > PATCHES:
-            raise ValueError(f"patch_share has {count} numbers, expected at most {PATCHES}")
+        if (count := len(self.patch_share)) > MAX_PATCHES:
+            raise ValueError(f"patch_share has {count} numbers, expected at most {MAX_PATCHES}")
         if len(self.each_bolt_y) != (count := len(self.each_bolt_x)):
             raise ValueError(
                 f"each_bolt_y has {len(self.each_bolt_y)} numbers, expected {count}: one per each_bolt_x"
@@ -195,30 +211,32 @@ class NodalField:
     def _check_points(self, prefix: str) -> None:
         """Raise ValueError if the points (prefix "") or the patches do not balance, see the class."""
         count = len(getattr(self, f"{prefix}share"))
-        for name in (*_POINTS, "radius") if prefix and self.patch_radius else _POINTS:
+        for name in (*_POINT_ENTRIES, "radius") if prefix and self.patch_radius else _POINT_ENTRIES:
             if (length := len(getattr(self, prefix + name))) != count:
                 raise ValueError(
                     f"{prefix}{name} has {length} numbers, expected as many as {prefix}share has: {count}"
                 )
         if not count:
             return
-        shape, owner = self._points(prefix), "of the patches" if prefix else ""
+        shape, owner = self._distribution(prefix), "of the patches" if prefix else ""
         reach = float(np.max(np.abs(shape.position)))
         x, y = shape.share @ shape.position
-        steep = max(float(np.max(np.abs(shape.tilt))), 1.0)
+        steep = max(float(np.max(np.abs(shape.moment_shape))), 1.0)
         for text, value, expected, size in (
             (f"the sum of {prefix}share", float(np.sum(shape.share)), 1.0, 1.0),
             ("x of the centroid", float(x), 0.0, reach),
             ("y of the centroid", float(y), 0.0, reach),
-            (f"the mean of {prefix}equal", float(shape.share @ shape.equal), 1.0, 1.0),
-            (f"the mean of {prefix}tilt", float(shape.share @ shape.tilt), 0.0, steep),
+            (f"the mean of {prefix}equal", float(shape.share @ shape.preload_shape), 1.0, 1.0),
+            (f"the mean of {prefix}tilt", float(shape.share @ shape.moment_shape), 0.0, steep),
         ):
-            if not abs(value - expected) <= BALANCE * size:
+            if not abs(value - expected) <= BALANCE_TOLERANCE * size:
                 text = f"{text} {owner}".rstrip() if "centroid" in text else text
-                raise ValueError(f"{text} is {value:.9g}, expected {expected:g} within {BALANCE * size:.1g}")
+                raise ValueError(
+                    f"{text} is {value:.9g}, expected {expected:g} within {BALANCE_TOLERANCE * size:.1g}"
+                )
 
     @property
-    def bolt_means(self) -> Means:
+    def bolt_means(self) -> PositionMeans:
         """Means of x, y [m], x^2, y^2, x y [m2] of the bolts, from the centroid of the contact."""
         return self.bolt_x, self.bolt_y, self.bolt_x2, self.bolt_y2, self.bolt_xy
 
@@ -227,17 +245,17 @@ class NodalField:
         """Positions (n, 2) [m] of the bolts, from the centroid of the contact; none where it has no list."""
         return np.stack([self.each_bolt_x, self.each_bolt_y], axis=-1)
 
-    def shape(self) -> PressureShape:
+    def pressure_distribution(self) -> PressureDistribution:
         """Pressure distribution at the points."""
-        return self._points("")
+        return self._distribution("")
 
-    def patches(self) -> FrictionPatches | None:
+    def friction_patches(self) -> FrictionPatches | None:
         """Friction patches; None if the field states none."""
         if not self.patch_share:
             return None
-        patches = self._points(PATCH).as_patches()
+        patches = self._distribution(PATCH_PREFIX).as_patches()
         return replace(patches, radius=np.array(self.patch_radius)) if self.patch_radius else patches
 
-    def _points(self, prefix: str) -> PressureShape:
-        share, x, y, equal, tilt = (np.array(getattr(self, prefix + name)) for name in _POINTS)
-        return PressureShape(share, np.column_stack([x, y]), equal, tilt)
+    def _distribution(self, prefix: str) -> PressureDistribution:
+        share, x, y, equal, tilt = (np.array(getattr(self, prefix + name)) for name in _POINT_ENTRIES)
+        return PressureDistribution(share, np.column_stack([x, y]), equal, tilt)

@@ -37,7 +37,7 @@ static bool close(Approach *approach, Curve *curve, const Point *end)
 static Point point_at(const Spots *spots, const double *c, double u, double left, double right, double x)
 {
     double y[N_LAW_TABLE], side[N_LAW_TABLE], law[STATE_ROWS];
-    const double inside = fmin(fmax(u, left + SIDE), right - SIDE);
+    const double inside = fmin(fmax(u, left + ONE_SIDED_OFFSET), right - ONE_SIDED_OFFSET);
     spots_table(spots, c, u, y);
     if (inside != u)
         spots_table(spots, c, inside, side);

@@ -154,7 +154,7 @@ double curve_inverse_safe(const Curve *curve, double load)
     const int i = curve_segment_of_load(curve, load);
     const double *a = curve->a[i];
     double low = 0.0, high = 1.0, t = curve_guess(curve, i, load);
-    for (int k = 0; k < MOST_STEPS; k++) {
+    for (int k = 0; k < MAX_ITERATIONS; k++) {
         const double rest = load - curve_value(a, t), s = curve_slope(a, t);
         if (rest > 0.0)
             low = t;
@@ -165,7 +165,7 @@ double curve_inverse_safe(const Curve *curve, double load)
         const double next = newton ? step : 0.5 * (low + high);
         const double change = fabs(next - t);
         t = next;
-        if (change <= (newton ? CLOSE : 4e-16) * t)
+        if (change <= (newton ? NEWTON_TOLERANCE : 4e-16) * t)
             break;
     }
     return curve->x[i] + t * (curve->x[i + 1] - curve->x[i]);

@@ -51,7 +51,7 @@ bool spots_begin(Spots *spots, const double *c, Text *why)
     law_ends(0, c, ends);
     sort_ends(spots, ends);
     bool good = isfinite(spots->reference) && spots->reference > 0.0 && isfinite(1.0 / spots->reference);
-    const double at[] = {LEAST, 0.0, MOST};
+    const double at[] = {MIN_LOG_AREA, 0.0, MAX_LOG_AREA};
     for (int i = 0; i < 3; i++) {
         load(spots, c, at[i], log_load);
         spots_table(spots, c, at[i], table);
@@ -80,16 +80,16 @@ bool spots_solve(const Spots *spots, const double *c, double pressure, double *u
         return false;
     }
     double x = *u, low = -INFINITY, high = INFINITY, y[2] = {0.0, 1.0};
-    for (int k = 0; k < MOST_STEPS; k++) {
+    for (int k = 0; k < MAX_ITERATIONS; k++) {
         load(spots, c, x, y);
         const double rest = target - y[0];
-        const double a = rest / (FLATTEST * spots->m), b = rest / STEEPEST;
+        const double a = rest / (MIN_LOAD_SLOPE * spots->m), b = rest / MAX_LOAD_SLOPE;
         const double least = fmin(a, b), most = fmax(a, b);
         const double step = fmin(fmax(rest / y[1], least), most);
         low = fmax(low, x + least);
         high = fmin(high, x + most);
         x = fmin(fmax(x + step, low), high);
-        if (fabs(rest) <= CLOSE) {
+        if (fabs(rest) <= NEWTON_TOLERANCE) {
             *u = x;
             *slope = y[1];
             return true;

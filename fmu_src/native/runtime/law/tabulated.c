@@ -59,7 +59,7 @@ bool joint_tabulate(Joint *joint, const double *parameters, Text *why)
 
 bool refined(Joint *joint, Tabulate tabulate, int steps, Text *why)
 {
-    for (int factor = 1; factor <= FINEST; factor *= 2) {
+    for (int factor = 1; factor <= MAX_REFINEMENT; factor *= 2) {
         if (!tabulate(joint, steps * factor, why)) {
             if (why->length == 0)
                 text_print(why, "the table needs more than %g nodes: the law is not smooth enough with these parameters",

@@ -1,15 +1,15 @@
 """The spring for many samples at once: force over elongation."""
 
 import numpy as np
-from jointfmu_tools.uncertainty.problem import Reduced
+from jointfmu_tools.uncertainty.problem import ReducedCurves
 
 from .. import KIND
 
-REDUCED = Reduced(
+REDUCED = ReducedCurves(
     load=KIND.variables["s_rel"],
     outputs=(KIND.variables["f"],),
-    to=lambda spring: 1e-3,
-    most=lambda spring: np.inf,
+    default_end=lambda spring: 1e-3,
+    max_load=lambda spring: np.inf,
     evaluate=lambda _, values, loads, factor: {"f": -np.reshape(values["c"], (-1, 1)) * factor * loads},
     exact=lambda spring, loads: {"f": -spring.c * loads},
 )

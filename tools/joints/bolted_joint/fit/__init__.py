@@ -1,42 +1,44 @@
 """Fit procedures of the bolted joint: stiffness over preload, and loops in shear."""
 
-from ....fitting.procedure import DAMPING_RATIO, Procedure, fit_of
+from ....fitting.procedure import DAMPING_RATIO, Procedure, lazy_fit
 from ....joint_parts import Option
 
-SERIES = Option(
+SERIES_OPTION = Option(
     "series_stiffness",
     "stiffness of the structure in series with the joint [N/m]; to fit it: --free series_stiffness",
-    number=True,
+    is_number=True,
 )
 
 
 FITS = (
     Procedure(
         name="preload",
-        text="stiffness or frequency over preload to the bolted joint",
-        file=True,
+        description="stiffness or frequency over preload to the bolted joint",
+        takes_file=True,
         options=(
             Option(
                 "direction", "direction of the motion", default="normal", choices=("normal", "tangential")
             ),
-            Option("modal_mass", "mass that vibrates on the joint [kg]", number=True),
-            SERIES,
+            Option("modal_mass", "mass that vibrates on the joint [kg]", is_number=True),
+            SERIES_OPTION,
         ),
-        run=fit_of(f"{__name__}.preload"),
+        run=lazy_fit(f"{__name__}.preload"),
     ),
     Procedure(
         name="loop",
-        text="loops, decays or responses in shear to the bolted joint",
-        file=True,
+        description="loops, decays or responses in shear to the bolted joint",
+        takes_file=True,
         column="displacement",
         options=(
-            Option("preload", "of each bolt in the test [N] (default: of the start's inputs)", number=True),
             Option(
-                "modal_mass", "mass that vibrates on the joint [kg], for decays and responses", number=True
+                "preload", "of each bolt in the test [N] (default: of the start's inputs)", is_number=True
+            ),
+            Option(
+                "modal_mass", "mass that vibrates on the joint [kg], for decays and responses", is_number=True
             ),
             DAMPING_RATIO,
-            SERIES,
+            SERIES_OPTION,
         ),
-        run=fit_of(f"{__name__}.loop"),
+        run=lazy_fit(f"{__name__}.loop"),
     ),
 )

@@ -21,46 +21,46 @@ from pathlib import Path
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline, CubicSpline
 
-from jointfmu.joints.bolted_joint.contact import Place
-from jointfmu.joints.bolted_joint.law import Bolted, pressures
+from jointfmu.joints.bolted_joint.contact import RelativeDisplacement
+from jointfmu.joints.bolted_joint.law import Bolted, preload_pressure
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
-from jointfmu.mechanics.curve import Curve, approach_curve
-from jointfmu.parameters import ParameterFile, default
-from jointfmu.progress import step
+from jointfmu.mechanics.curve import Curve, tabulate_approach
+from jointfmu.parameters import ParameterFile, load_default
+from jointfmu.progress import set_step
 from jointfmu.quantity import Array
-from jointfmu.quantity.refusal import Refusal
-from jointfmu.quantity.units import sizes
+from jointfmu.quantity.refusal import InputRefusal
+from jointfmu.quantity.units import unit_sizes
 
 from ....fitting import memory
 from ....fitting.branches import Loops
 from ....fitting.hysteresis import HysteresisLaw
 from ....fitting.least_squares import Exchange, Unknown
-from ....fitting.measurement import Heads, Measurement, measured
-from ....fitting.outcome import Facts, FitResult, fitted, unknowns
-from .preload import FREE as INTERFACE
-from .preload import SERIES, even_shape, joint_stiffness
+from ....fitting.measurement import ColumnNames, Measurement, read_measurement
+from ....fitting.outcome import Facts, FitResult, fitted_parameters, unknowns
+from .preload import FITTED_PARAMETERS as INTERFACE
+from .preload import SERIES_STIFFNESS, joint_stiffness, merged_pressure_shape
 
-HEADS = Heads("force", "displacement", sizes("N", "kN"), sizes("m", "mm", "um", "nm"))
-FREE = {law: ("mu", *names) for law, names in INTERFACE.items()}
+COLUMN_NAMES = ColumnNames("force", "displacement", unit_sizes("N", "kN"), unit_sizes("m", "mm", "um", "nm"))
+FITTED_PARAMETERS = {law: ("mu", *names) for law, names in INTERFACE.items()}
 """{law: parameters to fit}: friction, level and, if the law has one, exponent. The exponent is not fitted to
 vibrations, which hardly distinguish it from the level."""
-STARTS: Mapping[str, Sequence[float]] = {"mu": (0.05, 0.15, 0.4), "surface.D": (1.2, 1.45)}
+START_VALUES: Mapping[str, Sequence[float]] = {"mu": (0.05, 0.15, 0.4), "surface.D": (1.2, 1.45)}
 """{parameter: further start values of the search}, in addition to the values of the start file. The start
 value of the level follows from the data."""
-BESIDE = (memory.DAMPING, SERIES)
+EXTRA_UNKNOWNS = (memory.DAMPING, SERIES_STIFFNESS)
 """Unknowns that are not parameters of the joint."""
-SERIES_STARTS = (2.0, 1.1, 1.5, 5.0)
+SERIES_START_RATIOS = (2.0, 1.1, 1.5, 5.0)
 """Start values of the series stiffness over the measured stiffness at rest [1]."""
-REACH = 1.05
+DISPLACEMENT_RATIO = 1.05
 """Largest displacement of the tabulated law over the amplitude of the loops [1]."""
-_NODES = 48
+_TABLE_STEPS = 48
 """Steps of the table of first loading, finer near rest."""
-_WHOLE_NODES, _SLIPPED = 24, 4.0
+_ELASTIC_TABLE_STEPS, _GROSS_SLIP_RATIO = 24, 4.0
 """Elastic sides: steps of the table, and displacement of gross slip over friction_limit/K_xx [1]."""
 
 
 def first_loading(
-    joint: Bolted, preload: float, series: float | None = None, reach: float = np.inf
+    joint: Bolted, preload: float, series_stiffness: float | None = None, max_displacement: float = np.inf
 ) -> tuple[HysteresisLaw, Facts]:
     """Law of the loops in shear at a preload [N] of each bolt, and facts about the joint.
 
@@ -72,20 +72,22 @@ def first_loading(
     Raises ValueError if nothing is in contact, if a pressure is outside the law, or if there is no
     equilibrium with elastic sides.
     """
-    curve, approach, weight = _tightened(joint, preload)
+    curve, approach, weight = _preloaded_interface(joint, preload)
     kappa, mu = float(joint.shear_ratio()), joint.mu
-    separation = (float(np.max(approach)) - curve.displacement[0]) * np.linspace(0.0, 1.0, _NODES + 1) ** 2
+    separation = (float(np.max(approach)) - curve.displacement[0]) * np.linspace(
+        0.0, 1.0, _TABLE_STEPS + 1
+    ) ** 2
     load, stiffness, d2_load = (
         value @ weight for value in curve.derivatives(approach - separation[:, None], 2)
     )
     motion, force, tangent_stiffness = separation * mu / kappa, mu * (load[0] - load), kappa * stiffness
     limit = float(mu * load[0])
     if joint.elastic:
-        gross_slip = _SLIPPED * limit / rest_stiffness(joint, preload)
-        motion, force, tangent_stiffness = _first_loading_of_whole(
-            joint, preload, gross_slip, float(motion[-1]), reach
+        gross_slip = _GROSS_SLIP_RATIO * limit / rest_stiffness(joint, preload)
+        motion, force, tangent_stiffness = _first_loading_of_elastic_sides(
+            joint, preload, gross_slip, float(motion[-1]), max_displacement
         )
-    compliance = 0.0 if series is None else 1.0 / series
+    compliance = 0.0 if series_stiffness is None else 1.0 / series_stiffness
     displacement = motion + compliance * force
     table = CubicHermiteSpline(
         displacement, force, tangent_stiffness / (1.0 + compliance * tangent_stiffness)
@@ -112,34 +114,36 @@ def first_loading(
 
 
 @lru_cache(maxsize=8)
-def _first_loading_of_whole(
-    joint: Bolted, preload: float, even: float, graded: float, reach: float
+def _first_loading_of_elastic_sides(
+    joint: Bolted, preload: float, uniform_length: float, graded_length: float, max_displacement: float
 ) -> tuple[Array, Array, Array]:
     """First loading along x with elastic sides: displacement (n) [m], force (n) [N], tangent stiffness [N/m].
 
     Displacements: s = uniform_length t + graded_length t^2, t from 0 to 1 in equal steps. If the last one is
     larger than `max_displacement` [m], all are scaled down to end there.
     """
-    spring, fraction = BoltedJointSpring.of(joint), np.linspace(0.0, 1.0, _WHOLE_NODES + 1)
-    motion = (even * fraction + graded * fraction**2) * min(1.0, reach / (even + graded))
-    force, stiffness, _ = _moved(spring, preload, motion, spring.at_rest())
+    spring, fraction = BoltedJointSpring.of(joint), np.linspace(0.0, 1.0, _ELASTIC_TABLE_STEPS + 1)
+    motion = (uniform_length * fraction + graded_length * fraction**2) * min(
+        1.0, max_displacement / (uniform_length + graded_length)
+    )
+    force, stiffness, _ = _follow_path(spring, preload, motion, spring.initial_history())
     curve = CubicSpline(motion, force, bc_type=((1, stiffness[0]), (1, stiffness[-1])))
     return motion, force, curve(motion, 1)
 
 
-def _moved(
-    spring: BoltedJointSpring, preload: float, way: Array, memory: Array
+def _follow_path(
+    spring: BoltedJointSpring, preload: float, displacement: Array, history: Array
 ) -> tuple[Array, Array, Array]:
     """Force (n) [N] and K_xx (n) [N/m] along displacements x (n) [m], and history variables at the end."""
-    outputs = np.empty((2, way.size))
-    for i, x in enumerate(way.tolist()):
-        position = Place(np.array([x, 0.0, 0.0, 0.0, 0.0, 0.0]))
-        out, memory = spring.evolve(preload, 0.0, position, (0.0,) * 6, memory)
+    outputs = np.empty((2, displacement.size))
+    for i, x in enumerate(displacement.tolist()):
+        position = RelativeDisplacement(np.array([x, 0.0, 0.0, 0.0, 0.0, 0.0]))
+        out, history = spring.advance(preload, 0.0, position, (0.0,) * 6, history)
         outputs[:, i] = -out["f_x"], out["K_xx"]
-    return outputs[0], outputs[1], memory
+    return outputs[0], outputs[1], history
 
 
-def _off_masing(joint: Bolted, preload: float, loops: Loops, law: HysteresisLaw) -> Array:
+def _masing_deviation(joint: Bolted, preload: float, loops: Loops, law: HysteresisLaw) -> Array:
     """Deviation (n) [N] from Masing's rule of the forces of a joint with elastic sides, along measured loops.
 
     Bending of the bodies changes the slip direction of the patches, so that unloading does not mirror
@@ -149,15 +153,15 @@ def _off_masing(joint: Bolted, preload: float, loops: Loops, law: HysteresisLaw)
     for run in range(loops.run[-1] + 1):
         branches = np.unique(loops.branch[loops.run == run])
         middle = 0.5 * (np.max(loops.start[branches]) + np.min(loops.start[branches]))
-        first = np.linspace(0.0, loops.start[branches[0]] - middle, _WHOLE_NODES + 1)
-        memory = _moved(spring, preload, first, spring.at_rest())[2]
+        first = np.linspace(0.0, loops.start[branches[0]] - middle, _ELASTIC_TABLE_STEPS + 1)
+        memory = _follow_path(spring, preload, first, spring.initial_history())[2]
         for k in branches:
             start, motion = loops.start[k], loops.motion[loops.branch == k]
             distance = np.abs(motion - start)
             end = motion[np.argmax(distance)]
-            path = np.linspace(start, end, _WHOLE_NODES + 1)
-            force, _, memory = _moved(spring, preload, path - middle, memory)
-            difference = force - force[0] - law.change(path, np.full_like(path, start))
+            path = np.linspace(start, end, _ELASTIC_TABLE_STEPS + 1)
+            force, _, memory = _follow_path(spring, preload, path - middle, memory)
+            difference = force - force[0] - law.force_change(path, np.full_like(path, start))
             deviation[loops.branch == k] = np.interp(distance, np.abs(path - start), difference)
     return deviation
 
@@ -167,19 +171,19 @@ def rest_stiffness(joint: Bolted, preload: float) -> float:
 
     Raises ValueError as `first_loading`.
     """
-    curve, approach, weight = _tightened(joint, preload)
+    curve, approach, weight = _preloaded_interface(joint, preload)
     if joint.elastic:
         return float(joint_stiffness(joint, np.array([preload]), "tangential")[0])
     return float(joint.shear_ratio() * (curve.derivatives(approach, 1)[1] @ weight))
 
 
-def _tightened(joint: Bolted, preload: float) -> tuple[Curve, Array, Array]:
+def _preloaded_interface(joint: Bolted, preload: float) -> tuple[Curve, Array, Array]:
     """Preloaded interface: curve of the law, approaches (n) [m] and areas (n) [m2] of the nodes.
 
     Raises ValueError if nothing is in contact or a pressure is outside the law.
     """
-    shape, curve = even_shape(joint.pattern), approach_curve(joint)
-    pressure = pressures(joint, shape, preload, 0.0)
+    shape, curve = merged_pressure_shape(joint.pattern), tabulate_approach(joint)
+    pressure = preload_pressure(joint, shape, preload, 0.0)
     if not 0.0 < (max_pressure := float(np.max(pressure))) < curve.end[1]:
         raise ValueError(
             f"preload = {preload:g} N per bolt presses with {max_pressure:.3g} Pa, allowed is up to "
@@ -191,7 +195,7 @@ def _tightened(joint: Bolted, preload: float) -> tuple[Curve, Array, Array]:
 def fit(
     path: str | Path,
     start: ParameterFile | None = None,
-    free: Sequence[str] | None = None,
+    fitted_names: Sequence[str] | None = None,
     *,
     preload: float | None = None,
     modal_mass: float | None = None,
@@ -213,74 +217,84 @@ def fit(
     Raises ValueError with a one-line message for a bad file, unit or value, a loop that creates energy, or a
     name that cannot be fitted. Raises RuntimeError if the fit does not converge.
     """
-    data = measured(path, HEADS)
-    file = start or default("bolted_joint")
-    force = file.start("preload") if preload is None else preload
+    data = read_measurement(path, COLUMN_NAMES)
+    file = start or load_default("bolted_joint")
+    force = file.start_value("preload") if preload is None else preload
     if not 0.0 < force < np.inf:
-        raise Refusal(
+        raise InputRefusal(
             f"preload = {force:g} N is outside (0, inf); state that of each bolt in the test", "preload"
         )
-    names = list(free or FREE[file.law][: 3 if data.kind == "loops" else 2])
+    names = list(fitted_names or FITTED_PARAMETERS[file.law][: 3 if data.kind == "loops" else 2])
     if series_stiffness is not None and not 0.0 < series_stiffness < np.inf:
-        raise Refusal(f"series stiffness = {series_stiffness:g} N/m is outside (0, inf)", SERIES)
+        raise InputRefusal(
+            f"series stiffness = {series_stiffness:g} N/m is outside (0, inf)", SERIES_STIFFNESS
+        )
 
-    def joint(values: Mapping[str, float]) -> Bolted:
-        parameters: Bolted = file.with_values(_own(values), "calibration", "fit").values
+    def make_joint(values: Mapping[str, float]) -> Bolted:
+        parameters: Bolted = file.with_values(_joint_parameters(values), "calibration", "fit").values
         return parameters
 
-    def beside(values: Mapping[str, float]) -> float | None:
-        return values.get(SERIES, series_stiffness)
+    def get_series_stiffness(values: Mapping[str, float]) -> float | None:
+        return values.get(SERIES_STIFFNESS, series_stiffness)
 
-    reach = REACH * data.amplitude if data.kind == "loops" else np.inf
+    reach = DISPLACEMENT_RATIO * data.amplitude if data.kind == "loops" else np.inf
 
-    def law_of(values: Mapping[str, float]) -> HysteresisLaw:
-        step("tries " + ", ".join(f"{name} = {value:.4g}" for name, value in values.items()))
-        return first_loading(joint(values), force, beside(values), reach)[0]
+    def make_law(values: Mapping[str, float]) -> HysteresisLaw:
+        set_step("tries " + ", ".join(f"{name} = {value:.4g}" for name, value in values.items()))
+        return first_loading(make_joint(values), force, get_series_stiffness(values), reach)[0]
 
-    model = memory.model(data, law_of, "modal_mass", modal_mass, damping_ratio)
+    model = memory.build_model(data, make_law, "modal_mass", modal_mass, damping_ratio)
     measured_rest = data.rest_stiffness(modal_mass)
 
-    def rest(values: Mapping[str, float]) -> float:
-        series = beside(values)
-        return 1.0 / (1.0 / rest_stiffness(joint(values), force) + (0.0 if series is None else 1.0 / series))
+    def total_rest_stiffness(values: Mapping[str, float]) -> float:
+        series = get_series_stiffness(values)
+        return 1.0 / (
+            1.0 / rest_stiffness(make_joint(values), force) + (0.0 if series is None else 1.0 / series)
+        )
 
     if data.kind == "loops":
-        HEADS.check_level(data.path, measured_rest / rest({}), data.units, file)
-    if series_stiffness is not None and SERIES not in names and series_stiffness <= measured_rest:
-        raise Refusal(
+        COLUMN_NAMES.check_level(data.path, measured_rest / total_rest_stiffness({}), data.units, file)
+    if series_stiffness is not None and SERIES_STIFFNESS not in names and series_stiffness <= measured_rest:
+        raise InputRefusal(
             f"series stiffness = {series_stiffness:g} N/m is outside ({measured_rest:.4g}, inf): the data "
             "show joint and structure together as that stiff at rest",
-            SERIES,
+            SERIES_STIFFNESS,
         )
-    unknown_list = unknowns(file, [name for name in names if name not in BESIDE], {})
+    unknown_list = unknowns(file, [name for name in names if name not in EXTRA_UNKNOWNS], {})
     unknown_list += [memory.DAMPING_UNKNOWN] * (memory.DAMPING in names)
-    unknown_list += [Unknown(SERIES, "N/m", SERIES_STARTS[0] * measured_rest, 0.0, np.inf)] * (
-        SERIES in names
-    )
-    level = _level(file, names, rest)
-    is_vibration_with_level = data.kind != "loops" and set(FREE[file.law][1:]) <= set(names)
-    starts = {**STARTS, SERIES: [times * measured_rest for times in SERIES_STARTS[1:]]}
-    is_joint_alone = series_stiffness is None and SERIES not in names
+    unknown_list += [
+        Unknown(SERIES_STIFFNESS, "N/m", SERIES_START_RATIOS[0] * measured_rest, 0.0, np.inf)
+    ] * (SERIES_STIFFNESS in names)
+    level = _level_exchange(file, names, total_rest_stiffness)
+    is_vibration_with_level = data.kind != "loops" and set(FITTED_PARAMETERS[file.law][1:]) <= set(names)
+    starts = {**START_VALUES, SERIES_STIFFNESS: [times * measured_rest for times in SERIES_START_RATIOS[1:]]}
+    is_joint_alone = series_stiffness is None and SERIES_STIFFNESS not in names
     is_corrected = data.kind == "loops" and file.values.elastic and is_joint_alone
 
-    def corrected(values: Mapping[str, float]) -> Measurement:
+    def correct_measurement(values: Mapping[str, float]) -> Measurement:
         assert isinstance(data.data, Loops)
-        off = _off_masing(joint(values), force, data.data, law_of(values))
+        off = _masing_deviation(make_joint(values), force, data.data, make_law(values))
         return replace(data, data=replace(data.data, force=data.data.force - off))
 
-    solution, scale, data = memory.search(
+    solution, scale, data = memory.fit_measurement(
         data,
         unknown_list,
         model,
         starts,
         level,
         is_vibration_with_level and level is not None,
-        corrected if is_corrected else None,
+        correct_measurement if is_corrected else None,
     )
-    result = fitted(
-        file, _own(solution.values), "calibration", data.path.name, f"{data.span}, preload {force:g} N"
+    result = fitted_parameters(
+        file,
+        _joint_parameters(solution.values),
+        "calibration",
+        data.path.name,
+        f"{data.range_text}, preload {force:g} N",
     )
-    law, joint_facts = first_loading(joint(solution.values), force, beside(solution.values), reach)
+    law, joint_facts = first_loading(
+        make_joint(solution.values), force, get_series_stiffness(solution.values), reach
+    )
     slip_ratio = float(law.friction(np.array([data.amplitude]))[0]) / joint_facts["friction_limit"][0]
     text = "largest friction force of the data over friction_limit"
     facts = joint_facts | {"slip_reached": (slip_ratio, "1", text)}
@@ -293,8 +307,8 @@ def fit(
     )
 
 
-def _level(
-    file: ParameterFile, names: Sequence[str], rest: Callable[[Mapping[str, float]], float]
+def _level_exchange(
+    file: ParameterFile, names: Sequence[str], compute_rest_stiffness: Callable[[Mapping[str, float]], float]
 ) -> Exchange | None:
     """Exchange of unknowns: the stiffness at rest [N/m] for the parameter that sets the level.
 
@@ -302,12 +316,12 @@ def _level(
 
     None if the level is not fitted.
     """
-    _, level, *_ = FREE[file.law]
+    _, level, *_ = FITTED_PARAMETERS[file.law]
     if level not in names:
         return None
-    return Exchange(level, rest, "N/m", "stiffness at rest")
+    return Exchange(level, compute_rest_stiffness, "N/m", "stiffness at rest")
 
 
-def _own(values: Mapping[str, float]) -> dict[str, float]:
+def _joint_parameters(values: Mapping[str, float]) -> dict[str, float]:
     """Select the parameters of the joint: all values except the other unknowns."""
-    return {name: value for name, value in values.items() if name not in BESIDE}
+    return {name: value for name, value in values.items() if name not in EXTRA_UNKNOWNS}

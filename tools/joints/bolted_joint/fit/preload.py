@@ -22,31 +22,34 @@ import numpy as np
 
 from jointfmu.contact.interface import stiffness_curve
 from jointfmu.joints.bolted_joint.bolts import AT_LIFT_OFF
-from jointfmu.joints.bolted_joint.law import Bolted, pressures, working_preload
+from jointfmu.joints.bolted_joint.law import Bolted, preload_pressure, working_preload
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
-from jointfmu.mechanics.curve import approach_curve
-from jointfmu.mechanics.footprint.bolts import PressureSource, pressure_shape
-from jointfmu.mechanics.footprint.shape import MergedShape
-from jointfmu.parameters import ParameterFile, default
+from jointfmu.mechanics.curve import tabulate_approach
+from jointfmu.mechanics.footprint.bolts import PressureSource, pressure_distribution
+from jointfmu.mechanics.footprint.shape import MergedDistribution
+from jointfmu.parameters import ParameterFile, load_default
 from jointfmu.quantity import Array
-from jointfmu.quantity.units import Sizes, factor, sizes
+from jointfmu.quantity.units import UnitSizes, conversion_factor, unit_sizes
 
 from .... import columns
-from ....fitting.least_squares import Solution, Unknown, best_start, solve
-from ....fitting.outcome import Facts, FitResult, Picture, fitted, systematic, unknowns
+from ....fitting.least_squares import Solution, Unknown, select_start, solve
+from ....fitting.outcome import Facts, FitResult, Picture, correlation_note, fitted_parameters, unknowns
 
-SERIES = "series_stiffness"
+SERIES_STIFFNESS = "series_stiffness"
 """Unknown that is not a parameter of the joint: stiffness [N/m] of the structure in series."""
-COLUMNS: Mapping[str, Sizes] = {
-    "preload": sizes("N", "kN"),
-    "stiffness": sizes("N/m", "N/um", "kN/mm", "N/mm"),
-    "frequency": sizes("Hz", "kHz"),
+COLUMN_UNITS: Mapping[str, UnitSizes] = {
+    "preload": unit_sizes("N", "kN"),
+    "stiffness": unit_sizes("N/m", "N/um", "kN/mm", "N/mm"),
+    "frequency": unit_sizes("Hz", "kHz"),
 }
-LEAST = 4
+MIN_POINTS = 4
 """Required number of points, and of different preloads."""
-FREE: Mapping[str, tuple[str, ...]] = {"zhao2018": ("surface.G", "surface.D"), "roughness": ("h",)}
+FITTED_PARAMETERS: Mapping[str, tuple[str, ...]] = {
+    "zhao2018": ("surface.G", "surface.D"),
+    "roughness": ("h",),
+}
 """{law: parameters to fit}: level and, if the law has one, exponent."""
-STARTS: Mapping[str, tuple[float, ...]] = {
+START_VALUES: Mapping[str, tuple[float, ...]] = {
     "surface.D": (1.25, 1.42, 1.6),
     "surface.G": tuple(1.21e-8 * np.logspace(-3.0, 3.0, 7)),
     "h": (1e-7, 1e-6, 1e-5),
@@ -61,12 +64,14 @@ def joint_stiffness(joint: Bolted, preload: Array, direction: str = "normal") ->
     """
     if joint.elastic:
         spring, axis = BoltedJointSpring.of(joint), 2 if direction == "normal" else 0
-        return np.array([spring.whole.condensed(spring.slope(P))[axis, axis] for P in preload.tolist()])
-    shape = even_shape(joint.pattern)
-    p = pressures(joint, shape, preload, 0.0)
-    curve = approach_curve(joint)
-    k, _ = stiffness_curve(joint, np.maximum(p, curve.closed))
-    closing = p < curve.closed  # below this pressure the curve, not the law, defines the stiffness
+        return np.array(
+            [spring.assembly.condense(spring.tangent_stiffness(P))[axis, axis] for P in preload.tolist()]
+        )
+    shape = merged_pressure_shape(joint.pattern)
+    p = preload_pressure(joint, shape, preload, 0.0)
+    curve = tabulate_approach(joint)
+    k, _ = stiffness_curve(joint, np.maximum(p, curve.closing_end_load))
+    closing = p < curve.closing_end_load  # below this pressure the curve, not the law, defines the stiffness
     k[closing] = curve.derivatives(curve.inverse(p[closing]), 1)[1]
     normal = joint.A_0 * np.sum(shape.share * k, axis=-1)
     if direction == "normal":
@@ -76,15 +81,15 @@ def joint_stiffness(joint: Bolted, preload: Array, direction: str = "normal") ->
 
 
 @cache
-def even_shape(pattern: PressureSource) -> MergedShape:
+def merged_pressure_shape(pattern: PressureSource) -> MergedDistribution:
     """Pressure shape without a moment, with nodes of equal pressure merged."""
-    return pressure_shape(pattern).merged(moment=False)
+    return pressure_distribution(pattern).merge_nodes(with_moment=False)
 
 
 def fit(
     path: str | Path,
     start: ParameterFile | None = None,
-    free: Sequence[str] | None = None,
+    fitted_names: Sequence[str] | None = None,
     *,
     direction: str = "normal",
     modal_mass: float | None = None,
@@ -104,37 +109,39 @@ def fit(
     Raises ValueError with a one-line message for a bad file, unit or value, or a name that cannot be fitted.
     Raises RuntimeError if the fit does not converge.
     """
-    curve = _measured(Path(path))
-    file = _stated(start or default("bolted_joint"), curve, modal_mass, series_stiffness)
-    is_mass_fitted = curve.of == "frequency" and modal_mass is None
-    level, *exponent = FREE[file.law]
-    names = list(free if free is not None else (*exponent, "mass" if is_mass_fitted else level))
+    curve = _read_curve(Path(path))
+    file = _with_modal_mass(start or load_default("bolted_joint"), curve, modal_mass, series_stiffness)
+    is_mass_fitted = curve.quantity == "frequency" and modal_mass is None
+    level, *exponent = FITTED_PARAMETERS[file.law]
+    names = list(
+        fitted_names if fitted_names is not None else (*exponent, "mass" if is_mass_fitted else level)
+    )
 
     def predict(values: Mapping[str, float]) -> Array:
-        own = {name: value for name, value in values.items() if name != SERIES}
+        own = {name: value for name, value in values.items() if name != SERIES_STIFFNESS}
         joint = replace(file, origins={}, sources={}).with_values(own, "calibration", "fit").values
-        return curve.predicted(joint, values.get(SERIES, series_stiffness), direction)
+        return curve.predict(joint, values.get(SERIES_STIFFNESS, series_stiffness), direction)
 
-    def miss(values: Mapping[str, float]) -> Array:
+    def logarithmic_error(values: Mapping[str, float]) -> Array:
         return np.log(predict(values) / curve.value)
 
-    solution = solve(_best_start(file, names, curve, miss), miss)
-    own = {name: value for name, value in solution.values.items() if name != SERIES}
-    span = f"preload {curve.preload[0]:g} to {curve.preload[-1]:g} N, {direction} {curve.of}"
-    result = fitted(file, own, "calibration", Path(path).name, span)
-    stiffness = solution.values.get(SERIES, series_stiffness)
+    solution = solve(_find_start(file, names, curve, logarithmic_error), logarithmic_error)
+    own = {name: value for name, value in solution.values.items() if name != SERIES_STIFFNESS}
+    span = f"preload {curve.preload[0]:g} to {curve.preload[-1]:g} N, {direction} {curve.quantity}"
+    result = fitted_parameters(file, own, "calibration", Path(path).name, span)
+    stiffness = solution.values.get(SERIES_STIFFNESS, series_stiffness)
     grid = np.linspace(curve.preload[0], curve.preload[-1], 200)
     finer = replace(curve, preload=grid, value=np.ones_like(grid))
-    unit, size = ("Hz", 1.0) if curve.of == "frequency" else ("N/um", factor("N/m", "N/um"))
-    kN = COLUMNS["preload"]["kN"]
+    unit, size = ("Hz", 1.0) if curve.quantity == "frequency" else ("N/um", conversion_factor("N/m", "N/um"))
+    kN = COLUMN_UNITS["preload"]["kN"]
     picture = Picture(
         x=curve.preload / kN,
         y=curve.value * size,
         misfit=100.0 * np.expm1(-solution.residuals),
-        line=(grid / kN, finer.predicted(result.values, stiffness, direction) * size),
-        labels=("preload of each bolt [kN]", f"{curve.of} [{unit}]", "data / law - 1 [%]"),
+        line=(grid / kN, finer.predict(result.values, stiffness, direction) * size),
+        labels=("preload of each bolt [kN]", f"{curve.quantity} [{unit}]", "data / law - 1 [%]"),
     )
-    notes = systematic(solution.residuals, "curve")
+    notes = correlation_note(solution.residuals, "curve")
     if is_mass_fitted and "mass" in names and level not in names:
         notes.append(
             f"frequencies without a stated mass give K/mass only: the level is in mass, {level} is kept; "
@@ -152,34 +159,34 @@ class PreloadCurve:
     value    : (n) measured values
     """
 
-    of: str
+    quantity: str
     preload: Array
     value: Array
 
-    def predicted(self, joint: Bolted, series: float | None, direction: str) -> Array:
+    def predict(self, joint: Bolted, series_stiffness: float | None, direction: str) -> Array:
         """Predict the quantity (n) for a joint, with an optional stiffness [N/m] in series."""
         K = joint_stiffness(joint, self.preload, direction)
-        K = K if series is None else 1.0 / (1.0 / K + 1.0 / series)
-        return K if self.of == "stiffness" else np.sqrt(K / joint.mass) / (2.0 * np.pi)
+        K = K if series_stiffness is None else 1.0 / (1.0 / K + 1.0 / series_stiffness)
+        return K if self.quantity == "stiffness" else np.sqrt(K / joint.mass) / (2.0 * np.pi)
 
 
-def _measured(path: Path) -> PreloadCurve:
+def _read_curve(path: Path) -> PreloadCurve:
     """Read and check the file."""
-    table = columns.read(path, COLUMNS, LEAST)
-    preload = table.require("preload", COLUMNS)
+    table = columns.read_columns(path, COLUMN_UNITS, MIN_POINTS)
+    preload = table.require_column("preload", COLUMN_UNITS)
     quantities = [name for name in ("stiffness", "frequency") if name in table.columns]
     if len(quantities) != 1:
         have = "both" if quantities else "neither"
-        choice = {name: COLUMNS[name] for name in ("stiffness", "frequency")}
+        choice = {name: COLUMN_UNITS[name] for name in ("stiffness", "frequency")}
         raise ValueError(
-            f"{path}: has {have} of stiffness and frequency; expected one: {columns.heading(choice)}"
+            f"{path}: has {have} of stiffness and frequency; expected one: {columns.format_heading(choice)}"
         )
-    table.positive(("preload", quantities[0]), COLUMNS)
+    table.check_positive(("preload", quantities[0]), COLUMN_UNITS)
     order = np.argsort(preload, kind="stable")
     preload, value = preload[order], table.columns[quantities[0]][order]
-    if np.unique(preload).size < LEAST:
+    if np.unique(preload).size < MIN_POINTS:
         raise ValueError(
-            f"{path}: has {np.unique(preload).size} different preloads, at least {LEAST} are needed"
+            f"{path}: has {np.unique(preload).size} different preloads, at least {MIN_POINTS} are needed"
         )
     slope = float(np.polyfit(np.log(preload), np.log(value), 1)[0])
     if slope <= 0.0:
@@ -187,56 +194,61 @@ def _measured(path: Path) -> PreloadCurve:
     return PreloadCurve(quantities[0], preload, value)
 
 
-def _stated(
-    start: ParameterFile, curve: PreloadCurve, modal_mass: float | None, series: float | None
+def _with_modal_mass(
+    start: ParameterFile, curve: PreloadCurve, modal_mass: float | None, series_stiffness: float | None
 ) -> ParameterFile:
     """Start parameters with the modal mass [kg] of the test.
 
     Raises ValueError for a mass or a series stiffness that is not positive.
     """
-    for name, value, unit in (("modal mass", modal_mass, "kg"), ("series stiffness", series, "N/m")):
+    for name, value, unit in (
+        ("modal mass", modal_mass, "kg"),
+        ("series stiffness", series_stiffness, "N/m"),
+    ):
         if value is not None and not 0.0 < value < np.inf:
             raise ValueError(f"{name} = {value:g} {unit} is outside (0, inf)")
     if modal_mass is None:
         return start
-    if curve.of == "stiffness":
+    if curve.quantity == "stiffness":
         raise ValueError(
             f"modal mass = {modal_mass:g} kg is stated, but the file has stiffnesses, no frequencies"
         )
     return start.with_values({"mass": modal_mass}, "user", "modal mass stated with the frequencies")
 
 
-def _best_start(
+def _find_start(
     file: ParameterFile,
     names: Sequence[str],
     curve: PreloadCurve,
-    miss: Callable[[Mapping[str, float]], Array],
+    logarithmic_error: Callable[[Mapping[str, float]], Array],
 ) -> Sequence[Unknown]:
     """Unknowns with the best of several start values."""
-    parameters = unknowns(file, [name for name in names if name != SERIES], {})
+    parameters = unknowns(file, [name for name in names if name != SERIES_STIFFNESS], {})
     level = (
         curve.value[-1]
-        if curve.of == "stiffness"
+        if curve.quantity == "stiffness"
         else (2.0 * np.pi * curve.value[-1]) ** 2 * file.values.mass
     )
-    parameters += [Unknown(SERIES, "N/m", 3.0 * float(level), 0.0, np.inf)] * (SERIES in names)
+    parameters += [Unknown(SERIES_STIFFNESS, "N/m", 3.0 * float(level), 0.0, np.inf)] * (
+        SERIES_STIFFNESS in names
+    )
 
-    def tried(values: dict[str, float]) -> tuple[Mapping[str, float], float]:
+    def evaluate_start(values: dict[str, float]) -> tuple[Mapping[str, float], float]:
         """Scale the mass, if it is fitted, to the mean frequency. Returns values and squared error."""
-        errors = miss(values)
+        errors = logarithmic_error(values)
         if "mass" in values:
             values["mass"] *= float(np.exp(2.0 * np.mean(errors)))
             errors = errors - np.mean(errors)
         return values, float(errors @ errors)
 
-    return best_start(parameters, STARTS, tried)
+    return select_start(parameters, START_VALUES, evaluate_start)
 
 
 def _facts(curve: PreloadCurve, solution: Solution) -> Facts:
     power = float(np.polyfit(np.log(curve.preload), np.log(curve.value), 1)[0])
     return {
         "points": (float(curve.preload.size), "1", "points used"),
-        "power": (power, "1", f"of the preload with which the {curve.of} grows"),
+        "power": (power, "1", f"of the preload with which the {curve.quantity} grows"),
         "noise": (solution.noise, "1", "relative standard deviation of a point about the fitted law"),
         "largest_misfit": (float(np.max(np.abs(solution.residuals))), "1", "relative"),
     }

@@ -7,40 +7,40 @@ import numpy as np
 
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.mechanics.curve import Curve
-from jointfmu.mechanics.footprint.reproducible import NOTHING
-from jointfmu.mechanics.sliders import SPREAD, Foundation
+from jointfmu.mechanics.footprint.reproducible import ZERO_RATIO
+from jointfmu.mechanics.sliders import UNIFORM_DEVIATION, Foundation
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
 
 from ....modelica.records import (
-    COMPUTED,
+    COMPUTED_DIGITS,
     InterpolationTable,
     ModelicaComponent,
     ModelicaRecord,
     WorkingPoint,
-    computed,
-    given,
-    identifier,
-    matrix,
-    number,
-    thinned,
+    decimate_curve,
+    format_computed,
+    format_given,
+    format_matrix,
+    format_number,
+    make_identifier,
 )
 
 DAMPING_TOLERANCE = 1e-3
 """Largest relative error [1] of the linearly interpolated dissipation factor."""
-STRONGEST = 10.0
+MAX_FORCE_RATIO = 10.0
 """Total contact force at the end of the table over the one at tightening [1]."""
-BELOW, EARLIEST = 12, 2e-3
+TIGHTENED_PAIRS, FIRST_SLIP_RATIO = 12, 2e-3
 """Number of slider pairs in contact at tightening, and slip displacement of the first pair over that of gross
 slip [1]. The slip displacements of the pairs form a geometric sequence."""
-ABOVE = (2.0, 5.0)
+COMPRESSION_RATIOS = (2.0, 5.0)
 """Forces over the one at tightening [1] at which further slider pairs are in full contact, in compression."""
-_FINE, _COARSE = 800, 200
+_FORCE_POINTS, _DAMPING_POINTS = 800, 200
 """Sample points on either side of the tightened state: for the force, before decimation, and for the
 damping."""
 
 
-class Tightened(NamedTuple):
+class CombinedSpring(NamedTuple):
     """Bolted joint at fixed preload and moment, with all nodes combined to one spring.
 
     table           : increase of the force [N] from the tightened state, over the approach from there [m]
@@ -56,77 +56,83 @@ class Tightened(NamedTuple):
 
     table: InterpolationTable
     damping: Array
-    shear: float
+    shear_ratio: float
     force: float
-    heights: Array
+    pair_boundaries: Array
     sliders: Array
     bolts: Array
 
 
-def tightened(spring: BoltedJointSpring, preload: float, moment: float) -> Tightened:
+def combine_nodes(spring: BoltedJointSpring, preload: float, moment: float) -> CombinedSpring:
     """Combine all nodes of a joint to one spring, at a preload [N] per bolt and a moment [N.m].
 
     Side 2 is rigid and does not rotate. So all patches have the same tangential displacement and their curves
     add: friction follows, as for one patch, from the total force g(c) at the approach c = -s_z.
     """
-    start = spring.within_law(preload, moment)
+    start = spring.checked_approach(preload, moment)
     low, high = spring.curve.displacement[[0, -1]]
     area, share = spring.joint.A_0, spring.shape.share
 
-    def total(c: Array) -> list[Array]:
+    def total_force(c: Array) -> list[Array]:
         approach = start + c[:, None]
-        approach[approach - low < NOTHING * (high - low)] = low  # nodes that just touch have no load
+        approach[approach - low < ZERO_RATIO * (high - low)] = low  # nodes that just touch have no load
         nodal = spring.curve.derivatives(approach, 2)
         return [area * (value @ share) for value in nodal]
 
-    preload_force = total(np.zeros(1))[0][0]
+    preload_force = total_force(np.zeros(1))[0][0]
     first, last = float(low - np.max(start)), float(high - np.max(start))
     compression = np.linspace(0.0, last, 200)
-    end = float(np.interp(STRONGEST * preload_force, total(compression)[0], compression))
-    c = np.unique(np.concatenate([np.linspace(first, 0.0, _FINE), np.linspace(0.0, end, _FINE)]))
-    load, stiffness, d2_load = total(c)
+    end = float(np.interp(MAX_FORCE_RATIO * preload_force, total_force(compression)[0], compression))
+    c = np.unique(
+        np.concatenate([np.linspace(first, 0.0, _FORCE_POINTS), np.linspace(0.0, end, _FORCE_POINTS)])
+    )
+    load, stiffness, d2_load = total_force(c)
     curve = Curve(c, load, stiffness, d2_load[:-1], d2_load[1:])
     zero = int(np.searchsorted(c, 0.0))
-    coarse = np.concatenate([np.linspace(first, 0.0, _COARSE), np.linspace(0.0, end, _COARSE)[1:]])
-    eta = np.interp(c, coarse, _dissipation(spring, start + coarse[:, None]))
+    coarse = np.concatenate(
+        [np.linspace(first, 0.0, _DAMPING_POINTS), np.linspace(0.0, end, _DAMPING_POINTS)[1:]]
+    )
+    eta = np.interp(c, coarse, _dissipation_factor(spring, start + coarse[:, None]))
 
-    def linear(i: int, j: int) -> bool:
+    def is_linear(i: int, j: int) -> bool:
         line = np.interp(c[i : j + 1], c[[i, j]], eta[[i, j]])
         return bool(np.all(np.abs(line - eta[i : j + 1]) <= DAMPING_TOLERANCE * eta[i : j + 1]))
 
-    table = thinned(curve, reference=zero, keep=(zero,), fits=linear)
+    table = decimate_curve(curve, reference_node=zero, fixed_nodes=(zero,), segment_fits=is_linear)
     damping = np.column_stack([table.rows[:, 0], np.interp(table.rows[:, 0], c, eta)])
     table.rows[:, 1] -= load[zero]
-    levels = [np.interp(factor * preload_force, load, c) for factor in ABOVE]
-    heights = np.concatenate([[first], first * np.geomspace(1.0, EARLIEST, BELOW)[1:], [0.0], levels])
-    force, normal, _ = total(heights)
+    levels = [np.interp(factor * preload_force, load, c) for factor in COMPRESSION_RATIOS]
+    heights = np.concatenate(
+        [[first], first * np.geomspace(1.0, FIRST_SLIP_RATIO, TIGHTENED_PAIRS)[1:], [0.0], levels]
+    )
+    force, normal, _ = total_force(heights)
     rows = np.column_stack([heights, force, normal])
     ratio = float(spring.joint.shear_ratio())
-    carried = Foundation(curve, ratio, spring.joint.mu, heights).carried(0.0)
+    carried = Foundation(curve, ratio, spring.joint.mu, heights).slider_properties(0.0)
     sliders = np.column_stack([np.concatenate([x[::2], x[1::2]]) for x in (carried.stiffness, carried.limit)])
-    bolts = spring.bolts.count * spring.bolts.tightened(spring.joint, preload, moment)
-    return Tightened(table, damping, ratio, preload_force, rows, sliders, bolts)
+    bolts = spring.bolts.count * spring.bolts.preload_force(spring.joint, preload, moment)
+    return CombinedSpring(table, damping, ratio, preload_force, rows, sliders, bolts)
 
 
-def _dissipation(spring: BoltedJointSpring, approach: Array) -> Array:
+def _dissipation_factor(spring: BoltedJointSpring, approach: Array) -> Array:
     """Normal dissipation factor eta_n (m) [1], at nodal approaches (m, n) [m]."""
-    plastic, elastic = spring.works(spring.curve.derivatives(approach, 0)[0])
+    plastic, elastic = spring.first_loading_work(spring.curve.derivatives(approach, 0)[0])
     return np.asarray((plastic @ spring.shape.share) / (elastic @ spring.shape.share))
 
 
-TIGHTENED = ((9e3, 0.0), (15e3, 0.0), (15e3, 4500.0))
+WORKING_POINTS = ((9e3, 0.0), (15e3, 0.0), (15e3, 4500.0))
 """Working points of the default records: preload [N] per bolt and moment [N.m], from Zhao 2018, Table 3."""
 
 
-def _records(file: ParameterFile, points: Sequence[WorkingPoint]) -> list[ModelicaRecord]:
+def _make_records(file: ParameterFile, points: Sequence[WorkingPoint]) -> list[ModelicaRecord]:
     spring = BoltedJointSpring.of_nodes(file.values)
-    return [_record(file.name, spring, *point) for point in points]
+    return [_make_record(file.name, spring, *point) for point in points]
 
 
-def _record(name: str, spring: BoltedJointSpring, preload: float, moment: float) -> ModelicaRecord:
-    tight = tightened(spring, preload, moment)
-    rest = spring.motion(preload, moment, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-    values = given(
+def _make_record(name: str, spring: BoltedJointSpring, preload: float, moment: float) -> ModelicaRecord:
+    tight = combine_nodes(spring, preload, moment)
+    rest = spring.evaluate(preload, moment, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    values = format_given(
         {
             "preload": preload,
             "moment": moment,
@@ -137,33 +143,33 @@ def _record(name: str, spring: BoltedJointSpring, preload: float, moment: float)
             "damping": spring.joint.damping,
             "mu": spring.joint.mu,
         }
-    ) | computed({"tight": tight.force, "shear": tight.shear, "eta_t": float(rest["eta_t"])})
+    ) | format_computed({"tight": tight.force, "shear": tight.shear_ratio, "eta_t": float(rest["eta_t"])})
     force = f"{preload / 1e3:g} kN"
     return ModelicaRecord(
-        name=identifier(f"{name} {force}" + (f" {moment:g} Nm" if moment else "")),
+        name=make_identifier(f"{name} {force}" + (f" {moment:g} Nm" if moment else "")),
         title=f"{name}, {force} per bolt" + (f" and {moment:g} N m" if moment else ""),
         table=tight.table,
         values=values
         | {
-            "heights": matrix(tight.heights),
-            "sliders": matrix(tight.sliders),
-            "eta_n": matrix(tight.damping),
-            "bolt_forces": f"{{{', '.join(number(force, COMPUTED) for force in tight.bolts)}}}",
+            "heights": format_matrix(tight.pair_boundaries),
+            "sliders": format_matrix(tight.sliders),
+            "eta_n": format_matrix(tight.damping),
+            "bolt_forces": f"{{{', '.join(format_number(force, COMPUTED_DIGITS) for force in tight.bolts)}}}",
         },
-        more="; where the force is below the one at tightening, relative to that",
+        error_note="; where the force is below the one at tightening, relative to that",
     )
 
 
 COMPONENT = ModelicaComponent(
     name="BoltedJoint",
     base="BoltedJoint",
-    points=TIGHTENED,
-    records=_records,
+    points=WORKING_POINTS,
+    records=_make_records,
     flanges=("flange_x", "flange_y", "flange_z"),
-    texts=lambda joint: {
+    template_texts=lambda joint: {
         "damping_tolerance": f"{DAMPING_TOLERANCE:g}",
-        "strongest": f"{STRONGEST:g}",
-        "spread": f"{SPREAD:.15g}",
-        "sliders": f"{2 * (BELOW + len(ABOVE))}",
+        "strongest": f"{MAX_FORCE_RATIO:g}",
+        "spread": f"{UNIFORM_DEVIATION:.15g}",
+        "sliders": f"{2 * (TIGHTENED_PAIRS + len(COMPRESSION_RATIOS))}",
     },
 )

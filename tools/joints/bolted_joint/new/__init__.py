@@ -1,44 +1,48 @@
 """`jointfmu new` for a bolted joint: two plates and their bolts, from a drawing."""
 
-from ....drawing.faces import OPTIONS
-from ....drawing.part import Drawing, Given, NewJoint
+from ....drawing.faces import FACE_OPTIONS
+from ....drawing.part import DrawingOptions, NewJoint, NewJointCommand
 from ....joint_parts import Option
 
 
-def _plate(given: Given) -> NewJoint:
+def _make_joint(options: DrawingOptions) -> NewJoint:
     from . import plate
 
-    return plate.joint(given)
+    return plate.make_joint(options)
 
 
-ATTACHED = {
+ATTACHMENTS = {
     "faces": "the outer faces",
     "edge": "the edges at -x (side 1) and +x (side 2)",
     "heads": "the faces under heads and nuts",
 }
 """{name: surfaces of both plates that move rigidly with the connected bodies}."""
 
-NEW = Drawing(
-    text="a bolted joint of two plates",
+NEW = NewJointCommand(
+    description="a bolted joint of two plates",
     example="--plate 200x100 --bolts 4xM12 --at 160x60 --grip 40 --material steel --finish ground "
     "--preload 30e3",
     options=(
-        Option("plate", "length along x and width along y [mm]", "LxW", by="x", required=True),
-        Option("bolts", "number and thread", "NxMd", by="x", required=True),
+        Option("plate", "length along x and width along y [mm]", "LxW", separator="x", is_required=True),
+        Option("bolts", "number and thread", "NxMd", separator="x", is_required=True),
         Option(
             "at",
             "distances of the outermost bolts along x and y, LxW, or the position X,Y of each bolt from "
             "the middle of the plate [mm]",
             "PLACE",
-            many=True,
-            by="x",
+            is_list=True,
+            separator="x",
         ),
-        Option("grid", "number of bolts along x and y, if --at LxW leaves it open", "NxM", by="x"),
+        Option("grid", "number of bolts along x and y, if --at LxW leaves it open", "NxM", separator="x"),
         Option("circle", "diameter of the pitch circle of the bolts [mm]", "D"),
         Option(
-            "grip", "clamped length of both plates together, or of each [mm]", "L", many=True, required=True
+            "grip",
+            "clamped length of both plates together, or of each [mm]",
+            "L",
+            is_list=True,
+            is_required=True,
         ),
-        Option("tapped", "the thread is tapped in side 2; --grip is the thickness of side 1", flag=True),
+        Option("tapped", "the thread is tapped in side 2; --grip is the thickness of side 1", is_flag=True),
         Option("head", "head of the bolts (default: hexagon)", choices=("hexagon", "socket")),
         Option("hole", "diameter of the clearance holes [mm] (default: ISO 273, medium)", "D"),
         Option("bearing", "outer diameter of the bearing surface [mm] (default: of the head)", "D"),
@@ -56,7 +60,7 @@ NEW = Drawing(
             "contact pressure from the cones of the bolts, or computed by finite elements (default: cones)",
             choices=("cones", "computed"),
         ),
-        Option("thickness", "thickness of each plate [mm] (default: half the grip)", "T", many=True),
+        Option("thickness", "thickness of each plate [mm] (default: half the grip)", "T", is_list=True),
         Option(
             "sides",
             "elastic: the complete joint, with members and bolts; rigid: the interface only (default: "
@@ -67,10 +71,10 @@ NEW = Drawing(
             "attached",
             "surfaces that move rigidly with the connected bodies: outer faces, edges (side 1 at -x, "
             "side 2 at +x), or faces under heads and nuts (default: faces)",
-            choices=tuple(ATTACHED),
+            choices=tuple(ATTACHMENTS),
         ),
         Option("law", "law of the interface (default: roughness)", choices=("roughness", "zhao2018")),
-        *OPTIONS,
+        *FACE_OPTIONS,
     ),
-    run=_plate,
+    make_joint=_make_joint,
 )

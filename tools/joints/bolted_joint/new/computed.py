@@ -7,29 +7,29 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from jointfmu.joints.bolted_joint.bodies import ElasticBodies
-from jointfmu.joints.bolted_joint.compliances import PARTS, Compliances
-from jointfmu.joints.bolted_joint.law import pressures, working_preload
+from jointfmu.joints.bolted_joint.compliances import COMPONENTS, Compliances
+from jointfmu.joints.bolted_joint.law import preload_pressure, working_preload
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
-from jointfmu.mechanics.curve import approach_curve
-from jointfmu.mechanics.footprint.bolts import pressure_shape
+from jointfmu.mechanics.curve import tabulate_approach
+from jointfmu.mechanics.footprint.bolts import pressure_distribution
 from jointfmu.mechanics.footprint.plate import BoltedPlate
-from jointfmu.mechanics.footprint.shape import PressureShape
+from jointfmu.mechanics.footprint.shape import PressureDistribution
 from jointfmu.parameters import ParameterFile
-from jointfmu.progress import step
-from jointfmu.quantity import Array, flatten
+from jointfmu.progress import set_step
+from jointfmu.quantity import Array, flatten_parameters
 
 from ....drawing.part import NewJoint
 from ....drawing.vdi2230 import ClampedPart
-from ....fem import installed
-from . import ATTACHED
+from ....fem import require_fem_packages
+from . import ATTACHMENTS
 
 if TYPE_CHECKING:
     from ....fem.geometry import Assembly
-    from ....fem.whole_joint import WholeJoint
+    from ....fem.whole_joint import JointFiniteElements
 
 
 @dataclass(frozen=True, slots=True)
-class Plates:
+class BoltedPlates:
     """Two plates with their bolts.
 
     plate            : contact plane with the bolt positions
@@ -43,13 +43,13 @@ class Plates:
 
     plate: BoltedPlate
     layers: tuple[ClampedPart, ...]
-    bearing: float
+    bearing_diameter: float
     density: tuple[float, ...]
     preload: float
     tension: float
-    depth: float = 0.0
+    thread_depth: float = 0.0
 
-    def assembly(self, file: ParameterFile) -> "Assembly":
+    def make_assembly(self, file: ParameterFile) -> "Assembly":
         """Build the bodies of the finite-element model.
 
         Raises ValueError for bolt heads that overlap or extend beyond the plate.
@@ -62,19 +62,23 @@ class Plates:
                 width=self.plate.width,
                 thickness=layer.thickness,
                 E=layer.E,
-                nu=file.flat[f"side{i + 1}.nu"],
+                nu=file.values_by_name[f"side{i + 1}.nu"],
                 density=self.density[i],
             )
             for i, layer in enumerate(self.layers)
         ]
-        if self.depth:
-            sides[1] = TappedPlate(**flatten(sides[1]), depth=self.depth)
+        if self.thread_depth:
+            sides[1] = TappedPlate(**flatten_parameters(sides[1]), depth=self.thread_depth)
         plate = self.plate
-        bolts = BoltList(x=plate.x, y=plate.y, hole_diameter=plate.hole_diameter, head_diameter=self.bearing)
+        bolts = BoltList(
+            x=plate.x, y=plate.y, hole_diameter=plate.hole_diameter, head_diameter=self.bearing_diameter
+        )
         return Assembly(file.name, sides[0], sides[1], bolts)
 
 
-def with_computed_field(file: ParameterFile, plates: Plates) -> tuple[ParameterFile, PressureShape]:
+def compute_pressure_field(
+    file: ParameterFile, plates: BoltedPlates
+) -> tuple[ParameterFile, PressureDistribution]:
     """Replace the pressure cones of the bolts by the computed contact pressure of the elastic plates.
 
     Returns the parameters, whose field has few nodes, and the pressure shape at all nodes of the model.
@@ -82,12 +86,14 @@ def with_computed_field(file: ParameterFile, plates: Plates) -> tuple[ParameterF
     Raises ValueError for bolt heads that overlap or extend beyond the plate, and if a package is missing.
     """
 
-    with installed("--field computed"):
-        from ....fem.bolted_contact import BoltedContact, with_solution
+    with require_fem_packages("--field computed"):
+        from ....fem.bolted_contact import BoltedContact, with_contact_field
 
-        step("contact of the plates by finite elements")
-        solution = BoltedContact.of(plates.assembly(file)).solve(approach_curve(file.values), plates.tension)
-    return with_solution(file, solution, plates.tension)
+        set_step("contact of the plates by finite elements")
+        solution = BoltedContact.from_assembly(plates.make_assembly(file)).solve(
+            tabulate_approach(file.values), plates.tension
+        )
+    return with_contact_field(file, solution, plates.tension)
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,19 +104,21 @@ class ComputedJoint:
     file: ParameterFile
 
 
-def whole_joint(
-    file: ParameterFile, plates: Plates, attached: str, shape: PressureShape | None = None
+def compute_joint(
+    file: ParameterFile, plates: BoltedPlates, attached: str, shape: PressureDistribution | None = None
 ) -> ComputedJoint:
     """Compute the complete joint of a drawing at its preload, see `compute_joint_of_assembly`."""
-    return whole_of(file, lambda: plates.assembly(file), plates.preload, attached, shape)
+    return compute_joint_of_assembly(
+        file, lambda: plates.make_assembly(file), plates.preload, attached, shape
+    )
 
 
-def whole_of(
+def compute_joint_of_assembly(
     file: ParameterFile,
-    assembly: "Callable[[], Assembly]",
+    make_assembly: "Callable[[], Assembly]",
     preload: float,
     attached: str,
-    shape: PressureShape | None = None,
+    shape: PressureDistribution | None = None,
 ) -> ComputedJoint:
     """Compute the complete joint by finite elements and reduce its bodies to modes.
 
@@ -122,21 +130,21 @@ def whole_of(
     Raises ValueError for bolt heads that overlap or extend beyond the plate, and if a package is missing.
     """
 
-    with installed("the whole joint"):
+    with require_fem_packages("the whole joint"):
         from ....fem.geometry import check_thickness
-        from ....fem.reduction.elastic_bodies import elastic_bodies
-        from ....fem.whole_joint import WholeJoint
+        from ....fem.reduction.elastic_bodies import reduce_bodies
+        from ....fem.whole_joint import JointFiniteElements
 
-        step("members by finite elements")
-        clamped = assembly()
+        set_step("members by finite elements")
+        clamped = make_assembly()
         check_thickness(clamped)
-        joint = WholeJoint.of(clamped, attached)
-        springs = _springs(file, preload, joint, shape)
-        linear = joint.linear(springs, file.values.bolt_stiffness)
+        joint = JointFiniteElements.from_assembly(clamped, attached)
+        springs = _interface_stiffness(file, preload, joint, shape)
+        linear = joint.linearize(springs, file.values.bolt_stiffness)
         bodies = replace(
-            elastic_bodies(linear, BoltedJointSpring.of(file.values), springs[:, 2], preload),
-            thickness=(clamped.side1.clamped, clamped.side2.clamped),
-            outline=_outline(clamped, joint.interface.centroid),
+            reduce_bodies(linear, BoltedJointSpring.of(file.values), springs[:, 2], preload),
+            thickness=(clamped.side1.clamped_thickness, clamped.side2.clamped_thickness),
+            outline=_contact_outline(clamped, joint.interface.centroid),
             hole_diameter=clamped.bolts.hole_diameter,
             head_diameter=clamped.bolts.head_diameter,
             thread_depth=getattr(clamped.side2, "depth", 0.0),
@@ -145,17 +153,17 @@ def whole_of(
     return ComputedJoint(compliances, with_bodies(file, bodies, attached))
 
 
-def _outline(clamped: "Assembly", centroid: Array) -> tuple[float, ...]:
+def _contact_outline(assembly: "Assembly", centroid: Array) -> tuple[float, ...]:
     """Bounding box of the contact relative to its centroid: x_min, y_min, x_max, y_max [m]."""
-    half = np.min([side.layers()[0].outer for side in (clamped.side1, clamped.side2)], axis=0)
+    half = np.min([side.layers()[0].outline for side in (assembly.side1, assembly.side2)], axis=0)
     return tuple(np.concatenate([-half - centroid, half - centroid]).tolist())
 
 
 def with_bodies(file: ParameterFile, bodies: ElasticBodies, attached: str) -> ParameterFile:
     """Parameters of the joint with elastic sides, described by `bodies`."""
     values = replace(file.values, sides="elastic", bodies=replace(bodies, attached=attached))
-    source = f"finite elements of the bodies between {ATTACHED[attached]}, reduced to modes"
-    names = [f"bodies.{name}" for name, value in flatten(bodies).items() if value != ()]
+    source = f"finite elements of the bodies between {ATTACHMENTS[attached]}, reduced to modes"
+    names = [f"bodies.{name}" for name, value in flatten_parameters(bodies).items() if value != ()]
     stated = "the whole joint between what it connects; rigid: the interface alone"
     return replace(
         file,
@@ -165,7 +173,9 @@ def with_bodies(file: ParameterFile, bodies: ElasticBodies, attached: str) -> Pa
     )
 
 
-def _springs(file: ParameterFile, preload: float, joint: "WholeJoint", shape: PressureShape | None) -> Array:
+def _interface_stiffness(
+    file: ParameterFile, preload: float, joint: "JointFiniteElements", shape: PressureDistribution | None
+) -> Array:
     """Stiffness per area (points, 3) [N/m3] along x, y, z of the tightened interface, at integration points.
 
     Each point takes the stiffness of the nearest node of the pressure shape. One factor then makes the total
@@ -176,10 +186,10 @@ def _springs(file: ParameterFile, preload: float, joint: "WholeJoint", shape: Pr
     from scipy.spatial import cKDTree
 
     values, interface = file.values, joint.interface
-    shape = shape or pressure_shape(values.pattern)
-    curve = approach_curve(values)
-    nodal = curve.derivatives(curve.inverse(pressures(values, shape, preload, 0.0)), 1)[1]
-    normal = nodal[cKDTree(shape.position).query(interface.centred)[1]]
+    shape = shape or pressure_distribution(values.pattern)
+    curve = tabulate_approach(values)
+    nodal = curve.derivatives(curve.inverse(preload_pressure(values, shape, preload, 0.0)), 1)[1]
+    normal = nodal[cKDTree(shape.position).query(interface.centred_position)[1]]
     normal = normal * (values.A_0 * (shape.share @ nodal) / (interface.area @ normal))
     ratio = float(values.shear_ratio())
     return np.stack([ratio * normal, ratio * normal, normal], axis=1)
@@ -189,13 +199,13 @@ Facts = dict[str, tuple[float, str, str]]
 """{name: (value, unit, explanation)}."""
 
 
-def facts(
+def compute_facts(
     file: ParameterFile,
-    plates: Plates,
+    plates: BoltedPlates,
     attached: str,
     sides: str | None,
-    alone: str,
-    shape: PressureShape | None = None,
+    interface_only_text: str,
+    shape: PressureDistribution | None = None,
 ) -> NewJoint:
     """Compute the complete joint: parameters with elastic sides and facts, or a warning why this failed.
 
@@ -207,43 +217,47 @@ def facts(
     Raises ValueError if the user asked for elastic sides and they cannot be computed.
     """
     try:
-        computed = whole_joint(file, plates, attached, shape)
+        computed = compute_joint(file, plates, attached, shape)
     except ValueError as error:
         if sides == "elastic":
             raise
-        return NewJoint(file, {}, [f"members and bolts are not computed, {alone}: {error}"])
+        return NewJoint(file, {}, [f"members and bolts are not computed, {interface_only_text}: {error}"])
     if sides == "rigid":
-        return NewJoint(file, _rows(computed.compliances, plates.tension, attached), [])
-    return NewJoint(computed.file, whole_facts(computed.file, plates.preload), [])
+        return NewJoint(file, _fact_rows(computed.compliances, plates.tension, attached), [])
+    return NewJoint(computed.file, joint_facts(computed.file, plates.preload), [])
 
 
-def whole_facts(file: ParameterFile, preload: float) -> Facts:
+def joint_facts(file: ParameterFile, preload: float) -> Facts:
     """Facts about a joint with elastic sides at a preload [N] of each bolt, equal to report and FMU."""
     compliances = BoltedJointSpring.of(file.values).compliances(preload)
     tension = float(working_preload(file.values, preload))
     suffix = f" at preload = {preload:.5g} N"
-    return _rows(compliances, tension, file.values.bodies.attached, suffix)
+    return _fact_rows(compliances, tension, file.values.bodies.attached, suffix)
 
 
-def _rows(found: Compliances, tension: float, attached: str, told: str = "") -> Facts:
+def _fact_rows(compliances: Compliances, tension: float, attached: str, fmu_suffix: str = "") -> Facts:
     """Facts about the complete joint with a tension [N] of each bolt.
 
     fmu_suffix : text that names the load of the same output of the FMU; empty: the FMU contains the interface
                  only
     """
-    return _stiffnesses(found, attached, told) | _load(found, tension, attached) | _share(found, not told)
+    return (
+        _stiffness_facts(compliances, attached, fmu_suffix)
+        | _load_facts(compliances, tension, attached)
+        | _interface_share(compliances, not fmu_suffix)
+    )
 
 
-def _stiffnesses(found: Compliances, attached: str, told: str) -> Facts:
+def _stiffness_facts(compliances: Compliances, attached: str, fmu_suffix: str) -> Facts:
     """Stiffnesses in all directions, first of the complete joint, then of its members."""
     rows, members = {}, {}
-    for name, unit, (whole, interface, alone, _), parts in found.rows():
-        shares = ", ".join(f"{share:.0%} {part}" for share, part in zip(parts, PARTS, strict=True))
+    for name, unit, (whole, interface, alone, _), parts in compliances.rows():
+        shares = ", ".join(f"{share:.0%} {part}" for share, part in zip(parts, COMPONENTS, strict=True))
         rows[f"whole_{name}"] = (
             whole,
             unit,
-            f"of the whole joint between {ATTACHED[attached]}, other motions held"
-            + (f" (the FMU's {name}{told})" if told else "")
+            f"of the whole joint between {ATTACHMENTS[attached]}, other motions held"
+            + (f" (the FMU's {name}{fmu_suffix})" if fmu_suffix else "")
             + f"; of its energy {shares}; the interface alone is {interface / whole:.3g} times as stiff",
         )
         members[f"members_{name}"] = (
@@ -254,27 +268,27 @@ def _stiffnesses(found: Compliances, attached: str, told: str) -> Facts:
     return rows | members
 
 
-def _share(found: Compliances, alone: bool) -> Facts:
+def _interface_share(compliances: Compliances, is_interface_only: bool) -> Facts:
     """Share of the interface in the compliance of the complete joint."""
-    share = found.shares[0]
+    share = compliances.shares[0]
     rest = max(part for i, part in enumerate(share) if i != 2)
     text = f"share of the interface in the compliance along z, at most {rest:.3g} in other directions; " + (
         "the FMU is the interface alone (--sides rigid)"
-        if alone
+        if is_interface_only
         else "the FMU is the whole joint (sides = elastic)"
     )
     return {"interface_share": (float(share[2]), "1", text)}
 
 
-def _load(found: Compliances, tension: float, attached: str) -> Facts:
+def _load_facts(compliances: Compliances, tension: float, attached: str) -> Facts:
     """Effect of an external force along z without bending: load factor, bolt share, opening load."""
-    where = f"a force along z at {ATTACHED[attached]}"
-    opens = found.opening_load(tension)
+    where = f"a force along z at {ATTACHMENTS[attached]}"
+    opens = compliances.opening_load(tension)
     free = f"{where}, other motions free"
     return {
-        "whole_load_factor": (found.load_factor, "1", f"n Phi_K: share that the bolts carry of {free}"),
+        "whole_load_factor": (compliances.load_factor, "1", f"n Phi_K: share that the bolts carry of {free}"),
         "whole_bolt_share": (
-            float(found.bolt_force[:, 2].max()),
+            float(compliances.bolt_force[:, 2].max()),
             "1",
             f"largest share that one bolt carries of {free}",
         ),

@@ -7,40 +7,42 @@ import numpy as np
 
 from jointfmu.quantity import Array
 
-from ....drawing.part import Given
-from ....drawing.reading import number, numbers
-from ....drawing.tables import Thread, threads
+from ....drawing.part import DrawingOptions
+from ....drawing.reading import parse_number, parse_numbers
+from ....drawing.tables import Thread, read_threads
 
-_BOLTS = re.compile(r"(?:(\d+)\s*x\s*)?(M\d+)", re.IGNORECASE)
-_GRID = re.compile(r"(\d+)x(\d+)")
+_BOLTS_PATTERN = re.compile(r"(?:(\d+)\s*x\s*)?(M\d+)", re.IGNORECASE)
+_GRID_PATTERN = re.compile(r"(\d+)x(\d+)")
 
 
-def bolts(text: str) -> tuple[int, Thread]:
+def parse_bolts(text: str) -> tuple[int, Thread]:
     """Parse number and thread of the bolts, as in 4xM12.
 
     Raises ValueError for bad text or an unknown thread.
     """
-    match = _BOLTS.fullmatch(text.strip())
+    match = _BOLTS_PATTERN.fullmatch(text.strip())
     if not match or match[1] == "0":
         raise ValueError(f"--bolts = {text!r} are no bolts; expected a number and a thread, as in 4xM12")
     name = match[2].upper()
-    if name not in threads():
-        raise ValueError(f"--bolts = {text!r}: thread {name} is unknown, allowed are {', '.join(threads())}")
-    return int(match[1] or 1), threads()[name]
+    if name not in read_threads():
+        raise ValueError(
+            f"--bolts = {text!r}: thread {name} is unknown, allowed are {', '.join(read_threads())}"
+        )
+    return int(match[1] or 1), read_threads()[name]
 
 
-def positions(given: Given, count: int) -> Array:
+def bolt_positions(options: DrawingOptions, count: int) -> Array:
     """Positions (count, 2) [m] of the bolts relative to the middle of the plate.
 
     Raises ValueError with a one-line message if the options do not give `count` positions.
     """
-    texts, circle = given["at"], given["circle"]
+    texts, circle = options["at"], options["circle"]
     if texts and circle:
         raise ValueError("--at beside --circle: expected one of them")
-    if given["grid"] and not (texts and "," not in texts[0]):
-        raise ValueError(f"--grid = {given['grid']!r} needs the distances of the outermost bolts, --at LxW")
+    if options["grid"] and not (texts and "," not in texts[0]):
+        raise ValueError(f"--grid = {options['grid']!r} needs the distances of the outermost bolts, --at LxW")
     if circle:
-        radius = 0.5 * number("circle", circle, "mm", "m")
+        radius = 0.5 * parse_number("circle", circle, "mm", "m")
         angle = 2.0 * np.pi * (np.arange(count) + 0.5) / count
         return radius * np.column_stack([np.cos(angle), np.sin(angle)])
     if not texts:
@@ -48,27 +50,29 @@ def positions(given: Given, count: int) -> Array:
             return np.zeros((1, 2))
         raise ValueError(f"the places of {count} bolts are missing; expected --at or --circle")
     if "," in texts[0]:
-        return _list(texts, count)
+        return _parse_positions(texts, count)
     if len(texts) > 1:
         raise ValueError(f"--at = {texts[0]!r} and more: expected one LxW, or the place X,Y of each bolt")
-    spans = numbers("at", texts[0], "mm", "m", by="x", count=2, least=None)
-    return _rectangle(spans, count, given["grid"])
+    spans = parse_numbers("at", texts[0], "mm", "m", separator="x", count=2, lower_bound=None)
+    return _grid_positions(spans, count, options["grid"])
 
 
-def _list(at: Sequence[str], count: int) -> Array:
-    places = [numbers("at", text, "mm", "m", by=",", count=2, least=None) for text in at]
+def _parse_positions(texts: Sequence[str], count: int) -> Array:
+    places = [
+        parse_numbers("at", text, "mm", "m", separator=",", count=2, lower_bound=None) for text in texts
+    ]
     if len(places) != count:
         raise ValueError(f"--at has {len(places)} places, expected {count}: one for each of --bolts")
     return np.array(places)
 
 
-def _rectangle(spans: Sequence[float], count: int, grid: str | None) -> Array:
+def _grid_positions(spans: Sequence[float], count: int, grid: str | None) -> Array:
     """Positions (count, 2) [m] of bolts on a rectangular grid: on the full grid, or on its rim only."""
     if min(spans) < 0.0:
         raise ValueError(f"--at = {min(spans):g} m is outside [0, inf): distance of the outermost bolts")
     if count == 1 and max(spans) > 0.0:
         raise ValueError("--at LxW beside one bolt: expected the number of --bolts, as in 4xM12")
-    columns, rows = _grid(spans, count, grid)
+    columns, rows = _grid_size(spans, count, grid)
     x, y = (
         0.5 * span * (np.linspace(-1.0, 1.0, n) if n > 1 else np.zeros(1))
         for span, n in zip(spans, (columns, rows), strict=True)
@@ -80,10 +84,10 @@ def _rectangle(spans: Sequence[float], count: int, grid: str | None) -> Array:
     return np.column_stack([x[i], y[j]])
 
 
-def _grid(spans: Sequence[float], count: int, grid: str | None) -> tuple[int, int]:
+def _grid_size(spans: Sequence[float], count: int, grid: str | None) -> tuple[int, int]:
     """Number of bolts along x and along y."""
     if grid:
-        match = _GRID.fullmatch(grid)
+        match = _GRID_PATTERN.fullmatch(grid)
         if not match or 0 in (sizes := (int(match[1]), int(match[2]))):
             raise ValueError(f"--grid = {grid!r} is no grid; expected the bolts along x and y, as in 3x2")
         columns, rows = sizes

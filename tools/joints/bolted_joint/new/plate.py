@@ -11,26 +11,26 @@ from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
 
 from ....drawing import faces, vdi2230
-from ....drawing.part import Given, NewJoint, Sheet
-from ....drawing.reading import number, numbers
+from ....drawing.part import DrawingOptions, NewJoint, ParameterSheet
+from ....drawing.reading import parse_number, parse_numbers
 from ....drawing.tables import Thread, strength, thread_source
-from ....pressure import overload
-from ..report import friction_band
+from ....pressure import warn_overload
+from ..report import friction_results
 from . import computed, layout
-from .computed import Plates, with_computed_field
+from .computed import BoltedPlates, compute_pressure_field
 
-REST = (0.0, 0.0, 0.0)
+ZERO_MOTION = (0.0, 0.0, 0.0)
 """Zero displacement [m] or rotation [rad] along x, y, z."""
-SAME = 1e-6
+THICKNESS_TOLERANCE = 1e-6
 """Relative difference [1] allowed between the grip and the sum of the thicknesses."""
-LONGEST = 50
+MAX_GRIP_RATIO = 50
 """Largest grip over the diameter of the thread [1]: a longer bolt is a tie rod."""
-ENGAGED = 1.0
+THREAD_DEPTH_RATIO = 1.0
 """Depth of a tapped thread over its diameter [1]: a usual value in steel."""
 
 
 @dataclass(frozen=True, slots=True)
-class Clamped:
+class ClampedBolt:
     """One bolt with the parts that it clamps, by VDI 2230.
 
     grip             : [m] clamped length between head and nut, or between head and tapped thread
@@ -46,46 +46,46 @@ class Clamped:
 
     grip: float
     layers: tuple[vdi2230.ClampedPart, ...]
-    hole: float
-    bearing: float
-    outer: float
-    slope: float
-    cone: float
-    bolt: float
-    members: float
+    hole_diameter: float
+    bearing_diameter: float
+    outer_diameter: float
+    cone_slope: float
+    cone_diameter: float
+    bolt_stiffness: float
+    member_stiffness: float
 
 
-def joint(given: Given) -> NewJoint:
+def make_joint(options: DrawingOptions) -> NewJoint:
     """Make the parameters of a bolted joint from the options of a drawing.
 
     Raises ValueError with a one-line message for options that are invalid or contradict each other.
     """
-    length, width = numbers("plate", given["plate"], "mm", "m", by="x", count=2)
-    count, thread = layout.bolts(given["bolts"])
-    positions = layout.positions(given, count)
-    law = given["law"] or "roughness"
-    sheet = Sheet(KIND.name, law)
-    heights = faces.put(sheet, given)
-    hole, hole_source = _hole(given, thread)
-    moduli = (sheet.value("side1.E"), sheet.value("side2.E"))
-    for name, value in (("field", "computed"), ("sides", "elastic"), ("attached", given["attached"])):
-        if given["tapped"] and given["thickness"] is None and value and given[name] == value:
+    length, width = parse_numbers("plate", options["plate"], "mm", "m", separator="x", count=2)
+    count, thread = layout.parse_bolts(options["bolts"])
+    positions = layout.bolt_positions(options, count)
+    law = options["law"] or "roughness"
+    sheet = ParameterSheet(KIND.name, law)
+    heights = faces.add_faces(sheet, options)
+    hole, hole_source = _hole_diameter(options, thread)
+    moduli = (sheet.value_of("side1.E"), sheet.value_of("side2.E"))
+    for name, value in (("field", "computed"), ("sides", "elastic"), ("attached", options["attached"])):
+        if options["tapped"] and options["thickness"] is None and value and options[name] == value:
             raise ValueError(f"--{name} {value} beside --tapped: expected --thickness of both plates for it")
-    bolt = clamped(given, thread, (length, width), positions, hole, moduli)
+    bolt = clamp_bolt(options, thread, (length, width), positions, hole, moduli)
     plate = BoltedPlate(
         length=length,
         width=width,
         x=tuple(positions[:, 0].tolist()),
         y=tuple(positions[:, 1].tolist()),
         hole_diameter=hole,
-        cone_diameter=bolt.cone,
+        cone_diameter=bolt.cone_diameter,
     )
-    _put_plate(sheet, plate, bolt, hole_source)
-    _put_bolts(sheet, plate, bolt, thread)
-    loss = _embedding(sheet, given, bolt, heights)
-    mass = plate.area * bolt.layers[0].thickness * faces.materials(given)[0].numbers["density"].value
-    sheet.put("mass", mass, "estimate", "mass of the plate of side 1; what vibrates")
-    preload, warnings = _preload(sheet, given, thread)
+    _add_plate(sheet, plate, bolt, hole_source)
+    _add_bolts(sheet, plate, bolt, thread)
+    loss = _add_embedding_loss(sheet, options, bolt, heights)
+    mass = plate.area * bolt.layers[0].thickness * faces.read_materials(options)[0].numbers["density"].value
+    sheet.add("mass", mass, "estimate", "mass of the plate of side 1; what vibrates")
+    preload, warnings = _add_preload(sheet, options, thread)
     if not loss < preload:
         raise ValueError(
             f"embedding takes {loss:.4g} N of a preload of {preload:.4g} N: expected less than all; state "
@@ -93,43 +93,46 @@ def joint(given: Given) -> NewJoint:
         )
     for choice in ("critical_area", "spot_stiffness"):
         default = {"critical_area": "continuity", "spot_stiffness": "hertz"}[choice]
-        sheet.put(choice, default, "estimate", "nearest to the roughness of the surfaces, docs/validity.md")
-    file = sheet.file(f"plate {given['plate']} with {given['bolts']}")
-    density = tuple(material.numbers["density"].value for material in faces.materials(given))
+        sheet.add(choice, default, "estimate", "nearest to the roughness of the surfaces, docs/validity.md")
+    file = sheet.build_file(f"plate {options['plate']} with {options['bolts']}")
+    density = tuple(material.numbers["density"].value for material in faces.read_materials(options))
     layers, depth = bolt.layers, 0.0
-    if given["tapped"] and given["thickness"] is not None:
-        layers, depth = (*layers, vdi2230.ClampedPart(_each(given)[1], moduli[1])), ENGAGED * thread.d
-    plates = Plates(plate, layers, bolt.bearing, density, preload, preload - loss, depth)
+    if options["tapped"] and options["thickness"] is not None:
+        layers, depth = (
+            (*layers, vdi2230.ClampedPart(_plate_thicknesses(options)[1], moduli[1])),
+            THREAD_DEPTH_RATIO * thread.d,
+        )
+    plates = BoltedPlates(plate, layers, bolt.bearing_diameter, density, preload, preload - loss, depth)
     shape = None
-    if given["field"] == "computed":
-        file, shape = with_computed_field(file, plates)
-    facts = _facts(file, bolt, heights, preload)
-    alone = _alone(facts["K_zz"][0] / count, bolt)
-    if given["tapped"] and given["thickness"] is None:
+    if options["field"] == "computed":
+        file, shape = compute_pressure_field(file, plates)
+    facts = _design_facts(file, bolt, heights, preload)
+    alone = _interface_only_text(facts["K_zz"][0] / count, bolt)
+    if options["tapped"] and options["thickness"] is None:
         return NewJoint(
             file, facts, [*warnings, f"{alone}: for the whole joint state --thickness of both plates"]
         )
-    attached, sides = given["attached"] or "faces", given["sides"]
-    complete_joint = computed.facts(file, plates, attached, sides, alone, shape)
+    attached, sides = options["attached"] or "faces", options["sides"]
+    complete_joint = computed.compute_facts(file, plates, attached, sides, alone, shape)
     return NewJoint(
         complete_joint.file, {**facts, **complete_joint.facts}, [*warnings, *complete_joint.warnings]
     )
 
 
-def _hole(given: Given, thread: Thread) -> tuple[float, tuple[str, str]]:
-    if given["hole"] is None:
+def _hole_diameter(options: DrawingOptions, thread: Thread) -> tuple[float, tuple[str, str]]:
+    if options["hole"] is None:
         return thread.hole, ("published", f"{thread_source('hole')} for {thread.name}")
-    return number("hole", given["hole"], "mm", "m"), ("user", "stated on the drawing")
+    return parse_number("hole", options["hole"], "mm", "m"), ("user", "stated on the drawing")
 
 
-def clamped(
-    given: Given,
+def clamp_bolt(
+    options: DrawingOptions,
     thread: Thread,
     size: tuple[float, float],
-    at: Array,
+    positions: Array,
     hole: float,
     moduli: tuple[float, float],
-) -> Clamped:
+) -> ClampedBolt:
     """Compute one bolt with its clamped parts by VDI 2230.
 
     size      : length and width of the plate [m]
@@ -139,14 +142,14 @@ def clamped(
 
     Raises ValueError for thicknesses or diameters that contradict each other.
     """
-    head, tapped = given["head"] or "hexagon", bool(given["tapped"])
+    head, tapped = options["head"] or "hexagon", bool(options["tapped"])
     bearing = getattr(thread, head)
-    if given["bearing"] is not None:
-        bearing = number("bearing", given["bearing"], "mm", "m")
+    if options["bearing"] is not None:
+        bearing = parse_number("bearing", options["bearing"], "mm", "m")
     for name, value, low in (("hole", hole, thread.d), ("bearing", bearing, hole)):
         if not value > low:
             raise ValueError(f"--{name} = {value * 1e3:g} mm is outside ({low * 1e3:g}, inf) mm")
-    thicknesses = _thicknesses(given)
+    thicknesses = _clamped_thicknesses(options)
     if len(thicknesses) > (1 if tapped else 2):
         expected = "that of side 1" if tapped else "both plates together, or each"
         raise ValueError(f"--grip has {len(thicknesses)} values, expected {expected}")
@@ -156,12 +159,12 @@ def clamped(
         pair = thicknesses if len(thicknesses) == 2 else [0.5 * thicknesses[0]] * 2
         layers = tuple(vdi2230.ClampedPart(t, E) for t, E in zip(pair, moduli, strict=True))
     grip = float(sum(layer.thickness for layer in layers))
-    if grip > LONGEST * thread.d:
-        longest_grip = LONGEST * thread.d * 1e3
+    if grip > MAX_GRIP_RATIO * thread.d:
+        longest_grip = MAX_GRIP_RATIO * thread.d * 1e3
         raise ValueError(
-            f"--grip = {grip * 1e3:g} mm is outside (0, {longest_grip:g}] mm: {LONGEST} times {thread.name}"
+            f"--grip = {grip * 1e3:g} mm is outside (0, {longest_grip:g}] mm: {MAX_GRIP_RATIO} times {thread.name}"
         )
-    outer = outer_diameter(size, at)
+    outer = outer_diameter(size, positions)
     slope = vdi2230.cone_slope(grip, bearing, outer, tapped)
     if not slope > 0.0:
         raise ValueError(f"--grip = {grip * 1e3:g} mm is too short for a deformation cone of VDI 2230")
@@ -169,23 +172,23 @@ def clamped(
     delta_S = vdi2230.bolt_compliance(thread, grip, shank, head, moduli[1] if tapped else None)
     delta_P = vdi2230.members_compliance(layers, bearing, hole, outer, slope, tapped)
     cone = vdi2230.cone_diameter(min(layer.thickness for layer in layers), bearing, slope)
-    return Clamped(grip, layers, hole, bearing, outer, slope, cone, 1.0 / delta_S, 1.0 / delta_P)
+    return ClampedBolt(grip, layers, hole, bearing, outer, slope, cone, 1.0 / delta_S, 1.0 / delta_P)
 
 
-def _thicknesses(given: Given) -> list[float]:
+def _clamped_thicknesses(options: DrawingOptions) -> list[float]:
     """Thickness [m] of each plate, or one value for both plates together."""
-    grip = [number("grip", text, "mm", "m") for text in given["grip"]]
-    if given["thickness"] is None:
+    grip = [parse_number("grip", text, "mm", "m") for text in options["grip"]]
+    if options["thickness"] is None:
         return grip
-    plates = _each(given)
-    if given["tapped"]:
-        if abs(plates[0] - sum(grip)) > SAME * plates[0]:
+    plates = _plate_thicknesses(options)
+    if options["tapped"]:
+        if abs(plates[0] - sum(grip)) > THICKNESS_TOLERANCE * plates[0]:
             raise ValueError(
                 f"--thickness = {plates[0] * 1e3:g} mm of side 1 contradicts --grip = {sum(grip) * 1e3:g} mm"
                 ": expected the same, the thread is in side 2"
             )
         return grip
-    if abs(sum(plates) - sum(grip)) > SAME * sum(grip):
+    if abs(sum(plates) - sum(grip)) > THICKNESS_TOLERANCE * sum(grip):
         raise ValueError(
             f"--thickness = {plates[0] * 1e3:g} and {plates[1] * 1e3:g} mm contradicts --grip = "
             f"{sum(grip) * 1e3:g} mm: expected their sum"
@@ -193,14 +196,14 @@ def _thicknesses(given: Given) -> list[float]:
     return plates
 
 
-def _each(given: Given) -> list[float]:
-    thicknesses = [number("thickness", text, "mm", "m") for text in given["thickness"]]
+def _plate_thicknesses(options: DrawingOptions) -> list[float]:
+    thicknesses = [parse_number("thickness", text, "mm", "m") for text in options["thickness"]]
     if len(thicknesses) != 2:
         raise ValueError(f"--thickness has {len(thicknesses)} values, expected that of each plate")
     return thicknesses
 
 
-def outer_diameter(size: tuple[float, float], at: Array) -> float:
+def outer_diameter(size: tuple[float, float], positions: Array) -> float:
     """Outer diameter D_A [m] of the clamped parts, mean over the bolts.
 
     For each bolt: twice the distance to the nearest edge, or the distance to the next bolt if this is
@@ -208,77 +211,83 @@ def outer_diameter(size: tuple[float, float], at: Array) -> float:
 
     Raises ValueError for a bolt outside the plate.
     """
-    edge = np.min(np.array(size) - 2.0 * np.abs(at), axis=1)
+    edge = np.min(np.array(size) - 2.0 * np.abs(positions), axis=1)
     if np.min(edge) <= 0.0:
         i = int(np.argmin(edge))
-        x, y = at[i] * 1e3
+        x, y = positions[i] * 1e3
         raise ValueError(f"bolt {i + 1} at ({x:g}, {y:g}) mm leaves the plate")
-    distance = np.hypot(*np.moveaxis(at[:, None, :] - at, -1, 0)) + np.diag(np.full(len(at), np.inf))
+    distance = np.hypot(*np.moveaxis(positions[:, None, :] - positions, -1, 0)) + np.diag(
+        np.full(len(positions), np.inf)
+    )
     return float(np.mean(np.minimum(edge, np.min(distance, axis=1))))
 
 
-def _put_plate(sheet: Sheet, plate: BoltedPlate, one: Clamped, hole_source: tuple[str, str]) -> None:
+def _add_plate(
+    sheet: ParameterSheet, plate: BoltedPlate, clamped_bolt: ClampedBolt, hole_source: tuple[str, str]
+) -> None:
     for name in ("length", "width", "x", "y"):
-        sheet.stated(f"plate.{name}", getattr(plate, name))
-    sheet.put("plate.hole_diameter", plate.hole_diameter, *hole_source)
+        sheet.add_stated(f"plate.{name}", getattr(plate, name))
+    sheet.add("plate.hole_diameter", plate.hole_diameter, *hole_source)
     cone = (
-        f"VDI 2230, cone from d_w = {one.bearing * 1e3:g} mm over "
-        f"{min(layer.thickness for layer in one.layers) * 1e3:g} mm with tan(phi) = {one.slope:.4g}"
+        f"VDI 2230, cone from d_w = {clamped_bolt.bearing_diameter * 1e3:g} mm over "
+        f"{min(layer.thickness for layer in clamped_bolt.layers) * 1e3:g} mm with tan(phi) = {clamped_bolt.cone_slope:.4g}"
     )
-    sheet.put("plate.cone_diameter", plate.cone_diameter, "derived", cone)
-    sheet.put("A_0", plate.area, "derived", "the plate without its holes")
+    sheet.add("plate.cone_diameter", plate.cone_diameter, "derived", cone)
+    sheet.add("A_0", plate.area, "derived", "the plate without its holes")
 
 
-def _put_bolts(sheet: Sheet, plate: BoltedPlate, one: Clamped, thread: Thread) -> None:
-    row_bolts, row_distance = plate.rows
+def _add_bolts(sheet: ParameterSheet, plate: BoltedPlate, clamped_bolt: ClampedBolt, thread: Thread) -> None:
+    row_bolts, row_distance = plate.equivalent_rows
     rows = "the places of the bolts: two rows that would carry a moment about x as they do"
-    sheet.put("n_bolts", float(len(plate.x)), "user", "stated on the drawing")
-    sheet.put("row_bolts", row_bolts, "derived", rows)
-    sheet.put("row_distance", row_distance, "derived", rows)
-    text = f"VDI 2230, 1/delta_S of {thread.name} over {one.grip * 1e3:g} mm of grip"
-    sheet.put("bolt_stiffness", one.bolt, "derived", text)
+    sheet.add("n_bolts", float(len(plate.x)), "user", "stated on the drawing")
+    sheet.add("row_bolts", row_bolts, "derived", rows)
+    sheet.add("row_distance", row_distance, "derived", rows)
+    text = f"VDI 2230, 1/delta_S of {thread.name} over {clamped_bolt.grip * 1e3:g} mm of grip"
+    sheet.add("bolt_stiffness", clamped_bolt.bolt_stiffness, "derived", text)
 
 
-def _preload(sheet: Sheet, given: Given, thread: Thread) -> tuple[float, list[str]]:
+def _add_preload(sheet: ParameterSheet, options: DrawingOptions, thread: Thread) -> tuple[float, list[str]]:
     """Add the preload [N] to the sheet.
 
     Returns the preload, and a warning if it exceeds the proof load of the bolt.
     """
-    name = given["property_class"] or "8.8"
-    if given["preload"] is None:
+    name = options["property_class"] or "8.8"
+    if options["preload"] is None:
         preload = vdi2230.assembly_preload(thread, strength(name, "yield", thread))
         text = f"VDI 2230, Table A1: {thread.name}-{name}, 90 % of the yield strength, mu_G = 0.12"
-        sheet.put("inputs.preload", preload, "estimate", text)
+        sheet.add("inputs.preload", preload, "estimate", text)
     else:
-        preload = number("preload", given["preload"], "N", "N")
-        sheet.stated("inputs.preload", preload)
-    if given["property_class"] is None:
+        preload = parse_number("preload", options["preload"], "N", "N")
+        sheet.add_stated("inputs.preload", preload)
+    if options["property_class"] is None:
         return preload, []
     proof_load = strength(name, "proof", thread) * vdi2230.stress_area(thread)
-    return preload, overload(
+    return preload, warn_overload(
         "preload", preload, (proof_load, f"the proof load of {thread.name}-{name} (ISO 898-1)")
     )
 
 
-def _embedding(sheet: Sheet, given: Given, one: Clamped, heights: faces.Heights) -> float:
+def _add_embedding_loss(
+    sheet: ParameterSheet, options: DrawingOptions, clamped_bolt: ClampedBolt, heights: faces.HeightRange
+) -> float:
     """Add the preload loss [N] by embedding to the sheet, and return it."""
-    if given["embedding"] is not None:
-        loss = number("embedding", given["embedding"], "N", "N", None)
-        sheet.stated("embedding", loss)
+    if options["embedding"] is not None:
+        loss = parse_number("embedding", options["embedding"], "N", "N", None)
+        sheet.add_stated("embedding", loss)
         return loss
-    depth = vdi2230.embedding(heights.Rz, 1, bool(given["tapped"]))
-    loss = depth / (1.0 / one.bolt + 1.0 / one.members)
+    depth = vdi2230.embedding_depth(heights.Rz, 1, bool(options["tapped"]))
+    loss = depth / (1.0 / clamped_bolt.bolt_stiffness + 1.0 / clamped_bolt.member_stiffness)
     text = (
-        f"VDI 2230: {depth * 1e6:.3g} um (Table 5: thread, {'head' if given['tapped'] else 'head and nut'}, "
+        f"VDI 2230: {depth * 1e6:.3g} um (Table 5: thread, {'head' if options['tapped'] else 'head and nut'}, "
         f"one interface, Rz {heights.Rz * 1e6:.2g} um, load along the bolt) over delta_S + delta_P"
     )
-    sheet.put("embedding", loss, "estimate", text)
+    sheet.add("embedding", loss, "estimate", text)
     return loss
 
 
-def _friction(file: ParameterFile, preload: float) -> dict[str, tuple[float, str, str]]:
+def _friction_facts(file: ParameterFile, preload: float) -> dict[str, tuple[float, str, str]]:
     """Facts about friction: gross-slip force and loss factor, at mu and at both ends of its range."""
-    shear, rows = friction_band(file, preload)
+    shear, rows = friction_results(file, preload)
     slip = "shear force at which the whole interface slips"
     loss = f"loss factor of the interface between rigid sides at {shear:.3g} N of shear"
     facts = {}
@@ -289,25 +298,25 @@ def _friction(file: ParameterFile, preload: float) -> dict[str, tuple[float, str
     return facts
 
 
-def _alone(interface: float, one: Clamped) -> str:
+def _interface_only_text(interface_stiffness: float, clamped_bolt: ClampedBolt) -> str:
     """Warning that the FMU contains the interface only, with its share of the compliance.
 
     interface_stiffness : [N/m] normal stiffness of the interface per bolt
     """
-    share = one.members / (one.members + interface)
+    share = clamped_bolt.member_stiffness / (clamped_bolt.member_stiffness + interface_stiffness)
     return (
         f"the FMU is the interface alone ({share:.1%} of the compliance along z that it has in series with "
         "the members of VDI 2230, loaded at the heads)"
     )
 
 
-def _facts(
-    file: ParameterFile, one: Clamped, heights: faces.Heights, preload: float
+def _design_facts(
+    file: ParameterFile, clamped_bolt: ClampedBolt, heights: faces.HeightRange, preload: float
 ) -> dict[str, tuple[float, str, str]]:
     """Facts for the designer: preload, pressures, stiffnesses, load factor, friction."""
     values = file.values
-    state = BoltedJointSpring.of(values).motion(preload, 0.0, REST, REST)
-    bolts = values.n_bolts * one.bolt
+    state = BoltedJointSpring.of(values).evaluate(preload, 0.0, ZERO_MOTION, ZERO_MOTION)
+    bolts = values.n_bolts * clamped_bolt.bolt_stiffness
     K = float(state["K_zz"]) - bolts
     facts = {
         "preload": (preload, "N", "force of each bolt as it is tightened"),
@@ -319,20 +328,24 @@ def _facts(
         ),
         "p_mean": (float(state["p_mean"]), "Pa", "mean pressure on the plate"),
         "p_max": (float(state["p_max"]), "Pa", "largest pressure, near a bolt"),
-        "h": (float(file.flat.get("h", np.nan)), "m", "combined rms height of both faces"),
+        "h": (float(file.values_by_name.get("h", np.nan)), "m", "combined rms height of both faces"),
         "K_zz": (K, "N/m", "normal stiffness of the interface at this preload, without the bolts"),
         "K_xx": (float(state["K_xx"]), "N/m", "tangential stiffness of the interface"),
-        "bolt_stiffness": (one.bolt, "N/m", "of one bolt, 1/delta_S of VDI 2230"),
-        "member_stiffness": (one.members, "N/m", "of the parts that one bolt clamps, 1/delta_P of VDI 2230"),
+        "bolt_stiffness": (clamped_bolt.bolt_stiffness, "N/m", "of one bolt, 1/delta_S of VDI 2230"),
+        "member_stiffness": (
+            clamped_bolt.member_stiffness,
+            "N/m",
+            "of the parts that one bolt clamps, 1/delta_P of VDI 2230",
+        ),
         "load_factor": (
-            one.bolt / (one.bolt + one.members),
+            clamped_bolt.bolt_stiffness / (clamped_bolt.bolt_stiffness + clamped_bolt.member_stiffness),
             "1",
             "Phi_K = delta_P/(delta_S + delta_P): share of an external force that the bolts carry",
         ),
     }
-    facts |= _friction(file, preload)
-    if heights.high > heights.low and file.law == "roughness":
-        h = float(file.flat["h"])
-        facts["K_zz_low"] = (K * h / heights.high, "N/m", "with the roughest usual finish")
-        facts["K_zz_high"] = (K * h / heights.low, "N/m", "with the finest usual finish")
+    facts |= _friction_facts(file, preload)
+    if heights.h_max > heights.h_min and file.law == "roughness":
+        h = float(file.values_by_name["h"])
+        facts["K_zz_low"] = (K * h / heights.h_max, "N/m", "with the roughest usual finish")
+        facts["K_zz_high"] = (K * h / heights.h_min, "N/m", "with the finest usual finish")
     return {name: fact for name, fact in facts.items() if np.isfinite(fact[0])}

@@ -12,24 +12,24 @@ from ....modelica.records import (
     ModelicaComponent,
     ModelicaRecord,
     WorkingPoint,
-    identifier,
-    thinned,
+    decimate_curve,
+    make_identifier,
 )
 
 
-def _records(file: ParameterFile, points: Sequence[WorkingPoint]) -> list[ModelicaRecord]:
-    contact = GearContactSpring.of(file.values)
-    pressure = thinned(contact.curve)
+def _make_records(file: ParameterFile, points: Sequence[WorkingPoint]) -> list[ModelicaRecord]:
+    contact = GearContactSpring.tabulate(file.values)
+    pressure = decimate_curve(contact.curve)
     approach = pressure.rows[:, :1] - contact.curve.displacement[0]
     table = InterpolationTable(
         np.hstack([approach, contact.joint.A_0 * pressure.rows[:, 1:]]), pressure.error
     )
-    return [ModelicaRecord(name=identifier(file.name), title=file.name, table=table)]
+    return [ModelicaRecord(name=make_identifier(file.name), title=file.name, table=table)]
 
 
 COMPONENT = ModelicaComponent(
     name="GearContact",
     base="GearContact",
-    records=_records,
-    texts=lambda contact: {"end": f"{contact.end / 1e3:g} kN"},
+    records=_make_records,
+    template_texts=lambda contact: {"end": f"{contact.end / 1e3:g} kN"},
 )

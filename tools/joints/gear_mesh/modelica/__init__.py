@@ -2,41 +2,44 @@
 
 from collections.abc import Sequence
 
-from jointfmu.joints.gear_mesh.spring import GearMeshSpring, Mesh
+from jointfmu.joints.gear_mesh.spring import GearMeshSpring, MeshParameters
 from jointfmu.parameters import ParameterFile
 
 from ....modelica.records import (
-    COMPUTED,
+    COMPUTED_DIGITS,
     ModelicaComponent,
     ModelicaRecord,
     WorkingPoint,
-    computed,
-    curve_of,
-    given,
-    identifier,
-    number,
-    thinned,
+    decimate_curve,
+    format_computed,
+    format_given,
+    format_number,
+    make_identifier,
+    to_curve,
 )
 
 
-def _records(file: ParameterFile, points: Sequence[WorkingPoint]) -> list[ModelicaRecord]:
-    spring = GearMeshSpring.of(file.values)
-    table = thinned(spring.curve)
-    energy = curve_of(table).energy(table.rows[:, 0])
-    values = given(_wheels(spring.joint)) | computed({"closing": spring.closing})
-    nodes = "{\n      " + ",\n      ".join(number(x, COMPUTED) for x in energy.tolist()) + "}"
+def _make_records(file: ParameterFile, points: Sequence[WorkingPoint]) -> list[ModelicaRecord]:
+    spring = GearMeshSpring.tabulate(file.values)
+    table = decimate_curve(spring.curve)
+    energy = to_curve(table).energy(table.rows[:, 0])
+    values = format_given(_wheel_parameters(spring.joint)) | format_computed({"closing": spring.closing_end})
+    nodes = "{\n      " + ",\n      ".join(format_number(x, COMPUTED_DIGITS) for x in energy.tolist()) + "}"
     return [
         ModelicaRecord(
-            name=identifier(file.name), title=file.name, table=table, values={**values, "energy": nodes}
+            name=make_identifier(file.name), title=file.name, table=table, values={**values, "energy": nodes}
         )
     ]
 
 
-def _wheels(mesh: Mesh) -> dict[str, float]:
+def _wheel_parameters(mesh: MeshParameters) -> dict[str, float]:
     names = ("r_b1", "r_b2", "teeth1", "backlash", "contact_ratio", "engagement", "d", "overlap_ratio")
     return {name: getattr(mesh, name) for name in names}
 
 
 COMPONENT = ModelicaComponent(
-    name="GearMesh", base="GearMesh", records=_records, texts=lambda mesh: {"end": f"{mesh.end / 1e3:g} kN"}
+    name="GearMesh",
+    base="GearMesh",
+    records=_make_records,
+    template_texts=lambda mesh: {"end": f"{mesh.end / 1e3:g} kN"},
 )

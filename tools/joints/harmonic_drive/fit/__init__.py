@@ -1,17 +1,19 @@
 """Fit procedures of the harmonic drive: torque-angle curve, loops, logs of a robot, row of a catalogue."""
 
-from ....fitting.procedure import Procedure, fit_of
+from ....fitting.procedure import Procedure, lazy_fit
 from ....joint_parts import Option
-from ..catalogue import ROW
+from ..catalogue import STIFFNESS_COLUMNS
 
 FITS = (
     Procedure(
         name="torque-angle",
-        text="a torque-angle curve to the harmonic drive",
-        file=True,
+        description="a torque-angle curve to the harmonic drive",
+        takes_file=True,
         options=(
             Option(
-                "rated_torque", "rated torque of the drive [N.m]; max_torque is scaled with it", unit="N.m"
+                "rated_torque",
+                "rated torque of the drive [N.m]; max_torque is scaled with it",
+                default_unit="N.m",
             ),
             Option(
                 "law",
@@ -19,64 +21,66 @@ FITS = (
                 choices=("table",),
             ),
         ),
-        run=fit_of(f"{__name__}.torque_angle"),
+        run=lazy_fit(f"{__name__}.torque_angle"),
     ),
     Procedure(
         name="loop",
-        text="loops, decays or responses to the hysteresis of the harmonic drive",
-        file=True,
+        description="loops, decays or responses to the hysteresis of the harmonic drive",
+        takes_file=True,
         column="angle",
         options=(
             Option(
-                "inertia", "inertia that vibrates on the drive [kg.m2], for decays and responses", number=True
+                "inertia",
+                "inertia that vibrates on the drive [kg.m2], for decays and responses",
+                is_number=True,
             ),
         ),
-        run=fit_of(f"{__name__}.hysteresis"),
+        run=lazy_fit(f"{__name__}.hysteresis"),
     ),
     Procedure(
         name="log",
-        text="a robot's logs to the friction of the harmonic drive",
-        file=True,
-        many=True,
+        description="a robot's logs to the friction of the harmonic drive",
+        takes_file=True,
+        takes_several_files=True,
         options=(
             Option(
                 "columns",
                 "other headings of time, q, dq, i, tau, gravity, q_motor, link_torque, temperature in the "
                 "file: q=HEADING or 'q=HEADING [UNIT]'",
                 "TEXT",
-                many=True,
+                is_list=True,
             ),
-            Option("torque_constant", "motor torque over motor current [N.m/A]", number=True),
-            Option("ratio", "speed ratio (default: that of the start file)", number=True),
+            Option("torque_constant", "motor torque over motor current [N.m/A]", is_number=True),
+            Option("ratio", "speed ratio (default: that of the start file)", is_number=True),
             Option(
-                "motor_inertia", "inertia of the rotor [kg.m2], which does not load the teeth", number=True
+                "motor_inertia", "inertia of the rotor [kg.m2], which does not load the teeth", is_number=True
             ),
         ),
-        run=fit_of(f"{__name__}.log"),
+        run=lazy_fit(f"{__name__}.log"),
     ),
     Procedure(
         name="catalogue",
-        text="a catalogue row to the harmonic drive",
-        file=False,
+        description="a catalogue row to the harmonic drive",
+        takes_file=False,
         options=(
             *(
                 Option(
                     column.name,
-                    f"{column.text} [{column.unit}]",
-                    required=True,
-                    unit=column.unit,
-                    unit_by="stiffness_unit" if column.name.startswith("K") else "",
+                    f"{column.meaning} [{column.unit}]",
+                    is_required=True,
+                    default_unit=column.unit,
+                    unit_option="stiffness_unit" if column.name.startswith("K") else "",
                 )
-                for column in ROW
+                for column in STIFFNESS_COLUMNS
             ),
             Option(
                 "stiffness_unit",
                 "unit of K1, K2, K3 given without one, as '1e4 N.m/rad' or kgf.m/arcmin (default: N.m/rad)",
                 "TEXT",
             ),
-            Option("rated_torque", "rated torque [N.m] (default: T2)", unit="N.m"),
+            Option("rated_torque", "rated torque [N.m] (default: T2)", default_unit="N.m"),
             Option("source", "where the row is published", "TEXT", default="catalogue"),
-            Option("ratio", "speed ratio (default: that of the start file)", number=True),
+            Option("ratio", "speed ratio (default: that of the start file)", is_number=True),
             Option(
                 "law",
                 "catalogue: the three lines; hu2023: law of the contact pair, fitted to the lines",
@@ -84,6 +88,6 @@ FITS = (
                 choices=("catalogue", "hu2023"),
             ),
         ),
-        run=fit_of(f"{__name__}.catalogue"),
+        run=lazy_fit(f"{__name__}.catalogue"),
     ),
 )

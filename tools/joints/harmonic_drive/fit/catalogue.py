@@ -15,34 +15,34 @@ from itertools import pairwise, product
 import numpy as np
 
 from jointfmu.joints.harmonic_drive.drive import Drive
-from jointfmu.joints.harmonic_drive.given import CORNER, CatalogueDrive
-from jointfmu.parameters import ParameterFile, default
+from jointfmu.joints.harmonic_drive.given import DEFAULT_CORNER, CatalogueDrive
+from jointfmu.parameters import ParameterFile, load_default
 from jointfmu.quantity import Array
 
-from ....catalogue import Printed
-from ....fitting.least_squares import NOTHING, Solution, solve
-from ....fitting.outcome import Facts, FitResult, fitted, model, unknowns
-from ..catalogue import LINES
+from ....catalogue import SourcedNumber
+from ....fitting.least_squares import EMPTY_SOLUTION, Solution, solve
+from ....fitting.outcome import Facts, FitResult, fitted_parameters, predictor, unknowns
+from ..catalogue import STIFFNESS_NAMES
 from . import drive
-from .drive import Row, angle_picture, stiffness, stiffness_picture
+from .drive import CatalogueRow, angle_picture, stiffness, stiffness_picture
 
-FREE = ("K_FTS0", "drive_scale", "zero_torque_pressure")
+FITTED_PARAMETERS = ("K_FTS0", "drive_scale", "zero_torque_pressure")
 """Parameters of the law `hu2023` that are fitted."""
-FURTHER = "torque_smoothing"
+EXTRA_PARAMETER = "torque_smoothing"
 """Parameter that is fitted too if the others alone do not meet the angles."""
-AIMED = 0.009
+MAX_ANGLE_ERROR = 0.009
 """Largest relative error [1] of the angle at T1, T2 and the rated torque: 1 % with a margin."""
-TIGHT = (2e-2, 1e-2, 5e-3, 2e-3, 1e-3, 5e-4)
+FITTED_DEVIATIONS = (2e-2, 1e-2, 5e-3, 2e-3, 1e-3, 5e-4)
 """Relative standard deviations [1] of the angle at these torques, tried in turn until the angles are met."""
-LOOSE = 0.2
+OTHER_DEVIATION = 0.2
 """Relative standard deviation [1] of the angle at other torques: real drives have no corners."""
-MAX_OVER_RATED = 4.0
+MAX_TORQUE_RATIO = 4.0
 """max_torque over rated torque [1], about the repeated peak torque of catalogue drives."""
 
 
 def fit(
     start: ParameterFile | None,
-    free: Sequence[str] | None,
+    fitted_names: Sequence[str] | None,
     rated_torque: float | None,
     source: str,
     ratio: float | None,
@@ -62,27 +62,29 @@ def fit(
     `hu2023` meets the angles.
     """
     rated, kind = (row["T2"], "estimate") if rated_torque is None else (rated_torque, "catalogue")
-    catalogue_row = Row(**row, rated=rated)
-    printed = stated_numbers(catalogue_row, kind, ratio, source)
-    return (fit_lines if law == "catalogue" else fit_pair)(catalogue_row, start, free, printed, source)
+    catalogue_row = CatalogueRow(**row, rated=rated)
+    printed = source_numbers(catalogue_row, kind, ratio, source)
+    return (make_line_drive_from_row if law == "catalogue" else fit_pair)(
+        catalogue_row, start, fitted_names, printed, source
+    )
 
 
-def stated_numbers(
-    row: Row, rated_kind: str = "catalogue", ratio: float | None = None, source: str = "catalogue"
-) -> dict[str, Printed]:
+def source_numbers(
+    row: CatalogueRow, rated_origin: str = "catalogue", ratio: float | None = None, source: str = "catalogue"
+) -> dict[str, SourcedNumber]:
     """Numbers of a catalogue row with their source: {parameter: number}; with the ratio, if it is known."""
     origin = f"{source} ({row})"
-    rated = origin if rated_kind == "catalogue" else "no rated torque given; T2 of the catalogue"
-    numbers = {name: Printed(getattr(row, name), "catalogue", origin) for name in LINES}
-    numbers["rated_torque"] = Printed(row.rated, rated_kind, rated)
-    return numbers if ratio is None else numbers | {"ratio": Printed(ratio, "catalogue", origin)}
+    rated = origin if rated_origin == "catalogue" else "no rated torque given; T2 of the catalogue"
+    numbers = {name: SourcedNumber(getattr(row, name), "catalogue", origin) for name in STIFFNESS_NAMES}
+    numbers["rated_torque"] = SourcedNumber(row.rated, rated_origin, rated)
+    return numbers if ratio is None else numbers | {"ratio": SourcedNumber(ratio, "catalogue", origin)}
 
 
 def fit_pair(
-    row: Row,
+    row: CatalogueRow,
     start: ParameterFile | None = None,
-    free: Sequence[str] | None = None,
-    printed: Mapping[str, Printed] | None = None,
+    fitted_names: Sequence[str] | None = None,
+    numbers: Mapping[str, SourcedNumber] | None = None,
     source: str = "catalogue",
 ) -> FitResult:
     """Fit the smooth law of the contact pair to a row of a catalogue.
@@ -93,43 +95,49 @@ def fit_pair(
 
     Raises ValueError for a name that cannot be fitted, RuntimeError if no law meets the angles.
     """
-    printed = printed or stated_numbers(row)
-    file, rated, origin = start or default("harmonic_drive"), printed["rated_torque"], printed["T1"].source
-    file = drive.resized(file, row.rated, MAX_OVER_RATED, rated.kind, rated.source)
-    if "ratio" in printed:
-        file = file.with_values({"ratio": printed["ratio"].value}, "catalogue", origin)
-    file = file.with_values({FURTHER: row.T1}, "catalogue", f"T1 of {origin}")
-    torque, max_torque = torques(row, file.values.max_torque), file.values.max_torque
-    choices = [tuple(free)] if free else [FREE, (*FREE, FURTHER)]
-    file = drive.scaled(file, choices[0], torque, row.angle(torque))
-    solution, deviation = _solved(row, file, choices, torque)
-    result = fitted(file, solution.values, "catalogue", origin, f"torque 0 to {max_torque:g} N.m")
+    numbers = numbers or source_numbers(row)
+    file, rated, origin = (
+        start or load_default("harmonic_drive"),
+        numbers["rated_torque"],
+        numbers["T1"].source,
+    )
+    file = drive.resize_drive(file, row.rated, MAX_TORQUE_RATIO, rated.kind, rated.source)
+    if "ratio" in numbers:
+        file = file.with_values({"ratio": numbers["ratio"].value}, "catalogue", origin)
+    file = file.with_values({EXTRA_PARAMETER: row.T1}, "catalogue", f"T1 of {origin}")
+    torque, max_torque = comparison_torques(row, file.values.max_torque), file.values.max_torque
+    choices = (
+        [tuple(fitted_names)] if fitted_names else [FITTED_PARAMETERS, (*FITTED_PARAMETERS, EXTRA_PARAMETER)]
+    )
+    file = drive.scale_stiffness(file, choices[0], torque, row.wind_up(torque))
+    solution, deviation = _solve_weighted(row, file, choices, torque)
+    result = fitted_parameters(file, solution.values, "catalogue", origin, f"torque 0 to {max_torque:g} N.m")
     result = replace(result, name=f"fitted to {source}")
-    errors = drive.windup(result.values, torque) / row.angle(torque) - 1.0
+    errors = drive.wind_up(result.values, torque) / row.wind_up(torque) - 1.0
     worst = int(np.argmax(np.abs(errors)))
     text = f"at {torque[worst]:.3g} N.m, largest between {torque[0]:.3g} and {max_torque:g} N.m"
     facts = _angle_errors(row, result.values, {})
     facts["angle_error_largest"] = float(errors[worst]), "1", text
     note = (
         f"standard deviations: the angle known to {100 * deviation:g} % at T1, T2 and rated torque, "
-        f"{100 * LOOSE:g} % elsewhere"
+        f"{100 * OTHER_DEVIATION:g} % elsewhere"
     )
     pictures = (
         angle_picture(row, result.values, {}, torque),
         stiffness_picture(row, result.values, {}, max_torque),
     )
-    return FitResult(result, solution, facts | _most(row, max_torque), pictures, notes=[note])
+    return FitResult(result, solution, facts | _max_torque_fact(row, max_torque), pictures, notes=[note])
 
 
-def torques(row: Row, most: float) -> Array:
+def comparison_torques(row: CatalogueRow, max_torque: float) -> Array:
     """Torques [N.m] at which the smooth law is compared with the lines, up to about `max_torque`."""
-    ends = np.array([0.0, row.T1, row.T2, max(most, 1.5 * row.T2)])
+    ends = np.array([0.0, row.T1, row.T2, max(max_torque, 1.5 * row.T2)])
     samples = [np.linspace(a, b, 7)[1:] for a, b in pairwise(ends)]
-    return np.unique(np.concatenate([row.kept, *samples]))
+    return np.unique(np.concatenate([row.fitted_torques, *samples]))
 
 
-def _solved(
-    row: Row, file: ParameterFile, choices: Sequence[Sequence[str]], torque: Array
+def _solve_weighted(
+    row: CatalogueRow, file: ParameterFile, choices: Sequence[Sequence[str]], torque: Array
 ) -> tuple[Solution, float]:
     """Fit with increasing weight at T1, T2 and the rated torque, until the angles there are met.
 
@@ -138,12 +146,12 @@ def _solved(
     Returns the solution and its relative standard deviation [1] of these angles. Raises RuntimeError if no
     fit meets them.
     """
-    exact, target = np.isin(torque, row.kept), row.angle(torque)
-    angles = model(file, lambda joint: drive.windup(joint, torque))
-    limits = dict(drive.bounds(file)) | {"K_FTS0": (row.K2, np.inf)}
+    exact, target = np.isin(torque, row.fitted_torques), row.wind_up(torque)
+    angles = predictor(file, lambda joint: drive.wind_up(joint, torque))
+    limits = dict(drive.parameter_bounds(file)) | {"K_FTS0": (row.K2, np.inf)}
     best = np.inf
-    for names, deviation in product(choices, TIGHT):
-        scale = np.where(exact, deviation, LOOSE)
+    for names, deviation in product(choices, FITTED_DEVIATIONS):
+        scale = np.where(exact, deviation, OTHER_DEVIATION)
         solution = solve(
             unknowns(file, names, limits),
             lambda values, scale=scale: (angles(values) / target - 1.0) / scale,  # type: ignore[misc]
@@ -151,7 +159,7 @@ def _solved(
             tolerance=1e-5,
         )
         worst = float(np.max(np.abs(solution.residuals * scale)[exact]))
-        if worst <= AIMED:
+        if worst <= MAX_ANGLE_ERROR:
             return solution, deviation
         best = min(best, worst)
         file = file.with_values(
@@ -159,14 +167,16 @@ def _solved(
         )
     raise RuntimeError(
         f"no law with {', '.join(choices[-1])} free keeps the angle of {row} at T1, T2 and rated torque "
-        f"{row.rated:g} N.m within {100 * AIMED:g} %: the best misses it by {100 * best:.2g} %"
+        f"{row.rated:g} N.m within {100 * MAX_ANGLE_ERROR:g} %: the best misses it by {100 * best:.2g} %"
     )
 
 
-PAIR = "law of the contact pair"
+PAIR_LAW = "law of the contact pair"
 
 
-def made(name: str, printed: Mapping[str, Printed], start: ParameterFile | None = None) -> ParameterFile:
+def make_line_drive(
+    name: str, numbers: Mapping[str, SourcedNumber], start: ParameterFile | None = None
+) -> ParameterFile:
     """Make the parameters of a drive with the law `catalogue`.
 
     numbers : {parameter: number with source}; other parameters are those of `start`
@@ -174,73 +184,77 @@ def made(name: str, printed: Mapping[str, Printed], start: ParameterFile | None 
 
     Raises ValueError for a number outside its limits.
     """
-    file = start or default("harmonic_drive")
+    file = start or load_default("harmonic_drive")
     kept = ["corner"] if isinstance(file.values, CatalogueDrive) else []
-    if not (kept or "corner" in printed):
+    if not (kept or "corner" in numbers):
         text = "default choice: the angle at the corners of catalogue drives within 0.4 %"
-        printed = {**printed, "corner": Printed(CORNER, "user", text)}
-    return drive.with_law(file, CatalogueDrive, name, printed, kept)
+        numbers = {**numbers, "corner": SourcedNumber(DEFAULT_CORNER, "user", text)}
+    return drive.with_law(file, CatalogueDrive, name, numbers, kept)
 
 
-def fit_lines(
-    row: Row,
+def make_line_drive_from_row(
+    row: CatalogueRow,
     start: ParameterFile | None = None,
-    free: Sequence[str] | None = None,
-    printed: Mapping[str, Printed] | None = None,
+    fitted_names: Sequence[str] | None = None,
+    numbers: Mapping[str, SourcedNumber] | None = None,
     source: str = "catalogue",
 ) -> FitResult:
     """Make the drive with the three lines of a row. Arguments as for `fit_pair`, but no parameter is fitted.
 
     Raises ValueError if `fitted_names` has a name, and for numbers outside their limits.
     """
-    if free:
+    if fitted_names:
         raise ValueError("the law catalogue has nothing to fit; --free is allowed with --law hu2023")
-    max_torque = MAX_OVER_RATED * row.rated
-    largest = Printed(max_torque, "estimate", f"{MAX_OVER_RATED:g} times rated_torque")
-    file = made(source, {**(printed or stated_numbers(row)), "max_torque": largest}, start)
-    pair, note = _pair(row, start if start and start.law == "hu2023" else None)
-    facts = _angle_errors(row, file.values, {"max": max_torque}) | _most(row, max_torque)
+    max_torque = MAX_TORQUE_RATIO * row.rated
+    largest = SourcedNumber(max_torque, "estimate", f"{MAX_TORQUE_RATIO:g} times rated_torque")
+    file = make_line_drive(source, {**(numbers or source_numbers(row)), "max_torque": largest}, start)
+    pair, note = _fit_pair_or_note(row, start if start and start.law == "hu2023" else None)
+    facts = _angle_errors(row, file.values, {"max": max_torque}) | _max_torque_fact(row, max_torque)
     also = {}
     if pair is not None:
-        also = {PAIR: pair}
+        also = {PAIR_LAW: pair}
         facts |= _pair_facts(row, pair, max_torque)
-    angle = angle_picture(row, file.values, also, torques(row, max_torque))
+    angle = angle_picture(row, file.values, also, comparison_torques(row, max_torque))
     return FitResult(
-        file, NOTHING, facts, (angle, stiffness_picture(row, file.values, also, max_torque)), notes=note
+        file,
+        EMPTY_SOLUTION,
+        facts,
+        (angle, stiffness_picture(row, file.values, also, max_torque)),
+        notes=note,
     )
 
 
-def _pair(row: Row, start: ParameterFile | None) -> tuple[Drive | None, list[str]]:
+def _fit_pair_or_note(row: CatalogueRow, start: ParameterFile | None) -> tuple[Drive | None, list[str]]:
     """Law of the contact pair that meets the angles of the row; if there is none, None and a note."""
     try:
         drive: Drive = fit_pair(row, start).parameters.values
     except RuntimeError as error:
-        return None, [f"the {PAIR} cannot be told beside it: {error}"]
+        return None, [f"the {PAIR_LAW} cannot be told beside it: {error}"]
     return drive, []
 
 
-def _angle_errors(row: Row, law: Drive, more: Mapping[str, float]) -> Facts:
+def _angle_errors(row: CatalogueRow, law: Drive, extra_torques: Mapping[str, float]) -> Facts:
     """Relative errors of the angle of a law at T1, T2, the rated torque, and extra torques [N.m]."""
     facts = {}
-    for name, T in {"T1": row.T1, "T2": row.T2, "rated": row.rated, **more}.items():
-        error = float(drive.windup(law, np.array(T)) / row.angle(T)) - 1.0
+    for name, T in {"T1": row.T1, "T2": row.T2, "rated": row.rated, **extra_torques}.items():
+        error = float(drive.wind_up(law, np.array(T)) / row.wind_up(T)) - 1.0
         facts[f"angle_error_{name}"] = (error, "1", f"law over catalogue - 1 at {T:g} N.m")
     return facts
 
 
-def _most(row: Row, most: float) -> Facts:
-    text = f"{MAX_OVER_RATED:g} times the rated torque {row.rated:g} N.m"
-    return {"max_torque": (most, "N.m", text)}
+def _max_torque_fact(row: CatalogueRow, max_torque: float) -> Facts:
+    text = f"{MAX_TORQUE_RATIO:g} times the rated torque {row.rated:g} N.m"
+    return {"max_torque": (max_torque, "N.m", text)}
 
 
-def _pair_facts(row: Row, pair: Drive, most: float) -> Facts:
+def _pair_facts(row: CatalogueRow, pair: Drive, max_torque: float) -> Facts:
     """Largest angle error, and stiffness errors, of the law of the contact pair compared with the lines."""
-    torque = np.linspace(0.0, most, 401)[1:]
-    angle = drive.windup(pair, torque) / row.angle(torque) - 1.0
+    torque = np.linspace(0.0, max_torque, 401)[1:]
+    angle = drive.wind_up(pair, torque) / row.wind_up(torque) - 1.0
     i = int(np.argmax(np.abs(angle)))
-    text = f"{PAIR} over catalogue - 1"
+    text = f"{PAIR_LAW} over catalogue - 1"
     facts = {"pair_angle_error": (float(angle[i]), "1", f"{text} at {torque[i]:.3g} N.m, the largest")}
-    for name, T in (("zero", 0.0), ("rated", row.rated), ("max", most)):
+    for name, T in (("zero", 0.0), ("rated", row.rated), ("max", max_torque)):
         K, step = float(stiffness(pair, np.array(T))), float(row.stiffness(T))
         facts[f"pair_stiffness_{name}"] = (
             K / step - 1.0,

@@ -13,41 +13,46 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from jointfmu.joints.harmonic_drive.drive import Drive
-from jointfmu.joints.harmonic_drive.law import PairDrive
+from jointfmu.joints.harmonic_drive.law import ContactPairDrive
 from jointfmu.joints.harmonic_drive.spring import torque_curve
 from jointfmu.parameters import ParameterFile
-from jointfmu.quantity import Array, build, check, flat_fields, quantity
-from jointfmu.quantity.units import Sizes, factor, sizes
+from jointfmu.quantity import Array, build_parameter_set, check_fields, flat_fields, quantity_field
+from jointfmu.quantity.units import UnitSizes, conversion_factor, unit_sizes
 
-from ....catalogue import Printed
-from ....fitting.measurement import Heads
+from ....catalogue import SourcedNumber
+from ....fitting.measurement import ColumnNames
 from ....fitting.outcome import Picture
 
-LEVELS: Mapping[str, tuple[str, ...]] = {"hu2023": ("K_FTS0", "drive_scale"), "catalogue": ("K1", "K2", "K3")}
+STIFFNESS_PARAMETERS: Mapping[str, tuple[str, ...]] = {
+    "hu2023": ("K_FTS0", "drive_scale"),
+    "catalogue": ("K1", "K2", "K3"),
+}
 """{law: parameters}; one factor on all of these scales K_WTS (Hu 2023, Eq. 46)."""
-LEAST_PRESSURE = 0.05
+MIN_PRESSURE_RATIO = 0.05
 """Lower bound of the peak pressure at zero torque over that at rated torque [1] in a fit."""
 
 
-WINDUP = (1e-5, 0.1)
+WIND_UP_RANGE = (1e-5, 0.1)
 """Plausible wind-up [rad] at rated torque: from a hundredth to a hundred times the usual 1e-3."""
 
 
-COLUMNS: Mapping[str, Sizes] = {
-    "torque": sizes("N.m", "mN.m", "kN.m"),
-    "angle": sizes("rad", "mrad", "deg", "arcmin", "arcsec"),
+COLUMN_UNITS: Mapping[str, UnitSizes] = {
+    "torque": unit_sizes("N.m", "mN.m", "kN.m"),
+    "angle": unit_sizes("rad", "mrad", "deg", "arcmin", "arcsec"),
 }
 """{column: {unit: size in SI}} of measured torque and wind-up."""
-HEADS = Heads("torque", "angle", *COLUMNS.values())
-ARCMIN = COLUMNS["angle"]["arcmin"]
+COLUMN_NAMES = ColumnNames("torque", "angle", *COLUMN_UNITS.values())
+RAD_PER_ARCMIN = COLUMN_UNITS["angle"]["arcmin"]
 
 
-def windup(drive: Drive, torque: Array) -> Array:
+def wind_up(drive: Drive, torque: Array) -> Array:
     """Wind-up (...) [rad] of the midline at torques (...) [N.m], equal to the one of the FMU."""
     return torque_curve(drive).odd_inverse(torque)
 
 
-def resized(start: ParameterFile, rated: float, factor: float, kind: str, source: str) -> ParameterFile:
+def resize_drive(
+    start: ParameterFile, rated_torque: float, max_torque_ratio: float, origin: str, source: str
+) -> ParameterFile:
     """Change the rated torque [N.m]; torque_smoothing changes in proportion.
 
     max_torque_ratio : new max_torque over the new rated torque [1]
@@ -55,30 +60,40 @@ def resized(start: ParameterFile, rated: float, factor: float, kind: str, source
 
     Raises ValueError if the rated torque is not positive and finite.
     """
-    if not 0.0 < rated < np.inf:
-        raise ValueError(f"rated torque = {rated:g} N.m is outside (0, inf): the drive's rated torque")
+    if not 0.0 < rated_torque < np.inf:
+        raise ValueError(f"rated torque = {rated_torque:g} N.m is outside (0, inf): the drive's rated torque")
     drive = start.values
-    file = start.with_values({"rated_torque": rated}, kind, source)
-    if "max_torque" in file.flat:
-        file = file.with_values({"max_torque": factor * rated}, "estimate", f"{factor:g} times rated_torque")
-    if "torque_smoothing" not in file.flat:
+    file = start.with_values({"rated_torque": rated_torque}, origin, source)
+    if "max_torque" in file.values_by_name:
+        file = file.with_values(
+            {"max_torque": max_torque_ratio * rated_torque},
+            "estimate",
+            f"{max_torque_ratio:g} times rated_torque",
+        )
+    if "torque_smoothing" not in file.values_by_name:
         return file
-    smoothing = drive.torque_smoothing * rated / drive.rated_torque
+    smoothing = drive.torque_smoothing * rated_torque / drive.rated_torque
     return file.with_values(
         {"torque_smoothing": smoothing},
         "estimate",
-        f"{smoothing / rated:.2g} of rated_torque, as in {start.name}",
+        f"{smoothing / rated_torque:.2g} of rated_torque, as in {start.name}",
     )
 
 
-def scaled(start: ParameterFile, names: tuple[str, ...], torque: Array, angle: Array) -> ParameterFile:
+def scale_stiffness(
+    start: ParameterFile, names: tuple[str, ...], torque: Array, angle: Array
+) -> ParameterFile:
     """Scale the stiffness of the start parameters to a measured curve, angles (n) [rad] at torques (n) [N.m].
 
     Only if all STIFFNESS_PARAMETERS of the law are among the names to fit; else `start` is returned.
     """
-    ratio = float(np.sum(windup(start.values, torque) * angle) / np.sum(angle**2))
-    level = {name: start.flat[name] * ratio for name in LEVELS.get(start.law, ()) if name in names}
-    is_complete = level and len(level) == len(LEVELS[start.law])
+    ratio = float(np.sum(wind_up(start.values, torque) * angle) / np.sum(angle**2))
+    level = {
+        name: start.values_by_name[name] * ratio
+        for name in STIFFNESS_PARAMETERS.get(start.law, ())
+        if name in names
+    }
+    is_complete = level and len(level) == len(STIFFNESS_PARAMETERS[start.law])
     return start.with_values(level, "calibration", "start") if is_complete else start
 
 
@@ -86,8 +101,8 @@ def with_law(
     start: ParameterFile,
     law: type[Drive],
     name: str,
-    printed: Mapping[str, Printed],
-    kept: Sequence[str] = (),
+    numbers: Mapping[str, SourcedNumber],
+    copied_names: Sequence[str] = (),
 ) -> ParameterFile:
     """Change the law of a drive.
 
@@ -96,21 +111,23 @@ def with_law(
     numbers     : {parameter: number with source} of the new law
     copied_names : parameters of the law of `start` to copy, in addition to those of all drives
     """
-    shared = [label for label, _ in flat_fields(Drive) if label in start.flat] + [*kept]
-    values = {label: start.flat[label] for label in shared} | {k: p.value for k, p in printed.items()}
-    kinds = {k: v for k, v in start.origins.items() if k in shared} | {k: p.kind for k, p in printed.items()}
+    shared = [label for label, _ in flat_fields(Drive) if label in start.values_by_name] + [*copied_names]
+    values = {label: start.values_by_name[label] for label in shared} | {
+        k: p.value for k, p in numbers.items()
+    }
+    kinds = {k: v for k, v in start.origins.items() if k in shared} | {k: p.kind for k, p in numbers.items()}
     sources = {k: v for k, v in start.sources.items() if k in shared}
-    sources |= {k: p.source for k, p in printed.items()}
-    return ParameterFile(start.joint, name, build(law, values), kinds, sources)
+    sources |= {k: p.source for k, p in numbers.items()}
+    return ParameterFile(start.joint, name, build_parameter_set(law, values), kinds, sources)
 
 
-def bounds(start: ParameterFile) -> Mapping[str, tuple[float, float]]:
+def parameter_bounds(start: ParameterFile) -> Mapping[str, tuple[float, float]]:
     """Bounds {parameter: (low, high)} with which the contact pair stays closed at zero torque; else empty."""
     drive: Any = start.values
-    if not isinstance(drive, PairDrive):
+    if not isinstance(drive, ContactPairDrive):
         return {}
     rated, loss = drive.rated_pressure, drive.pressure_loss
-    lowest = loss + LEAST_PRESSURE * rated
+    lowest = loss + MIN_PRESSURE_RATIO * rated
     return {
         "zero_torque_pressure": (lowest, rated),
         "rated_pressure": (drive.zero_torque_pressure, np.inf),
@@ -118,14 +135,14 @@ def bounds(start: ParameterFile) -> Mapping[str, tuple[float, float]]:
     }
 
 
-PRINTED = ("1e4 N.m/rad", "N.m/arcmin", "kN.m/rad", "kgf.m/arcmin", "N.m/mrad", "N.mm/rad")
+STIFFNESS_UNITS = ("1e4 N.m/rad", "N.m/arcmin", "kN.m/rad", "kgf.m/arcmin", "N.m/mrad", "N.mm/rad")
 """Units of the stiffness in catalogues."""
 
 
-def _likely(angle: float) -> str:
+def _likely_unit_hint(angle: float) -> str:
     """Hint which unit of the stiffness makes the wind-up at T2 [rad] closest to the usual one."""
-    typical = np.sqrt(np.prod(WINDUP))
-    sizes = {u: factor(u, "N.m/rad") for u in PRINTED}
+    typical = np.sqrt(np.prod(WIND_UP_RANGE))
+    sizes = {u: conversion_factor(u, "N.m/rad") for u in STIFFNESS_UNITS}
     unit = min(sizes, key=lambda u: abs(np.log(angle / sizes[u] / typical)))
     if not 0.1 < angle / sizes[unit] / typical < 10.0:
         return "no usual unit explains it"
@@ -133,22 +150,22 @@ def _likely(angle: float) -> str:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Row:
+class CatalogueRow:
     """Torsional stiffness and rated torque in a row of a catalogue.
 
     Raises ValueError if K1, K2, K3 or T1, T2 are not ascending, or if the wind-up at rated torque is outside
     WIND_UP_RANGE.
     """
 
-    K1: float = quantity("N.m/rad", "stiffness below T1", gt=0.0)
-    K2: float = quantity("N.m/rad", "stiffness between T1 and T2", gt=0.0)
-    K3: float = quantity("N.m/rad", "stiffness above T2", gt=0.0)
-    T1: float = quantity("N.m", "torque at the first corner", gt=0.0)
-    T2: float = quantity("N.m", "torque at the second corner", gt=0.0)
-    rated: float = quantity("N.m", "rated torque", gt=0.0)
+    K1: float = quantity_field("N.m/rad", "stiffness below T1", gt=0.0)
+    K2: float = quantity_field("N.m/rad", "stiffness between T1 and T2", gt=0.0)
+    K3: float = quantity_field("N.m/rad", "stiffness above T2", gt=0.0)
+    T1: float = quantity_field("N.m", "torque at the first corner", gt=0.0)
+    T2: float = quantity_field("N.m", "torque at the second corner", gt=0.0)
+    rated: float = quantity_field("N.m", "rated torque", gt=0.0)
 
     def __post_init__(self) -> None:
-        check(self)
+        check_fields(self)
         for low, high in (("K1", "K2"), ("K2", "K3")):
             if not getattr(self, low) <= getattr(self, high):
                 raise ValueError(
@@ -157,15 +174,15 @@ class Row:
                 )
         if not self.T1 < self.T2:
             raise ValueError(f"T2 = {self.T2:g} N.m is outside ({self.T1:g}, inf): T2 exceeds T1")
-        least, most = WINDUP
-        angle, at_T2 = (float(self.angle(T)) for T in (self.rated, self.T2))
+        least, most = WIND_UP_RANGE
+        angle, at_T2 = (float(self.wind_up(T)) for T in (self.rated, self.T2))
         if not least <= angle <= most:
             raise ValueError(
                 f"K1 = {self.K1:g} N.m/rad winds up {angle:.3g} rad at the rated torque {self.rated:g} N.m, "
-                f"allowed are {least:g} to {most:g} rad: are K1, K2 and K3 in N.m/rad? {_likely(at_T2)}"
+                f"allowed are {least:g} to {most:g} rad: are K1, K2 and K3 in N.m/rad? {_likely_unit_hint(at_T2)}"
             )
 
-    def angle(self, torque: ArrayLike) -> Array:
+    def wind_up(self, torque: ArrayLike) -> Array:
         """Wind-up theta (...) [rad] at torques (...) >= 0 [N.m]."""
         T = np.asarray(torque, dtype=np.float64)
         first, second = np.minimum(T, self.T1), np.clip(T - self.T1, 0.0, self.T2 - self.T1)
@@ -177,7 +194,7 @@ class Row:
         return np.where(T <= self.T1, self.K1, np.where(T <= self.T2, self.K2, self.K3))
 
     @property
-    def kept(self) -> Array:
+    def fitted_torques(self) -> Array:
         """Torques T1, T2 and rated [N.m], ascending, at which a fitted law must meet the angle."""
         return np.unique([self.T1, self.T2, self.rated])
 
@@ -188,7 +205,7 @@ class Row:
         )
 
 
-_GRID = 400
+_CURVE_POINTS = 400
 """Points of a plotted curve."""
 
 
@@ -198,29 +215,33 @@ def stiffness(drive: Drive, torque: Array) -> Array:
     return curve.derivatives(curve.inverse(torque), 1)[1]
 
 
-def angle_picture(row: Row, law: Drive, also: Mapping[str, Drive], torque: Array) -> Picture:
+def angle_picture(row: CatalogueRow, law: Drive, other_laws: Mapping[str, Drive], torque: Array) -> Picture:
     """Picture of the wind-up at torques (n) [N.m], with the errors of a law.
 
     other_laws : {name: further law to plot}
     """
-    grid, target = np.linspace(0.0, torque[-1], _GRID), row.angle(torque)
+    grid, target = np.linspace(0.0, torque[-1], _CURVE_POINTS), row.wind_up(torque)
     return Picture(
         x=torque,
-        y=target / ARCMIN,
-        misfit=100.0 * (target / windup(law, torque) - 1.0),
-        line=(grid, windup(law, grid) / ARCMIN),
+        y=target / RAD_PER_ARCMIN,
+        misfit=100.0 * (target / wind_up(law, torque) - 1.0),
+        line=(grid, wind_up(law, grid) / RAD_PER_ARCMIN),
         labels=("torque [N.m]", "wind-up [arcmin]", "catalogue / law - 1 [%]"),
-        marks=np.isin(torque, row.kept),
-        also={name: (grid, windup(other, grid) / ARCMIN) for name, other in also.items()},
+        highlighted=np.isin(torque, row.fitted_torques),
+        other_laws={
+            name: (grid, wind_up(other, grid) / RAD_PER_ARCMIN) for name, other in other_laws.items()
+        },
     )
 
 
-def stiffness_picture(row: Row, law: Drive, also: Mapping[str, Drive], most: float) -> Picture:
+def stiffness_picture(
+    row: CatalogueRow, law: Drive, other_laws: Mapping[str, Drive], max_torque: float
+) -> Picture:
     """Picture of the stiffness of a law and of the catalogue up to `max_torque` [N.m], without the corners.
 
     other_laws : {name: further law to plot}
     """
-    grid = np.linspace(0.0, most, _GRID)
+    grid = np.linspace(0.0, max_torque, _CURVE_POINTS)
     torque = grid[1::2][~np.isin(grid[1::2], (row.T1, row.T2))]
     steps = row.stiffness(torque)
     return Picture(
@@ -229,5 +250,5 @@ def stiffness_picture(row: Row, law: Drive, also: Mapping[str, Drive], most: flo
         misfit=100.0 * (steps / stiffness(law, torque) - 1.0),
         line=(grid, stiffness(law, grid) / 1e3),
         labels=("torque [N.m]", "stiffness [kN.m/rad]", "catalogue / law - 1 [%]"),
-        also={name: (grid, stiffness(other, grid) / 1e3) for name, other in also.items()},
+        other_laws={name: (grid, stiffness(other, grid) / 1e3) for name, other in other_laws.items()},
     )

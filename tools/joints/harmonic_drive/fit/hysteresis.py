@@ -18,35 +18,35 @@ from numpy.typing import NDArray
 
 from jointfmu.joints.harmonic_drive.drive import Drive
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
-from jointfmu.parameters import ParameterFile, default
+from jointfmu.parameters import ParameterFile, load_default
 from jointfmu.quantity import Array
 
 from ....fitting import memory
 from ....fitting.branches import Loops
 from ....fitting.hysteresis import HysteresisLaw, NonlinearSpring
 from ....fitting.least_squares import Solution, Unknown, solve
-from ....fitting.measurement import measured
-from ....fitting.outcome import FitResult, Picture, fitted, undetermined, unknowns
+from ....fitting.measurement import read_measurement
+from ....fitting.outcome import FitResult, Picture, fitted_parameters, undetermined_names, unknowns
 from . import drive
-from .drive import ARCMIN, HEADS
+from .drive import COLUMN_NAMES, RAD_PER_ARCMIN
 from .log_reading import Samples
 
-LOSS, STIFFNESS = FREE = ("hysteresis_loss", "hysteresis_stiffness")
+HYSTERESIS_LOSS, HYSTERESIS_STIFFNESS = FITTED_PARAMETERS = ("hysteresis_loss", "hysteresis_stiffness")
 """Parameters to fit."""
-FIRST = {LOSS: ARCMIN, STIFFNESS: 1.0}
+DEFAULT_START_VALUES = {HYSTERESIS_LOSS: RAD_PER_ARCMIN, HYSTERESIS_STIFFNESS: 1.0}
 """Start values if the file has no hysteresis: loss [rad], and stiffness over K_WTS at zero torque [1]."""
-LOSSES = tuple(ARCMIN * np.geomspace(0.03, 10.0, 7))
+LOSS_START_VALUES = tuple(RAD_PER_ARCMIN * np.geomspace(0.03, 10.0, 7))
 """Further start values of the hysteresis loss [rad]."""
-STIFFNESSES = (0.3, 1.0, 3.0, 10.0)
+STIFFNESS_START_RATIOS = (0.3, 1.0, 3.0, 10.0)
 """Further start values of the hysteresis stiffness over K_WTS at zero torque [1]."""
 
 
-def law(drive: Drive) -> HysteresisLaw:
+def make_law(drive: Drive) -> HysteresisLaw:
     """Law of the loops of a drive: midline and friction torque, equal to those of the FMU.
 
     Raises ValueError if the parameters allow no such hysteresis.
     """
-    spring = HarmonicDriveSpring.of(drive)
+    spring = HarmonicDriveSpring.tabulate(drive)
     stiffness, limit = spring.hysteresis.stiffness, spring.hysteresis.limit
     curve = spring.curve
 
@@ -68,7 +68,7 @@ def law(drive: Drive) -> HysteresisLaw:
 def fit(
     path: str | Path,
     start: ParameterFile | None = None,
-    free: Sequence[str] | None = None,
+    fitted_names: Sequence[str] | None = None,
     inertia: float | None = None,
 ) -> FitResult:
     """Fit a file of loops, decays, responses, or frequency and damping over the amplitude (COLUMN_NAMES).
@@ -82,23 +82,28 @@ def fit(
     Raises ValueError with a one-line message for a bad file, unit or value, a loop that creates energy, or a
     name that cannot be fitted. Raises RuntimeError if the fit does not converge.
     """
-    data = measured(path, HEADS)
-    names = list(free or FREE)
-    start_file = start or default("harmonic_drive")
+    data = read_measurement(path, COLUMN_NAMES)
+    names = list(fitted_names or FITTED_PARAMETERS)
+    start_file = start or load_default("harmonic_drive")
     if isinstance(data.data, Loops):
         reach = 0.5 * float(np.ptp(data.data.force))
-        wind_up = float(drive.windup(start_file.values, np.array(reach)))
-        HEADS.check_level(data.path, wind_up / data.amplitude, data.units, start_file)
-    file, rest = _begun(start_file, names)
+        wind_up = float(drive.wind_up(start_file.values, np.array(reach)))
+        COLUMN_NAMES.check_level(data.path, wind_up / data.amplitude, data.units, start_file)
+    file, rest = _with_hysteresis(start_file, names)
 
-    def own(values: Mapping[str, float]) -> HysteresisLaw:
-        return law(file.with_values(values, "calibration", "fit").values)
+    def law_of(values: Mapping[str, float]) -> HysteresisLaw:
+        return make_law(file.with_values(values, "calibration", "fit").values)
 
-    model = memory.model(data, own, "inertia", inertia, 0.0)
-    starts = {LOSS: LOSSES, STIFFNESS: tuple(rest * np.array(STIFFNESSES))}
-    solution, scale, _ = memory.search(data, unknowns(file, names, drive.bounds(file)), model, starts)
-    result = fitted(file, solution.values, "calibration", data.path.name, data.span)
-    fitted_law = law(result.values)
+    model = memory.build_model(data, law_of, "inertia", inertia, 0.0)
+    starts = {
+        HYSTERESIS_LOSS: LOSS_START_VALUES,
+        HYSTERESIS_STIFFNESS: tuple(rest * np.array(STIFFNESS_START_RATIOS)),
+    }
+    solution, scale, _ = memory.fit_measurement(
+        data, unknowns(file, names, drive.parameter_bounds(file)), model, starts
+    )
+    result = fitted_parameters(file, solution.values, "calibration", data.path.name, data.range_text)
+    fitted_law = make_law(result.values)
     limit = float(fitted_law.friction(np.array([np.inf]))[0])
     law_facts = {"friction_torque": (limit, "N.m", "bound of the friction torque")}
     return FitResult(
@@ -110,40 +115,50 @@ def fit(
     )
 
 
-def _begun(file: ParameterFile, names: Sequence[str]) -> tuple[ParameterFile, float]:
+def _with_hysteresis(file: ParameterFile, names: Sequence[str]) -> tuple[ParameterFile, float]:
     """Start parameters with non-zero hysteresis, and K_WTS [N.m/rad] at zero torque.
 
     The fit needs non-zero values, because its unknowns are logarithms.
     """
-    rest = float(HarmonicDriveSpring.of(file.values).curve.stiffness[0])
-    first = {LOSS: FIRST[LOSS], STIFFNESS: FIRST[STIFFNESS] * rest}
-    absent = {name: value for name, value in first.items() if name in names and file.flat[name] == 0.0}
+    rest = float(HarmonicDriveSpring.tabulate(file.values).curve.stiffness[0])
+    first = {
+        HYSTERESIS_LOSS: DEFAULT_START_VALUES[HYSTERESIS_LOSS],
+        HYSTERESIS_STIFFNESS: DEFAULT_START_VALUES[HYSTERESIS_STIFFNESS] * rest,
+    }
+    absent = {
+        name: value for name, value in first.items() if name in names and file.values_by_name[name] == 0.0
+    }
     return file.with_values(absent, "calibration", "start"), rest
 
 
-LINES = ("K1", "K2", "K3")
+STIFFNESS_NAMES = ("K1", "K2", "K3")
 """Stiffnesses of the law `catalogue`. The fit to a log needs this law."""
-OWN = (*LINES, LOSS)
+LOG_PARAMETERS = (*STIFFNESS_NAMES, HYSTERESIS_LOSS)
 """Parameters that `fit_log` can fit."""
-ROTOR = "motor_inertia"
+ROTOR_INERTIA = "motor_inertia"
 """Further unknown if the user does not state it."""
-FIRST_LOSS = 0.3 * ARCMIN
+DEFAULT_LOSS = 0.3 * RAD_PER_ARCMIN
 """Start value of hysteresis_loss [rad] if the file has no hysteresis."""
-LEAST_PART = 1e-2
+LOWER_BOUND_RATIO = 1e-2
 """Lower bound of hysteresis loss and rotor inertia over a start value [1]."""
-SETTLED = 10
+IGNORED_SAMPLES = 10
 """Number of first samples that are ignored, because the history of the hysteresis is unknown there."""
 
 
-def wind_up(samples: Samples, ratio: float) -> Array:
+def measured_wind_up(samples: Samples, ratio: float) -> Array:
     """Wind-up (n) [rad] between joint and motor, minus its mean. The motor angle may have either sign."""
-    sense = np.sign(np.dot(samples.q - samples.q.mean(), samples.motor - samples.motor.mean()))
-    angle = samples.q - sense * samples.motor / abs(ratio)
+    sense = np.sign(np.dot(samples.q - samples.q.mean(), samples.motor_angle - samples.motor_angle.mean()))
+    angle = samples.q - sense * samples.motor_angle / abs(ratio)
     return np.asarray(angle - angle.mean())
 
 
-def rotor(
-    file: ParameterFile, phi: Array, tau: Array, spread: Array, relief: Array, most: float
+def fit_rotor_inertia(
+    file: ParameterFile,
+    phi: Array,
+    tau: Array,
+    torque_changes: Array,
+    torque_per_inertia: Array,
+    max_inertia: float,
 ) -> tuple[float, float] | None:
     """Fit the inertia of the rotor to measured wind-ups (n) [rad].
 
@@ -154,15 +169,26 @@ def rotor(
     Returns inertia and standard deviation [kg.m2]; None if the data do not determine them. Raises
     RuntimeError if the fit does not converge.
     """
-    names = [name for name in OWN if name in file.flat]
-    unknown = Unknown(ROTOR, "kg.m2", 0.1 * most, LEAST_PART * most, most)
-    solution, _ = _solved(file, names, phi, lambda values: tau + values[ROTOR] * relief, spread, [unknown])
-    inertia = solution.values[ROTOR]
-    return None if ROTOR in undetermined(solution) else (inertia, inertia * solution.deviations[ROTOR])
+    names = [name for name in LOG_PARAMETERS if name in file.values_by_name]
+    unknown = Unknown(ROTOR_INERTIA, "kg.m2", 0.1 * max_inertia, LOWER_BOUND_RATIO * max_inertia, max_inertia)
+    solution, _ = _solve(
+        file,
+        names,
+        phi,
+        lambda values: tau + values[ROTOR_INERTIA] * torque_per_inertia,
+        torque_changes,
+        [unknown],
+    )
+    inertia = solution.values[ROTOR_INERTIA]
+    return (
+        None
+        if ROTOR_INERTIA in undetermined_names(solution)
+        else (inertia, inertia * solution.deviations[ROTOR_INERTIA])
+    )
 
 
 def fit_log(
-    file: ParameterFile, names: Sequence[str], phi: Array, tau: Array, spread: Array
+    file: ParameterFile, names: Sequence[str], phi: Array, tau: Array, torque_changes: Array
 ) -> tuple[Solution, Picture]:
     """Fit stiffness and hysteresis to measured wind-ups phi (n) [rad] at torques tau (n) [N.m].
 
@@ -172,18 +198,20 @@ def fit_log(
 
     Raises RuntimeError if the fit does not converge.
     """
-    solution, law = _solved(file, names, phi, lambda values: tau, spread)
+    solution, law = _solve(file, names, phi, lambda values: tau, torque_changes)
     labels = "torque at the joint [N m]", "wind-up [arcmin]", "log - law [arcmin]"
-    return solution, Picture(tau, phi / ARCMIN, (phi - law) / ARCMIN, (tau, law / ARCMIN), labels)
+    return solution, Picture(
+        tau, phi / RAD_PER_ARCMIN, (phi - law) / RAD_PER_ARCMIN, (tau, law / RAD_PER_ARCMIN), labels
+    )
 
 
-def _solved(
+def _solve(
     file: ParameterFile,
     names: Sequence[str],
     phi: Array,
     torque: Callable[[Mapping[str, float]], Array],
-    spread: Array,
-    more: Sequence[Unknown] = (),
+    torque_changes: Array,
+    extra_unknowns: Sequence[Unknown] = (),
 ) -> tuple[Solution, Array]:
     """Fit stiffness and hysteresis to wind-ups. Returns the solution, and the wind-up (n) [rad] of the law.
 
@@ -191,25 +219,32 @@ def _solved(
     torque_changes : as in `fit_log`
     extra_unknowns : on which the torque depends
     """
-    begin = {LOSS: FIRST_LOSS} if file.flat[LOSS] == 0.0 else {}
+    begin = {HYSTERESIS_LOSS: DEFAULT_LOSS} if file.values_by_name[HYSTERESIS_LOSS] == 0.0 else {}
     start = file.with_values({n: v for n, v in begin.items() if n in names}, "calibration", "start")
     path = phi - phi[0]
 
     def angle(values: Mapping[str, float], tau: Array) -> Array:
         """Wind-up (n) [rad] of the law, shifted to the mean of the measured one."""
         own_values = {name: values[name] for name in names}
-        spring = HarmonicDriveSpring.of(file.with_values(own_values, "calibration", "fit").values)
-        wind_up_values = spring.curve.odd_inverse(tau - _friction(spring, path))
-        return np.asarray(wind_up_values - np.mean((wind_up_values - phi)[SETTLED:]))
+        spring = HarmonicDriveSpring.tabulate(file.with_values(own_values, "calibration", "fit").values)
+        wind_up_values = spring.curve.odd_inverse(tau - _hysteresis_torque(spring, path))
+        return np.asarray(wind_up_values - np.mean((wind_up_values - phi)[IGNORED_SAMPLES:]))
 
-    all_unknowns = [*unknowns(start, names, {LOSS: (LEAST_PART * start.flat[LOSS], np.inf)}), *more]
+    all_unknowns = [
+        *unknowns(
+            start,
+            names,
+            {HYSTERESIS_LOSS: (LOWER_BOUND_RATIO * start.values_by_name[HYSTERESIS_LOSS], np.inf)},
+        ),
+        *extra_unknowns,
+    ]
     solution = solve(
-        all_unknowns, lambda values: (phi - angle(values, torque(values)))[SETTLED:], nuisances=1
+        all_unknowns, lambda values: (phi - angle(values, torque(values)))[IGNORED_SAMPLES:], nuisance_count=1
     )
     fitted_torque = torque(solution.values)
     law = angle(solution.values, fitted_torque)
-    for change in spread:
-        difference = (angle(solution.values, fitted_torque + change) - law)[SETTLED:]
+    for change in torque_changes:
+        difference = (angle(solution.values, fitted_torque + change) - law)[IGNORED_SAMPLES:]
         parameter_changes = np.linalg.lstsq(solution.jacobian, difference)[0]
         solution = replace(
             solution, covariance=solution.covariance + np.outer(parameter_changes, parameter_changes)
@@ -217,16 +252,16 @@ def _solved(
     return solution, law
 
 
-def _friction(spring: HarmonicDriveSpring, path: Array) -> Array:
+def _hysteresis_torque(spring: HarmonicDriveSpring, path: Array) -> Array:
     """Friction torque (n) [N.m] of the hysteresis along wind-ups (n) [rad], starting at rest."""
     sliders = spring.hysteresis
-    if not sliders.acts:
+    if not sliders.is_active:
         return np.zeros(path.size)
-    path_with_turns, sampled = _with_turns(path)
-    return sliders.path(np.diff(path_with_turns, prepend=0.0), sliders.limit)[sampled]
+    path_with_turns, sampled = _insert_turning_points(path)
+    return sliders.follow_increments(np.diff(path_with_turns, prepend=0.0), sliders.limit)[sampled]
 
 
-def _with_turns(path: Array) -> tuple[Array, NDArray[np.int_]]:
+def _insert_turning_points(path: Array) -> tuple[Array, NDArray[np.int_]]:
     """Path (n) with its turning points inserted, and indices (n) of the samples in the longer path.
 
     A turning point between samples is the vertex of a parabola.

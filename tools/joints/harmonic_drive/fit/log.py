@@ -12,19 +12,27 @@ import numpy as np
 from scipy import stats
 from scipy.linalg import block_diag
 
-from jointfmu.parameters import ParameterFile, default
+from jointfmu.parameters import ParameterFile, load_default
 from jointfmu.quantity import Array
 from jointfmu.quantity.units import KELVIN_AT_ZERO
 
 from ....fitting.least_squares import Solution
-from ....fitting.outcome import Facts, FitResult, Picture, fitted, undetermined
+from ....fitting.outcome import Facts, FitResult, Picture, fitted_parameters, undetermined_names
 from . import hysteresis
-from .log_friction import FittedLog, LinearTerms, driven, fitted_to, wanted_of, with_rotor, without_blind
-from .log_reading import ONE_SPEED, Samples, joined, named, read
+from .log_friction import (
+    FittedLog,
+    LinearTerms,
+    drop_undetermined,
+    fit_samples,
+    fit_with_rotor,
+    is_driven_by_friction,
+    select_parameters,
+)
+from .log_reading import MIN_SPEED_RATIO, Samples, join_samples, parse_columns, read_log
 
-LEVEL = 0.95
+CONFIDENCE_LEVEL = 0.95
 """Confidence level of the intervals [1]."""
-WHOLE, SURE = 1.1, 4.0
+ROTOR_INERTIA_MARGIN, ROTOR_INERTIA_DEVIATIONS = 1.1, 4.0
 """Bound of the stated rotor inertia: first value times the fitted total inertia, plus second value times the
 standard deviation of the total inertia [1]."""
 
@@ -32,7 +40,7 @@ standard deviation of the total inertia [1]."""
 def fit(
     paths: Sequence[Path],
     start: ParameterFile | None = None,
-    free: Sequence[str] | None = None,
+    fitted_names: Sequence[str] | None = None,
     columns: Sequence[str] | None = None,
     torque_constant: float | None = None,
     ratio: float | None = None,
@@ -53,128 +61,150 @@ def fit(
     Raises ValueError with a one-line message for a bad file, unit or value, or a name that cannot be fitted.
     Raises RuntimeError if the fit does not converge.
     """
-    file = _begun(start, ratio)
-    names = named(columns or ())
-    logs = [read(path, names, torque_constant, file.values) for path in paths]
-    samples = joined([log.part(log.built) for log in logs])
+    file = _start_parameters(start, ratio)
+    names = parse_columns(columns or ())
+    logs = [read_log(path, names, torque_constant, file.values) for path in paths]
+    samples = join_samples([log.select(log.is_developed) for log in logs])
     label = ", ".join(path.name for path in paths)
-    logs_with_motor_angle = [log for log in logs if np.all(np.isfinite(log.motor + log.q))]
-    if not logs_with_motor_angle and (alone := [name for name in free or () if name in hysteresis.OWN]):
+    logs_with_motor_angle = [log for log in logs if np.all(np.isfinite(log.motor_angle + log.q))]
+    if not logs_with_motor_angle and (
+        alone := [name for name in fitted_names or () if name in hysteresis.LOG_PARAMETERS]
+    ):
         raise ValueError(f"{label}: {alone[0]} needs the columns q and q_motor beside the time")
-    _speeds(label, samples)
-    if driven(samples, file.values):
+    _check_speeds(label, samples)
+    if is_driven_by_friction(samples, file.values):
         raise ValueError(
             f"{label}: friction drives the motion; reverse the sign of one column or of --torque-constant"
         )
     rotor_inertia = motor_inertia or 0.0
-    friction_names = [name for name in free or () if name not in hysteresis.OWN]
-    names_to_fit, notes = wanted_of(samples, file.values, friction_names, rotor_inertia)
-    fitted_log = fitted_to(file, samples, names_to_fit, rotor_inertia)
-    if rotor_inertia and samples.dynamic.any():
-        _within(rotor_inertia, fitted_log)
+    friction_names = [name for name in fitted_names or () if name not in hysteresis.LOG_PARAMETERS]
+    names_to_fit, notes = select_parameters(samples, file.values, friction_names, rotor_inertia)
+    fitted_log = fit_samples(file, samples, names_to_fit, rotor_inertia)
+    if rotor_inertia and samples.is_dynamic.any():
+        _check_rotor_inertia(rotor_inertia, fitted_log)
     if not friction_names:
-        fitted_log, names_to_fit, dropped = without_blind(file, samples, fitted_log, names_to_fit)
+        fitted_log, names_to_fit, dropped = drop_undetermined(file, samples, fitted_log, names_to_fit)
         notes += dropped
-    if samples.dynamic.any() and motor_inertia is None:
-        if logs_with_motor_angle and (rotor_fit := _rotor(file, logs_with_motor_angle[0], fitted_log)):
-            fitted_log = with_rotor(file, samples, names_to_fit, *rotor_fit)
+    if samples.is_dynamic.any() and motor_inertia is None:
+        if logs_with_motor_angle and (
+            rotor_fit := _fit_rotor_inertia(file, logs_with_motor_angle[0], fitted_log)
+        ):
+            fitted_log = fit_with_rotor(file, samples, names_to_fit, *rotor_fit)
         else:
             notes.append(
                 "without --motor-inertia all inertia counts as the arm's: what hangs on the load, load_loss "
                 "and stiffness, is off by the rotor's share"
             )
-    solution, drawn_pictures = fitted_log.solution, [*pictures(samples, fitted_log)]
-    intervals = _intervals(fitted_log.solution)
+    solution, drawn_pictures = fitted_log.solution, [*draw_pictures(samples, fitted_log)]
+    intervals = _confidence_intervals(fitted_log.solution)
     if logs_with_motor_angle:
-        stiffness_fit, link_notes = _link(file, logs_with_motor_angle[0], fitted_log, free)
+        stiffness_fit, link_notes = _fit_stiffness(file, logs_with_motor_angle[0], fitted_log, fitted_names)
         notes += link_notes
         if stiffness_fit is not None:
-            solution, drawn_pictures = _both(solution, stiffness_fit[0]), [*drawn_pictures, stiffness_fit[1]]
-            intervals |= _intervals(stiffness_fit[0])
-    result = fitted(file, solution.values, "calibration", label, _span(samples))
+            solution, drawn_pictures = (
+                _combine_solutions(solution, stiffness_fit[0]),
+                [*drawn_pictures, stiffness_fit[1]],
+            )
+            intervals |= _confidence_intervals(stiffness_fit[0])
+    result = fitted_parameters(file, solution.values, "calibration", label, _describe_ranges(samples))
     for name, value in solution.values.items():
         kind, text = "estimate", "not determined: other values fit as well"
         if name in intervals:
             kind, text = (
                 "calibration",
-                "{:g} % interval {:.4g} to {:.4g}".format(100.0 * LEVEL, *intervals[name]),
+                "{:g} % interval {:.4g} to {:.4g}".format(100.0 * CONFIDENCE_LEVEL, *intervals[name]),
             )
         result = result.with_values({name: value}, kind, f"{result.sources[name]}; {text}")
     return FitResult(
         result,
         solution,
-        facts(file, samples, fitted_log, names_to_fit),
+        fit_facts(file, samples, fitted_log, names_to_fit),
         drawn_pictures,
         notes=notes,
         intervals=intervals,
     )
 
 
-def _within(rotor: float, whole: FittedLog) -> None:
+def _check_rotor_inertia(rotor_inertia: float, fitted_log: FittedLog) -> None:
     """Check the rotor inertia [kg.m2]. Raises ValueError if it exceeds the total inertia in the log."""
-    at_joint = rotor * whole.drive.ratio**2
-    limit = WHOLE * whole.inertia + SURE * float(np.sqrt(whole.covariance[0, 0]))
+    at_joint = rotor_inertia * fitted_log.drive.ratio**2
+    limit = ROTOR_INERTIA_MARGIN * fitted_log.inertia + ROTOR_INERTIA_DEVIATIONS * float(
+        np.sqrt(fitted_log.covariance[0, 0])
+    )
     if at_joint > limit:
-        hint = f"; stated at the joint, it is {rotor / whole.drive.ratio**2:.3g} kg.m2 of the rotor"
+        hint = (
+            f"; stated at the joint, it is {rotor_inertia / fitted_log.drive.ratio**2:.3g} kg.m2 of the rotor"
+        )
         raise ValueError(
-            f"--motor-inertia = {rotor:g} kg.m2 times ratio^2 is {at_joint:.4g} kg.m2 at the joint, outside "
-            f"[0, {limit:.4g}] kg.m2, of arm and rotor in the log{hint if rotor <= limit else ''}"
+            f"--motor-inertia = {rotor_inertia:g} kg.m2 times ratio^2 is {at_joint:.4g} kg.m2 at the joint, outside "
+            f"[0, {limit:.4g}] kg.m2, of arm and rotor in the log{hint if rotor_inertia <= limit else ''}"
         )
 
 
-def _rotor(file: ParameterFile, log: Samples, whole: FittedLog) -> tuple[float, float] | None:
+def _fit_rotor_inertia(
+    file: ParameterFile, log: Samples, fitted_log: FittedLog
+) -> tuple[float, float] | None:
     """Rotor inertia and its standard deviation [kg.m2]; None if the log does not determine them."""
     if file.law != "catalogue":
         return None
-    square = whole.drive.ratio**2
-    (load, spread), phi = whole.load(log), hysteresis.wind_up(log, abs(whole.drive.ratio))
-    return hysteresis.rotor(file, phi, -load, -spread, square * log.ddq, whole.inertia / square)
+    square = fitted_log.drive.ratio**2
+    (load, spread), phi = (
+        fitted_log.evaluate_load(log),
+        hysteresis.measured_wind_up(log, abs(fitted_log.drive.ratio)),
+    )
+    return hysteresis.fit_rotor_inertia(
+        file, phi, -load, -spread, square * log.ddq, fitted_log.inertia / square
+    )
 
 
-def _link(
-    file: ParameterFile, log: Samples, whole: FittedLog, free: Sequence[str] | None
+def _fit_stiffness(
+    file: ParameterFile, log: Samples, fitted_log: FittedLog, fitted_names: Sequence[str] | None
 ) -> tuple[tuple[Solution, Picture] | None, list[str]]:
     """Fit stiffness and hysteresis to a log with the motor angle.
 
     Returns solution and picture, or None if there is no such fit; and notes.
     """
-    if free and not any(name in hysteresis.OWN for name in free):
+    if fitted_names and not any(name in hysteresis.LOG_PARAMETERS for name in fitted_names):
         return None, []
-    names = [name for name in hysteresis.OWN if name in file.flat and (not free or name in free)]
+    names = [
+        name
+        for name in hysteresis.LOG_PARAMETERS
+        if name in file.values_by_name and (not fitted_names or name in fitted_names)
+    ]
     if file.law != "catalogue" or not names:
         return None, ["stiffness and hysteresis are found with a start of the law catalogue"]
-    load, spread = log.sensed, np.zeros((0, log.q.size))
+    load, spread = log.sensor_torque, np.zeros((0, log.q.size))
     if not np.all(np.isfinite(load)):
-        load, spread = whole.load(log)
+        load, spread = fitted_log.evaluate_load(log)
     return hysteresis.fit_log(
-        file, names, hysteresis.wind_up(log, abs(whole.drive.ratio)), -load, -spread
+        file, names, hysteresis.measured_wind_up(log, abs(fitted_log.drive.ratio)), -load, -spread
     ), []
 
 
-def _both(one: Solution, other: Solution) -> Solution:
+def _combine_solutions(first: Solution, second: Solution) -> Solution:
     """Combine two independent fits to one solution; residuals are divided by the noise of each fit."""
-    scaled = [(fit.residuals / fit.noise, fit.jacobian / fit.noise) for fit in (one, other)]
+    scaled = [(fit.residuals / fit.noise, fit.jacobian / fit.noise) for fit in (first, second)]
     return Solution(
-        unknowns=(*one.unknowns, *other.unknowns),
-        values={**one.values, **other.values},
+        unknowns=(*first.unknowns, *second.unknowns),
+        values={**first.values, **second.values},
         residuals=np.concatenate([residuals for residuals, _ in scaled]),
         noise=1.0,
         jacobian=block_diag(*(jacobian for _, jacobian in scaled)),
-        covariance=block_diag(one.covariance, other.covariance),
-        at_bound=(*one.at_bound, *other.at_bound),
-        limit=one.limit or other.limit,
+        covariance=block_diag(first.covariance, second.covariance),
+        at_bound=(*first.at_bound, *second.at_bound),
+        refusal=first.refusal or second.refusal,
     )
 
 
-def _begun(start: ParameterFile | None, ratio: float | None) -> ParameterFile:
+def _start_parameters(start: ParameterFile | None, ratio: float | None) -> ParameterFile:
     """Start parameters with the speed ratio. Raises ValueError if neither a file nor a ratio is given."""
     if start is None and ratio is None:
         raise ValueError("the log does not tell the ratio; expected --params FILE of the drive, or --ratio")
-    file = start or default("harmonic_drive")
+    file = start or load_default("harmonic_drive")
     return file if ratio is None else file.with_values({"ratio": ratio}, "user", "stated")
 
 
-def _speeds(label: str, samples: Samples) -> None:
+def _check_speeds(label: str, samples: Samples) -> None:
     """Check that the samples have several speeds. Raises ValueError if not."""
     speed = np.abs(samples.dq)
     speed = speed[speed > 0.0]
@@ -182,21 +212,21 @@ def _speeds(label: str, samples: Samples) -> None:
         raise ValueError(
             f"{label}: never turns on long enough for friction to build up; expected longer motion"
         )
-    if speed.max() < ONE_SPEED * speed.min():
+    if speed.max() < MIN_SPEED_RATIO * speed.min():
         raise ValueError(
             f"{label}: has one speed alone, {speed.min():.4g} to {speed.max():.4g} rad/s; expected several, "
-            f"{ONE_SPEED:g} times as fast or more"
+            f"{MIN_SPEED_RATIO:g} times as fast or more"
         )
 
 
-def _intervals(solution: Solution) -> dict[str, tuple[float, float]]:
+def _confidence_intervals(solution: Solution) -> dict[str, tuple[float, float]]:
     """Confidence intervals {name: (low, high)} by Student's t over the logarithm.
 
     Parameters that the data do not determine have none.
     """
     spare = max(solution.residuals.size - len(solution.unknowns), 1)
-    factor = float(stats.t.ppf(0.5 + 0.5 * LEVEL, spare))
-    loose = undetermined(solution)
+    factor = float(stats.t.ppf(0.5 + 0.5 * CONFIDENCE_LEVEL, spare))
+    loose = undetermined_names(solution)
     return {
         name: (solution.values[name] * np.exp(-factor * d), solution.values[name] * np.exp(factor * d))
         for name, d in solution.deviations.items()
@@ -204,7 +234,7 @@ def _intervals(solution: Solution) -> dict[str, tuple[float, float]]:
     }
 
 
-def _span(samples: Samples) -> str:
+def _describe_ranges(samples: Samples) -> str:
     """Text with the ranges of speed and temperature."""
     speed = np.abs(samples.dq)
     text = f"speeds of the joint {speed.min():.3g} to {speed.max():.3g} rad/s"
@@ -212,86 +242,107 @@ def _span(samples: Samples) -> str:
     return text + (f", {known.min():.5g} to {known.max():.5g} K" if known.size else "")
 
 
-def facts(file: ParameterFile, samples: Samples, whole: FittedLog, wanted: Sequence[str]) -> Facts:
+def fit_facts(
+    file: ParameterFile, samples: Samples, fitted_log: FittedLog, fitted_names: Sequence[str]
+) -> Facts:
     """Facts about the fit: inertia, offset, gravity, residual, prediction error of held-out samples."""
-    ratio = abs(whole.drive.ratio)
-    terms = LinearTerms.of(samples, ratio)
+    ratio = abs(fitted_log.drive.ratio)
+    terms = LinearTerms.at_samples(samples, ratio)
     units = {"inertia": "kg.m2", "offset": "N.m", "gravity_cos": "N.m", "gravity_sin": "N.m"}
     texts = {"inertia": "of arm and rotor at the joint", "offset": "of the motor's torque"}
     facts = {
         name: (float(value), units[name], texts.get(name, f"{name[8:]}(q) part of gravity at the joint"))
-        for name, value in zip(terms.names, whole.linear, strict=True)
+        for name, value in zip(terms.names, fitted_log.linear_unknowns, strict=True)
     }
-    if whole.rotor_deviation:
-        text = f"of the rotor, from the wind-up; standard deviation {whole.rotor_deviation:.2g}"
-        facts["motor_inertia"] = whole.rotor, "kg.m2", text
+    if fitted_log.rotor_deviation:
+        text = f"of the rotor, from the wind-up; standard deviation {fitted_log.rotor_deviation:.2g}"
+        facts["motor_inertia"] = fitted_log.rotor_inertia, "kg.m2", text
     facts["residual"] = (
-        _rms(samples.torque - whole.torque(samples)[1]),
+        _root_mean_square(samples.torque - fitted_log.evaluate_torque(samples)[1]),
         "N.m",
         "root mean square, at the motor",
     )
-    early, late = samples.part(~samples.later), samples.part(samples.later)
-    if late.dq.size and early.dq.size > len(wanted) + len(terms.names):
-        early_fit = fitted_to(file, early, wanted, whole.rotor)
-        error = _rms(late.torque - early_fit.torque(late)[1])
+    early, late = samples.select(~samples.is_held_out), samples.select(samples.is_held_out)
+    if late.dq.size and early.dq.size > len(fitted_names) + len(terms.names):
+        early_fit = fit_samples(file, early, fitted_names, fitted_log.rotor_inertia)
+        error = _root_mean_square(late.torque - early_fit.evaluate_torque(late)[1])
         facts["held_out"] = (
             error,
             "N.m",
             f"the same of {late.dq.size} samples that a fit to the rest predicts",
         )
-        guess = _rms(late.torque - _constant(early, late, ratio))
+        guess = _root_mean_square(late.torque - _constant_friction_torque(early, late, ratio))
         facts["held_out_constant"] = (guess, "N.m", "the same of a constant in the place of friction")
     return facts
 
 
-def _constant(early: Samples, late: Samples, ratio: float) -> Array:
+def _constant_friction_torque(earlier: Samples, later: Samples, ratio: float) -> Array:
     """Motor torque (n) [N.m] of later samples, by a model with constant friction fitted to earlier ones."""
     models = []
-    for samples in (early, late):
-        terms = LinearTerms.of(samples, ratio)
-        models.append((np.concatenate([np.ones((samples.dq.size, 1)), terms.matrix], axis=1), terms.known))
+    for samples in (earlier, later):
+        terms = LinearTerms.at_samples(samples, ratio)
+        models.append(
+            (np.concatenate([np.ones((samples.dq.size, 1)), terms.matrix], axis=1), terms.measured_gravity)
+        )
     (early_matrix, early_known), (late_matrix, late_known) = models
-    return np.asarray(late_matrix @ np.linalg.lstsq(early_matrix, early.torque - early_known)[0] + late_known)
+    return np.asarray(
+        late_matrix @ np.linalg.lstsq(early_matrix, earlier.torque - early_known)[0] + late_known
+    )
 
 
-def _rms(values: Array) -> float:
+def _root_mean_square(values: Array) -> float:
     return float(np.sqrt(np.mean(values**2)))
 
 
-MILLI = 1e3
-_FRICTION, _MISFIT = "friction at the motor [mN m]", "log - law [mN m]"
-_UNLOADED, _WARMTH = "friction without load [mN m]", "temperature [degrees C]"
+MILLI_PER_UNIT = 1e3
+_FRICTION_LABEL, _ERROR_LABEL = "friction at the motor [mN m]", "log - law [mN m]"
+_NO_LOAD_LABEL, _TEMPERATURE_LABEL = "friction without load [mN m]", "temperature [degrees C]"
 
 
-def pictures(samples: Samples, law: FittedLog) -> Iterator[Picture]:
+def draw_pictures(samples: Samples, fitted_log: FittedLog) -> Iterator[Picture]:
     """Pictures of the friction over speed, time and temperature, as far as the log has these columns."""
-    braked, torque = law.torque(samples)
+    braked, torque = fitted_log.evaluate_torque(samples)
     misfit = samples.torque - torque
     measured = braked + misfit
-    yield _over_speed(samples, law, misfit)
-    if samples.dynamic.any():
-        rows = np.flatnonzero(samples.dynamic)
+    yield _speed_picture(samples, fitted_log, misfit)
+    if samples.is_dynamic.any():
+        rows = np.flatnonzero(samples.is_dynamic)
         time = samples.time[rows]
-        yield _picture(time, measured[rows], misfit[rows], (time, braked[rows]), "time [s]")
+        yield _friction_picture(time, measured[rows], misfit[rows], (time, braked[rows]), "time [s]")
     if (known := np.flatnonzero(np.isfinite(samples.temperature))).size:
         warmth = samples.temperature[known] - KELVIN_AT_ZERO
         ends = np.array([warmth.min(), warmth.max()])
-        over, rest = measured[known] / braked[known], MILLI * misfit[known]
-        yield Picture(warmth, over, rest, (ends, np.ones(2)), (_WARMTH, "friction, log over law", _MISFIT))
+        over, rest = measured[known] / braked[known], MILLI_PER_UNIT * misfit[known]
+        yield Picture(
+            warmth,
+            over,
+            rest,
+            (ends, np.ones(2)),
+            (_TEMPERATURE_LABEL, "friction, log over law", _ERROR_LABEL),
+        )
 
 
-def _over_speed(samples: Samples, law: FittedLog, misfit: Array) -> Picture:
+def _speed_picture(samples: Samples, fitted_log: FittedLog, misfit: Array) -> Picture:
     """Picture of the no-load friction over speed, at the median temperature; held-out rows are marked."""
     fastest = float(np.max(np.abs(samples.dq)))
     speed = np.linspace(-fastest, fastest, 400)
     known = samples.temperature[np.isfinite(samples.temperature)]
     usual = float(np.median(known)) if known.size else np.nan
-    y, line = law.unloaded(samples.dq, usual) + misfit, (speed, law.unloaded(speed, usual))
-    picture = _picture(samples.dq, y, misfit, line, "speed of the joint [rad/s]")
-    marks = None if samples.dynamic.any() else samples.later
-    return replace(picture, labels=(picture.labels[0], _UNLOADED, _MISFIT), marks=marks)
+    y, line = (
+        fitted_log.no_load_friction(samples.dq, usual) + misfit,
+        (speed, fitted_log.no_load_friction(speed, usual)),
+    )
+    picture = _friction_picture(samples.dq, y, misfit, line, "speed of the joint [rad/s]")
+    marks = None if samples.is_dynamic.any() else samples.is_held_out
+    return replace(picture, labels=(picture.labels[0], _NO_LOAD_LABEL, _ERROR_LABEL), marks=marks)
 
 
-def _picture(x: Array, y: Array, misfit: Array, line: tuple[Array, Array], label: str) -> Picture:
+def _friction_picture(x: Array, y: Array, misfit: Array, line: tuple[Array, Array], label: str) -> Picture:
     """Picture of friction torques y (n) [N.m] over x (n), with errors (n) [N.m] and a curve of the law."""
-    return Picture(x, MILLI * y, MILLI * misfit, (line[0], MILLI * line[1]), (label, _FRICTION, _MISFIT))
+    return Picture(
+        x,
+        MILLI_PER_UNIT * y,
+        MILLI_PER_UNIT * misfit,
+        (line[0], MILLI_PER_UNIT * line[1]),
+        (label, _FRICTION_LABEL, _ERROR_LABEL),
+    )

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from jointfmu.joints.harmonic_drive.drive import Drive
-from jointfmu.joints.harmonic_drive.friction import REFERENCE, limits, viscous
+from jointfmu.joints.harmonic_drive.friction import REFERENCE_TEMPERATURE, friction_limits, viscous_torque
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
 
@@ -34,14 +34,14 @@ class LinearTerms:
     """
 
     matrix: Array
-    known: Array
+    measured_gravity: Array
     names: tuple[str, ...]
 
     @classmethod
-    def of(cls, samples: Samples, ratio: float) -> "LinearTerms":
+    def at_samples(cls, samples: Samples, ratio: float) -> "LinearTerms":
         """Terms at samples of logs, for a speed ratio > 0."""
         columns: dict[str, Array] = {}
-        dynamic = samples.dynamic.astype(float)
+        dynamic = samples.is_dynamic.astype(float)
         measured = np.isfinite(samples.gravity)
         if dynamic.any():
             columns = {"inertia": samples.ddq / ratio, "offset": dynamic}
@@ -56,23 +56,23 @@ class LinearTerms:
         known = np.where(measured, samples.gravity, 0.0) / ratio
         return cls(matrix, known, tuple(columns))
 
-    def found(self, rest: Array) -> Array:
+    def solve_unknowns(self, torque: Array) -> Array:
         """Solve for the unknowns (k) by linear least squares, from the torque (n) [N.m] without friction."""
-        return np.asarray(np.linalg.lstsq(self.matrix, rest)[0]) if self.names else np.zeros(0)
+        return np.asarray(np.linalg.lstsq(self.matrix, torque)[0]) if self.names else np.zeros(0)
 
-    def load(self, samples: Samples, unknowns: Array, ratio: float, rotor: float) -> Array:
+    def load(self, samples: Samples, unknowns: Array, ratio: float, rotor_inertia: float) -> Array:
         """Load (n) [N.m] of the teeth: torque of the drive on the arm, positive in the direction of q.
 
         rotor_inertia : [kg.m2]
         """
         values = dict(zip(self.names, unknowns.tolist(), strict=True))
-        arm = max(values.get("inertia", 0.0) - rotor * ratio**2, 0.0)
+        arm = max(values.get("inertia", 0.0) - rotor_inertia * ratio**2, 0.0)
         gravity = [n for n, name in enumerate(self.names) if name.startswith("gravity")]
         fitted_gravity = ratio * self.matrix[:, gravity] @ unknowns[gravity]
-        return np.asarray(arm * samples.ddq + fitted_gravity + ratio * self.known)
+        return np.asarray(arm * samples.ddq + fitted_gravity + ratio * self.measured_gravity)
 
 
-def friction(drive: Drive, dq: Array, temperature: Array, load: Array) -> Array:
+def motor_friction(drive: Drive, dq: Array, temperature: Array, load: Array) -> Array:
     """Friction torque (...) [N.m] at the motor, of a moving drive.
 
     dq          : speed (...) [rad/s] of the joint
@@ -80,38 +80,56 @@ def friction(drive: Drive, dq: Array, temperature: Array, load: Array) -> Array:
     load        : (...) [N.m] of the teeth, at the joint
     """
     forward = replace(drive, ratio=abs(drive.ratio))
-    warmth = np.where(np.isfinite(temperature), temperature, REFERENCE)
+    warmth = np.where(np.isfinite(temperature), temperature, REFERENCE_TEMPERATURE)
     w1 = forward.ratio * dq
-    positive, negative = limits(forward, w1, -load, warmth)
-    return np.asarray(np.where(w1 > 0.0, positive, -negative) + viscous(forward, w1, warmth))
+    positive, negative = friction_limits(forward, w1, -load, warmth)
+    return np.asarray(np.where(w1 > 0.0, positive, -negative) + viscous_torque(forward, w1, warmth))
 
 
-def filtered(drive: Drive, samples: Samples, load: Array) -> Array:
+def filtered_motor_friction(drive: Drive, samples: Samples, load: Array) -> Array:
     """Friction torque (n) [N.m] at samples, smoothed by the filter of the log."""
     warmth, carried = samples.temperature[:, None], load[:, None]
-    return np.asarray(np.sum(samples.weights * friction(drive, samples.speeds, warmth, carried), axis=1))
+    return np.asarray(
+        np.sum(samples.weights * motor_friction(drive, samples.speeds, warmth, carried), axis=1)
+    )
 
 
-DRY, STRIBECK, VISCOUS = "friction_coulomb", "friction_stribeck", "friction_viscous"
-LOSS, BACK = "load_loss", "load_loss_back"
-WARM = ("viscous_temperature_coefficient", "dry_temperature_coefficient")
-FREE = (DRY, STRIBECK, VISCOUS, LOSS, BACK, *WARM)
+DRY_FRICTION, STRIBECK_FRICTION, VISCOUS_FRICTION = (
+    "friction_coulomb",
+    "friction_stribeck",
+    "friction_viscous",
+)
+LOAD_LOSS, LOAD_LOSS_BACK = "load_loss", "load_loss_back"
+TEMPERATURE_COEFFICIENTS = ("viscous_temperature_coefficient", "dry_temperature_coefficient")
+FITTED_PARAMETERS = (
+    DRY_FRICTION,
+    STRIBECK_FRICTION,
+    VISCOUS_FRICTION,
+    LOAD_LOSS,
+    LOAD_LOSS_BACK,
+    *TEMPERATURE_COEFFICIENTS,
+)
 """Parameters of the friction that can be fitted."""
-ROUNDS = 4
+LOAD_ITERATIONS = 4
 """Number of fits, each with the load that follows from the fit before."""
-WARMED = 5.0
+MIN_TEMPERATURE_RANGE = 5.0
 """Range of temperatures [K] that a log needs for a fit of the temperature coefficients."""
-LOADED = 0.02
+MIN_LOAD_RATIO = 0.02
 """Largest load over rated torque [1] that a log needs for a fit of the load-dependent losses."""
-FIRST = {LOSS: 0.05, BACK: 0.05, WARM[0]: 0.02, WARM[1]: 0.01}
+START_VALUES = {
+    LOAD_LOSS: 0.05,
+    LOAD_LOSS_BACK: 0.05,
+    TEMPERATURE_COEFFICIENTS[0]: 0.02,
+    TEMPERATURE_COEFFICIENTS[1]: 0.01,
+}
 """Start values if the file has 0: losses [1], temperature coefficients [1/K]."""
-LEAST_PART = 1e-3
+LOWER_BOUND_RATIO = 1e-3
 """Lower bound of a parameter over its start value [1]."""
-BLIND, AS_WELL = 2.0, 2.0
+UNDETERMINED_FACTOR, EQUAL_FIT_DEVIATIONS = 2.0, 2.0
 """Standard deviation of a parameter, as a factor [1], above which it may be undetermined; and increase of the
 residual, in standard deviations for each such parameter [1], up to which the values of the file fit as
 well."""
-SMALL = 1e-4
+DIFFERENCE_STEP = 1e-4
 """Step of the logarithms of the parameters [1] for finite differences."""
 
 
@@ -129,42 +147,45 @@ class FittedLog:
 
     drive: Drive
     solution: Solution
-    linear: Array
+    linear_unknowns: Array
     covariance: Array
-    rotor: float
+    rotor_inertia: float
     rotor_deviation: float
 
     @property
     def inertia(self) -> float:
         """Inertia [kg.m2] of arm and rotor at the joint; for logs with a time only."""
-        return float(self.linear[0])
+        return float(self.linear_unknowns[0])
 
-    def torque(self, samples: Samples) -> tuple[Array, Array]:
+    def evaluate_torque(self, samples: Samples) -> tuple[Array, Array]:
         """Friction torque (n) [N.m] and total torque (n) [N.m] of the motor at samples."""
         ratio = abs(self.drive.ratio)
-        terms = LinearTerms.of(samples, ratio)
-        load = terms.load(samples, self.linear, ratio, self.rotor)
-        friction_torque = filtered(self.drive, samples, load)
-        return friction_torque, friction_torque + terms.matrix @ self.linear + terms.known
+        terms = LinearTerms.at_samples(samples, ratio)
+        load = terms.load(samples, self.linear_unknowns, ratio, self.rotor_inertia)
+        friction_torque = filtered_motor_friction(self.drive, samples, load)
+        return friction_torque, friction_torque + terms.matrix @ self.linear_unknowns + terms.measured_gravity
 
-    def load(self, samples: Samples) -> tuple[Array, Array]:
+    def evaluate_load(self, samples: Samples) -> tuple[Array, Array]:
         """Load (n) [N.m] of the teeth, and its changes (k, n) by k independent standard deviations."""
         ratio = abs(self.drive.ratio)
-        terms = LinearTerms.of(samples, ratio)
-        load = terms.load(samples, self.linear, ratio, self.rotor)
+        terms = LinearTerms.at_samples(samples, ratio)
+        load = terms.load(samples, self.linear_unknowns, ratio, self.rotor_inertia)
         variances, directions = np.linalg.eigh(self.covariance)
-        ends = self.linear + np.sqrt(np.maximum(variances, 0.0))[:, None] * directions.T
-        cases = [*((end, self.rotor) for end in ends), (self.linear, self.rotor + self.rotor_deviation)]
+        ends = self.linear_unknowns + np.sqrt(np.maximum(variances, 0.0))[:, None] * directions.T
+        cases = [
+            *((end, self.rotor_inertia) for end in ends),
+            (self.linear_unknowns, self.rotor_inertia + self.rotor_deviation),
+        ]
         changes = [terms.load(samples, end, ratio, rotor) - load for end, rotor in cases]
         return load, np.reshape(changes, (len(changes), load.size))
 
-    def unloaded(self, dq: Array, temperature: float) -> Array:
+    def no_load_friction(self, dq: Array, temperature: float) -> Array:
         """No-load friction torque (n) [N.m] at joint speeds (n) [rad/s] and a temperature [K]."""
-        return friction(self.drive, dq, np.full(dq.size, temperature), np.zeros(dq.size))
+        return motor_friction(self.drive, dq, np.full(dq.size, temperature), np.zeros(dq.size))
 
 
-def wanted_of(
-    samples: Samples, drive: Drive, free: Sequence[str], rotor: float
+def select_parameters(
+    samples: Samples, drive: Drive, fitted_names: Sequence[str], rotor_inertia: float
 ) -> tuple[list[str], list[str]]:
     """Select the parameters to fit: those that the samples can determine.
 
@@ -173,80 +194,86 @@ def wanted_of(
 
     Returns the names, and notes why other parameters are not fitted.
     """
-    if free:
-        return list(free), []
+    if fitted_names:
+        return list(fitted_names), []
     reasons: dict[str, str] = {}
-    terms, linear = _straight(samples, drive)
-    load = terms.load(samples, linear[2:], abs(drive.ratio), rotor)  # with constant dry and viscous friction
-    if np.max(np.abs(load)) < LOADED * drive.rated_torque:
-        text = f"the load stays below {LOADED:g} times the rated torque"
-        reasons |= {LOSS: text, BACK: text}
+    terms, linear = _fit_linear_model(samples, drive)
+    load = terms.load(
+        samples, linear[2:], abs(drive.ratio), rotor_inertia
+    )  # with constant dry and viscous friction
+    if np.max(np.abs(load)) < MIN_LOAD_RATIO * drive.rated_torque:
+        text = f"the load stays below {MIN_LOAD_RATIO:g} times the rated torque"
+        reasons |= {LOAD_LOSS: text, LOAD_LOSS_BACK: text}
     else:
-        back_driven = load * samples.dq < -LOADED * drive.rated_torque * np.abs(samples.dq)
+        back_driven = load * samples.dq < -MIN_LOAD_RATIO * drive.rated_torque * np.abs(samples.dq)
         if drive.load_loss_back < 0.0:
-            reasons[BACK] = "it is that of load_loss in the start file"
+            reasons[LOAD_LOSS_BACK] = "it is that of load_loss in the start file"
         elif not back_driven.any():
-            reasons[BACK] = "the load never drives the motor"
+            reasons[LOAD_LOSS_BACK] = "the load never drives the motor"
     known = samples.temperature[np.isfinite(samples.temperature)]
-    if known.size == 0 or np.ptp(known) < WARMED:
+    if known.size == 0 or np.ptp(known) < MIN_TEMPERATURE_RANGE:
         span = "no temperature in it" if known.size == 0 else f"{np.ptp(known):.2g} K of temperature"
-        reasons |= dict.fromkeys(WARM, f"{span}, {WARMED:g} K are needed")
+        reasons |= dict.fromkeys(TEMPERATURE_COEFFICIENTS, f"{span}, {MIN_TEMPERATURE_RANGE:g} K are needed")
     slowest = abs(drive.ratio) * np.min(np.abs(samples.dq))
     if slowest > 2.0 * drive.stribeck_speed:
-        reasons[STRIBECK] = (
+        reasons[STRIBECK_FRICTION] = (
             f"the motor is never slower than {slowest:.3g} rad/s, twice stribeck_speed is needed"
         )
     notes = [
         f"the log does not determine {name}, which stays as it is: {why}" for name, why in reasons.items()
     ]
-    return [name for name in FREE if name not in reasons], notes
+    return [name for name in FITTED_PARAMETERS if name not in reasons], notes
 
 
-def _straight(samples: Samples, drive: Drive) -> tuple[LinearTerms, Array]:
+def _fit_linear_model(samples: Samples, drive: Drive) -> tuple[LinearTerms, Array]:
     """Estimate all terms by one linear fit, with constant dry friction and viscous friction.
 
     Returns the linear terms, and dry friction [N.m], viscous coefficient [N.m.s/rad] and their unknowns.
     """
     ratio = abs(drive.ratio)
-    terms = LinearTerms.of(samples, ratio)
+    terms = LinearTerms.at_samples(samples, ratio)
     friction_terms = np.stack([np.sign(samples.dq), ratio * samples.dq], axis=1)
     matrix = np.concatenate([friction_terms, terms.matrix], axis=1)
-    return terms, np.linalg.lstsq(matrix, samples.torque - terms.known)[0]
+    return terms, np.linalg.lstsq(matrix, samples.torque - terms.measured_gravity)[0]
 
 
-def fitted_to(file: ParameterFile, samples: Samples, wanted: Sequence[str], rotor: float) -> FittedLog:
+def fit_samples(
+    file: ParameterFile, samples: Samples, names: Sequence[str], rotor_inertia: float
+) -> FittedLog:
     """Fit friction parameters and linear terms to samples.
 
     names         : of the friction parameters to fit
     rotor_inertia : [kg.m2]
     """
     ratio = abs(file.values.ratio)
-    terms, linear = _straight(samples, file.values)
-    start_values, linear = _first(file, samples, linear), linear[2:]
-    changed = file.with_values({n: v for n, v in start_values.items() if n in wanted}, "calibration", "start")
-    bounds = {name: (LEAST_PART * value, np.inf) for name, value in start_values.items()}
-    for _ in range(ROUNDS):
-        load = terms.load(samples, linear, ratio, rotor)
+    terms, linear = _fit_linear_model(samples, file.values)
+    start_values, linear = _start_values(file, samples, linear), linear[2:]
+    changed = file.with_values({n: v for n, v in start_values.items() if n in names}, "calibration", "start")
+    bounds = {name: (LOWER_BOUND_RATIO * value, np.inf) for name, value in start_values.items()}
+    for _ in range(LOAD_ITERATIONS):
+        load = terms.load(samples, linear, ratio, rotor_inertia)
 
         def net_torque(values: Mapping[str, float], load: Array = load) -> Array:
             """Motor torque (n) [N.m] without friction and measured gravity."""
             drive = file.with_values(values, "calibration", "fit").values
-            return np.asarray(samples.torque - terms.known - filtered(drive, samples, load))
+            return np.asarray(
+                samples.torque - terms.measured_gravity - filtered_motor_friction(drive, samples, load)
+            )
 
         def residuals(values: Mapping[str, float], torque=net_torque) -> Array:  # type: ignore[no-untyped-def]
             remaining = torque(values)
-            return np.asarray(remaining - terms.matrix @ terms.found(remaining))
+            return np.asarray(remaining - terms.matrix @ terms.solve_unknowns(remaining))
 
-        solution = solve(unknowns(changed, wanted, bounds), residuals, nuisances=len(terms.names))
-        linear = terms.found(net_torque(solution.values))
+        solution = solve(unknowns(changed, names, bounds), residuals, nuisance_count=len(terms.names))
+        linear = terms.solve_unknowns(net_torque(solution.values))
         changed = file.with_values(solution.values, "calibration", "fit")
     direct = solution.noise**2 * np.linalg.pinv(terms.matrix.T @ terms.matrix)
-    indirect = _deviations(solution, lambda values: terms.found(net_torque(values)))
-    return FittedLog(changed.values, solution, linear, direct + indirect.T @ indirect, rotor, 0.0)
+    indirect = _propagate_deviations(solution, lambda values: terms.solve_unknowns(net_torque(values)))
+    return FittedLog(changed.values, solution, linear, direct + indirect.T @ indirect, rotor_inertia, 0.0)
 
 
-def without_blind(
-    file: ParameterFile, samples: Samples, fit: FittedLog, wanted: Sequence[str]
+def drop_undetermined(
+    file: ParameterFile, samples: Samples, fit: FittedLog, names: Sequence[str]
 ) -> tuple[FittedLog, list[str], list[str]]:
     """Repeat the fit without the parameters that the log does not determine.
 
@@ -254,54 +281,56 @@ def without_blind(
     and its value in the file fits as well. Returns the fit, names of the fitted parameters, and notes about
     the others.
     """
-    undetermined = [n for n in wanted if n in FIRST and fit.solution.deviations[n] > np.log(BLIND)]
-    determined = [name for name in wanted if name not in undetermined]
+    undetermined = [
+        n for n in names if n in START_VALUES and fit.solution.deviations[n] > np.log(UNDETERMINED_FACTOR)
+    ]
+    determined = [name for name in names if name not in undetermined]
     if undetermined and determined:
-        other = fitted_to(file, samples, determined, fit.rotor)
+        other = fit_samples(file, samples, determined, fit.rotor_inertia)
         increase = np.sum(other.solution.residuals**2) - np.sum(fit.solution.residuals**2)
-        if increase < len(undetermined) * (AS_WELL * fit.solution.noise) ** 2:
+        if increase < len(undetermined) * (EQUAL_FIT_DEVIATIONS * fit.solution.noise) ** 2:
             text = "the log does not determine {}, which stays as it is: that fits as well"
             return other, determined, [text.format(name) for name in undetermined]
-    return fit, list(wanted), []
+    return fit, list(names), []
 
 
-def driven(samples: Samples, drive: Drive) -> bool:
+def is_driven_by_friction(samples: Samples, drive: Drive) -> bool:
     """Whether the fitted friction drives the motion: then the torque has the wrong sign in the log."""
-    terms, linear = _straight(samples, drive)
+    terms, linear = _fit_linear_model(samples, drive)
     w1 = abs(drive.ratio) * samples.dq
     friction_torque = linear[0] * np.sign(w1) + linear[1] * w1
-    residual = samples.torque - terms.known - friction_torque - terms.matrix @ linear[2:]
+    residual = samples.torque - terms.measured_gravity - friction_torque - terms.matrix @ linear[2:]
     return bool(friction_torque @ w1 < 0.0 and np.sum(friction_torque**2) > np.sum(residual**2))
 
 
-def with_rotor(
-    file: ParameterFile, samples: Samples, wanted: Sequence[str], rotor: float, deviation: float
+def fit_with_rotor(
+    file: ParameterFile, samples: Samples, names: Sequence[str], rotor_inertia: float, deviation: float
 ) -> FittedLog:
     """Fit with a rotor inertia and its standard deviation [kg.m2], which is added to the covariance."""
-    fit = fitted_to(file, samples, wanted, rotor)
-    shifted = fitted_to(file, samples, wanted, rotor + deviation).solution.values
+    fit = fit_samples(file, samples, names, rotor_inertia)
+    shifted = fit_samples(file, samples, names, rotor_inertia + deviation).solution.values
     changes = np.array([np.log(shifted[name] / value) for name, value in fit.solution.values.items()])
     wider = replace(fit.solution, covariance=fit.solution.covariance + np.outer(changes, changes))
     return replace(fit, solution=wider, rotor_deviation=deviation)
 
 
-def _deviations(solution: Solution, of: Callable[[Mapping[str, float]], Array]) -> Array:
+def _propagate_deviations(solution: Solution, function: Callable[[Mapping[str, float]], Array]) -> Array:
     """Changes (k, m) of a function by each of the k independent standard deviations of a solution.
 
     function : {name: value} -> (m)
     """
     variances, directions = np.linalg.eigh(solution.covariance)
-    rows, reference = [], of(solution.values)
+    rows, reference = [], function(solution.values)
     for deviation, direction in zip(np.sqrt(np.maximum(variances, 0.0)), directions.T, strict=True):
         changed = {
-            n: v * float(np.exp(SMALL * d))
+            n: v * float(np.exp(DIFFERENCE_STEP * d))
             for (n, v), d in zip(solution.values.items(), direction, strict=True)
         }
-        rows.append((of(changed) - reference) * deviation / SMALL)
+        rows.append((function(changed) - reference) * deviation / DIFFERENCE_STEP)
     return np.array(rows)
 
 
-def _first(file: ParameterFile, samples: Samples, linear: Array) -> dict[str, float]:
+def _start_values(file: ParameterFile, samples: Samples, linear: Array) -> dict[str, float]:
     """Start values {name: value}: dry and viscous friction from the linear fit, others from the file.
 
     linear : result of `_fit_linear_model`
@@ -309,5 +338,12 @@ def _first(file: ParameterFile, samples: Samples, linear: Array) -> dict[str, fl
     size = float(np.median(np.abs(samples.torque))) or 1.0
     fastest = abs(file.values.ratio) * float(np.max(np.abs(samples.dq)))
     dry = max(float(linear[0]), 0.05 * size)
-    others = {name: file.flat[name] if file.flat[name] > 0.0 else value for name, value in FIRST.items()}
-    return {DRY: dry, STRIBECK: 0.2 * dry, VISCOUS: max(float(linear[1]), 0.02 * size / fastest)} | others
+    others = {
+        name: file.values_by_name[name] if file.values_by_name[name] > 0.0 else value
+        for name, value in START_VALUES.items()
+    }
+    return {
+        DRY_FRICTION: dry,
+        STRIBECK_FRICTION: 0.2 * dry,
+        VISCOUS_FRICTION: max(float(linear[1]), 0.02 * size / fastest),
+    } | others

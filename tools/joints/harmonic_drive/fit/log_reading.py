@@ -17,20 +17,20 @@ from scipy.signal import savgol_coeffs, savgol_filter
 
 from jointfmu.joints.harmonic_drive.drive import Drive
 from jointfmu.quantity import Array
-from jointfmu.quantity.units import KELVIN_AT_ZERO, Sizes, sizes
+from jointfmu.quantity.units import KELVIN_AT_ZERO, UnitSizes, unit_sizes
 
 from .... import columns
 
-Places: TypeAlias = NDArray[np.int_]
+SampleIndices: TypeAlias = NDArray[np.int_]
 """Indices of samples."""
-WINDOW, ORDER = 0.04, 4
+FILTER_WINDOW, FILTER_DEGREE = 0.04, 4
 """Window of the filter [s], and degree of its polynomial [1]."""
-NODES = 9
+FILTER_NODES = 9
 """Number of speeds in a window at which friction is evaluated and filtered; smallest number of samples of a
 window."""
-TURNED = 5.0
+ROTATION_RATIO = 5.0
 """Rotation of the motor since a reversal over `presliding` [1] after which friction is developed to 99 %."""
-ONE_SPEED = 1.2
+MIN_SPEED_RATIO = 1.2
 """Ratio of largest to smallest speed [1] that a log must exceed."""
 
 
@@ -61,93 +61,95 @@ class Samples:
     torque: Array
     gravity: Array
     temperature: Array
-    motor: Array
-    sensed: Array
-    later: NDArray[np.bool_]
-    dynamic: NDArray[np.bool_]
-    built: NDArray[np.bool_]
+    motor_angle: Array
+    sensor_torque: Array
+    is_held_out: NDArray[np.bool_]
+    is_dynamic: NDArray[np.bool_]
+    is_developed: NDArray[np.bool_]
 
-    def part(self, rows: NDArray[np.bool_] | Places) -> "Samples":
+    def select(self, rows: NDArray[np.bool_] | SampleIndices) -> "Samples":
         """Select rows, by a mask or by indices."""
         return Samples(*(getattr(self, field.name)[rows] for field in fields(self)))
 
 
-def joined(parts: Sequence[Samples]) -> Samples:
+def join_samples(logs: Sequence[Samples]) -> Samples:
     """Join the samples of several logs."""
-    return Samples(*(np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(Samples)))
+    return Samples(*(np.concatenate([getattr(p, f.name) for p in logs]) for f in fields(Samples)))
 
 
-def steady(have: Mapping[str, Array], torque: Array) -> Samples:
+def steady_samples(columns_by_name: Mapping[str, Array], torque: Array) -> Samples:
     """Samples of a table of steady speeds; every third row is held out."""
     none = np.full(torque.size, np.nan)
     return Samples(
         time=none,
-        q=have.get("q", none),
-        dq=have["dq"],
+        q=columns_by_name.get("q", none),
+        dq=columns_by_name["dq"],
         ddq=np.zeros(torque.size),
-        speeds=np.repeat(have["dq"][:, None], NODES, axis=1),
-        weights=np.repeat(np.eye(1, NODES), torque.size, axis=0),
+        speeds=np.repeat(columns_by_name["dq"][:, None], FILTER_NODES, axis=1),
+        weights=np.repeat(np.eye(1, FILTER_NODES), torque.size, axis=0),
         torque=torque,
-        gravity=have.get("gravity", none),
-        temperature=have.get("temperature", none),
-        motor=none,
-        sensed=none,
-        later=np.arange(torque.size) % 3 == 1,
-        dynamic=np.zeros(torque.size, dtype=bool),
-        built=have["dq"] != 0.0,
+        gravity=columns_by_name.get("gravity", none),
+        temperature=columns_by_name.get("temperature", none),
+        motor_angle=none,
+        sensor_torque=none,
+        is_held_out=np.arange(torque.size) % 3 == 1,
+        is_dynamic=np.zeros(torque.size, dtype=bool),
+        is_developed=columns_by_name["dq"] != 0.0,
     )
 
 
-def window(step: float) -> int:
+def window_size(step: float) -> int:
     """Number of samples in the window of the filter, at a time step [s]; odd."""
-    return max(2 * round(0.5 * WINDOW / step) + 1, NODES)
+    return max(2 * round(0.5 * FILTER_WINDOW / step) + 1, FILTER_NODES)
 
 
-def smoothed(values: Array, step: float, derivative: int = 0) -> Array:
+def filter_values(values: Array, step: float, derivative: int = 0) -> Array:
     """Filter values (n) at a constant time step [s]; or their derivative of the order `derivative`."""
-    return np.asarray(savgol_filter(values, window(step), ORDER, derivative, step))
+    return np.asarray(savgol_filter(values, window_size(step), FILTER_DEGREE, derivative, step))
 
 
-def moving(time: Array, step: float, have: Mapping[str, Array], drive: Drive) -> Samples:
+def dynamic_samples(time: Array, step: float, columns_by_name: Mapping[str, Array], drive: Drive) -> Samples:
     """Filtered samples of a dynamic log, at times (n) [s] with a constant step [s]."""
     none = np.full(time.size, np.nan)
 
     def smooth(name: str) -> Array:
-        return smoothed(have[name], step) if name in have else none
+        return filter_values(columns_by_name[name], step) if name in columns_by_name else none
 
-    without_dq = "dq" not in have
-    dq = smoothed(have["q"], step, 1) if without_dq else smooth("dq")
-    nodes, weights = _nodes(window(step))
+    without_dq = "dq" not in columns_by_name
+    dq = filter_values(columns_by_name["q"], step, 1) if without_dq else smooth("dq")
+    nodes, weights = _filter_nodes(window_size(step))
     return Samples(
         time=time,
         q=smooth("q"),
         dq=dq,
-        ddq=smoothed(have["q"], step, 2) if without_dq else smoothed(have["dq"], step, 1),
+        ddq=filter_values(columns_by_name["q"], step, 2)
+        if without_dq
+        else filter_values(columns_by_name["dq"], step, 1),
         speeds=dq[np.clip(np.arange(time.size)[:, None] + nodes, 0, time.size - 1)],
         weights=np.repeat(weights[None, :], time.size, axis=0),
         torque=smooth("tau"),
         gravity=smooth("gravity"),
-        temperature=have.get("temperature", none),
-        motor=smooth("q_motor"),
-        sensed=smooth("link_torque"),
-        later=time > time[0] + 0.7 * (time[-1] - time[0]),
-        dynamic=np.ones(time.size, dtype=bool),
-        built=_built_up(dq, step, window(step), drive),
+        temperature=columns_by_name.get("temperature", none),
+        motor_angle=smooth("q_motor"),
+        sensor_torque=smooth("link_torque"),
+        is_held_out=time > time[0] + 0.7 * (time[-1] - time[0]),
+        is_dynamic=np.ones(time.size, dtype=bool),
+        is_developed=_is_friction_developed(dq, step, window_size(step), drive),
     )
 
 
-def _nodes(width: int) -> tuple[Places, Array]:
+def _filter_nodes(width: int) -> tuple[SampleIndices, Array]:
     """Sample offsets (FILTER_NODES) within the window of the filter, and the filter weights at these nodes.
 
     The weights are those for values that are linear between the nodes.
     """
     half = width // 2
-    nodes = np.round(np.linspace(-half, half, NODES)).astype(int)
-    hats = [np.interp(np.arange(-half, half + 1), nodes, row) for row in np.eye(NODES)]
-    return nodes, np.array(hats) @ savgol_coeffs(width, ORDER, use="dot")
+    nodes = np.round(np.linspace(-half, half, FILTER_NODES)).astype(int)
+    hats = [np.interp(np.arange(-half, half + 1), nodes, row) for row in np.eye(FILTER_NODES)]
+    return nodes, np.array(hats) @ savgol_coeffs(width, FILTER_DEGREE, use="dot")
 
 
-def _built_up(dq: Array, step: float, width: int, drive: Drive) -> NDArray[np.bool_]:
+def _is_friction_developed(dq: Array, step: float, width: int, drive: Drive) -> NDArray[np.bool_]:
     """Mask (n) of samples with fully developed friction.
 
     The motor has rotated by ROTATION_RATIO times `presliding` since its last reversal, and no reversal lies
@@ -160,25 +162,25 @@ def _built_up(dq: Array, step: float, width: int, drive: Drive) -> NDArray[np.bo
     index = np.arange(dq.size)
     rotation = np.concatenate([[0.0], np.cumsum(np.abs(dq[1:]))]) * step * abs(drive.ratio)
     before, after = index - first[run], last[run] - 1 - index
-    developed = rotation - rotation[first[run]] > TURNED * drive.presliding
+    developed = rotation - rotation[first[run]] > ROTATION_RATIO * drive.presliding
     return np.asarray(developed & (before > width // 2) & (after > width // 2) & (sign != 0.0))
 
 
-COLUMNS: Mapping[str, Sizes] = {
-    "time": sizes("s", "ms"),
-    "q": sizes("rad", "deg"),
-    "dq": sizes("rad/s", "deg/s", "rev/min"),
+COLUMN_UNITS: Mapping[str, UnitSizes] = {
+    "time": unit_sizes("s", "ms"),
+    "q": unit_sizes("rad", "deg"),
+    "dq": unit_sizes("rad/s", "deg/s", "rev/min"),
     "i": {"A": 1.0, "mA": 1e-3},
-    "tau": sizes("N.m", "mN.m"),
-    "gravity": sizes("N.m", "mN.m"),
-    "q_motor": sizes("rad", "deg", "rev"),
-    "link_torque": sizes("N.m", "mN.m"),
+    "tau": unit_sizes("N.m", "mN.m"),
+    "gravity": unit_sizes("N.m", "mN.m"),
+    "q_motor": unit_sizes("rad", "deg", "rev"),
+    "link_torque": unit_sizes("N.m", "mN.m"),
     "temperature": {"K": 1.0, "degC": 1.0, "°C": 1.0, "C": 1.0},
 }
 """{column: {unit: size in SI}}: q, dq angle and speed of the joint; i, tau current and torque of the motor;
 gravity torque at the joint that balances gravity; q_motor motor angle; link_torque torque sensor at the
 joint."""
-OTHERS: Mapping[str, Sequence[str]] = {
+COLUMN_SYNONYMS: Mapping[str, Sequence[str]] = {
     "time": ("t", "timestamp", "zeit"),
     "q": ("position", "angle", "actual_q", "joint_position"),
     "dq": ("qd", "speed", "velocity", "actual_qd", "joint_speed", "joint_velocity"),
@@ -190,39 +192,41 @@ OTHERS: Mapping[str, Sequence[str]] = {
     "temperature": ("temp", "motor_temperature", "joint_temperature"),
 }
 """{column: other headings that are accepted}."""
-LEAST = 6
+MIN_ROWS = 6
 """Required number of rows of a log."""
-MOST_SPEED = 2000.0
+MAX_MOTOR_SPEED = 2000.0
 """Largest plausible speed of a wave generator [rad/s]: catalogues allow up to 14 000 rev/min."""
-MOST_CURRENT = 1e3
+MAX_CURRENT = 1e3
 """Largest plausible motor current [A]."""
-MOST_TORQUE = 3.0
+MAX_TORQUE_RATIO = 3.0
 """Largest plausible motor torque over max_torque/ratio [1]."""
-STILL = 1e-3
+MIN_MOTOR_SPEED = 1e-3
 """Motor speed [rad/s] below which a log has no motion."""
-EVEN, GAP = 0.2, 10.0
+STEP_TOLERANCE, GAP_RATIO = 0.2, 10.0
 """Deviation of a time step from the median, over the median [1], up to which the sampling counts as even; and
 time step over the median [1] that counts as a gap."""
-SAME = (0.5, 2.0)
+SPEED_RATIO_RANGE = (0.5, 2.0)
 """Allowed range of dq over the derivative of q [1]."""
 
 
-def named(words: Sequence[str]) -> dict[str, tuple[str, str | None]]:
+def parse_columns(texts: Sequence[str]) -> dict[str, tuple[str, str | None]]:
     """Parse `NAME=HEADING` or `NAME=HEADING [UNIT]`: {column: (heading in the file, unit or None)}.
 
     Raises ValueError for other text and unknown columns.
     """
     found = {}
-    for word in words:
+    for word in texts:
         name, _, text = word.partition("=")
-        if name not in COLUMNS or not text.strip():
-            raise ValueError(f"--columns {word!r}: expected NAME=HEADING with one of {', '.join(COLUMNS)}")
-        found[name] = columns.head(text)
+        if name not in COLUMN_UNITS or not text.strip():
+            raise ValueError(
+                f"--columns {word!r}: expected NAME=HEADING with one of {', '.join(COLUMN_UNITS)}"
+            )
+        found[name] = columns.parse_heading(text)
     return found
 
 
-def read(
-    path: Path, names: Mapping[str, tuple[str, str | None]], constant: float | None, drive: Drive
+def read_log(
+    path: Path, names: Mapping[str, tuple[str, str | None]], torque_constant: float | None, drive: Drive
 ) -> Samples:
     """Read the samples of a log.
 
@@ -232,57 +236,63 @@ def read(
 
     Raises ValueError with a one-line message that begins with the path.
     """
-    table = columns.read(path, COLUMNS, LEAST, OTHERS, names)
+    table = columns.read_columns(path, COLUMN_UNITS, MIN_ROWS, COLUMN_SYNONYMS, names)
     have = dict(table.columns)
-    torque = _torque(table, constant)
+    torque = _motor_torque(table, torque_constant)
     if "temperature" in have and table.units["temperature"] != "K":
         have["temperature"] = have["temperature"] + KELVIN_AT_ZERO
     if "time" in have:
-        return _of_motion(table, have, torque, drive)
-    table.require("dq", COLUMNS)
-    samples = steady(have, torque)
-    _check(path, samples, drive)
+        return _read_dynamic(table, have, torque, drive)
+    table.require_column("dq", COLUMN_UNITS)
+    samples = steady_samples(have, torque)
+    _check_samples(path, samples, drive)
     return samples
 
 
-def _torque(table: columns.Columns, constant: float | None) -> Array:
+def _motor_torque(table: columns.Columns, torque_constant: float | None) -> Array:
     """Motor torque (n) [N.m], from the column of the torque or of the current."""
     if "tau" in table.columns:
         return table.columns["tau"]
     if "i" not in table.columns:
-        wanted = columns.heading({name: COLUMNS[name] for name in ("tau", "i")})
+        wanted = columns.format_heading({name: COLUMN_UNITS[name] for name in ("tau", "i")})
         raise ValueError(f"{table.path}: has no torque and no current of the motor; expected {wanted}")
     current = table.columns["i"]
-    if np.max(np.abs(current)) > MOST_CURRENT:
+    if np.max(np.abs(current)) > MAX_CURRENT:
         raise ValueError(
             f"{table.path}: a current of {np.max(np.abs(current)):.4g} A is outside "
-            f"[-{MOST_CURRENT:g}, {MOST_CURRENT:g}] A; likely i is in mA"
+            f"[-{MAX_CURRENT:g}, {MAX_CURRENT:g}] A; likely i is in mA"
         )
-    if constant is None:
+    if torque_constant is None:
         raise ValueError(f"{table.path}: has a current alone; expected --torque-constant [N.m/A] beside it")
-    return constant * current
+    return torque_constant * current
 
 
-def _of_motion(table: columns.Columns, have: Mapping[str, Array], torque: Array, drive: Drive) -> Samples:
+def _read_dynamic(
+    table: columns.Columns, columns_by_name: Mapping[str, Array], torque: Array, drive: Drive
+) -> Samples:
     """Filtered samples of a dynamic log, one per window of the filter."""
-    if "q" not in have and "dq" not in have:
-        raise ValueError(f"{table.path}: has neither q nor dq; expected {columns.heading(COLUMNS)}")
-    time, step = _clock(table)
+    if "q" not in columns_by_name and "dq" not in columns_by_name:
+        raise ValueError(
+            f"{table.path}: has neither q nor dq; expected {columns.format_heading(COLUMN_UNITS)}"
+        )
+    time, step = _time_step(table)
     even = np.arange(time[0], time[-1] + 0.5 * step, step)
-    have = {name: np.interp(even, time, x) for name, x in (*have.items(), ("tau", torque))}
-    width = window(step)
+    columns_by_name = {
+        name: np.interp(even, time, x) for name, x in (*columns_by_name.items(), ("tau", torque))
+    }
+    width = window_size(step)
     if even.size < 2 * width:
         raise ValueError(
             f"{table.path}: takes {time[-1] - time[0]:.4g} s, expected at least {2 * width * step:.3g} s"
         )
-    samples = moving(even, step, have, drive)
-    if "dq" in have and "q" in have:
-        _same_motion(table, smoothed(have["q"], step, 1), samples.dq)
-    _check(table.path, samples, drive)
-    return samples.part(np.arange(width // 2, even.size - width // 2, width))
+    samples = dynamic_samples(even, step, columns_by_name, drive)
+    if "dq" in columns_by_name and "q" in columns_by_name:
+        _check_speed_column(table, filter_values(columns_by_name["q"], step, 1), samples.dq)
+    _check_samples(table.path, samples, drive)
+    return samples.select(np.arange(width // 2, even.size - width // 2, width))
 
 
-def _clock(table: columns.Columns) -> tuple[Array, float]:
+def _time_step(table: columns.Columns) -> tuple[Array, float]:
     """Times (n) [s] of a log, and the time step [s] for resampling.
 
     Raises ValueError for times that do not increase, and for gaps.
@@ -296,22 +306,22 @@ def _clock(table: columns.Columns) -> tuple[Array, float]:
             f"{time[first]:.9g} s runs back; expected rising times"
         )
     step = float(np.median(steps))
-    if np.any(wrong := steps > GAP * step):
+    if np.any(wrong := steps > GAP_RATIO * step):
         first = int(np.argmax(wrong))
         raise ValueError(
             f"{table.path}: line {table.lines[first + 1]}: a gap of {steps[first]:.4g} s, allowed is "
-            f"{GAP * step:.4g} s; cut the log there, several files are read at once"
+            f"{GAP_RATIO * step:.4g} s; cut the log there, several files are read at once"
         )
-    if np.max(np.abs(steps - step)) < EVEN * step:
+    if np.max(np.abs(steps - step)) < STEP_TOLERANCE * step:
         step = float(time[-1] - time[0]) / (time.size - 1)
     return time, step
 
 
-def _same_motion(table: columns.Columns, of_q: Array, dq: Array) -> None:
+def _check_speed_column(table: columns.Columns, derivative_of_q: Array, dq: Array) -> None:
     """Check that dq is the derivative of q. Raises ValueError if not."""
-    most = float(np.max(np.abs(of_q)))
-    scale = float(dq @ of_q / (of_q @ of_q)) if most else 0.0
-    if np.max(np.abs(dq)) and not SAME[0] <= scale <= SAME[1]:
+    most = float(np.max(np.abs(derivative_of_q)))
+    scale = float(dq @ derivative_of_q / (derivative_of_q @ derivative_of_q)) if most else 0.0
+    if np.max(np.abs(dq)) and not SPEED_RATIO_RANGE[0] <= scale <= SPEED_RATIO_RANGE[1]:
         hint = (
             "; likely one of them is in degrees"
             if 40.0 < max(abs(scale), 1.0 / abs(scale or 1.0)) < 80.0
@@ -322,20 +332,20 @@ def _same_motion(table: columns.Columns, of_q: Array, dq: Array) -> None:
         )
 
 
-def _check(path: Path, samples: Samples, drive: Drive) -> None:
+def _check_samples(path: Path, samples: Samples, drive: Drive) -> None:
     """Check speeds and torques of a log. Raises ValueError if nothing moves or a value is implausible."""
     ratio = abs(drive.ratio)
     fastest = ratio * float(np.max(np.abs(samples.dq)))
-    if fastest > MOST_SPEED:
+    if fastest > MAX_MOTOR_SPEED:
         raise ValueError(
             f"{path}: the joint's speed of {fastest / ratio:.4g} rad/s turns the motor with {fastest:.4g} "
-            f"rad/s, outside [0, {MOST_SPEED:g}]; likely angles are in degrees"
+            f"rad/s, outside [0, {MAX_MOTOR_SPEED:g}]; likely angles are in degrees"
         )
-    if fastest < STILL:
+    if fastest < MIN_MOTOR_SPEED:
         raise ValueError(
-            f"{path}: has no motion; expected speeds of the joint above {STILL / ratio:.2g} rad/s"
+            f"{path}: has no motion; expected speeds of the joint above {MIN_MOTOR_SPEED / ratio:.2g} rad/s"
         )
-    limit = MOST_TORQUE * float(drive.reach) / ratio
+    limit = MAX_TORQUE_RATIO * float(drive.max_table_torque) / ratio
     largest = float(np.max(np.abs(samples.torque)))
     if largest > limit:
         raise ValueError(

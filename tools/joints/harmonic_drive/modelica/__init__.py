@@ -4,9 +4,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from jointfmu.joints.harmonic_drive.drive import WIDTH, Drive
-from jointfmu.joints.harmonic_drive.friction import LIMITS, REFERENCE, SPRINGS, TURNED
-from jointfmu.joints.harmonic_drive.hysteresis import exponent, shares
+from jointfmu.joints.harmonic_drive.drive import PLAY_WIDTH_RATIO, Drive
+from jointfmu.joints.harmonic_drive.friction import (
+    LIMIT_SHARES,
+    PRIOR_ROTATION_TIME,
+    REFERENCE_TEMPERATURE,
+    STIFFNESS_SHARES,
+)
+from jointfmu.joints.harmonic_drive.hysteresis import slider_shares, stiffness_exponent
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import flat_fields
@@ -15,39 +20,39 @@ from ....modelica.records import (
     ModelicaComponent,
     ModelicaRecord,
     WorkingPoint,
-    computed,
-    given,
-    identifier,
-    matrix,
-    number,
-    thinned,
+    decimate_curve,
+    format_computed,
+    format_given,
+    format_matrix,
+    format_number,
+    make_identifier,
 )
 
-_SPRING = ("hysteresis_loss", "hysteresis_stiffness", "lost_motion", "inertia1", "inertia2")
+_RECORD_ONLY_PARAMETERS = ("hysteresis_loss", "hysteresis_stiffness", "lost_motion", "inertia1", "inertia2")
 """Parameters of the drive without a parameter of their own in the component: they are in the table and in the
 sliders of the record, or only the FMU uses them."""
-_OWN = tuple(name for name, _ in flat_fields(Drive) if name not in _SPRING)
+_COMPONENT_PARAMETERS = tuple(name for name, _ in flat_fields(Drive) if name not in _RECORD_ONLY_PARAMETERS)
 """Parameters of the drive that are parameters of the component, too."""
 
 
-def _records(file: ParameterFile, points: Sequence[WorkingPoint]) -> list[ModelicaRecord]:
+def _make_records(file: ParameterFile, points: Sequence[WorkingPoint]) -> list[ModelicaRecord]:
     drive = file.values
-    spring = HarmonicDriveSpring.of(drive)
-    stated = given({name: getattr(drive, name) for name in _OWN})
-    stated |= given({"T": file.start("temperature")})
-    derived = computed({"K_FTS0": drive.K_FTS} | _hysteresis(spring))
-    sliders = np.array(shares(exponent(drive)), dtype=np.float64).T
+    spring = HarmonicDriveSpring.tabulate(drive)
+    stated = format_given({name: getattr(drive, name) for name in _COMPONENT_PARAMETERS})
+    stated |= format_given({"T": file.start_value("temperature")})
+    derived = format_computed({"K_FTS0": drive.K_FTS} | _hysteresis_totals(spring))
+    sliders = np.array(slider_shares(stiffness_exponent(drive)), dtype=np.float64).T
     return [
         ModelicaRecord(
-            name=identifier(file.name),
+            name=make_identifier(file.name),
             title=file.name,
-            table=thinned(spring.curve),
-            values=stated | derived | {"sliders": matrix(sliders)},
+            table=decimate_curve(spring.curve),
+            values=stated | derived | {"sliders": format_matrix(sliders)},
         )
     ]
 
 
-def _hysteresis(spring: HarmonicDriveSpring) -> dict[str, float]:
+def _hysteresis_totals(spring: HarmonicDriveSpring) -> dict[str, float]:
     """Total friction limit [N.m] of the hysteresis sliders, and their stiffness [N.m/rad] while all stick."""
     sliders = spring.hysteresis
     return {
@@ -59,18 +64,19 @@ def _hysteresis(spring: HarmonicDriveSpring) -> dict[str, float]:
 COMPONENT = ModelicaComponent(
     name="HarmonicDriveSpring",
     base="HarmonicDrive",
-    records=_records,
-    of_system=lambda file: (
-        computed(_hysteresis(HarmonicDriveSpring.of(file.values))) | {"stateSelect": "StateSelect.default"}
+    records=_make_records,
+    system_parameters=lambda file: (
+        format_computed(_hysteresis_totals(HarmonicDriveSpring.tabulate(file.values)))
+        | {"stateSelect": "StateSelect.default"}
     ),
-    held={"temperature": "T"},
-    special=("hysteresis_loss", "hysteresis_stiffness"),
-    texts=lambda drive: {
+    fixed_input_parameters={"temperature": "T"},
+    component_only_parameters=("hysteresis_loss", "hysteresis_stiffness"),
+    template_texts=lambda drive: {
         "end": f"{drive.end:g} N m",
-        "brakes": matrix(np.column_stack([SPRINGS, LIMITS])),
-        "turned": number(TURNED),
-        "reference": number(REFERENCE),
-        "width": number(WIDTH),
+        "brakes": format_matrix(np.column_stack([STIFFNESS_SHARES, LIMIT_SHARES])),
+        "turned": format_number(PRIOR_ROTATION_TIME),
+        "reference": format_number(REFERENCE_TEMPERATURE),
+        "width": format_number(PLAY_WIDTH_RATIO),
     },
     note="For the drive with a locked wave generator (the FMU <code>HarmonicDriveCompliance</code>) fix "
     '<code>flange_a</code> of <a href="modelica://JointStiffness.Components.HarmonicDriveSpring">'
