@@ -52,13 +52,13 @@ def build(
 def _members(model: Model, parameters: ParameterFile, version: str, variability: str) -> dict[str, bytes]:
     """{path: content} of all files of a native FMU."""
     parameter_split = split(model, parameters)
-    compiled_model = compiled_model(model, parameters, parameter_split)
-    data = data_of(model, parameters, parameter_split, compiled_model.sources)
+    compiled = compiled_model(model, parameters, parameter_split)
+    data = data_of(model, parameters, parameter_split, compiled.sources)
     placeholder_data = placeholder(model, parameter_split)
-    files = compiled_model.sources | {"data.c": data.source(f" from the parameters {parameters.name!r}")}
+    files = compiled.sources | {"data.c": data.source(f" from the parameters {parameters.name!r}")}
     filled_libraries = {
         platform: fill_library(library, placeholder_data, data, model.title)
-        for platform, library in compiled_model.libraries[version].items()
+        for platform, library in compiled.libraries[version].items()
     }
     icons = terminals_and_icons(model)
     return (

@@ -64,7 +64,7 @@ def _compute_expected(fmu: Path, path: Path) -> ExpectedContents:
     from ..host import unpack_fmu
 
     file = load_parameter_file(path)
-    with unpack_fmu(fmu, exchange=True) as (_, description):
+    with unpack_fmu(fmu, model_exchange=True) as (_, description):
         names = {v.name for v in description.modelVariables}
     for model in KINDS[file.joint].models:
         if {v.name for v in (*model.inputs, *model.outputs)} <= names:

@@ -57,7 +57,7 @@ def _declare_sampling(parser: Parser, samples_help: str, default_samples: int) -
     declare_argument(parser, "--seed", int, "seed of the Sobol' sequence", default=0)
 
 
-def load_parameter_file(joint: str | None, params: Path | None) -> ParameterFile:
+def load_stated_file(joint: str | None, params: Path | None) -> ParameterFile:
     """Load the parameter file of `--params`, or the default of JOINT; ValueError if both are missing."""
     if params is None and joint is None:
         raise ValueError(f"JOINT or --params FILE is missing; JOINT is one of {', '.join(KINDS)}")
@@ -68,7 +68,7 @@ def _run_uncertainty(args: argparse.Namespace) -> CommandResult:
     from ..uncertainty import problem, propagate, report, study
     from ..uncertainty.propagate import compute_sensitivity
 
-    file = load_parameter_file(args.joint, args.params)
+    file = load_stated_file(args.joint, args.params)
     count = study.round_up_to_power_of_two(args.samples)
     study.check_seed(args.seed)
     distributions = study.merge_settings(args.study, args.settings)

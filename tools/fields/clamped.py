@@ -46,15 +46,15 @@ class BoltLayout(Protocol):
     """Bolt positions and sizes in the parameters of a joint; empty or 0 where the parameters have none."""
 
     @property
-    def bolts(self) -> Array:
+    def bolt_positions(self) -> Array:
         """Positions (b, 2) [m] relative to the centroid of the contact."""
 
     @property
-    def hole(self) -> float:
+    def hole_diameter(self) -> float:
         """Diameter of the holes [m]."""
 
     @property
-    def head(self) -> float:
+    def head_diameter(self) -> float:
         """Outer diameter of the bolt heads or washers [m]."""
 
 

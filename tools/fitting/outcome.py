@@ -117,7 +117,7 @@ class Picture:
     misfit : data minus law (n)
     line   : x (m) and y (m) of the fitted law
     labels : axis labels of x, y and misfit
-    marks  : mask (n) of the points to be highlighted
+    highlighted : mask (n) of the points to be highlighted
     also   : {name: (x, y)} of other laws for comparison
     """
 
@@ -153,14 +153,14 @@ class FitResult:
 
     def rows(self) -> list[dict[str, Any]]:
         """Table of the unknowns: name, value, unit, relative standard deviation, whether it is determined."""
-        undetermined_names, deviations = undetermined_names(self.solution), self.solution.deviations
+        undetermined, deviations = undetermined_names(self.solution), self.solution.deviations
         return [
             {
                 "name": u.name,
                 "value": self.solution.values[u.name],
                 "unit": u.unit,
                 "relative_deviation": _finite_or_none(deviations[u.name]),
-                "determined": u.name not in undetermined_names,
+                "determined": u.name not in undetermined,
                 **({"interval": list(self.intervals[u.name])} if u.name in self.intervals else {}),
             }
             for u in self.solution.unknowns
@@ -198,9 +198,9 @@ class FitResult:
     def warnings(self) -> list[str]:
         """Warnings, one line each: undetermined parameters, parameters on bounds, model limits, notes."""
         lines = []
-        if undetermined_names := undetermined_names(self.solution):
+        if names := undetermined_names(self.solution):
             lines.append(
-                f"the data do not determine {', '.join(undetermined_names)}: other values fit as well"
+                f"the data do not determine {', '.join(names)}: other values fit as well"
             )
             ranked = combinations(self.solution)
             for combination in ranked:

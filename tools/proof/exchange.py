@@ -37,7 +37,7 @@ def run_fmpy_exchange(task: Task, messages: list[str]) -> Rows:
     messages : list to which the warnings and errors of the FMU are appended
     """
     with open_instance(
-        task.folder, read_description(task.fmu), task.fmu, messages, exchange=True
+        task.folder, read_description(task.fmu), task.fmu, messages, model_exchange=True
     ) as instance:
         instance.enter_initialization(task.times[0])
         instance.set_values({**task.settings, **task.inputs_at(0)})

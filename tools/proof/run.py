@@ -47,7 +47,7 @@ def prove(fmu: Path, importer: str = "fmpy", expected: ExpectedContents | None =
     """
     experiments = RelatedFiles(fmu, expected.members if expected else None).experiments()
     _check_importer(importer)
-    with unpack_fmu(fmu, exchange=True) as (folder, description):
+    with unpack_fmu(fmu, model_exchange=True) as (folder, description):
         if description.fmiVersion[0] not in FMI_VERSIONS[importer]:
             raise ValueError(
                 f"{fmu}: is of FMI {description.fmiVersion}, {importer} takes "

@@ -50,12 +50,12 @@ def convert_setting(variable: "ScalarVariable", stated: StartSetting) -> object:
 
 def convert_value(variable: "ScalarVariable", value: float) -> float | int | bool:
     """Convert a number to the kind of a variable (real, integer, boolean); ValueError if it is none."""
-    if (variable_kind := variable_kind(variable)) == "real":
+    if (kind := variable_kind(variable)) == "real":
         return value
     number = int(value)
-    if number != value or (variable_kind == "boolean" and number not in (0, 1)):
+    if number != value or (kind == "boolean" and number not in (0, 1)):
         raise ValueError(f"{variable.name} = {value:g} is no {variable.type}")
-    return bool(number) if variable_kind == "boolean" else number
+    return bool(number) if kind == "boolean" else number
 
 
 def input_values(

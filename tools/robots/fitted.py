@@ -33,7 +33,7 @@ class FittedTendons:
     sliders: tuple[tuple[float, float], ...]
     torque: float
 
-    def torque(self, wind_up: Array) -> Array:
+    def torque_at(self, wind_up: Array) -> Array:
         """Torques (n) [N.m] along a history of wind-ups (n) [rad] that starts at rest."""
         elastic = self.linear * wind_up + self.cubic * wind_up**3
         return elastic + sum((k * slider(wind_up, y) for k, y in self.sliders), np.zeros_like(wind_up))
@@ -41,9 +41,9 @@ class FittedTendons:
     def wind_up(self, torque: float) -> float:
         """Wind-up [rad] at a torque [N.m], for first loading from rest."""
         upper = 1.0
-        while self.torque(np.array([upper]))[0] < abs(torque):
+        while self.torque_at(np.array([upper]))[0] < abs(torque):
             upper *= 2.0
-        size = brentq(lambda x: self.torque(np.array([x]))[0] - abs(torque), 0.0, upper, xtol=1e-15)
+        size = brentq(lambda x: self.torque_at(np.array([x]))[0] - abs(torque), 0.0, upper, xtol=1e-15)
         return float(np.copysign(size, torque))
 
     def stiffness(self, torque: float) -> float:

@@ -91,7 +91,7 @@ def identify(
 
 def double_series(series: ScaleSeries) -> ScaleSeries:
     """Series of the equivalent surface of two sides with the same finish, from the series of one side."""
-    return replace(series, value=2.0 * series.value, raw=2.0 * series.function_value)
+    return replace(series, value=2.0 * series.value, function_value=2.0 * series.function_value)
 
 
 def add_series(first: ScaleSeries, second: ScaleSeries) -> ScaleSeries:
@@ -117,7 +117,7 @@ def add_series(first: ScaleSeries, second: ScaleSeries) -> ScaleSeries:
         covariance2 = interpolation @ second.covariance(H) @ interpolation.T
         return np.asarray(np.outer(share, share) * covariance1 + np.outer(1 - share, 1 - share) * covariance2)
 
-    return replace(first, value=first.value + value, raw=first.function_value + raw, covariance=covariance)
+    return replace(first, value=first.value + value, function_value=first.function_value + raw, covariance=covariance)
 
 
 def _fractal_result(series: ScaleSeries, law: SelfAffineLaw) -> FractalResult:

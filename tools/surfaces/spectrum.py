@@ -54,7 +54,7 @@ class ScaleSeries:
             self,
             scale=self.scale[selection],
             value=self.value[selection],
-            raw=self.function_value[selection],
+            function_value=self.function_value[selection],
             expected=lambda H: self.expected(H)[selection],
             covariance=lambda H: self.covariance(H)[np.ix_(selection, selection)],
         )

@@ -81,11 +81,11 @@ def decays(
 
     Raises ValueError for an FMU that is missing or refuses, and where too few periods stand out.
     """
-    joint = {**joint.parameters, **(settings or {})}
-    loads = [max(joint.body.loads(folder / f"{joint.fmu}.fmu", joint))] if loads is None else loads
+    parameters = {**joint.parameters, **(settings or {})}
+    loads = [max(joint.body.loads(folder / f"{joint.fmu}.fmu", parameters))] if loads is None else loads
     inertia = joint.inertia if inertia is None else inertia
     return [
-        _decay_at(joint, folder, load, joint, inertia, first)
+        _decay_at(joint, folder, load, parameters, inertia, first)
         for load in track_progress(loads, "ring", len(loads))
     ]
 
@@ -105,11 +105,11 @@ def _decay_at(
     start, held = {joint.key: mass, states[0]: pulled}, {**parameters, **body.start(load)}
     step = 2.0 * np.pi / np.sqrt(rest.stiffness / mass) / PER_PERIOD
     with (
-        Slave(path, {**held, body.motion[0]: pulled}, body.motion, (body.force,)) as joint,
+        Slave(path, {**held, body.motion[0]: pulled}, body.motion, (body.force,)) as slave,
         Slave(folder / f"{body.partner}.fmu", start, [v.name for v in partner.inputs], states) as moving,
     ):
-        signal = motion(joint, moving, rest.force, step, PERIODS * PER_PERIOD)[:, 0] - rest.position
-        messages = tuple(dict.fromkeys(joint.messages + moving.messages))
+        signal = motion(slave, moving, rest.force, step, PERIODS * PER_PERIOD)[:, 0] - rest.position
+        messages = tuple(dict.fromkeys(slave.messages + moving.messages))
     time = np.asarray(step * np.arange(signal.size), dtype=np.float64)
     found = decay.analyse_decay(time, signal, f"load = {load:g}: ")
     seen = found.amplitude > MIN_AMPLITUDE_RATIO * first

@@ -241,13 +241,13 @@ def ring(
 
     Raises ValueError for an FMU that is missing or refuses, and where nothing rings.
     """
-    joint = {**joint.parameters, **joint.body.elastic}
+    parameters = {**joint.parameters, **joint.body.elastic}
     if loads is None:
-        loads = joint.body.loads(folder / f"{joint.fmu}.fmu", joint)
+        loads = joint.body.loads(folder / f"{joint.fmu}.fmu", parameters)
     if inertia is None:
         inertia = joint.inertia
     return [
-        _ring_at(joint, folder, load, joint, inertia) for load in track_progress(loads, "ring", len(loads))
+        _ring_at(joint, folder, load, parameters, inertia) for load in track_progress(loads, "ring", len(loads))
     ]
 
 
@@ -281,10 +281,10 @@ def _ring_at(
     start = {joint.key: inertia, states[0]: rest.position + first}
     forces = [v.name for v in partner.inputs]
     with (
-        Slave(path, {**parameters, **body.start(load)}, body.motion, (body.force,)) as joint,
+        Slave(path, {**parameters, **body.start(load)}, body.motion, (body.force,)) as slave,
         Slave(folder / f"{body.partner}.fmu", start, forces, states) as mass,
     ):
-        return _ring(joint, mass, rest, load, inertia)
+        return _ring(slave, mass, rest, load, inertia)
 
 
 def _ring(joint: Slave, body: Slave, rest: Rest, load: float, inertia: float) -> Ringing:

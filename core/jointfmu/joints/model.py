@@ -215,7 +215,7 @@ class Model:
         scale = end / ramp.end
         if loop and loop.input == ramp.input:
             loop = replace(loop, amplitude=scale * loop.amplitude)
-        ramp = replace(ramp, begin=max(onset, 0.0), end=end, step=scale * ramp.step)
+        ramp = replace(ramp, onset=max(onset, 0.0), end=end, step=scale * ramp.step)
         return replace(self, ramp=ramp, loop=loop)
 
     def find_warnings(self, spring: TabulatedJoint, values: Values) -> dict[int, str]:

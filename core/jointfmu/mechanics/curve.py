@@ -187,10 +187,8 @@ def assemble_curve(pieces: list[tuple[Array, Array, Array, Array]], error: float
     convergence is at least one, also at a kink. It is measured at the quarter points of the segments, because
     the spline is more accurate at their middle.
     """
-    fine, coarse = (
-        _join_pieces(pieces),
-        _join_pieces([tuple(column[::2] for column in piece) for piece in pieces]),
-    )  # type: ignore[misc]
+    every_second = [tuple(column[::2] for column in piece) for piece in pieces]
+    fine, coarse = _join_pieces(pieces), _join_pieces(every_second)  # type: ignore[arg-type]
     nodes = fine.displacement
     points = np.concatenate([nodes[:-1] + fraction * np.diff(nodes) for fraction in (0.25, 0.5, 0.75)])
     worst = error

@@ -160,6 +160,6 @@ def _row(
     """C initializer of one variable."""
     flags = ", ".join(str(int(flag)) for flag in (interval.low_open, interval.high_open, whole, boolean))
     numbers = ", ".join(number(x) for x in (interval.low, interval.high))
-    interval = "" if boolean else str(interval)
-    texts = ", ".join(string(x) for x in (name, "" if unit == "1" else unit, doc, interval))
+    allowed = "" if boolean else str(interval)
+    texts = ", ".join(string(x) for x in (name, "" if unit == "1" else unit, doc, allowed))
     return f"{{{texts}, {numbers}, {flags}}}"

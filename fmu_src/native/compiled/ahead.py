@@ -31,9 +31,9 @@ def compile_ahead(names: Sequence[str], out: Path) -> list[Path]:
     written_files = []
     for model, parameters in track_progress(jobs, "compile", len(jobs)):
         parameter_split = split(model, parameters)
-        compiled_model = compiled_model(model, parameters, parameter_split)
+        compiled = compiled_model(model, parameters, parameter_split)
         file = out / shipped_name(model, parameter_split)
-        file.write_bytes(pack_model(compiled_model))
+        file.write_bytes(pack_model(compiled))
         written_files.append(file)
     for old_file in set(out.iterdir()) - set(written_files):
         old_file.unlink()

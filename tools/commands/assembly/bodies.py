@@ -74,7 +74,7 @@ def find_bolt_positions(args: argparse.Namespace, file: ParameterFile, field: Co
         np.max(field.position, axis=0) + MAX_OUTSIDE_DISTANCE,
     )
     if not args.bolts:
-        positions = field_adapter(file.joint).bolt_layout(file.values).bolts + field.centroid
+        positions = field_adapter(file.joint).bolt_layout(file.values).bolt_positions + field.centroid
         inside = np.all((positions > low) & (positions < high))
         return positions if len(positions) == file.values.n_bolts and inside else None
     stated = np.array(
@@ -153,12 +153,12 @@ def build_assembly(
 def _hole_and_head_diameters(args: argparse.Namespace, file: ParameterFile) -> tuple[float, float]:
     """Diameters [m] of clearance hole and head. Raises ValueError if one of them is not known."""
     layout = field_adapter(file.joint).bolt_layout(file.values)
-    hole = parse_number("hole", args.hole, "mm", "m") if args.hole else layout.hole
+    hole = parse_number("hole", args.hole, "mm", "m") if args.hole else layout.hole_diameter
     if not hole > 0.0:
         raise ValueError("--thickness without the holes of the bolts: expected --hole")
     if args.head:
         return hole, parse_number("head", args.head, "mm", "m")
     fitting = [thread for thread in read_threads().values() if thread.d < hole]
-    if layout.head <= 0.0 and not fitting:
+    if layout.head_diameter <= 0.0 and not fitting:
         raise ValueError(f"no bolt of the tables passes a hole of {1e3 * hole:g} mm: expected --head")
-    return hole, layout.head or max(fitting, key=lambda thread: thread.d).hexagon
+    return hole, layout.head_diameter or max(fitting, key=lambda thread: thread.d).hexagon

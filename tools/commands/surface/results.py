@@ -70,7 +70,7 @@ def _joint_document(
 
 def _roughness_document(identified: Identification, file: ParameterFile | None) -> dict[str, object]:
     """JSON object of the roughness: heights of each scan and of both sides together, stiffness per area."""
-    h = combined_height(identified, file)
+    h = height_of_both_sides(identified, file)
     return {
         "scans": [
             {
@@ -120,7 +120,7 @@ def _convert_number(value: Number) -> float | None:
     return float(value) if math.isfinite(float(value)) else None
 
 
-def combined_height(identified: Identification, file: ParameterFile | None) -> float:
+def height_of_both_sides(identified: Identification, file: ParameterFile | None) -> float:
     """Rms height h [m] of both sides together: from the parameter file if it has one, else from the scans."""
     return combined_height(file.roughness if file else {}) or identified.h
 
@@ -193,7 +193,7 @@ def _format_scan(scan: ScanRoughness) -> str:
 
 
 def _format_level(identified: Identification, file: ParameterFile | None) -> str:
-    h = combined_height(identified, file)
+    h = height_of_both_sides(identified, file)
     known = {name[2] for name in file.roughness} if file else set()
     if (
         "h" in (file.roughness if file else ())

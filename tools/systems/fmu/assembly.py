@@ -27,14 +27,14 @@ def assembly(system: System) -> SystemModel:
     for name, part in system.components.items():
         model = model_of(part)
         if model.state_count:
-            model = replace(model, hidden=LAGS)
+            model = replace(model, fixed_parameters=LAGS)
         file = part.file or partner_parameters(part.model).with_values(part.parameters, "user", system.name)
         start = {v.name: file.start_value(v.name) for v in model.inputs} | part.state
         parts.append(SystemComponent(name, model, file, feeds[name], start))
-    if not any(part.model.states for part in parts):
+    if not any(part.model.state_count for part in parts):
         raise ValueError(
             f"{system.name}: no component is a body; allowed in one FMU are systems with one or more"
         )
-    parts.sort(key=lambda part: (part.model.states > 0, not part.model.moves))
+    parts.sort(key=lambda part: (part.model.state_count > 0, not part.model.is_time_dependent))
     interval = max(system.interval, LEAST_INTERVAL)
     return SystemModel(system.name, system.description, parts, system.stop_time, interval, system.interval)

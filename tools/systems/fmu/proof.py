@@ -147,7 +147,7 @@ def _exchanged(model: Model, fmu: Path, times: np.ndarray, tolerance: float) -> 
     names, said = [v.name for v in model.outputs], list[str]()
     if not exchange.has_solver():
         raise RuntimeError("fmpy has no solver for model exchange")
-    with unpack_fmu(fmu, exchange=True) as (folder, _):
+    with unpack_fmu(fmu, model_exchange=True) as (folder, _):
         task = Task(
             str(fmu),
             folder,

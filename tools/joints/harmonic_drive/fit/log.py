@@ -334,7 +334,7 @@ def _speed_picture(samples: Samples, fitted_log: FittedLog, misfit: Array) -> Pi
     )
     picture = _friction_picture(samples.dq, y, misfit, line, "speed of the joint [rad/s]")
     marks = None if samples.is_dynamic.any() else samples.is_held_out
-    return replace(picture, labels=(picture.labels[0], _NO_LOAD_LABEL, _ERROR_LABEL), marks=marks)
+    return replace(picture, labels=(picture.labels[0], _NO_LOAD_LABEL, _ERROR_LABEL), highlighted=marks)
 
 
 def _friction_picture(x: Array, y: Array, misfit: Array, line: tuple[Array, Array], label: str) -> Picture:
