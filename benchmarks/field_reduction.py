@@ -64,7 +64,8 @@ def main() -> None:
             part = float(np.mean(one.pressure == 0.0))
             times = f"{took:.1f} | {whole:.1f}"
             print(
-                f"| {found.node_count} | {part:.0%} | {found.point_count} | {found.deviation:.1e} | {times} |",
+                f"| {found.node_count} | {part:.0%} | {found.point_count} | {found.deviation:.1e} | "
+                f"{times} |",
                 flush=True,
             )
 

@@ -46,7 +46,10 @@ def deck(lap: Lap, spring: BoltedJointSpring, motion: float, levels: Sequence[fl
     for k, body in enumerate(joint.bodies):
         yield from body_lines(body, k + 1, starts[k], k * first.mesh.nelements, k * pressure / normal)
     yield "*SURFACE INTERACTION, NAME=LAW\n*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR"
-    yield f"{normal * 1e-9:.12g}\n*FRICTION\n{mu:.12g}, {normal * spring.foundation().stiffness_ratio * 1e-9:.12g}"
+    yield (
+        f"{normal * 1e-9:.12g}\n*FRICTION\n{mu:.12g}, "
+        f"{normal * spring.foundation().stiffness_ratio * 1e-9:.12g}"
+    )
     yield "*CONTACT PAIR, INTERACTION=LAW, TYPE=SURFACE TO SURFACE\nFACE2, FACE1\n*NSET, NSET=MOVED"
     yield from (f"{starts[1] + i // 3 + 1}," for i in joint.attachment_unknowns[1] if i % 3 == 0)
     yield "*BOUNDARY"

@@ -119,7 +119,8 @@ def assess_law(
     if comparison is not None and comparison.is_doubtful:
         warnings.append(
             f"the law's K is {_format_range(comparison.ratio)} times that of the roughness, "
-            f"K/A_0 = p/({GAMMA:g} h) with h = {1e6 * comparison.h:.3g} um: beyond a factor of {MAX_RATIO:g} a "
+            f"K/A_0 = p/({GAMMA:g} h) with h = {1e6 * comparison.h:.3g} um: beyond a factor of "
+            f"{MAX_RATIO:g} a "
             "measurement decides, and without one believe the roughness (docs/validity.md)"
         )
     return Plausibility(comparison, tuple(warnings))

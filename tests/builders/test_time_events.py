@@ -144,8 +144,9 @@ def test_a_solver_at_rest_meets_the_pulse(exchange: Make) -> None:
 
 def test_corners_are_where_a_course_changes_its_polynomial() -> None:
     """The third derivative of a quintic edge jumps at its ends and nowhere else."""
-    given = flatten_parameters(parameters("ForceProfile").values) | PULSE | {"ramp_height": 1.0, "ramp_start": 0.25,
-        "ramp_duration": 0.5, "pulse_rise": 0.25, "pulse_hold": 0.25}  # fmt: skip
+    given = flatten_parameters(parameters("ForceProfile").values) | PULSE
+    given |= {"ramp_height": 1.0, "ramp_start": 0.25, "ramp_duration": 0.5}
+    given |= {"pulse_rise": 0.25, "pulse_hold": 0.25}
     load = ForceProfile(**given)
     ends = sorted(float(t) for t in load.corners())
     assert ends == corners("ForceProfile", given)

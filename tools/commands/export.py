@@ -99,7 +99,8 @@ def _run_export(args: argparse.Namespace) -> CommandResult:
     _refuse_options(args, {"torque": f"{args.form}; it is for {', '.join(ROBOT_FORMATS)}"})
     if args.what not in FORMAT_CONTENTS[args.form]:
         raise ValueError(
-            f"{args.form} {args.what} cannot be written; {args.form} has {', '.join(FORMAT_CONTENTS[args.form])}"
+            f"{args.form} {args.what} cannot be written; {args.form} has "
+            f"{', '.join(FORMAT_CONTENTS[args.form])}"
         )
     file = load_parameter_file(args.params) if args.params else load_default(args.joint)
     _check_options(args, file)

@@ -117,7 +117,8 @@ def _find_joint(choices: Mapping[str, Procedure], args: argparse.Namespace) -> s
         for option in procedure.options:
             if option.name not in options and getattr(args, option.name) != option.default:
                 raise ValueError(
-                    f"{args.file}: is of a {joints[0]}; {option_flag(option.name)} is allowed with a {other} only"
+                    f"{args.file}: is of a {joints[0]}; {option_flag(option.name)} is allowed with "
+                    f"a {other} only"
                 )
     return joints[0]
 

@@ -69,7 +69,8 @@ def _run_command(args: argparse.Namespace) -> CommandResult:
     )
     if args.loop and ramp_options:
         raise ValueError(
-            f"--loop and {option_flag(ramp_options[0])} are both given; allowed is --loop, or --to with --step"
+            f"--loop and {option_flag(ramp_options[0])} are both given; allowed is --loop, or --to "
+            "with --step"
         )
     if not args.loop and loop_options:
         raise ValueError(

@@ -54,7 +54,8 @@ def parse_temperature(option: str, text: str) -> float:
     if not LUBRICANT_TEMPERATURES[0] <= kelvin <= LUBRICANT_TEMPERATURES[1]:
         low, high = (end - KELVIN_AT_ZERO for end in LUBRICANT_TEMPERATURES)
         raise ValueError(
-            f"{option_flag(option)} = {text!r} is {kelvin:g} K, outside [{low:g}, {high:g}] degC; kelvin are stated "
+            f"{option_flag(option)} = {text!r} is {kelvin:g} K, outside [{low:g}, {high:g}] degC; "
+            "kelvin are stated "
             "as 318.15K"
         )
     return kelvin

@@ -91,5 +91,6 @@ def _check_values(
 ) -> None:
     if np.any(is_invalid):
         raise ValueError(
-            f"{table.path}: {name} = {value[is_invalid][0]:g} (SI) at node {nodes[is_invalid][0, 0]}: {reason}"
+            f"{table.path}: {name} = {value[is_invalid][0]:g} (SI) at node "
+            f"{nodes[is_invalid][0, 0]}: {reason}"
         )

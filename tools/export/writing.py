@@ -86,7 +86,8 @@ def export_contact(file_format: str, file: ParameterFile, units: UnitSet, error:
         "normal contact of the rough interface: pressure over overclosure from first touch",
         f"parameters: {file.name} ({file.joint})",
         f"units: {units.name}",
-        f"straight lines keep to the law's pressure within {table.linear_errors[0]:.2g}, to its stiffness within "
+        f"straight lines keep to the law's pressure within {table.linear_errors[0]:.2g}, to its "
+        "stiffness within "
         f"{table.linear_errors[1]:.2g},",
         f"from {curve.closed:.4g} Pa (below, one line leads to first touch) to {curve.end[1]:.4g} Pa",
         *more,

@@ -111,7 +111,8 @@ class RigidBalance:
         imbalance = float(np.abs(self.force - self.rigid_approach.T @ force).sum())
         if not imbalance <= MAX_RELATIVE_IMBALANCE * self.total_load:
             raise RuntimeError(
-                f"the contact is not in balance: it leaves {imbalance / self.total_load:.2g} of the loads over, "
+                f"the contact is not in balance: it leaves {imbalance / self.total_load:.2g} of the "
+                "loads over, "
                 f"allowed is {MAX_RELATIVE_IMBALANCE:g}"
             )
 

@@ -293,7 +293,8 @@ def check_thickness(assembly: Assembly) -> None:
     for name, body in (("side1", assembly.side1), ("side2", assembly.side2)):
         if not body.clamped_thickness >= min_thickness:
             raise ValueError(
-                f"{name} is {1e3 * body.clamped_thickness:.4g} mm thick, expected at least {1e3 * min_thickness:.4g} "
+                f"{name} is {1e3 * body.clamped_thickness:.4g} mm thick, expected at least "
+                f"{1e3 * min_thickness:.4g} "
                 "mm: the width of the ring under a head, which would punch through"
             )
 

@@ -97,7 +97,8 @@ class ContactEnergy:
             length = self._step_length(approach, change, linear, quadratic)
             u, inner, approach = u + length * move, inner + length * load_change, approach + length * change
         raise RuntimeError(
-            f"the contact has not settled after {MAX_NEWTON_STEPS} steps (residual {last_residual:.2g} of the "
+            f"the contact has not settled after {MAX_NEWTON_STEPS} steps (residual "
+            f"{last_residual:.2g} of the "
             "load): the loads may not balance"
         )
 

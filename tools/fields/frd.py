@@ -144,7 +144,8 @@ def _read_pressures(path: Path, lines: list[str]) -> Iterator[tuple[int, float]]
             continue
         if PRESSURE_COMPONENT not in names:
             raise ValueError(
-                f"{path}: line {number + 1}: {RESULT_NAME} has no {PRESSURE_COMPONENT}; there are {', '.join(names)}"
+                f"{path}: line {number + 1}: {RESULT_NAME} has no {PRESSURE_COMPONENT}; there are "
+                f"{', '.join(names)}"
             )
         name, values = _parse_row(path, number, line, len(names))
         yield name, values[names.index(PRESSURE_COMPONENT)]

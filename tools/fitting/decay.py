@@ -67,7 +67,8 @@ def analyse_decay(time: Array, motion: Array, name: str = "") -> DecayPoints:
     step = float(np.median(np.diff(time)))
     if not frequency * step * MIN_SAMPLES_PER_PERIOD <= 1.0:
         raise ValueError(
-            f"{name}has {1.0 / (frequency * step):.3g} samples a period, at least {MIN_SAMPLES_PER_PERIOD} are needed"
+            f"{name}has {1.0 / (frequency * step):.3g} samples a period, at least "
+            f"{MIN_SAMPLES_PER_PERIOD} are needed"
         )
     largest = time[int(np.argmax(np.abs(motion - np.median(motion))))]
     if largest > time[-1] - RECORD_END_FRACTION * (time[-1] - time[0]):

@@ -173,7 +173,8 @@ class FitResult:
             return f"{', '.join(names)} ended on a bound, nothing else was fitted"
         if (height := self.solution.values.get(HEIGHT_PARAMETER, 0.0)) > MAX_HEIGHT:
             return (
-                f"{HEIGHT_PARAMETER} = {1e6 * height:.3g} um is outside (0, {1e6 * MAX_HEIGHT:g}] um: no roughness is as "
+                f"{HEIGHT_PARAMETER} = {1e6 * height:.3g} um is outside (0, {1e6 * MAX_HEIGHT:g}] "
+                "um: no roughness is as "
                 "high; what lies in series with the joint may be missing (--series-stiffness)"
             )
         count = len(undetermined_names(self.solution))
@@ -199,14 +200,13 @@ class FitResult:
         """Warnings, one line each: undetermined parameters, parameters on bounds, model limits, notes."""
         lines = []
         if names := undetermined_names(self.solution):
-            lines.append(
-                f"the data do not determine {', '.join(names)}: other values fit as well"
-            )
+            lines.append(f"the data do not determine {', '.join(names)}: other values fit as well")
             ranked = combinations(self.solution)
             for combination in ranked:
                 if combination.determined:
                     lines.append(
-                        f"the combination {combination} is determined within {format_deviation(combination.deviation)}"
+                        f"the combination {combination} is determined within "
+                        f"{format_deviation(combination.deviation)}"
                     )
                 elif len(combination.exponents) > 1:
                     lines.append(

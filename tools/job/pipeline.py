@@ -175,7 +175,8 @@ def main(out_folder: Path) -> int:
         f"{len(outcome.fmu_rows)} of them again through the FMUs; {len(outcome.checks)} checks of the ramps"
     )
     print(
-        f"report: {out_folder / 'report' / 'index.html'}; laboratory: {out_folder / 'report' / 'laboratory.html'}"
+        f"report: {out_folder / 'report' / 'index.html'}; laboratory: "
+        f"{out_folder / 'report' / 'laboratory.html'}"
     )
     print(f"missed: {len(misses)}")
     for line in misses:

@@ -223,7 +223,8 @@ def _render_examples(joints: Sequence[_LibraryJoint], shared: Environment) -> di
 
 def render_system(system: System) -> str:
     """Render a system as a stand-alone model that uses the components of the library."""
-    return f"// {PROGRAM_MARK}\n{render_system_model(system, template_environment(), lambda kind, file, point: None)}"
+    model = render_system_model(system, template_environment(), lambda kind, file, point: None)
+    return f"// {PROGRAM_MARK}\n{model}"
 
 
 def _find_record(

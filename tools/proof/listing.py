@@ -136,8 +136,8 @@ These are the files of the experiment "{experiment.name}" in `{FOLDER}` of the F
 {driven}`{name}_ref.csv` has the reference results that the FMU carries, `{name}_ref.opt` times, step
 and relative tolerance. Nothing else is set.
 
-Run in {proof.importer} by `jointfmu prove {name}.fmu`: of {len(chosen.points)} outputs at {chosen.compared_points}
-times `{worst.output}` is furthest off, by {worst.error:.1e}; allowed is {worst.tolerance:.1e}.
+Run in {proof.importer} by `jointfmu prove {name}.fmu`: of {len(chosen.points)} outputs at
+{chosen.compared_points} times `{worst.output}` is furthest off, by {worst.error:.1e}; allowed is {worst.tolerance:.1e}.
 
 <!-- {PROGRAM_MARK} -->
 """

@@ -112,7 +112,8 @@ def _differences(starts: Mapping[str, object], expected: ExpectedContents) -> li
     starts : {variable: start value} of the FMU
     """
     return [
-        f"{name} {f'starts at {_format_value(starts[name])}' if name in starts else 'is no parameter of the FMU'}, "
+        f"{name} "
+        f"{f'starts at {_format_value(starts[name])}' if name in starts else 'is no parameter of the FMU'}, "
         f"{expected.source} says {_format_value(value)}"
         for name, value in expected.start_values.items()
         if name not in starts or starts[name] != value

@@ -84,7 +84,8 @@ def _describe_stiffness(load_history: LoadHistory) -> str:
     times = f", by a factor of {max(first, last) / min(first, last):.3g}" if min(first, last) > 0.0 else ""
     begin = f"{over} = {_format_value(float(columns[over][0]), units[over])}"
     return (
-        f"The stiffness {name} {verb} from {start} at {begin} to {_format_value(last, units[name])} at {end}{times}. "
+        f"The stiffness {name} {verb} from {start} at {begin} to {_format_value(last, units[name])} "
+        f"at {end}{times}. "
         "A constant spring would be right at one load only."
     )
 
@@ -96,7 +97,8 @@ def _describe_loss(loops: HysteresisLoops) -> str:
         return "The joint has no hysteresis: loading and unloading follow the same curve."
     amplitude = f"{loops.motion} = {_format_value(row['motion'], loops.units[0])}"
     return (
-        f"In a cycle between plus and minus {amplitude} the joint dissipates {_format_value(row['loss'], 'J')}, "
+        f"In a cycle between plus and minus {amplitude} the joint dissipates "
+        f"{_format_value(row['loss'], 'J')}, "
         f"a loss factor of {row['loss_factor']:.2g}."
     )
 

@@ -85,4 +85,5 @@ def text(
 
 def _entry(name: str, value: float, unit: str, source: str) -> str:
     """TOML line of a derived value with unit and source."""
-    return f'{name} = {{ value = {value!r}, unit = "{unit}", kind = "derived", source = {format_toml_string(source)} }}'
+    text = format_toml_string(source)
+    return f'{name} = {{ value = {value!r}, unit = "{unit}", kind = "derived", source = {text} }}'

@@ -124,7 +124,9 @@ def _search_range(series: ScaleSeries) -> SelfAffineLaw:
         if length < MIN_DECADES and candidates:
             break
         candidate = _fit_series(series.select(np.arange(-negative_start, j)))
-        candidate = replace(candidate, covers_interval=covers_interval and candidate.decades < SUFFICIENT_DECADES)
+        candidate = replace(
+            candidate, covers_interval=covers_interval and candidate.decades < SUFFICIENT_DECADES
+        )
         if candidate.is_self_affine:
             return candidate
         candidates.append(candidate)

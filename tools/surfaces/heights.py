@@ -68,7 +68,8 @@ class ArealMap:
         if min(self.z.shape) < MIN_AREAL_POINTS:
             shape = " x ".join(str(n) for n in self.z.shape[::-1])
             raise ValueError(
-                f"{self.name}: {shape} points, an areal map needs at least {MIN_AREAL_POINTS} x {MIN_AREAL_POINTS}"
+                f"{self.name}: {shape} points, an areal map needs at least {MIN_AREAL_POINTS} x "
+                f"{MIN_AREAL_POINTS}"
             )
         _check_heights(self.name, self.z, self.dx, self.dy)
 

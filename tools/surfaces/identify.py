@@ -117,7 +117,9 @@ def add_series(first: ScaleSeries, second: ScaleSeries) -> ScaleSeries:
         covariance2 = interpolation @ second.covariance(H) @ interpolation.T
         return np.asarray(np.outer(share, share) * covariance1 + np.outer(1 - share, 1 - share) * covariance2)
 
-    return replace(first, value=first.value + value, function_value=first.function_value + raw, covariance=covariance)
+    return replace(
+        first, value=first.value + value, function_value=first.function_value + raw, covariance=covariance
+    )
 
 
 def _fractal_result(series: ScaleSeries, law: SelfAffineLaw) -> FractalResult:

@@ -101,7 +101,8 @@ def _with_fractal_parameters(
         if not math.isfinite(value):
             D, G = result.profile.D.value, result.profile.G
             raise ValueError(
-                f"{name} of {' and '.join(identification.names)} is not determined (D = {D:.2f}, the interval of "
+                f"{name} of {' and '.join(identification.names)} is not determined (D = {D:.2f}, "
+                "the interval of "
                 f"G spans {G.decades:.0f} decades): {file.joint} needs a number"
             )
         prefix, _, symbol = name.rpartition(".")
@@ -143,4 +144,7 @@ def _describe_source(
         extent = "of the surface"
     else:
         extent = "of the profile" if result.direction in ("profile", "areal") else f"along {result.direction}"
-    return f"{_describe_fit(identification, result)}; {extent}; 95 % interval {estimate.low:.4g} to {estimate.high:.4g}"
+    return (
+        f"{_describe_fit(identification, result)}; {extent}; 95 % interval {estimate.low:.4g} to "
+        f"{estimate.high:.4g}"
+    )

@@ -247,7 +247,8 @@ def ring(
     if inertia is None:
         inertia = joint.inertia
     return [
-        _ring_at(joint, folder, load, parameters, inertia) for load in track_progress(loads, "ring", len(loads))
+        _ring_at(joint, folder, load, parameters, inertia)
+        for load in track_progress(loads, "ring", len(loads))
     ]
 
 

@@ -54,7 +54,8 @@ def claim(folder: Path, study: Mapping[str, object]) -> None:
     changed = sorted(key for key in {*present, *study} if present.get(key) != study.get(key))
     old, new = (json.dumps(record.get(changed[0])) for record in (present, study))
     raise ValueError(
-        f"{folder}: holds another study ({replace_unprintable(changed[0])[:60]} = {old[:60]}, now {new[:60]}); "
+        f"{folder}: holds another study ({replace_unprintable(changed[0])[:60]} = {old[:60]}, now "
+        f"{new[:60]}); "
         "expected the same study or another folder"
     )
 
@@ -177,7 +178,8 @@ def _read_lines(path: Path) -> Iterator[tuple[dict[str, Any], int]]:
 def _row_error(path: Path, row: int, reason: str) -> ValueError:
     """Error for a row that is no run of the study."""
     return ValueError(
-        f"{path}: row {row}: {replace_unprintable(reason)[:200]}; expected a run as the sweep wrote it: delete "
+        f"{path}: row {row}: {replace_unprintable(reason)[:200]}; expected a run as the sweep wrote "
+        "it: delete "
         "the row, and the same command repeats its run"
     )
 

@@ -113,7 +113,8 @@ def table(task: Problem, bands: Bands, sensitivity: Sensitivity | None) -> str:
         example = ", ".join(f"{k} = {v:.6g}" for k, v in bands.refusals.example.items())
         lines.append(f"the first refused: {example}: {bands.refusals.reason}")
     lines.append(
-        f"reduced evaluation beside the exported spring: largest relative difference {bands.reduction_error:.1e}"
+        "reduced evaluation beside the exported spring: largest relative difference "
+        f"{bands.reduction_error:.1e}"
     )
     return "\n".join(lines)
 

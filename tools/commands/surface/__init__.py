@@ -147,7 +147,8 @@ def _load_start_file(args: argparse.Namespace) -> ParameterFile | None:
             other = 3 - int(args.side)
             raise ValueError(
                 f"{args.params}: states h = {find_height(file):g} m of both sides together; expected of the "
-                f"other side Ra{other} or Rq{other} in its section [{file.heights_prefix[:-1]}], or --side both"
+                f"other side Ra{other} or Rq{other} in its section [{file.heights_prefix[:-1]}], or "
+                "--side both"
             )
         return file
     if args.joint:

@@ -79,7 +79,8 @@ def friction_figures(load_history: LoadHistory) -> list[Figure]:
     for row in sorted(rows):
         table.append((f"{row.mu:.4g}", _format_value(row.slip_force, "N"), f"{row.loss_factor:.3g}"))
     text = (
-        f"The friction coefficient is the least certain input: {load_history.file.sources['mu']}. The loss factor "
+        f"The friction coefficient is the least certain input: {load_history.file.sources['mu']}. "
+        "The loss factor "
         "is that of the interface between rigid sides, under the same shear force."
     )
     return [Figure("Effect of the friction coefficient", text, table=table)]
@@ -170,10 +171,13 @@ def stiffness_figures(load_history: LoadHistory) -> list[Figure]:
         else "around the bolts"
     )
     text = _stiffness_text(compliances, remaining_preload, moment) + (
-        f" A force of {_format_value(opening, 'N')} along z opens the interface {location}, by these stiffnesses; "
+        f" A force of {_format_value(opening, 'N')} along z opens the interface {location}, by "
+        "these stiffnesses; "
         "a joint that peels opens at a lower load, as the plot shows. The whole interface slips at "
-        f"{_format_value(limit, 'N')} along x or y; slip begins at the edges at a far lower load, and its loss is "
-        f"under Loops. The plot shows a tensile force up to {PLOTTED_LOAD_RATIO:g} times the opening load, free in the "
+        f"{_format_value(limit, 'N')} along x or y; slip begins at the edges at a far lower load, "
+        "and its loss is "
+        f"under Loops. The plot shows a tensile force up to {PLOTTED_LOAD_RATIO:g} times the "
+        "opening load, free in the "
         f"other five motions, and up to {MAX_BOLT_FORCE_RATIO:g} times the force of a bolt at tightening."
     )
     return [Figure("The whole joint", text, [panel], table=_stiffness_rows(compliances))]
@@ -198,13 +202,15 @@ def _stiffness_text(compliances: Compliances, tension: float, moment: float) -> 
     largest = float(np.max(share))
     effect = "it matters for the stiffness" if compliances.matters else "it hardly affects the stiffness"
     return (
-        f"Small motions of the attachments about the tightened state, {_format_value(tension, 'N')} in each bolt"
+        f"Small motions of the attachments about the tightened state, {_format_value(tension, 'N')} "
+        "in each bolt"
         + (f" with a moment of {moment:g} N m" if moment else "")
         + ", one at a time with the other five fixed. The stiffness of the whole joint is that of the FMU. "
         "The last three columns are shares of its compliance, by stored energy. Members are a spring in "
         "series with interface and bolts; interface alone and bolts alone are between rigid sides. The "
         f"interface has {share[2]:.1%} of the compliance along z and at most {largest:.1%} in any direction: "
-        f"{effect}. The bolts carry {compliances.load_factor:.3f} of a force along z (load factor n Phi_K of VDI "
+        f"{effect}. The bolts carry {compliances.load_factor:.3f} of a force along z (load factor n "
+        "Phi_K of VDI "
         "2230), with the other motions free; where the interface is open they carry the full force, as the "
         "plot shows."
     )

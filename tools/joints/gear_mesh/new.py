@@ -137,7 +137,8 @@ def make_joint(options: DrawingOptions) -> NewJoint:
     text = f"Hertz's line contact at the pitch point, one pair under {torque:g} N.m of wheel 1"
     sheet.add("A_0", float(hertz.area), "derived", text)
     file = sheet.build_file(
-        f"wheels of module {options['module']}, {wheels.tooth_counts[0]:g} to {wheels.tooth_counts[1]:g} teeth"
+        f"wheels of module {options['module']}, {wheels.tooth_counts[0]:g} to "
+        f"{wheels.tooth_counts[1]:g} teeth"
     )
     spring = GearMeshSpring.tabulate(file.values)
     deflection = float(spring.curve.inverse(load / wheels.contact_ratio))

@@ -173,7 +173,10 @@ def _rated_and_peak_torque(
                 text = f"{name}: {row['source']}"
             elif other in STRONG_SERIES and series not in STRONG_SERIES:
                 kind, ratio_to_series = "estimate", 1.0 / STRONG_TORQUE_RATIO
-                text = f"that of {name} over {STRONG_TORQUE_RATIO:g}: the catalogue gives the CSG 30 % more than the CSF"
+                text = (
+                    f"that of {name} over {STRONG_TORQUE_RATIO:g}: the catalogue gives the CSG 30 % "
+                    "more than the CSF"
+                )
             else:
                 kind, text, ratio_to_series = "estimate", f"that of {name}", 1.0
             return {

@@ -82,7 +82,8 @@ def _speed_figure(file: ParameterFile) -> Figure:
     ]
     text = (
         "Torque that turns the wave generator without load, over the motor's speed. The parameters hold at "
-        f"{_format_celsius(REFERENCE_TEMPERATURE)}; other temperatures follow from {' and '.join(coefficients)}."
+        f"{_format_celsius(REFERENCE_TEMPERATURE)}; other temperatures follow from "
+        f"{' and '.join(coefficients)}."
     )
     panel = Panel("Friction over speed", "speed of the motor [rev/min]", "torque [N m]", series)
     return Figure("Friction over speed and temperature", text, [panel])

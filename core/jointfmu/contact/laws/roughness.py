@@ -114,7 +114,8 @@ class RoughnessLaw(RoughSurfaces, CheckedParameters):
             )
         if highest > max_pressure:
             messages.append(
-                f"a pressure of {highest:.4g} Pa is above {max_pressure:.3g} Pa, up to which the law roughness "
+                f"a pressure of {highest:.4g} Pa is above {max_pressure:.3g} Pa, up to which the "
+                "law roughness "
                 "is proven: the longest wave is pressed flat, the rest to its end is an extrapolation "
                 "(docs/validity.md)"
             )

@@ -173,7 +173,8 @@ class JointAssembly:
                 step *= 0.5
                 if step < MIN_LOAD_STEP:
                     raise ValueError(
-                        f"{load_step.input_summary}: the sides find no equilibrium beyond {done:.3g} of the way, "
+                        f"{load_step.input_summary}: the sides find no equilibrium beyond "
+                        f"{done:.3g} of the way, "
                         f"the residual is {found:.2g} N"
                     )
                 continue

@@ -134,7 +134,8 @@ class CatalogueDrive(PrescribedDrive):
                         0.0,
                     ),
                 ),
-                f"the first line must reach beyond {PLAY_END_RATIO * PLAY_WIDTH_RATIO:g} rated_torque, where play ends",
+                f"the first line must reach beyond {PLAY_END_RATIO * PLAY_WIDTH_RATIO:g} "
+                "rated_torque, where play ends",
             ),
         ]
 

@@ -53,7 +53,8 @@ def _tabulate_midline(drive: ContactPairDrive, steps: int) -> Curve:
     if not np.all((K > MIN_STIFFNESS) & (K < (1.0 - MIN_STIFFNESS_MARGIN) * drive.K_FTS0)):
         raise ValueError(
             f"K_FTS0 = {drive.K_FTS0:g} N.m/rad and the contact pair give K_WTS = {K[-1]:g} N.m/rad, allowed "
-            f"is ({MIN_STIFFNESS:g}, {drive.K_FTS0:g}) N.m/rad with K_TS at most {1.0 / MIN_STIFFNESS_MARGIN:g} times K_FTS0"
+            f"is ({MIN_STIFFNESS:g}, {drive.K_FTS0:g}) N.m/rad with K_TS at most "
+            f"{1.0 / MIN_STIFFNESS_MARGIN:g} times K_FTS0"
         )
     inner = xi[:-1, None] + half * (1.0 + GAUSS_RULE[0])
     rate = smoothing * np.cosh(inner) / stiffness_with_play(drive, smoothing * np.sinh(inner))[0]

@@ -162,7 +162,8 @@ def clamp_bolt(
     if grip > MAX_GRIP_RATIO * thread.d:
         longest_grip = MAX_GRIP_RATIO * thread.d * 1e3
         raise ValueError(
-            f"--grip = {grip * 1e3:g} mm is outside (0, {longest_grip:g}] mm: {MAX_GRIP_RATIO} times {thread.name}"
+            f"--grip = {grip * 1e3:g} mm is outside (0, {longest_grip:g}] mm: {MAX_GRIP_RATIO} "
+            f"times {thread.name}"
         )
     outer = outer_diameter(size, positions)
     slope = vdi2230.cone_slope(grip, bearing, outer, tapped)
@@ -230,7 +231,8 @@ def _add_plate(
     sheet.add("plate.hole_diameter", plate.hole_diameter, *hole_source)
     cone = (
         f"VDI 2230, cone from d_w = {clamped_bolt.bearing_diameter * 1e3:g} mm over "
-        f"{min(layer.thickness for layer in clamped_bolt.layers) * 1e3:g} mm with tan(phi) = {clamped_bolt.cone_slope:.4g}"
+        f"{min(layer.thickness for layer in clamped_bolt.layers) * 1e3:g} mm with tan(phi) = "
+        f"{clamped_bolt.cone_slope:.4g}"
     )
     sheet.add("plate.cone_diameter", plate.cone_diameter, "derived", cone)
     sheet.add("A_0", plate.area, "derived", "the plate without its holes")
@@ -278,7 +280,8 @@ def _add_embedding_loss(
     depth = vdi2230.embedding_depth(heights.Rz, 1, bool(options["tapped"]))
     loss = depth / (1.0 / clamped_bolt.bolt_stiffness + 1.0 / clamped_bolt.member_stiffness)
     text = (
-        f"VDI 2230: {depth * 1e6:.3g} um (Table 5: thread, {'head' if options['tapped'] else 'head and nut'}, "
+        f"VDI 2230: {depth * 1e6:.3g} um (Table 5: thread, "
+        f"{'head' if options['tapped'] else 'head and nut'}, "
         f"one interface, Rz {heights.Rz * 1e6:.2g} um, load along the bolt) over delta_S + delta_P"
     )
     sheet.add("embedding", loss, "estimate", text)

@@ -179,7 +179,8 @@ class CatalogueRow:
         if not least <= angle <= most:
             raise ValueError(
                 f"K1 = {self.K1:g} N.m/rad winds up {angle:.3g} rad at the rated torque {self.rated:g} N.m, "
-                f"allowed are {least:g} to {most:g} rad: are K1, K2 and K3 in N.m/rad? {_likely_unit_hint(at_T2)}"
+                f"allowed are {least:g} to {most:g} rad: are K1, K2 and K3 in N.m/rad? "
+                f"{_likely_unit_hint(at_T2)}"
             )
 
     def wind_up(self, torque: ArrayLike) -> Array:

@@ -136,7 +136,8 @@ def _check_rotor_inertia(rotor_inertia: float, fitted_log: FittedLog) -> None:
             f"; stated at the joint, it is {rotor_inertia / fitted_log.drive.ratio**2:.3g} kg.m2 of the rotor"
         )
         raise ValueError(
-            f"--motor-inertia = {rotor_inertia:g} kg.m2 times ratio^2 is {at_joint:.4g} kg.m2 at the joint, outside "
+            f"--motor-inertia = {rotor_inertia:g} kg.m2 times ratio^2 is {at_joint:.4g} kg.m2 at "
+            "the joint, outside "
             f"[0, {limit:.4g}] kg.m2, of arm and rotor in the log{hint if rotor_inertia <= limit else ''}"
         )
 
