@@ -301,12 +301,12 @@ def solved_once(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
             from jointfmu_tools.fem.whole_joint import JointFiniteElements
         except ImportError:  # a test hides a package
             return solve(*asked)
-        if not isinstance(vars(JointFiniteElements)["of"], classmethod):  # a test has elements of its own
+        if not isinstance(vars(JointFiniteElements)["from_assembly"], classmethod):  # a test has elements of its own
             return solve(*asked)
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr(
                 JointFiniteElements,
-                "of",
+                "from_assembly",
                 partial(JointFiniteElements.from_assembly, refinement=REFINEMENT["bodies"]),
             )
             return kept(*asked)
@@ -314,7 +314,7 @@ def solved_once(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(computed, "compute_joint", whole)
         for module in (spring, joint_parameters):
-            patch.setattr(module, "friction_patches", once("patches", module.friction_patches))
+            patch.setattr(module, "reduce_patches", once("patches", module.reduce_patches))
         yield
 
 

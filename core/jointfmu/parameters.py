@@ -82,7 +82,7 @@ class ParameterFile:
         check_text("name", self.name, MAX_NAME_LENGTH)
         for name, text in self.sources.items():
             check_text(f"{name}: source", text)
-        object.__setattr__(self, "flat", flatten_parameters(self.values))
+        object.__setattr__(self, "values_by_name", flatten_parameters(self.values))
 
     @property
     def law(self) -> str:

@@ -119,8 +119,8 @@ def symbols(name: str, count: int) -> list[ca.SX]:
 
 def limits(joint: object) -> list[ParameterLimit]:
     """Intervals of parameters that depend on other parameters."""
-    own = joint.limits() if hasattr(joint, "limits") else []
-    return [*own, *(joint.table_limits() if hasattr(joint, "table_limits") else [])]
+    own = joint.find_limits() if hasattr(joint, "find_limits") else []
+    return [*own, *(joint.find_table_limits() if hasattr(joint, "find_table_limits") else [])]
 
 
 def _bounds(g: Graph, model: Model) -> None:

@@ -168,7 +168,7 @@ def test_place_that_cannot_be_written(folder, capsys):
 
 
 def test_a_joint_without_the_part_is_refused(monkeypatch):
-    monkeypatch.setattr(exports, "part", lambda kind, tool: None)
+    monkeypatch.setattr(exports, "load_tool_module", lambda kind, tool: None)
     with pytest.raises(ValueError, match="curve of a gear_contact cannot be written"):
         exports.require_content("gear_contact", "curve")
 

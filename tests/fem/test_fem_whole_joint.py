@@ -95,6 +95,6 @@ def test_a_mirrored_side_moves_as_the_mirror_image(monkeypatch):
     pulled = replace(joint, heads=(joint.bolt_head_loads[0], 2.0 * joint.bolt_head_loads[1]))
     others = (soft, pulled, JointFiniteElements.from_assembly(block(), "edge"))
     assert [each.is_mirrored for each in (joint, *others)] == [True, False, False, False]
-    monkeypatch.setattr(JointFiniteElements, "mirrored", False)
+    monkeypatch.setattr(JointFiniteElements, "is_mirrored", False)
     for one, expected in zip(found, moved(), strict=True):
         assert np.max(np.abs(one - expected)) < 1e-9 * np.max(np.abs(expected))

@@ -426,7 +426,7 @@ def test_calibration_reproduces_the_committed_values(joint, monkeypatch):
         for p in read_points(paper)
     ]
     refitted(monkeypatch, moved)
-    monkeypatch.setattr(calibration, "points", lambda asked: spoilt if asked == paper else [])
+    monkeypatch.setattr(calibration, "read_points", lambda asked: spoilt if asked == paper else [])
     again = calibrate(start)
     for name in unknowns:
         assert flatten_parameters(again.values)[name] == pytest.approx(values[name], rel=REPRODUCED), name
@@ -456,7 +456,7 @@ def test_a_fit_that_cannot_be_met_is_reported(monkeypatch):
     """A pressure between the bolts above the largest one."""
     paper = FITS["bolted_joint"][0]
     bad = [replace(p, value=9e6) if p.id == "p_between.9kN" else p for p in read_points(paper)]
-    monkeypatch.setattr(calibration, "points", lambda asked: bad)
+    monkeypatch.setattr(calibration, "read_points", lambda asked: bad)
     with pytest.raises((RuntimeError, ValueError), match=r"pattern\.decay|decay_"):
         calibrate(load_default("bolted_joint"))
 
@@ -490,7 +490,7 @@ def test_validation_reads_nothing_but_the_parameter_set(rows, monkeypatch):
         ]
         for paper in PAPERS
     }
-    monkeypatch.setattr(comparison, "points", shifted.__getitem__)
+    monkeypatch.setattr(comparison, "read_points", shifted.__getitem__)
     for row, again in zip(rows, validate(), strict=True):
         assert again.computed == row.computed
         if not isinstance(row.point.value, bool):

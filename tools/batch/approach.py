@@ -52,7 +52,7 @@ def inside(joint: object, count: int) -> Mask:
         if meta["whole"]:
             good &= value % 1.0 == 0.0
     with np.errstate(all="ignore"):
-        for which in ("limits", "table_limits"):
+        for which in ("find_limits", "find_table_limits"):
             limits = getattr(joint, which, None)
             good &= within(values, limits() if limits else [], count)
     return good

@@ -56,7 +56,7 @@ def _declare_procedure(procedure_parsers: SubParsers, choices: Mapping[str, Proc
     declare_argument(sub, "--free", str, "parameters to fit", nargs="+")
     text = f"{FORCE_HELP}; write the parameter file even if the fit does not determine the joint"
     sub.add_argument("--force", action="store_true", help=text)
-    declare_output(sub, "--out", PARAMETER_FILE, "write the parameter file (TOML)", second="--write")
+    declare_output(sub, "--out", PARAMETER_FILE, "write the parameter file (TOML)", alias="--write")
     declare_output(sub, "--plot", PICTURE, "draw data, law and residuals (.png, .svg)")
     for option in {option.name: option for p in choices.values() for option in p.options}.values():
         declare_option(sub, option)

@@ -135,7 +135,7 @@ def _add_roughness(sheet: ParameterSheet, pair: tuple[Face, Face], longest_wave:
     """Add the roughness of both faces together: height, slope, Hurst exponent, longest wave."""
     h, low, high = (
         float(roughness.combine_heights(*(getattr(face, name) for face in pair)))
-        for name in ("Rq", "low", "high")
+        for name in ("Rq", "Rq_min", "Rq_max")
     )
     texts = "; ".join(f"side {i + 1}: {face.text}" for i, face in enumerate(pair))
     spread = f"; {low * 1e6:.3g} to {high * 1e6:.3g} um with the range of the finish" if high > low else ""

@@ -137,7 +137,8 @@ These are the files of the experiment "{experiment.name}" in `{FOLDER}` of the F
 and relative tolerance. Nothing else is set.
 
 Run in {proof.importer} by `jointfmu prove {name}.fmu`: of {len(chosen.points)} outputs at
-{chosen.compared_points} times `{worst.output}` is furthest off, by {worst.error:.1e}; allowed is {worst.tolerance:.1e}.
+{chosen.compared_points} times `{worst.output}` is furthest off, by
+{worst.error:.1e}; allowed is {worst.tolerance:.1e}.
 
 <!-- {PROGRAM_MARK} -->
 """

@@ -478,7 +478,7 @@ def test_a_path_far_into_slip_and_opening_is_found_with_few_parts(made, monkeypa
         found.append(newton(self, way, part, tight, amplitude, derivative))
         return found[-1]
 
-    monkeypatch.setattr(equilibrium.JointAssembly, "_newton", watched)
+    monkeypatch.setattr(equilibrium.JointAssembly, "_solve_newton", watched)
     for _ in range(24):
         a, b = rng.uniform(-1.0, 1.0, (2, 6)) * unit
     memory = spring.at_rest()
@@ -503,7 +503,7 @@ def test_long_steps_back_from_gross_slip_are_found(made):
 def test_a_motion_without_equilibrium_is_told_and_the_next_goes_on(made, monkeypatch):
     spring = made(*FOUR, preload=15e3).spring
     with monkeypatch.context() as patch:
-        patch.setattr(equilibrium, "STEPS", 0)
+        patch.setattr(equilibrium, "MAX_ITERATIONS", 0)
         told = r"preload = 15000, s_rel_x = 1e-07: the sides find no equilibrium beyond 0 .* residual is .* N"
         with pytest.raises(ValueError, match=told):
             at(spring, 1e-7, 0, 0, 0, 0, 0, preload=15e3)
@@ -513,7 +513,7 @@ def test_a_motion_without_equilibrium_is_told_and_the_next_goes_on(made, monkeyp
 def test_a_singular_derivative_is_told_as_no_equilibrium(made, monkeypatch):
     spring = made(*FOUR, preload=15e3).spring
     nothing = np.zeros([len(spring.joint.bodies.stiffness)] * 2)
-    monkeypatch.setattr(equilibrium.JointAssembly, "_derivative", lambda *given: nothing)
+    monkeypatch.setattr(equilibrium.JointAssembly, "_jacobian", lambda *given: nothing)
     told = (
         r"preload = 15000, s_rel_x = 0.0001: the sides find no equilibrium beyond 0\.00061 of the way, .* N"
     )

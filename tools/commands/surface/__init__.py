@@ -80,7 +80,7 @@ def add(commands: SubParsers) -> None:
         f"{FORCE_HELP}; accept any size of scan and any height; write D and G even if they are not determined"
     )
     find.add_argument("--force", action="store_true", help=text)
-    declare_output(find, "--out", PARAMETER_FILE, "write the parameter file (TOML)", second="--write")
+    declare_output(find, "--out", PARAMETER_FILE, "write the parameter file (TOML)", alias="--write")
     declare_output(find, "--plot", PICTURE, "draw data, law and scaling range (.png, .svg)")
     synthesize.add(steps, SUBCOMMANDS[1])
 
