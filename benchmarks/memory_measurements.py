@@ -40,8 +40,8 @@ def loops(law, amplitudes, rng, cycles=2, points=100, noise=NOISE):
     runs = []
     for number, a in enumerate(amplitudes, 1):
         start = np.where(branch % 2 == 0, a, -a)
-        motion, top = a * np.cos(angle), 0.5 * law.change(np.array([a]), np.array([-a]))
-        force = np.copysign(top, start) + law.change(motion, start)
+        motion, top = a * np.cos(angle), 0.5 * law.force_change(np.array([a]), np.array([-a]))
+        force = np.copysign(top, start) + law.force_change(motion, start)
         motion = motion + min(noise, MOTION_NOISE) * a * rng.standard_normal(motion.size)
         force = force + noise * top * rng.standard_normal(motion.size)
         runs.append(np.stack([np.full(motion.size, float(number)), motion, force]))

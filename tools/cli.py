@@ -52,7 +52,7 @@ def _run_command(args: Any, name: str) -> int:
     try:
         with show_status(name):
             outputs.check_command_outputs(args.outputs, args)
-            status = int(args.run(args).tell(args.json))
+            status = int(args.run(args).print_result(args.json))
         print(end="", flush=True)
         return status
     except (ValueError, RuntimeError) as error:

@@ -199,8 +199,8 @@ def law_functions(g: Graph, law: Any, table: Sequence[str], state: Any) -> None:
     spots, u = law.spots(), ca.SX.sym("u")
     switches, regimes = _regimes(spots)
     g.add("law_switches", "-> log-areas between which law_..._0, 1, ... are valid", [], switches)
-    g.add("law_ends", "-> log-areas where a regime of the stiffness ends", [], spots.ends)
-    head = [law.A_0, law.hardness, spots.reference, spots.m, spots.stiff_onset]
+    g.add("law_ends", "-> log-areas where a regime of the stiffness ends", [], spots.regime_ends)
+    head = [law.A_0, law.hardness, spots.reference, spots.m, spots.stiffness_onset]
     g.add(
         "law_head",
         "-> A_0 [m2], hardness [Pa], reference area [m2], m, log-area of first stiffness",

@@ -77,7 +77,7 @@ def test_nothing_is_lost(loaded):
     assert again.roughness == file.roughness
     text = format_parameter_file(again)
     assert JUDGING in text
-    assert "comparison" not in again.flat
+    assert "comparison" not in again.values_by_name
     assert "[comparison]" not in format_parameter_file(load_default("gear_contact"))
     assert load_text(text) == again
 

@@ -63,7 +63,7 @@ def test_the_example_makes_a_file_that_loads(capsys, tmp_path, name):
 @pytest.mark.parametrize("name", NEW)
 def test_what_is_required_is_asked_for(capsys, tmp_path, name):
     options = NEW[name].options
-    required = [f"--{option.name}" for option in options if option.required]
+    required = [f"--{option.name}" for option in options if option.is_required]
     required = required or [f"--{option.name}" for option in options]  # or one of several ways
     line = refused_line(capsys, "new", name, "--out", tmp_path / "joint.toml")
     assert any(option in line for option in required)

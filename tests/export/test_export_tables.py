@@ -50,11 +50,11 @@ def test_law_table_keeps_to_the_law(joint, error, request):
     assert np.all(np.diff(x) > 0.0)
     assert np.all(np.diff(p) > 0.0)
     assert table.rows[0].tolist() == [0.0, 0.0, 0.0]
-    assert p[1] == pytest.approx(curve.closed, rel=1e-9)
+    assert p[1] == pytest.approx(curve.closing_end_load, rel=1e-9)
     assert p[-1] == pytest.approx(law.hardness, rel=1e-9)
     state = at_pressure(law, p[1:])
     np.testing.assert_allclose(k[1:], state["K_N"] / law.A_0, rtol=1e-7)  # the curve is within 1e-8
-    some = np.geomspace(curve.closed, 0.999 * curve.end[1], 20001)
+    some = np.geomspace(curve.closing_end_load, 0.999 * curve.end[1], 20001)
     at = curve.inverse(some) - curve.displacement[0]
     straight = np.max(np.abs(np.interp(at, x, p) / some - 1.0))
     # between the points at which the table was measured the error hardly grows
@@ -82,13 +82,13 @@ def test_pull_table_is_the_joints_force(bolted):
     zero = int(np.flatnonzero(s == 0.0)[0])
     assert abs(force[zero]) < 1e-6  # N, of 72 kN: round-off of the sum
     for i in (0, 5, zero - 1, zero, zero + 1, len(s) - 3):
-        state = bolted.motion(9e3, 500.0, (0.0, 0.0, s[i]), (0.0, 0.0, 0.0))
+        state = bolted.evaluate(9e3, 500.0, (0.0, 0.0, s[i]), (0.0, 0.0, 0.0))
         assert -force[i] == pytest.approx(state["f_z"], rel=1e-9, abs=1e-6)
         assert k[i] == pytest.approx(state["K_zz"], rel=1e-9, abs=1.0)
     assert force[-1] == force[-2] == pytest.approx(72e3, rel=1e-12)
     assert force[0] == pytest.approx(-(MAX_FORCE_RATIO - 1.0) * 72e3, rel=1e-3)  # its end is interpolated
     for x in np.linspace(s[0], s[-2], 101):
-        exact = -bolted.motion(9e3, 500.0, (0.0, 0.0, x), (0.0, 0.0, 0.0))["f_z"]
+        exact = -bolted.evaluate(9e3, 500.0, (0.0, 0.0, x), (0.0, 0.0, 0.0))["f_z"]
         assert abs(np.interp(x, s, force) - exact) <= 1.01e-3 * max(abs(exact), 72e3)
 
 
@@ -97,7 +97,7 @@ def test_drive_table_is_odd_and_keeps_to_the_curve(drive):
     np.testing.assert_array_equal(table.rows[:, :2], -table.rows[::-1, :2])
     np.testing.assert_array_equal(table.rows[:, 2], table.rows[::-1, 2])
     tau = np.geomspace(1e-3, 30.0, 5001)
-    phi = drive.windup(tau)["phi_rel"]
+    phi = drive.evaluate_torque(tau)["phi_rel"]
     assert np.max(np.abs(np.interp(phi, *table.rows[:, :2].T) / tau - 1.0)) <= 1.01e-3
 
 

@@ -144,8 +144,8 @@ def swung(law, turns):
     for a, b in pairwise(turns):
         way = np.linspace(a, b, 200, endpoint=False)
         motion.append(way)
-        force.append(reached + law.change(way, np.full(way.size, a)))
-        reached += float(law.change(np.array([b]), np.array([a]))[0])
+        force.append(reached + law.force_change(way, np.full(way.size, a)))
+        reached += float(law.force_change(np.array([b]), np.array([a]))[0])
     return np.concatenate(motion), np.concatenate(force)
 
 

@@ -116,10 +116,10 @@ def test_nodes_are_met(curves):
         right = curve.derivatives(x[:-1] + inner, 2)[2]
         left = curve.derivatives(x[1:] - inner, 2)[2]
         # 1e-9 of a segment away: the third derivative moves the bend by at most 1e-9 * 60 times its size
-        size = np.maximum(np.abs(curve.bend_start), np.abs(curve.bend_end))
+        size = np.maximum(np.abs(curve.slope_start), np.abs(curve.slope_end))
         size = size + curve.stiffness[1:] / np.diff(x)
-        assert np.all(np.abs(right - curve.bend_start) <= 1e-7 * size)
-        assert np.all(np.abs(left - curve.bend_end) <= 1e-7 * size)
+        assert np.all(np.abs(right - curve.slope_start) <= 1e-7 * size)
+        assert np.all(np.abs(left - curve.slope_end) <= 1e-7 * size)
 
 
 def test_load_and_stiffness_have_no_jump_at_nodes(curves):
@@ -132,7 +132,7 @@ def test_load_and_stiffness_have_no_jump_at_nodes(curves):
         # 10 + 15 + 6 times two loads, count k times in the stiffness, 3 10 + 4 15 + 5 6 times two, for each
         assert np.all(np.abs(high[0] - low[0]) <= high[1] * gap + 1.3e2 * EPS * high[0])
         h = np.minimum(np.diff(curve.displacement)[:-1], np.diff(curve.displacement)[1:])
-        bend = np.maximum(np.abs(curve.bend_end[:-1]), np.abs(curve.bend_start[1:]))
+        bend = np.maximum(np.abs(curve.slope_end[:-1]), np.abs(curve.slope_start[1:]))
         assert np.all(np.abs(high[1] - low[1]) <= bend * gap + 4.8e2 * EPS * (high[1] + high[0] / h))
 
 
@@ -288,7 +288,7 @@ def test_approach_is_the_integral_of_dp_over_k(law):
     spots = law.spots()
     start = float(curve.load[np.searchsorted(curve.displacement, 0.0)])
     pressures = np.geomspace(start, 0.999 * law.hardness, 7)
-    breaks = [float(spots.total("load", b)) / law.A_0 for b in spots.breaks if b > spots.stiff_onset]
+    breaks = [float(spots.total("load", b)) / law.A_0 for b in spots.sorted_regime_ends if b > spots.stiffness_onset]
 
     def per_decade(t):
         p = np.exp(t)
@@ -320,7 +320,7 @@ def test_stiffness_is_the_laws(law):
 @given(data=st.data())
 def test_any_law_gives_a_monotone_table_or_is_refused(kind, data):
     law = data.draw(RANDOM[kind])
-    if law.spots().stiff_onset + np.log(CLOSING_RATIO) >= solve_largest_spot(law, law.hardness):
+    if law.spots().stiffness_onset + np.log(CLOSING_RATIO) >= solve_largest_spot(law, law.hardness):
         with pytest.raises(ValueError, match="plastic"):
             tabulate_approach(law)
         return
@@ -343,7 +343,7 @@ def test_closing_begins_at_nothing_and_joins_smoothly(law):
     assert curve.displacement[0] == pytest.approx(-4.0 * p / k, rel=1e-14)  # one multiplication
     # the closing takes over the very same numbers; its last polynomial sums three of them
     assert curve.slope_end[i - 1] == pytest.approx(curve.slope_start[i], rel=1e-12)
-    state = at_largest_spot(law, law.spots().reference * np.exp(law.spots().stiff_onset) * CLOSING_RATIO)
+    state = at_largest_spot(law, law.spots().reference * np.exp(law.spots().stiffness_onset) * CLOSING_RATIO)
     assert p == pytest.approx(float(state["pressure"]), rel=1e-12)  # round-off of exp and log
     slope = stiffness_curve(law, p)[1]
     assert curve.slope_start[i] == pytest.approx(float(k * slope), rel=1e-7)  # taken 1e-9 inside the regime

@@ -97,7 +97,7 @@ def test_shapes_are_symmetric(pattern):
 
 @given(pattern=patterns, r=st.floats(0.0, 1.0), further=st.floats(1e-3, 1.0))
 def test_pressure_decays_with_the_distance(pattern, r, further):
-    near, far = pattern.decay(np.array([r, r + further]))
+    near, far = pattern.pressure_decay(np.array([r, r + further]))
     assert 0.0 < far < near <= 1.0
 
 

@@ -74,7 +74,7 @@ def test_the_area_of_the_loop_is_the_fmus(folder, capsys):
     said, model = exported(capsys, "drive.toml")
     rated = drive.values["rated_torque"]
     torques = rated * np.concatenate([np.linspace(0, 1, STEPS), np.cos(np.linspace(0, 2 * np.pi, 4 * STEPS))])
-    memory, spring, expected = drive.spring.rest(), drive.spring, []
+    memory, spring, expected = drive.spring.initial_history(), drive.spring, []
     for torque in torques[::20]:
         out, memory = spring.loaded(torque, memory)
         expected.append(float(out["phi_rel"]))
@@ -142,12 +142,12 @@ def test_friction_of_the_motor_is_the_fmus(speed, since, folder, capsys):
     data, motor = mujoco.MjData(model), model.joint("motor").dofadr[0]
     model.dof_armature[:], model.opt.timestep = 1e12, 1e-5 / speed
     data.qvel[:] = speed, speed / drive.values["ratio"]
-    spring, (_, memory) = drive.spring, drive.spring.driven((0.0, 0.0, 0.0, 0.0), drive.spring.rest())
+    spring, (_, memory) = drive.spring, drive.spring.advance_motion((0.0, 0.0, 0.0, 0.0), drive.spring.initial_history())
     for step in range(1, 5001):
         mujoco.mj_step(model, data)
         x = data.qpos[motor]
         if step % 50 == 0 and x > since:
-            out, memory = spring.driven((x, speed, x / -100.0, speed / -100.0), memory)
+            out, memory = spring.advance_motion((x, speed, x / -100.0, speed / -100.0), memory)
             found = model.dof_damping[motor] * speed - data.actuator_force[1]
             assert found == pytest.approx(float(out["tau_friction"]), abs=0.02 * 1.5 * coulomb)
 
@@ -182,7 +182,7 @@ def test_urdf_states_the_loop(folder, capsys):
     assert "J a loop at 87 N.m" in json.loads(capsys.readouterr().out)["lacks"][1]
     text = (folder / "drive.urdf").read_text()
     stated = float(re.search(r"the hysteresis, (\S+) J a loop at 87 N.m", text)[1])
-    memory, losses = drive.spring.rest(), []
+    memory, losses = drive.spring.initial_history(), []
     for torque in 87.0 * np.cos(np.linspace(0.0, 2.0 * np.pi, 201)):
         out, memory = drive.spring.loaded(torque, memory)
         losses.append(float(out["E_loss"]))

@@ -173,7 +173,7 @@ def _run_catalogue(args: argparse.Namespace) -> CommandResult:
         (kind.name, module.CATALOGUE.columns, item)
         for kind in KINDS.values()
         if (module := load_tool_module(kind, "catalogue"))
-        for item in module.CATALOGUE.items()
+        for item in module.CATALOGUE.entries()
         if _contains_words(args.words, item.name)
     ]
     if not rows:

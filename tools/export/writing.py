@@ -59,19 +59,19 @@ def export_springs(
     """
     field, where = require_content(file.joint, "springs")(file.values, working_point, mesh, placement)
     units = placement.units
-    sums = ", ".join(f"{n} {v:.9g} {'N/m' if n[0] == 'K' else 'N.s/m'}" for n, v in field.sums.items())
+    sums = ", ".join(f"{n} {v:.9g} {'N/m' if n[0] == 'K' else 'N.s/m'}" for n, v in field.totals.items())
     about = [
         f"springs of a {KINDS[file.joint].title} between node pairs, linear about a working point",
         f"parameters: {file.name} ({file.joint})",
         f"working point: {where}",
         f"units: {units.name}",
-        f"pairs: {len(field.nodes)}, left out because they are open: {field.opened}",
+        f"pairs: {len(field.nodes)}, left out because they are open: {field.open_pairs}",
         f"sums over the pairs, SI: {sums}",
         f"stiffness multiplied by {field.correction:.9g} to add up to the joint's",
         f"the joint's normal is the model's {placement.normal}",
     ]
     write, notes = _SPRING_WRITERS[file_format]
-    facts = {"pairs": len(field.nodes), "open": field.opened, "correction": field.correction, **field.sums}
+    facts = {"pairs": len(field.nodes), "open": field.open_pairs, "correction": field.correction, **field.totals}
     return ExportedFile(write(field, placement, [*about, *notes]), facts)
 
 
@@ -89,7 +89,7 @@ def export_contact(file_format: str, file: ParameterFile, units: UnitSet, error:
         f"straight lines keep to the law's pressure within {table.linear_errors[0]:.2g}, to its "
         "stiffness within "
         f"{table.linear_errors[1]:.2g},",
-        f"from {curve.closed:.4g} Pa (below, one line leads to first touch) to {curve.end[1]:.4g} Pa",
+        f"from {curve.closing_end_load:.4g} Pa (below, one line leads to first touch) to {curve.end[1]:.4g} Pa",
         *more,
     ]
     write, notes = _CONTACT_WRITERS[file_format]

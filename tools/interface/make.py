@@ -67,7 +67,7 @@ def load(source: str | Path) -> Joint:
         return create_joint(load_file(source))
     for kind in KINDS.values():
         module = load_tool_module(kind, "catalogue")
-        if module and any(item.name.lower() == name.lower() for item in module.CATALOGUE.items()):
+        if module and any(item.name.lower() == name.lower() for item in module.CATALOGUE.entries()):
             with _use_python_names():
                 return make_from_drawing(load_tool_module(kind, "new").NEW, {"catalogue": name})  # type: ignore[union-attr]
     raise ValueError(

@@ -120,7 +120,7 @@ def _loops(spring: Any, end: float) -> list[chart.Panel]:
     """Loops of several amplitudes, and their loss factor over the amplitude; `end` of the ramp [N]."""
     left = spring.joint.embedding
     preload = left + LOOP_PRELOAD_RATIO * (end - left)
-    approach = spring.tightened(preload, 0.0)
+    approach = spring.preloaded_approach(preload, 0.0)
     foundation, share = spring.foundation(), spring.shape.share
     mean = share @ np.maximum(approach - spring.curve.displacement[0], 0.0)
     slips = foundation.friction / foundation.ratio * float(mean)

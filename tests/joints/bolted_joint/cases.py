@@ -17,7 +17,7 @@ RANGES = {
 def outputs(spring: Any, v: Inputs) -> Any:
     """The spring's motion."""
     kinds = ("s_rel", "v_rel", "theta", "omega")
-    return spring.motion(
+    return spring.evaluate(
         v["preload"], v["moment"], *(tuple(v[f"{kind}_{axis}"] for axis in "xyz") for kind in kinds)
     )
 

@@ -70,8 +70,8 @@ def spring_of_sides(file):
 
 
 def at(spring, *six, memory=None, preload=PRELOAD, moment=0.0):
-    start = spring.at_rest() if memory is None else memory
-    return spring.evolve(preload, moment, RelativeDisplacement(np.array(six)), STILL, start)
+    start = spring.initial_history() if memory is None else memory
+    return spring.advance(preload, moment, RelativeDisplacement(np.array(six)), STILL, start)
 
 
 def forces_of_bolts(spring, out, six, preload=PRELOAD, moment=0.0):
@@ -144,7 +144,7 @@ MIXED = np.array([0.0, 0.0, -1.0, 4.0, -8.0, 0.0])
 @pytest.mark.parametrize("sweep", SWEEPS)
 def test_no_bolt_pushes(spring, sweep):
     """What the bolts add to the forces is what they pull at their places."""
-    memory, lifted, free = spring.at_rest(), False, without_bolts(spring)
+    memory, lifted, free = spring.initial_history(), False, without_bolts(spring)
     bare, x, y = free.initial_history(), *spring.bolts.position.T
     for part in np.linspace(0.0, 1.0, 9):
         six = part * LIFT_OFF * SWEEPS[sweep]
@@ -235,7 +235,7 @@ def test_without_preload_bolts_are_at_lift_off(spring):
 def test_a_moment_that_unloads_a_row_takes_no_more_than_its_force(spring):
     most = (PRELOAD - EMBEDDING) / np.max(-spring.bolts.lever)
     out, _ = at(spring, *STILL, moment=1.5 * most)
-    force = spring.bolts.tightened(spring.joint, PRELOAD, 1.5 * most)
+    force = spring.bolts.preload_force(spring.joint, PRELOAD, 1.5 * most)
     assert np.min(force) == 0.0
     assert abs(out["f_z"]) < 1e-6
     if spring.joint.elastic:
@@ -260,7 +260,7 @@ def test_the_fmu_lifts_its_bolts_as_the_package(file, spring, tmp_path, flavour)
     with here_alone():
         build(["BoltedJoint"], [flavour], file, tmp_path)
     (path,) = tmp_path.rglob("BoltedJoint.fmu")
-    fmu, memory = Fmu(path).start({"preload": PRELOAD}), spring.at_rest()
+    fmu, memory = Fmu(path).start({"preload": PRELOAD}), spring.initial_history()
     _, memory = at(spring, *STILL, memory=memory)
     for preload, moment, six in random_motions(np.random.default_rng(7), 24):
         expected, memory = at(spring, *six, memory=memory, preload=preload, moment=moment)

@@ -51,7 +51,7 @@ def rest(spring, place, **inputs):
 
 def walk(spring, path, memory=None, **inputs):
     """Outputs along a path (n, 6)."""
-    memory, found = spring.at_rest() if memory is None else memory, []
+    memory, found = spring.initial_history() if memory is None else memory, []
     for place in path:
         out, memory = MODEL.advance(spring, at(place, **inputs), memory)
         found.append(out)
@@ -84,8 +84,8 @@ def test_points_press_on_the_patches_around_them_with_all_their_force(spring):
     part = force_transfer(points, patches)
     np.testing.assert_allclose(part.sum(axis=0), 1.0, rtol=1e-3)
     assert np.all(part.max(axis=1) > 0.0)
-    force = part @ (points.share * points.equal)
-    np.testing.assert_allclose(force, patches.share * patches.equal, atol=0.02 / patches.share.size)
+    force = part @ (points.share * points.preload_shape)
+    np.testing.assert_allclose(force, patches.share * patches.preload_shape, atol=0.02 / patches.share.size)
     distance = np.hypot(*(patches.position[:, None] - points.position).transpose(2, 0, 1))
     reach = np.sqrt(points.share @ np.min(distance, axis=0) ** 2)
     assert np.max(distance[part > 0.1] - np.min(distance, axis=0)[np.nonzero(part > 0.1)[1]]) < 3.0 * reach
@@ -179,13 +179,13 @@ def test_the_loss_factor_falls_with_the_amplitude_down_to_none(spring):
 @pytest.mark.parametrize("part", [0.05, 0.1, 0.2, 0.3, 0.5])
 def test_noise_while_it_is_tightened_leaves_no_trace(spring, part):
     """Losses of a loop within 5 % of the theorem, its amplitude over that of gross slip."""
-    rng, memory = np.random.default_rng(45), spring.at_rest()
+    rng, memory = np.random.default_rng(45), spring.initial_history()
     for preload in np.linspace(0.0, 3e4, 31):
         place = 1e-12 * (preload > 1e3) * rng.normal(size=6) * np.array([1.0, 1.0, 0.0, 0.0, 0.0, 1.0])
         _, memory = MODEL.advance(spring, at(place, preload=preload), memory)
     approach = spring.curve.inverse(preload_pressure(JOINT, spring.patches, 3e4, 0.0))
     law = spring.foundation()
-    gross = law.friction / law.ratio * float(spring.patches.share @ (approach - spring.curve.displacement[0]))
+    gross = law.friction_coefficient / law.ratio * float(spring.patches.share @ (approach - spring.curve.displacement[0]))
     amplitude, losses = part * gross, []
     for u in amplitude * np.concatenate([np.linspace(0, 1, 5), np.linspace(1, -1, 9), np.linspace(-1, 1, 9)]):
         out, memory = MODEL.advance(spring, at([u, 0, 0, 0, 0, 0], preload=3e4), memory)
@@ -248,7 +248,7 @@ def missing(spring, steps, taken):
         loads = {"preload": 9e3 + wave[6], "moment": wave[7]}
         return at(wave[:6], **loads)
 
-    memory, total, turned, lost = spring.at_rest(), 0.0, 0.0, 0.0
+    memory, total, turned, lost = spring.initial_history(), 0.0, 0.0, 0.0
     for k in range(80):  # a quarter more than an oscillation, so that all have slipped
         wave = sizes * np.sin(2.0 * np.pi * rates * k / 64.0)
         _, memory = MODEL.advance(spring, inputs(wave), memory)
@@ -281,7 +281,7 @@ def test_work_is_stored_or_lost_step_by_step(spring):
 
 def test_heat_never_falls(spring):
     """Whatever the path and the bolts do."""
-    rng, memory, before = np.random.default_rng(41), spring.at_rest(), 0.0
+    rng, memory, before = np.random.default_rng(41), spring.initial_history(), 0.0
     for _ in range(60):
         loads = {"preload": 9e3 * rng.random(), "moment": 900.0 * rng.normal()}
         out, memory = MODEL.advance(spring, at(2.0 * SIZE * rng.normal(size=6), **loads), memory)

@@ -68,7 +68,7 @@ def total(preload):
 
 @each_load
 def test_no_force_when_tightened(spring, preload, moment):
-    out = spring.motion(preload, moment, STILL, STILL)
+    out = spring.evaluate(preload, moment, STILL, STILL)
     assert (out["f_x"], out["f_y"]) == (0.0, 0.0)
     assert out["f_z"] == pytest.approx(0.0, abs=1e2 * EPS * total(preload))  # round-off of a thousand nodes
     p = preload_pressure(JOINT, spring.shape, preload, moment)
@@ -79,7 +79,7 @@ def test_no_force_when_tightened(spring, preload, moment):
 
 def test_outputs_are_named_as_promised(spring):
     names = "f_x f_y f_z K_xx K_yy K_zz C_xx C_yy C_zz eta_t eta_n K_rx K_ry K_rz p_mean p_max"
-    assert set(names.split()) <= set(spring.motion(9e3, 0.0, STILL, STILL))
+    assert set(names.split()) <= set(spring.evaluate(9e3, 0.0, STILL, STILL))
 
 
 def test_uniform_pressure_is_the_law(even):
@@ -103,14 +103,14 @@ def test_stiffness_is_the_sum_of_the_nodes_own_laws(spring, preload, moment):
         np.min(p) > spring.curve.load[np.searchsorted(spring.curve.displacement, 0.0)]
     )  # outside the closing
     law = at_pressure(JOINT, p)
-    out = spring.motion(preload, moment, STILL, STILL)
+    out = spring.evaluate(preload, moment, STILL, STILL)
     assert out["K_zz"] == pytest.approx(spring.shape.share @ law["K_N"], rel=MAX_ERROR)
     assert out["K_xx"] == pytest.approx(spring.shape.share @ law["K_T"], rel=MAX_ERROR)
 
 
 def test_uneven_pressure_is_softer_than_even(spring, even):
     """K_N grows slower than the pressure: a mean of a concave law (Jensen)."""
-    uneven, flat = (s.motion(9e3, 0.0, STILL, STILL)["K_zz"] for s in (spring, even))
+    uneven, flat = (s.evaluate(9e3, 0.0, STILL, STILL)["K_zz"] for s in (spring, even))
     assert uneven < flat
 
 
@@ -129,14 +129,14 @@ loads = st.sampled_from(LOADS)
 
 
 def forces(spring, load, s):
-    out = spring.motion(*load, tuple(s), STILL)
+    out = spring.evaluate(*load, tuple(s), STILL)
     return np.array([out["f_x"], out["f_y"], out["f_z"]])
 
 
 def potential(spring, load, s):
     """U(s) of the class: V is the exact integral of the table, piece by piece."""
     curve, area, rho = spring.curve, JOINT.A_0 * spring.shape.share, JOINT.shear_ratio()
-    start = spring.tightened(*load)
+    start = spring.preloaded_approach(*load)
     a, h = curve._coefficients, np.diff(curve.displacement)
     whole = np.concatenate([[0.0], np.cumsum(h * (a / np.arange(1.0, 7.0)[:, None]).sum(axis=0))])
     delta = start - s[2]
@@ -168,7 +168,7 @@ def test_force_is_minus_the_gradient_of_the_potential(spring, load, s):
 def test_stiffness_is_the_exact_derivative(spring, load, s):
     """All nine derivatives of the force: the outputs on the diagonal, symmetric beside it."""
     s = np.array(s)
-    out = spring.motion(*load, tuple(s), STILL)
+    out = spring.evaluate(*load, tuple(s), STILL)
     matrix = np.empty((3, 3))
     for axis in range(3):
         shift = np.outer(FIVE * STEP, np.eye(3)[axis])
@@ -189,7 +189,7 @@ def test_mixed_derivative_is_not_lost(spring):
     z = STENCIL @ [forces(spring, LOADS[0], s + d) for d in np.outer(FIVE * h, [0, 0, 1])] / h
     x = STENCIL @ [forces(spring, LOADS[0], s + d) for d in np.outer(FIVE * h, [1, 0, 0])] / h
     assert z[0] == pytest.approx(x[2], rel=1e-6)  # SLOPE of K, a hundred times larger
-    K_xx = spring.motion(*LOADS[0], tuple(s), STILL)["K_xx"]
+    K_xx = spring.evaluate(*LOADS[0], tuple(s), STILL)["K_xx"]
     assert z[0] > 0.01 * K_xx  # N/m: well above the differences' own error
 
 
@@ -214,7 +214,7 @@ def test_closed_cycles_return_their_energy(spring, load, corners):
 
 def test_pressed_together_it_gets_stiffer(spring):
     z = np.linspace(0.0, -1e-5, 11)
-    out = [spring.motion(9e3, 0.0, (0.0, 0.0, float(v)), STILL) for v in z]
+    out = [spring.evaluate(9e3, 0.0, (0.0, 0.0, float(v)), STILL) for v in z]
     for name in ("K_zz", "K_xx", "K_rx", "K_rz", "p_mean", "p_max", "f_z"):
         assert np.all(np.diff([o[name] for o in out]) > 0.0)
     assert out[1]["f_z"] > 0.0  # pushes side 2 back
@@ -223,23 +223,23 @@ def test_pressed_together_it_gets_stiffer(spring):
 def test_pulled_apart(spring):
     """Once separated: the preload is gone, no stiffness and no damping are left."""
     for preload, moment in LOADS:
-        apart = float(np.max(spring.tightened(preload, moment)) - spring.curve.displacement[0])
-        out = spring.motion(preload, moment, (1e-6, -2e-6, apart * (1.0 + 1e-12)), (1e-3, 1e-3, 1e-3))
+        apart = float(np.max(spring.preloaded_approach(preload, moment)) - spring.curve.displacement[0])
+        out = spring.evaluate(preload, moment, (1e-6, -2e-6, apart * (1.0 + 1e-12)), (1e-3, 1e-3, 1e-3))
         # the sum of a thousand node forces
         assert out["f_z"] == pytest.approx(-total(preload), rel=1e-12)
         for name in ("f_x", "f_y", "K_xx", "K_yy", "K_zz", "C_xx", "C_yy", "C_zz", "K_rx", "K_ry", "K_rz"):
             assert out[name] == 0.0, name
         assert (out["p_mean"], out["p_max"]) == (0.0, 0.0)
-        far = spring.motion(preload, moment, (0.0, 0.0, 1.0), STILL)
+        far = spring.evaluate(preload, moment, (0.0, 0.0, 1.0), STILL)
         assert far["f_z"] == out["f_z"]
-        before = spring.motion(preload, moment, (0.0, 0.0, 0.5 * apart), STILL)
+        before = spring.evaluate(preload, moment, (0.0, 0.0, 0.5 * apart), STILL)
         assert -total(preload) < before["f_z"] < 0.0
         assert before["K_zz"] > 0.0
 
 
 def test_force_of_the_pull_is_monotone(spring):
     z = np.linspace(-5e-6, 4e-5, 200)
-    out = [spring.motion(9e3, 0.0, (0.0, 0.0, float(v)), STILL) for v in z]
+    out = [spring.evaluate(9e3, 0.0, (0.0, 0.0, float(v)), STILL) for v in z]
     assert np.all(np.diff([o["f_z"] for o in out]) <= 0.0)
     assert np.all(np.diff([o["K_zz"] for o in out]) <= 0.0)
 
@@ -249,11 +249,11 @@ def test_signs_along_each_axis(plastic):
     spring = plastic
     for axis, name in enumerate(("f_x", "f_y", "f_z")):
         unit = np.eye(3)[axis]
-        moved = spring.motion(9e3, 0.0, tuple(1e-7 * unit), STILL)
+        moved = spring.evaluate(9e3, 0.0, tuple(1e-7 * unit), STILL)
         assert moved[name] < 0.0
-        other = spring.motion(9e3, 0.0, tuple(-1e-7 * unit), STILL)
+        other = spring.evaluate(9e3, 0.0, tuple(-1e-7 * unit), STILL)
         assert other[name] > 0.0
-        fast = spring.motion(9e3, 0.0, STILL, tuple(1e-3 * unit))
+        fast = spring.evaluate(9e3, 0.0, STILL, tuple(1e-3 * unit))
         damping = fast[f"C_{name[-1]}{name[-1]}"]
         assert fast[name] == pytest.approx(-1e-3 * damping, rel=0.0, abs=1e2 * EPS * total(9e3))
         assert damping > 0.0
@@ -266,7 +266,7 @@ def test_signs_along_each_axis(plastic):
 def test_loss_factors_and_damping(plastic, preload, moment):
     """eta_n: plastic over elastic work of all nodes; eta_t: of the traction ratio; C = eta sqrt(M K)."""
     spring = plastic
-    out = spring.motion(preload, moment, STILL, STILL)
+    out = spring.evaluate(preload, moment, STILL, STILL)
     law = at_pressure(JOINT, preload_pressure(JOINT, spring.shape, preload, moment))
     plastic, elastic = (spring.shape.share @ law[name] for name in ("W_NP", "W_NE"))
     assert out["eta_n"] == pytest.approx(plastic / elastic, rel=MAX_ERROR)
@@ -282,7 +282,7 @@ def test_loss_factors_and_damping(plastic, preload, moment):
 def test_plastic_work_of_first_loading_damps_on_demand_only(spring, plastic, preload, moment):
     """Off, the joint returns all energy of its normal motion; nothing else changes, nor what eta_n says."""
     moving = (1e-3, 1e-3, 1e-3)
-    off, on = (joint.motion(preload, moment, STILL, moving) for joint in (spring, plastic))
+    off, on = (joint.evaluate(preload, moment, STILL, moving) for joint in (spring, plastic))
     assert not JOINT.plastic_damping
     assert off["C_zz"] == 0.0 < on["C_zz"]
     assert off["f_z"] == pytest.approx(on["f_z"] + 1e-3 * on["C_zz"], abs=1e2 * EPS * total(preload))
@@ -294,7 +294,7 @@ def test_plastic_work_of_first_loading_damps_on_demand_only(spring, plastic, pre
 
 def test_damping_grows_with_the_mass_as_its_root(plastic):
     heavy = replace(plastic, joint=replace(plastic.joint, mass=4.0 * JOINT.mass))
-    light, more = (s.motion(9e3, 0.0, STILL, STILL) for s in (plastic, heavy))
+    light, more = (s.evaluate(9e3, 0.0, STILL, STILL) for s in (plastic, heavy))
     for name in ("C_xx", "C_yy", "C_zz"):
         assert more[name] == pytest.approx(2.0 * light[name], rel=4 * EPS)
     assert more["K_zz"] == light["K_zz"]
@@ -316,7 +316,7 @@ def test_loss_factor_while_closing(even):
 @each_load
 def test_rotational_stiffness_about_the_centroid(spring, preload, moment):
     """sum A k y^2, sum A k x^2, and rho sum A k (x^2 + y^2), written out."""
-    out = spring.motion(preload, moment, STILL, STILL)
+    out = spring.evaluate(preload, moment, STILL, STILL)
     law = at_pressure(JOINT, preload_pressure(JOINT, spring.shape, preload, moment))
     x, y = spring.shape.position.T
     share = spring.shape.share
@@ -341,23 +341,23 @@ def test_rotation_of_three_nodes(even):
 
 def test_without_preload(spring):
     """The sides touch without force: everything is finite; pressed together it carries."""
-    out = spring.motion(0.0, 0.0, STILL, STILL)
+    out = spring.evaluate(0.0, 0.0, STILL, STILL)
     assert all(np.isfinite(value) for value in out.values())
     for name in ("f_x", "f_y", "f_z", "K_xx", "K_zz", "C_xx", "C_zz", "K_rz", "p_mean", "p_max"):
         assert out[name] == 0.0, name
-    pressed = spring.motion(0.0, 0.0, (0.0, 0.0, -2e-5), STILL)
+    pressed = spring.evaluate(0.0, 0.0, (0.0, 0.0, -2e-5), STILL)
     assert pressed["f_z"] == pytest.approx(JOINT.A_0 * pressed["p_mean"], rel=1e-12)  # sum of a thousand
     assert pressed["f_z"] > 0.0
-    apart = spring.motion(0.0, 0.0, (1e-6, 0.0, 1e-6), (1.0, 1.0, 1.0))
+    apart = spring.evaluate(0.0, 0.0, (1e-6, 0.0, 1e-6), (1.0, 1.0, 1.0))
     assert apart["f_x"] == apart["f_y"] == apart["f_z"] == 0.0
 
 
 def test_a_small_preload_is_continuous_to_none(plastic):
     """Through the closing of the contact: no jump of any output but the loss factors."""
     spring = plastic
-    previous = spring.motion(1.0, 0.0, STILL, STILL)
+    previous = spring.evaluate(1.0, 0.0, STILL, STILL)
     for preload in (1e-2, 1e-4, 1e-8):
-        out = spring.motion(preload, 0.0, STILL, STILL)
+        out = spring.evaluate(preload, 0.0, STILL, STILL)
         assert all(np.isfinite(value) for value in out.values())
         for name in ("K_xx", "K_zz", "C_xx", "C_zz", "K_rx", "p_max"):
             assert 0.0 < out[name] < previous[name]
@@ -374,7 +374,7 @@ def test_an_open_row(spring, moment):
     assert np.max(p) > np.max(preload_pressure(JOINT, spring.shape, preload, 0.0))
     open_side = np.sign(spring.shape.position[p == 0.0, 1])
     assert np.all(open_side == -np.sign(moment))
-    out = spring.motion(preload, moment, STILL, STILL)
+    out = spring.evaluate(preload, moment, STILL, STILL)
     assert all(np.isfinite(value) for value in out.values())
     assert out["f_z"] == pytest.approx(0.0, abs=1e2 * EPS * JOINT.A_0 * out["p_mean"])
     assert out["p_mean"] > total(preload) / JOINT.A_0  # the clipped part is missing
@@ -382,7 +382,7 @@ def test_an_open_row(spring, moment):
 
 
 def test_the_sign_of_a_moment_does_not_matter_to_a_symmetric_frame(spring):
-    one, other = (spring.motion(15e3, m, (1e-7, 0.0, -1e-7), STILL) for m in (4500.0, -4500.0))
+    one, other = (spring.evaluate(15e3, m, (1e-7, 0.0, -1e-7), STILL) for m in (4500.0, -4500.0))
     assert one["m_y"] == pytest.approx(0.0, abs=1e-9)  # N.m: round-off of 1e5 N times 0.1 m
     for name, value in one.items():
         sign = -1.0 if name in ("m_x", "m_y", "m_z") else 1.0

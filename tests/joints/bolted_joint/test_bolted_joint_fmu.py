@@ -348,7 +348,7 @@ def test_loops_show_partial_slip_whatever_the_friction(mu: float) -> None:
 def test_the_picture_shows_pressure_and_bolts_where_they_are() -> None:
     """Cells make up the frame, the brightest lies at a bolt, numbers run as the bolts do."""
     joint = load_default("bolted_joint").values
-    shape = joint.pattern.shape()
+    shape = joint.pattern.pressure_distribution()
     drawn = ElementTree.fromstring(draw_plan(joint, 9e3, 0.0))
     cells = [rect for rect in drawn.iter(f"{SVG}rect") if rect.get("fill") not in ("#fff", "none", None)]
     sides = [[float(rect.get(side)) - CELL_OVERLAP for side in ("width", "height")] for rect in cells]
@@ -377,7 +377,7 @@ def test_the_picture_shows_pressure_and_bolts_where_they_are() -> None:
 def test_the_picture_of_points_without_an_outline() -> None:
     """One dot a point, where it is; no bolts, and the page says so."""
     file = load_default("bolted_joint")
-    shape = file.values.pattern.shape()
+    shape = file.values.pattern.pressure_distribution()
     half = np.flatnonzero(shape.position[:, 1] > 0.0)
     some = shape.part(half)
     share = some.share / some.share.sum()

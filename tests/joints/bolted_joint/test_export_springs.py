@@ -56,7 +56,7 @@ def grid(size, nodes):
 @pytest.mark.parametrize(("preload", "moment"), [(9e3, 0.0), (15e3, 4500.0), (20e3, -3000.0)])
 def test_pairs_add_up_to_the_joint(joint, preload, moment):
     springs = springs_of_joint(joint, preload, moment)
-    state = joint.motion(preload, moment, REST, REST)
+    state = joint.evaluate(preload, moment, REST, REST)
     # sums of a thousand terms: round-off
     for name, column in zip(
         TOTAL_OUTPUTS,
@@ -86,7 +86,7 @@ def test_open_pairs_are_left_out(joint):
     p = preload_pressure(joint.joint, joint.shape, 15e3, moment)
     assert springs.open_pairs == np.sum(p == 0.0) > 0
     assert len(springs.nodes) == np.sum(p > 0.0)
-    assert springs.K_n.sum() == pytest.approx(joint.motion(15e3, moment, REST, REST)["K_zz"], rel=1e-12)
+    assert springs.K_n.sum() == pytest.approx(joint.evaluate(15e3, moment, REST, REST)["K_zz"], rel=1e-12)
 
 
 @pytest.mark.parametrize("state", [(0.0, 0.0), (-1.0, 0.0), (np.nan, 0.0), (1e9, 0.0)])
@@ -111,7 +111,7 @@ def test_a_mesh_has_the_joints_sums(joint, nodes):
     labels, place, area = grid((0.12, 0.17), nodes)
     area *= joint.joint.A_0 / area.sum()
     springs = springs_on_mesh(joint, NodePairs("mesh.csv", labels, place, area, None), 15e3, 4500.0)
-    state = joint.motion(15e3, 4500.0, REST, REST)
+    state = joint.evaluate(15e3, 4500.0, REST, REST)
     assert springs.K_n.sum() == pytest.approx(state["K_zz"], rel=1e-12)
     assert springs.C_t.sum() == pytest.approx(state["C_xx"], rel=1e-12)
     # 10 to 2.5 mm of mesh on the joint's cells of 6 mm: the moment arms agree within a few per cent
@@ -134,7 +134,7 @@ def test_stated_pressures_give_the_law_at_them(joint):
     assert not np.any(springs.C_n)  # plastic work of first loading
     joint = replace(joint, joint=replace(joint.joint, plastic_damping=True))
     springs = springs_under_pressure(joint, NodePairs("mesh.csv", labels, place, area, p))
-    plastic, elastic = joint.works(p)  # open nodes count with the closing's end, as in the joint
+    plastic, elastic = joint.first_loading_work(p)  # open nodes count with the closing's end, as in the joint
     eta = (plastic @ area) / (elastic @ area)
     expected = eta * np.sqrt(joint.joint.mass * springs.K_n.sum())
     assert springs.C_n.sum() == pytest.approx(expected, rel=1e-9)
@@ -147,7 +147,7 @@ def test_meshes_that_do_not_fit_are_refused(joint):
         springs_on_mesh(joint, NodePairs("m.csv", labels, place, 2.0 * area, None), 9e3, 0.0)
     with pytest.raises(ValueError, match=r"m.csv: node \d+ is .* m off the joint"):
         springs_on_mesh(joint, NodePairs("m.csv", labels, 1.5 * place, area, None), 9e3, 0.0)
-    peaks = np.argsort(joint.shape.equal)[-3:]  # beside bolts only
+    peaks = np.argsort(joint.shape.preload_shape)[-3:]  # beside bolts only
     coarse = NodePairs("m.csv", labels[:3], joint.shape.position[peaks], np.full(3, 0.0382 / 3), None)
     with pytest.raises(
         ValueError, match=r"m.csv: the pressures at its nodes carry .* times the joint's force"
@@ -288,7 +288,7 @@ def test_abaqus_is_read_by_abq2ccx(found, tmp_path):
         axis = "XYZ".index(name.split("_")[1][1])
         assert dofs in (None, (axis + 1, axis + 1))  # a converted dashpot has an axis of its own
         sums[keyword][axis] += value * len(elements[name])
-    whole = [found.sums[n] / 1e3 for n in TOTAL_OUTPUTS]
+    whole = [found.totals[n] / 1e3 for n in TOTAL_OUTPUTS]
     np.testing.assert_allclose(sums["SPRING"] + sums["DASHPOT"], whole, rtol=DIGITS)
 
 
@@ -355,7 +355,7 @@ def test_calculix_text_has_the_same_springs_and_no_dashpots(found):
         assert dofs[0] == dofs[1]
         sums[dofs[0] - 1] += value * len(elements[name])
     # the joint's normal along the model's x
-    np.testing.assert_allclose(sums, [found.sums[n] / 1e3 for n in ("K_zz", "K_xx", "K_yy")], rtol=DIGITS)
+    np.testing.assert_allclose(sums, [found.totals[n] / 1e3 for n in ("K_zz", "K_xx", "K_yy")], rtol=DIGITS)
 
 
 def test_csv_is_read_by_the_standard_library(found):

@@ -20,7 +20,7 @@ GEAR = Case(
         domain="Translational",
     ),
     numbers=Numbers(
-        outputs=lambda spring, v: spring.approach(v["f"]),
+        outputs=lambda spring, v: spring.evaluate(v["f"]),
         ranges={"f": (1, 6e4)},
         span={"f": (0, 6e4)},
         state={"f": 2e4},

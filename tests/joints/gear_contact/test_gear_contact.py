@@ -52,18 +52,18 @@ def test_approach_is_the_integral_of_df_over_K(spring):
     """Against adaptive quadrature of the law's own stiffness from the end of the closing on."""
     A_0 = spring.joint.A_0
     first, s = closing_end(spring)
-    assert float(spring.approach(first)["s_rel"]) == pytest.approx(s, rel=1e-12)  # round-off of the inverse
+    assert float(spring.evaluate(first)["s_rel"]) == pytest.approx(s, rel=1e-12)  # round-off of the inverse
 
     def per_log(t):
         f = np.exp(t)
         return f / float(at_pressure(spring.joint, f / A_0)["K_N"])
 
     spots = spring.joint.spots()
-    breaks = [float(spots.total("load", u)) for u in spots.breaks if u > spots.stiff_onset]
+    breaks = [float(spots.total("load", u)) for u in spots.sorted_regime_ends if u > spots.stiffness_onset]
     for low, high in pairwise(np.geomspace(first, 0.99 * spring.max_force, 5)):
         ends = np.log([low, *(b for b in breaks if low < b < high), high])
         s += sum(quad(per_log, a, b, epsabs=0.0, epsrel=1e-10)[0] for a, b in pairwise(ends))
-        out = spring.approach(high)
+        out = spring.evaluate(high)
         assert float(out["s_rel"]) == pytest.approx(s, rel=MAX_ERROR)
         assert float(out["K_N"]) == pytest.approx(
             float(at_pressure(spring.joint, high / A_0)["K_N"]), rel=MAX_ERROR
@@ -75,8 +75,8 @@ def test_stiffness_is_the_slope_of_the_force(spring):
     """1/K_N = ds/df by differences of the output itself, from first touch to beyond the table."""
     f = np.geomspace(1e-6, 3.0, 60) * spring.max_force
     h = 1e-3 * f
-    slope = STENCIL @ spring.approach(f + h * FIVE[:, None])["s_rel"] / h
-    out = spring.approach(f)
+    slope = STENCIL @ spring.evaluate(f + h * FIVE[:, None])["s_rel"] / h
+    out = spring.evaluate(f)
     # truncation (h/f)^4; nodes of the table inside a step, where the third derivative jumps by
     # interpolation errors; round-off 10 eps s/h
     noise = 10.0 * EPS * out["s_rel"] / h * out["K_N"]
@@ -86,7 +86,7 @@ def test_stiffness_is_the_slope_of_the_force(spring):
 
 @each
 def test_everything_grows_with_the_force(spring):
-    out = spring.approach(np.geomspace(1e-9, 0.999, 200) * spring.max_force)
+    out = spring.evaluate(np.geomspace(1e-9, 0.999, 200) * spring.max_force)
     for name in ("s_rel", "K_N", "A_r", "elastic_fraction"):
         assert np.all(np.diff(out[name]) >= 0.0), name
         assert np.all(out[name] >= 0.0)
@@ -98,7 +98,7 @@ def test_everything_grows_with_the_force(spring):
 @each
 def test_no_load_and_pull(spring):
     """First touch at zero: nothing; a pulling force finds the flanks apart."""
-    out = spring.approach([0.0, -0.0, -1.0, -1e9])
+    out = spring.evaluate([0.0, -0.0, -1.0, -1e9])
     for name, value in out.items():
         np.testing.assert_array_equal(value, 0.0, err_msg=name)
 
@@ -118,7 +118,7 @@ def test_vanishing_forces(f):
 def test_real_area_and_its_elastic_part(spring):
     """The law's own sums, and in closed form: A_r = lambda m/(1 - m) a_L, elastic above a_nec."""
     f = np.geomspace(1e-3, 0.9, 12) * spring.max_force
-    out = spring.approach(f)
+    out = spring.evaluate(f)
     law = at_pressure(spring.joint, f / spring.joint.A_0)
     np.testing.assert_allclose(out["A_r"], law["A_r"], rtol=4 * EPS)
     m, spots = spring.joint.spots().m, spring.joint.spots()
@@ -142,7 +142,7 @@ def test_the_closing_is_short(spring):
     force, _ = closing_end(spring)
     spots = spring.joint.spots()
     largest = float(at_pressure(spring.joint, force / spring.joint.A_0)["largest_spot"])
-    plastic = spots.reference * np.exp(spots.stiff_onset)
+    plastic = spots.reference * np.exp(spots.stiffness_onset)
     assert largest == pytest.approx(CLOSING_RATIO * plastic, rel=1e-10)  # 1e-12 of the load, steep
     assert force < spring.max_force
 
@@ -150,7 +150,7 @@ def test_the_closing_is_short(spring):
 @each
 def test_beyond_the_table_the_tangent_continues(spring):
     end = spring.max_force
-    out = spring.approach(end * np.array([1.0, 1.5, 2.0, 10.0]))
+    out = spring.evaluate(end * np.array([1.0, 1.5, 2.0, 10.0]))
     K = out["K_N"][0]
     np.testing.assert_allclose(out["K_N"], K, rtol=1e-10)  # round-off over the last segment
     expected = out["s_rel"][0] + end * np.array([0.0, 0.5, 1.0, 9.0]) / K
@@ -161,12 +161,12 @@ def test_beyond_the_table_the_tangent_continues(spring):
 @each
 def test_shapes(spring):
     f = np.linspace(-1.0, 1.0, 12).reshape(3, 4) * spring.max_force
-    together = spring.approach(f)
+    together = spring.evaluate(f)
     for name, value in together.items():
         assert value.shape == (3, 4)
         # a point does not see its neighbours except through the number of Newton steps
-        assert float(value[2, 1]) == pytest.approx(float(spring.approach(f[2, 1])[name]), rel=1e-12)
-    assert all(np.shape(value) == () for value in spring.approach(1.0).values())
+        assert float(value[2, 1]) == pytest.approx(float(spring.evaluate(f[2, 1])[name]), rel=1e-12)
+    assert all(np.shape(value) == () for value in spring.evaluate(1.0).values())
 
 
 @pytest.mark.parametrize(

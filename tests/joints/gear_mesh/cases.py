@@ -37,7 +37,7 @@ MESH = Case(
         domain="Rotational",
     ),
     numbers=Numbers(
-        outputs=lambda spring, v: spring.motion(v["phi1"], v["w1"], v["phi2"], v["w2"]),
+        outputs=lambda spring, v: spring.evaluate(v["phi1"], v["w1"], v["phi2"], v["w2"]),
         ranges={"phi1": (-0.2, 0.2), "w1": (-1.0, 1.0), "phi2": (-5e-3, 5e-3), "w2": (-1.0, 1.0)},
         place=rolled,
         span={"phi1": (-6e-3, 6e-3), "w1": (-1.0, 1.0), "phi2": (-2e-3, 2e-3), "w2": (-1.0, 1.0)},

@@ -153,7 +153,7 @@ def test_the_pair_is_flanks_and_teeth_in_series(spring):
         return np.exp(t) / float(at_pressure(mesh, np.exp(t) / mesh.A_0)["K_N"])
 
     spots = mesh.spots()
-    breaks = [float(spots.total("load", u)) for u in spots.breaks if u > spots.stiff_onset]
+    breaks = [float(spots.total("load", u)) for u in spots.sorted_regime_ends if u > spots.stiffness_onset]
     last = first
     for force in np.geomspace(3.0 * first, 0.9 * mesh.A_0 * mesh.hardness, 5):
         ends = np.log([last, *(b for b in breaks if last < b < force), force])
@@ -193,7 +193,7 @@ def test_the_closing_is_in_series_too(spring):
         # the approach is known to 1e-16 of the closing, the load grows with its cube
         allowed = MAX_ERROR + 10.0 * EPS / part
         assert spring.curve.derivatives(s, 0)[0] == pytest.approx(load(solved), rel=allowed)
-    assert spring.closing == pytest.approx(
+    assert spring.closing_end == pytest.approx(
         -start + mesh.A_0 * flanks.closing_end_load / mesh.K_tooth, rel=4.0 * EPS
     )
 

@@ -39,7 +39,7 @@ def at(spring, s, roll):
 def motion(spring, s, roll, rate=0.0):
     """The spring at a deflection and a rolling way [m], both flanks closing with `rate` [m/s]."""
     phi1, phi2 = at(spring, s, roll)
-    return spring.motion(phi1, rate / spring.joint.r_b1, phi2, 0.0)
+    return spring.evaluate(phi1, rate / spring.joint.r_b1, phi2, 0.0)
 
 
 @each
@@ -47,7 +47,7 @@ def test_stiffness_is_the_slope_of_the_force(spring):
     """Along the line of action at a fixed phase, from first touch to beyond the table."""
     s = np.concatenate([np.geomspace(1e-4, 0.99, 60), [1.01, 3.0]]) * spring.curve.end[0]
     h = 1e-3 * s
-    kinks = spring.curve.displacement[1:-1][spring.curve.bend_end[:-1] != spring.curve.bend_start[1:]]
+    kinks = spring.curve.displacement[1:-1][spring.curve.slope_end[:-1] != spring.curve.slope_start[1:]]
     smooth = np.all(np.abs(kinks[:, None] - s) > 2.0 * h, axis=0)  # no regime of the law ends inside
     for roll in (0.0, 0.3 * base_pitch(spring.joint), 0.345 * base_pitch(spring.joint)):
         force = motion(spring, s + h * FIVE[:, None], roll)["f"]
@@ -66,12 +66,12 @@ def test_torques_are_the_gradient_of_the_energy(spring):
     s = generator.choice([-1.0, 1.0], 400) * spring.curve.end[0] * 10.0 ** generator.uniform(-2.0, 0.0, 400)
     roll = pitch * generator.uniform(-2.0, 2.0, 400)
     phi = np.array(at(spring, s, roll))
-    out = spring.motion(phi[0], 0.0, phi[1], 0.0)
+    out = spring.evaluate(phi[0], 0.0, phi[1], 0.0)
     for i, radius in enumerate((spring.joint.r_b1, spring.joint.r_b2)):
         h = np.minimum(2e-3 * np.abs(s), 1e-4 * pitch) / radius
         moved = np.repeat(phi[:, None], 5, axis=1)
         moved[i] += h * FIVE[:, None]
-        slope = STENCIL @ spring.motion(moved[0], 0.0, moved[1], 0.0)["E"] / h
+        slope = STENCIL @ spring.evaluate(moved[0], 0.0, moved[1], 0.0)["E"] / h
         torque = out[f"tau{i + 1}"]
         scale = radius * np.abs(out["f"]) + np.abs(out["E"])
         noise = 50.0 * EPS * out["E"] * (1.0 + pitch / np.abs(s)) / h  # the way along again
@@ -111,7 +111,7 @@ def period(panels=40_000):
 
 def undamped(spring):
     """The same tables without damping."""
-    return GearMeshSpring(replace_values(spring.joint, {"d": 0.0}), spring.curve, spring.closing)
+    return GearMeshSpring(replace_values(spring.joint, {"d": 0.0}), spring.curve, spring.closing_end)
 
 
 @each
@@ -144,7 +144,7 @@ def test_without_the_change_of_the_pairs_a_mesh_would_create_energy():
 def test_what_a_path_loses_is_the_work_of_the_damping(spring, seed):
     t, weights = period()
     path = closed_path(spring, seed, t)
-    out, elastic = spring.motion(*path), undamped(spring).evaluate(*path)
+    out, elastic = spring.evaluate(*path), undamped(spring).evaluate(*path)
     power = out["tau1"] * path[1] + out["tau2"] * path[3]
     rate = spring.joint.r_b1 * path[1] + spring.joint.r_b2 * path[3]
     lost = (out["f"] - elastic["f"]) * rate
@@ -158,11 +158,11 @@ def test_what_a_path_loses_is_the_work_of_the_damping(spring, seed):
 def test_damping_comes_in_over_the_closing(spring):
     """Nothing at first touch, d beyond the closing of the contact, and smooth between."""
     still, v = undamped(spring), 0.01
-    s = np.concatenate([[0.0], np.linspace(1e-3, 3.0, 2000)]) * spring.closing
+    s = np.concatenate([[0.0], np.linspace(1e-3, 3.0, 2000)]) * spring.closing_end
     damped = motion(spring, s, 0.0, v)["f"] - motion(still, s, 0.0, v)["f"]
     full = spring.joint.d * v
     assert damped[0] == 0.0
-    np.testing.assert_allclose(damped[s > 1.001 * spring.closing], full, rtol=1e-6)  # of a larger force
+    np.testing.assert_allclose(damped[s > 1.001 * spring.closing_end], full, rtol=1e-6)  # of a larger force
     # 1.875/3 of the whole over the 2000 steps at the steepest, and the force's round-off
     assert np.max(np.abs(np.diff(damped))) < 1.9 * 3.0 / 2000.0 * full
     np.testing.assert_allclose(
@@ -179,7 +179,7 @@ speeds = st.floats(-100.0, 100.0)
 @given(phi1=angles, w1=speeds, w2=speeds, way=st.floats(-3e-4, 3e-4))
 def test_odd_in_the_direction_of_rotation(spring, phi1, w1, w2, way):
     phi2 = (way - spring.joint.r_b1 * phi1) / spring.joint.r_b2
-    there, back = spring.motion(phi1, w1, phi2, w2), spring.motion(-phi1, -w1, -phi2, -w2)
+    there, back = spring.evaluate(phi1, w1, phi2, w2), spring.evaluate(-phi1, -w1, -phi2, -w2)
     for name in ("tau1", "tau2", "f", "s_rel"):
         assert float(back[name]) == -float(there[name]), name
     for name in ("K", "pairs", "E"):
@@ -189,7 +189,7 @@ def test_odd_in_the_direction_of_rotation(spring, phi1, w1, w2, way):
 @each
 def test_nothing_inside_the_backlash(spring):
     way = np.linspace(-0.499, 0.499, 11) * spring.joint.backlash
-    out = spring.motion(way / spring.joint.r_b1, 3.0, 0.0, -2.0)
+    out = spring.evaluate(way / spring.joint.r_b1, 3.0, 0.0, -2.0)
     for name in ("tau1", "tau2", "s_rel", "f", "K", "E"):
         assert np.all(out[name] == 0.0), name
 
@@ -293,10 +293,10 @@ def test_symbols(name):
 @each
 def test_shapes(spring):
     phi = np.linspace(-2e-3, 2e-3, 12).reshape(3, 4)
-    together = spring.motion(phi, 0.1, 0.0, phi)
+    together = spring.evaluate(phi, 0.1, 0.0, phi)
     for name, value in together.items():
         assert np.shape(value) == (3, 4), name
-        assert float(value[2, 1]) == float(spring.motion(phi[2, 1], 0.1, 0.0, phi[2, 1])[name])
+        assert float(value[2, 1]) == float(spring.evaluate(phi[2, 1], 0.1, 0.0, phi[2, 1])[name])
 
 
 @pytest.mark.parametrize(

@@ -34,15 +34,15 @@ def spring(**changes):
 
 def started(law, *motion):
     """Memory of a drive that began so."""
-    return law.driven(motion, law.rest())[1]
+    return law.advance_motion(motion, law.initial_history())[1]
 
 
 def turning(law, speed, tau=0.0):
     """Friction [N.m] of a drive that turns steadily with a torque at the output [N.m]."""
-    wound = float(law.windup(tau)["phi_rel"])
+    wound = float(law.evaluate_torque(tau)["phi_rel"])
     memory, ratio = started(law, 0.0, speed, wound, speed / law.joint.ratio), law.joint.ratio
     phi1 = np.copysign(20.0 * PRESLIDING, speed)
-    out, _ = law.driven((phi1, speed, phi1 / ratio + wound, speed / ratio), memory)
+    out, _ = law.advance_motion((phi1, speed, phi1 / ratio + wound, speed / ratio), memory)
     assert float(out["tau"]) == pytest.approx(tau, abs=1e-9)
     return float(out["tau_friction"])
 
@@ -166,11 +166,11 @@ def test_one_share_is_both_unless_another_is_stated():
 def coast(law, inertia, speed, step, count):
     """Angle and speed (count + 1, 2) of a motor that nobody drives, while the output follows it unloaded."""
     phi, w, found = 0.0, speed, [(0.0, speed)]
-    out, memory = law.driven((0.0, w, 0.0, w / 100.0), law.rest())
+    out, memory = law.advance_motion((0.0, w, 0.0, w / 100.0), law.initial_history())
     for _ in range(count):
         w += step * float(out["tau1"]) / inertia
         phi += step * w
-        out, memory = law.driven((phi, w, phi / 100.0, w / 100.0), memory)
+        out, memory = law.advance_motion((phi, w, phi / 100.0, w / 100.0), memory)
         found.append((phi, w))
     return np.array(found)
 

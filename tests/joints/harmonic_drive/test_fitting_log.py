@@ -43,16 +43,16 @@ def shorter(monkeypatch):
 
 def check_friction(found, undetermined=frozenset()):
     """The fit began 40 % off. Four standard deviations: one in 16 000 by chance."""
-    assert found.doubt() is None
+    assert found.rejection_reason() is None
     assert not any("--motor-inertia" in note for note in found.notes)
     assert found.facts["held_out"][0] < 0.1 * found.facts["held_out_constant"][0]
     for label, deviation in found.solution.deviations.items():
-        assert abs(math.log(found.parameters.flat[label] / TRUE[label])) < 4.0 * deviation
+        assert abs(math.log(found.parameters.values_by_name[label] / TRUE[label])) < 4.0 * deviation
         if label in undetermined:
             assert label not in found.intervals
             continue
         low, high = found.intervals[label]
-        assert low < found.parameters.flat[label] < high
+        assert low < found.parameters.values_by_name[label] < high
         assert f"95 % interval {low:.4g} to {high:.4g}" in found.parameters.sources[label]
 
 

@@ -52,7 +52,7 @@ def spring(springs):
 
 def still(spring, phi):
     """Outputs at a wind-up without speed."""
-    return spring.motion(0.0, 0.0, phi, 0.0)
+    return spring.evaluate_motion(0.0, 0.0, phi, 0.0)
 
 
 # The law
@@ -260,7 +260,7 @@ def test_torque_is_odd_and_stiffness_even(springs, name):
     for quantity in ("K_WTS", "K_TS", "K_FTS", "K_TS_pair", "p_max"):
         np.testing.assert_array_equal(back[quantity], there[quantity])
     T = np.geomspace(1e-9, 50.0, 51)
-    np.testing.assert_array_equal(springs[name].windup(-T)["phi_rel"], -springs[name].windup(T)["phi_rel"])
+    np.testing.assert_array_equal(springs[name].evaluate_torque(-T)["phi_rel"], -springs[name].evaluate_torque(T)["phi_rel"])
 
 
 @pytest.mark.parametrize("name", SETS)
@@ -286,7 +286,7 @@ def test_inverse_is_consistent(springs, name):
     """Compliance and spring are one law, also beyond the table."""
     spring = springs[name]
     T = np.concatenate([np.geomspace(1e-9, 1.0, 201), np.linspace(-1.5, 1.5, 202)]) * spring.joint.max_torque
-    given_torque = spring.windup(T)
+    given_torque = spring.evaluate_torque(T)
     given_angle = still(spring, given_torque["phi_rel"])
     # the polynomial's round-off: 60 eps, carried 0.5 of the table beyond its end over a segment of 0.02
     np.testing.assert_allclose(given_angle["tau"], T, rtol=60 * EPS * 25, atol=60 * EPS * 0.1)
@@ -330,7 +330,7 @@ def test_torques_on_the_flanges(spring):
     phi1, w1 = rng.uniform(-3, 3, (2, 50))
     phi2 = phi1 / DRIVE.ratio + rng.uniform(-4e-3, 4e-3, 50)
     w2 = rng.uniform(-0.1, 0.1, 50)
-    out = spring.motion(phi1, w1, phi2, w2)
+    out = spring.evaluate_motion(phi1, w1, phi2, w2)
     np.testing.assert_array_equal(out["tau1"], out["tau"] / 100.0)
     np.testing.assert_array_equal(out["tau2"], -out["tau"])
     np.testing.assert_array_equal(out["phi_rel"], phi2 - phi1 / 100.0)
@@ -346,7 +346,7 @@ def test_torques_on_the_flanges(spring):
 
 def test_rigid_rotation_makes_no_torque(spring):
     """Both flanges turned together at the ratio: exactly zero wind-up for binary-exact angles."""
-    out = spring.motion(100.0 * 0.25, 100.0 * 0.5, 0.25, 0.5)
+    out = spring.evaluate_motion(100.0 * 0.25, 100.0 * 0.5, 0.25, 0.5)
     assert (out["phi_rel"], out["tau"], out["tau1"], out["tau2"]) == (0.0, 0.0, 0.0, 0.0)
 
 
@@ -374,7 +374,7 @@ def test_damping_dissipates(spring):
     """A cycle at speed loses pi d omega phi^2, whatever the spring."""
     omega, phi = 20.0, 3e-3
     t = np.arange(4096) / 4096 * 2 * np.pi / omega
-    out = spring.motion(0.0, 0.0, phi * np.sin(omega * t), phi * omega * np.cos(omega * t))
+    out = spring.evaluate_motion(0.0, 0.0, phi * np.sin(omega * t), phi * omega * np.cos(omega * t))
     lost = np.mean(out["tau"] * phi * omega * np.cos(omega * t)) * 2 * np.pi / omega
     # a periodic sum over 4096 points: the elastic part cancels by symmetry
     assert lost == pytest.approx(np.pi * DRIVE.d * omega * phi**2, rel=1e-10)

@@ -24,7 +24,7 @@ def default_spring(**changes):
 
 def energy(law, phi1, phi2):
     """Stored in the spring [J]."""
-    return float(law.curve.energy(abs(float(law.motion(phi1, 0.0, phi2, 0.0)["phi_rel"]))))
+    return float(law.curve.energy(abs(float(law.evaluate_motion(phi1, 0.0, phi2, 0.0)["phi_rel"]))))
 
 
 # Ratio
@@ -81,7 +81,7 @@ def ripple(law, inertia, speed, periods=60):
     end = periods * np.pi / speed
 
     def rate(t, y):
-        found = law.motion(speed * t, speed, *y)
+        found = law.evaluate_motion(speed * t, speed, *y)
         return [y[1], float(found["tau2"]) / inertia]
 
     times = np.linspace(0.75 * end, end, 1500, endpoint=False)  # whole periods
@@ -177,9 +177,9 @@ def spring(law=None, loss=ARCMIN, **changes):
 
 def along(law, path, memory=None):
     """Torque, loss and memory along a path of wind-ups [rad]."""
-    memory, torque, loss = law.rest() if memory is None else memory, [], []
+    memory, torque, loss = law.initial_history() if memory is None else memory, [], []
     for phi in path:
-        out, memory = law.driven((0.0, 0.0, phi, 0.0), memory)
+        out, memory = law.advance_motion((0.0, 0.0, phi, 0.0), memory)
         torque.append(float(out["tau"]))
         loss.append(float(out["E_loss"]))
     return np.array(torque), np.array(loss), memory

@@ -93,7 +93,7 @@ def _run_import(args: argparse.Namespace) -> CommandResult:
 
     start = load_joint_file(args.params)
     bodies.check_body_arguments(args, start)
-    field, tilted = _create_reader(args).field(args.file, args.moment_file)
+    field, tilted = _create_reader(args).read_field(args.file, args.moment_file)
     source = f"nodal contact result {args.file.name}"
     if args.moment_file:
         source += f" and {args.moment_file.name}"

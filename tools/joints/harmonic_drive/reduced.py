@@ -90,7 +90,7 @@ REDUCED = ReducedCurves(
     load=KIND.variables["tau"],
     outputs=tuple(KIND.variables[name] for name in ("K_WTS", "phi_rel")),
     default_end=lambda drive: float(drive.rated_torque),
-    max_load=lambda drive: drive.reach,
+    max_load=lambda drive: drive.max_table_torque,
     evaluate=evaluate,
     exact=exact,
 )

@@ -150,7 +150,7 @@ MODELS = (
                 for name, doc in STABLE_STEP_OUTPUTS
             ),
         ),
-        evaluate=lambda s, v: _evolve(s, v, s.at_rest())[0],
+        evaluate=lambda s, v: _evolve(s, v, s.initial_history())[0],
         initial_history=BoltedJointSpring.initial_history,
         advance=_evolve,
         validity_limits=(

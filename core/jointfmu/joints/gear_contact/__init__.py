@@ -23,7 +23,7 @@ MODELS = (
             Variable("A_r", "m2", "real contact area", 1e-6),
             Variable("elastic_fraction", "1", "elastic part of the real contact area"),
         ),
-        evaluate=lambda s, v: s.approach(v["f"]),
+        evaluate=lambda s, v: s.evaluate(v["f"]),
         validity_limits=(
             ValidityLimit(
                 "f", lambda j, end, v: (0.0, math.inf), "the force is tensile, the flanks are separated"

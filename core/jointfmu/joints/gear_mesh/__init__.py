@@ -45,7 +45,7 @@ MODELS = (
                 for name, doc in STABLE_STEP_OUTPUTS
             ),
         ),
-        evaluate=lambda s, v: s.motion(v["phi1"], v["w1"], v["phi2"], v["w2"]),
+        evaluate=lambda s, v: s.evaluate(v["phi1"], v["w1"], v["phi2"], v["w2"]),
         validity_limits=(ValidityLimit("s_rel", lambda j, end, v: (-end[0], end[0]), EXTRAPOLATION_WARNING),),
         ramp=LoadRamp("phi1", 1.5e-3, 5e-6, find_range=_ramp_range),
         dependencies=dict.fromkeys(

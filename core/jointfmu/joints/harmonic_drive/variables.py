@@ -97,9 +97,9 @@ MODELS = (
                 for name, doc in STABLE_STEP_OUTPUTS
             ),
         ),
-        evaluate=lambda s, v: s.motion(*_flange_motion(v), v["temperature"]),
-        initial_history=lambda s: s.rest(),
-        advance=lambda s, v, memory: s.driven(_flange_motion(v), memory, v["temperature"]),
+        evaluate=lambda s, v: s.evaluate_motion(*_flange_motion(v), v["temperature"]),
+        initial_history=lambda s: s.initial_history(),
+        advance=lambda s, v, memory: s.advance_motion(_flange_motion(v), memory, v["temperature"]),
         validity_limits=(
             ValidityLimit("phi_rel", lambda j, end, v: (-end[0], end[0]), EXTRAPOLATION_WARNING),
             ValidityLimit(
@@ -142,9 +142,9 @@ MODELS = (
             Variable("phi_rel", "rad", "wind-up at the output, phi(tau - T_h)", 1e-3),
             *_STIFFNESS_OUTPUTS,
         ),
-        evaluate=lambda s, v: s.windup(v["tau"]),
-        initial_history=lambda s: s.rest(),
-        advance=lambda s, v, memory: s.loaded(v["tau"], memory),
+        evaluate=lambda s, v: s.evaluate_torque(v["tau"]),
+        initial_history=lambda s: s.initial_history(),
+        advance=lambda s, v, memory: s.advance_torque(v["tau"], memory),
         validity_limits=(ValidityLimit("tau", lambda j, end, v: (-end[1], end[1]), EXTRAPOLATION_WARNING),),
         ramp=LoadRamp("tau", 5.0, 0.01, find_range=lambda s, v: (0.0, s.joint.ramp_torque)),
         loop=LoadCycle("tau", 5.0, _LOOP_SETTINGS),
