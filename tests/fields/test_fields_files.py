@@ -11,7 +11,7 @@ from jointfmu_tools.fields.mesh import SURFACE_CELLS, VOLUME_CELLS, boundary_fac
 from jointfmu_tools.fields.reading import FieldReader
 
 DATA = Path(__file__).parent
-UNITS = {"length": "mm", "pressure": "MPa"}
+UNITS = {"length_unit": "mm", "pressure_unit": "MPa"}
 
 
 def grid(nx, ny, quadratic=False):

@@ -76,7 +76,7 @@ def test_the_area_of_the_loop_is_the_fmus(folder, capsys):
     torques = rated * np.concatenate([np.linspace(0, 1, STEPS), np.cos(np.linspace(0, 2 * np.pi, 4 * STEPS))])
     memory, spring, expected = drive.spring.initial_history(), drive.spring, []
     for torque in torques[::20]:
-        out, memory = spring.loaded(torque, memory)
+        out, memory = spring.advance_torque(torque, memory)
         expected.append(float(out["phi_rel"]))
     own = np.trapezoid(torques[::20][STEPS // 20 :], expected[STEPS // 20 :])
     x = pulled(model, torques)[STEPS:]
@@ -184,7 +184,7 @@ def test_urdf_states_the_loop(folder, capsys):
     stated = float(re.search(r"the hysteresis, (\S+) J a loop at 87 N.m", text)[1])
     memory, losses = drive.spring.initial_history(), []
     for torque in 87.0 * np.cos(np.linspace(0.0, 2.0 * np.pi, 201)):
-        out, memory = drive.spring.loaded(torque, memory)
+        out, memory = drive.spring.advance_torque(torque, memory)
         losses.append(float(out["E_loss"]))
     assert stated == pytest.approx(losses[-1] - losses[0], rel=0.02)
 

@@ -80,7 +80,7 @@ SPRING = Case(
         others={"ratio": 50.0, "d": 0.25},
     ),
     numbers=Numbers(
-        outputs=lambda spring, v: spring.motion(*(v[name] for name in MOTION)),
+        outputs=lambda spring, v: spring.evaluate_motion(*(v[name] for name in MOTION)),
         ranges={"phi1": (-0.1, 0.1), "w1": (-50, 50), "phi2": (-3e-3, 3e-3), "w2": (-0.5, 0.5), **WARM},
         span={"phi1": (-0.05, 0.05), "w1": (-50, 50), "phi2": (-3.8e-3, 3.8e-3), "w2": (-0.5, 0.5), **WARM},
         state={"phi1": 0.01, "w1": 0.3, "phi2": 6e-4, "w2": -0.02, "temperature": 310.0},
@@ -127,7 +127,7 @@ COMPLIANCE = Case(
         domain="Rotational",
     ),
     numbers=Numbers(
-        outputs=lambda spring, v: spring.windup(v["tau"]),
+        outputs=lambda spring, v: spring.evaluate_torque(v["tau"]),
         ranges={"tau": (-25, 25)},
         span={"tau": (-30, 30)},
         state={"tau": 3.0},

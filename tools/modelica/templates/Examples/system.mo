@@ -10,7 +10,7 @@
   end << record.name >>;
 <% endfor %>
 <%- for part in parts %>
-  << part.type >> << part.name >><% if part.values %>(<< part.values >>)<% endif %>
+  << part.type >> << part.name >><% if part.modifications %>(<< part.modifications >>)<% endif %>
     annotation (Placement(transformation(extent={{<< part.x - 10 >>,<< part.y - 10 >>},{<< part.x + 10 >>,<< part.y + 10 >>}})));
 <%- endfor %>
 equation
