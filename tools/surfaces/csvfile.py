@@ -1,4 +1,4 @@
-"""The CSV format of this package for profiles and areal maps (docs/surfaces.md).
+"""The CSV format of this package for profiles and areal maps (docs/surfaces_reference.md).
 
 # profile: x [um], z [um]          two columns, spacing constant
 # points: x [um], y [um], z [nm]   three columns on a full or gappy grid

@@ -154,7 +154,7 @@ def prepare(heights: Heights, form: str = FORMS[0], keep_spikes: bool = False) -
 
 
 FEWEST = 5.0
-"""Shortest wave of the slope, in spacings: shorter ones are noise and the instrument's (docs/surfaces.md)."""
+"""Shortest wave of the slope [spacings]: shorter waves are noise (docs/surfaces_reference.md)."""
 WAVES = 4.0
 """Least longest wave over that shortest one."""
 
