@@ -106,7 +106,7 @@ def _both(shape: Array, sign: float) -> tuple[Array, Array]:
 
 REFINEMENT = 0.5
 """Of the meshes for frequencies of many states [1]; twice as fine ones lower those of the box specimen by
-less than 1 % (docs/finite_elements.md)."""
+less than 1 % (docs/finite_elements_explanation.md)."""
 
 
 def computed(solution: JointSolution, shear: float, count: int = 6) -> NaturalModes:
