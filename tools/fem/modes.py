@@ -117,7 +117,7 @@ def _both(shape: Array, sign: float) -> tuple[Array, Array]:
 
 REFINEMENT = 0.5
 """Refinement [1] of the meshes for frequencies in many load states. Twice this refinement lowers the
-frequencies of the box specimen by less than 1 % (docs/finite_elements.md)."""
+frequencies of the box specimen by less than 1 % (docs/finite_elements_explanation.md)."""
 
 
 def computed(solution: JointSolution, shear: float, count: int = 6) -> NaturalModes:
