@@ -1,4 +1,4 @@
-"""h and slope of scans over a longest wave against the spectrum's (docs/surfaces.md).
+"""h and slope of scans over a longest wave against the spectrum's (docs/surfaces_explanation.md).
 
 Gaussian self-affine surfaces that go on beyond the scan, read as `jointfmu surface` reads them.
 """

@@ -1,4 +1,4 @@
-"""Made surfaces identified again: error of D and G, coverage of the intervals, time (docs/surfaces.md).
+"""Made surfaces identified again: errors, coverage of intervals, time (docs/surfaces_explanation.md).
 
 Weierstrass-Mandelbrot surfaces over D, G and seeds, each read as `jointfmu surface` reads it; then Gaussian
 self-affine surfaces, whose heights vary by chance as measured ones do, for the coverage of the intervals.

@@ -42,7 +42,7 @@ HERE = Path(__file__).parent
 RELEASED = ("-target", TARGETS[platform_tuple], "-O2", "-s")
 """Options of zig as FMUs are linked here. Others let it compile its part of the C runtime first, 4 s with
 optimization, 20 s without."""
-SLOW_FIXTURES = frozenset({"fmus", "native", "tutorial", "site"})
+SLOW_FIXTURES = frozenset({"fmus", "native", "elastic_joint", "tutorial", "site"})
 """Fixtures that build FMUs or run commands; `fmu`, `host` and others stand on them."""
 
 
@@ -301,7 +301,8 @@ def solved_once(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
             from jointfmu_tools.fem.whole_joint import JointFiniteElements
         except ImportError:  # a test hides a package
             return solve(*asked)
-        if not isinstance(vars(JointFiniteElements)["from_assembly"], classmethod):  # a test has elements of its own
+        own = not isinstance(vars(JointFiniteElements)["from_assembly"], classmethod)
+        if own:  # a test has elements of its own
             return solve(*asked)
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr(
@@ -332,6 +333,30 @@ def native(tmp_path_factory: pytest.TempPathFactory) -> Path:
     from jointfmu_fmu_src.building import build
 
     return made_once(tmp_path_factory, "native", lambda out: build([], ["fmi2", "fmi3"], None, out))
+
+
+@pytest.fixture(scope="session")
+def elastic_joint(tmp_path_factory: pytest.TempPathFactory, solved_once: None) -> Path:
+    """Folder with joint.toml, a plate on four bolts with elastic sides, and its native FMUs as in `native`.
+
+    The FMUs are for this machine alone. Finite elements compute the sides: mark the test with needs("gmsh").
+    """
+    from jointfmu_fmu_src.building import build
+    from jointfmu_tools import cli
+
+    from jointfmu.parameters import load
+
+    words = ["--plate", "80x80", "--bolts", "4xM8", "--at", "50x50", "--grip", "20"]
+    words += ["--material", "steel", "--Ra", "0.8", "--embedding", "0", "--preload", "15000"]
+
+    def make(out: Path) -> None:
+        out.mkdir()
+        file = out / "joint.toml"
+        assert cli.main(["new", "bolted-joint", *words, "--out", str(file), "--json"]) == 0
+        with here_alone():
+            build(["BoltedJoint"], ["fmi2", "fmi3"], load_parameter_file(file), out)
+
+    return made_once(tmp_path_factory, "elastic-joint", make)
 
 
 @pytest.fixture

@@ -1,7 +1,7 @@
 """Formulas of Weierstrass-Mandelbrot surfaces: spectrum, structure function, rms height from D and G.
 
 All lengths are SI. H is the Hurst exponent: H = 2 - D of a profile, H = 3 - D of a surface.
-The derivations are in docs/surfaces.md.
+The derivations are in docs/surfaces_reference.md.
 """
 
 import numpy as np

@@ -54,7 +54,7 @@ def test_springs_along_another_normal(normal, tmp_path):
 
 
 def test_documented_figures_are_those_of_the_run(cases):
-    text = (ROOT / "docs/export.md").read_text(encoding="utf-8")
+    text = (ROOT / "docs/export_reference.md").read_text(encoding="utf-8")
     rows = re.findall(r"^\| (?:springs|contact|the same)[^|]*\|([^|]*)\|([^|]*)\|", text, flags=re.MULTILINE)
     assert len(rows) == 9
     for theirs, ours in rows:

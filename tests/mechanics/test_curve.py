@@ -288,7 +288,8 @@ def test_approach_is_the_integral_of_dp_over_k(law):
     spots = law.spots()
     start = float(curve.load[np.searchsorted(curve.displacement, 0.0)])
     pressures = np.geomspace(start, 0.999 * law.hardness, 7)
-    breaks = [float(spots.total("load", b)) / law.A_0 for b in spots.sorted_regime_ends if b > spots.stiffness_onset]
+    ends = [end for end in spots.sorted_regime_ends if end > spots.stiffness_onset]
+    breaks = [float(spots.total("load", end)) / law.A_0 for end in ends]
 
     def per_decade(t):
         p = np.exp(t)

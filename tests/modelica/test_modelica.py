@@ -472,7 +472,7 @@ def test_bolted_component_slips_as_the_package(rumoca: Any, bolted: BoltedJointS
     for i in (1, 2):
         assert np.abs(exact[i - 1]).max() > 0.4 * limit
         assert np.abs(found[f"joint.f[{i}]"][first] - exact[i - 1]).max() < 0.02 * limit
-    # the component sums up all nodes, the package's points are within 1e-6 of them (docs/fields.md)
+    # the component sums up all nodes; the points are within 1e-6 of that sum (docs/fields_explanation.md)
     apart = np.abs(found["joint.f[3]"][first] - exact[2]).max()
     assert apart < (EXACT + 1e-6) * preload * bolted.joint.n_bolts
     assert np.all(np.diff(found["loss"]) >= 0.0)

@@ -32,7 +32,7 @@ from jointfmu_tools.systems.system import system
 from natives import SAID
 
 from jointfmu.joints import MODELS
-from jointfmu.parameters import load_default
+from jointfmu.parameters import ParameterFile, load_default
 
 pytestmark = pytest.mark.slow
 
@@ -63,6 +63,10 @@ SYSTEM = "robot_joint"
 MUTATIONS = dict.fromkeys([*MODELS, SYSTEM], 5_000) | {
     name: 15_000 for name in MODELS if name.startswith("HarmonicDrive")
 }
+ELASTIC = "BoltedJoint with elastic sides"
+"""Of the fixture `elastic_joint`."""
+ELASTIC_MUTATIONS = 300
+"""Each costs ten times one of BoltedJoint."""
 """Of serialized states, in each version: 100 000 in all, more of what is fast."""
 
 FEW_PARTNERS = ("RotationalInertia", "TorqueProfile")
@@ -110,9 +114,18 @@ class Sources(NamedTuple):
         return (token(dict(self.files)), str(self.inputs), str(self.outputs), str(self.parameters))
 
 
+ELASTIC_FILES: list[ParameterFile] = []
+"""The parameter file of ELASTIC, once a test has it."""
+
+
 @cache
 def c_of(name: str) -> Sources:
     """The sources of an FMU, or of the joint in a folder of tests/native/hosts."""
+    if name == ELASTIC:
+        (file,) = ELASTIC_FILES
+        model = MODELS["BoltedJoint"].of(file.joint, file.values)
+        files = sources(model.name, file)
+        return Sources(files, len(model.inputs), len(model.outputs), len(model.parameter_fields()))
     if model := (MODELS | PARTNERS).get(name):
         files = sources(name, partner_parameters(name) if name in PARTNERS else load_default(model.joint))
         return Sources(files, len(model.inputs), len(model.outputs), len(model.parameter_fields()))
@@ -308,18 +321,32 @@ def test_fuzz(sanitizing: str, builder: Builder, name: str, version: str) -> Non
     assert min(ok, errors) > FUZZ_CALLS / 4  # neither all refused nor nothing
 
 
+def check_mutations(builder: Builder, compiler: str, name: str, version: str, count: int) -> None:
+    """States of an FMU whose fields are changed are refused, or used without harm."""
+    run = builder.program(compiler, "states", name)
+    found = builder.call(builder.work, str(run), "", version, *c_of(name).arguments, "1", str(count))
+    mutations, refused = (int(word) for word in found.replace(",", "").split() if word.isdigit())
+    assert mutations == count
+    assert mutations / 4 < refused < mutations  # neither all refused nor nothing
+
+
 @every_version
 @pytest.mark.parametrize("name", MUTATIONS)
 def test_a_mutated_state_is_refused_or_used_without_harm(
     sanitizing: str, builder: Builder, name: str, version: str
 ) -> None:
     """Its checksum is right: that protects against accidents alone."""
-    run = builder.program(sanitizing, "states", name)
-    count = MUTATIONS[name]
-    found = builder.call(builder.work, str(run), "", version, *c_of(name).arguments, "1", str(count))
-    mutations, refused = (int(word) for word in found.replace(",", "").split() if word.isdigit())
-    assert mutations == count
-    assert mutations / 4 < refused < mutations  # neither all refused nor nothing
+    check_mutations(builder, sanitizing, name, version, MUTATIONS[name])
+
+
+@needs("gmsh")
+def test_a_mutated_state_of_elastic_sides_is_refused_or_used_without_harm(
+    sanitizing: str, builder: Builder, elastic_joint: Path
+) -> None:
+    """In both versions, whose states differ in their head alone."""
+    ELASTIC_FILES[:] = [load_parameter_file(elastic_joint / "joint.toml")]
+    for version in VERSIONS:
+        check_mutations(builder, sanitizing, ELASTIC, version, ELASTIC_MUTATIONS)
 
 
 @every_joint

@@ -1,9 +1,11 @@
 """Directional and adjoint derivatives of the native FMUs are those of the package, and exact."""
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
+from clients import needs
 from conftest import Fmu
 from joint_cases import NAMES, STATE, random_inputs
 from natives import VERSIONS, Host, check_slopes, jacobian
@@ -32,8 +34,8 @@ def test_directional_derivatives_are_those_of_the_package(host: Host, name: str)
 
 
 def test_derivatives_are_linear_in_the_seed_and_follow_the_state(host: Host, name: str, version: str) -> None:
-    instance = host(name, version).start(STATE[name])
-    inputs = list(STATE[name])
+    instance, inputs = host(name, version).start(), list(STATE[name])
+    instance.set_values(STATE[name])  # not accepted: at a corner the mean of both sides is not linear
     knowns = [instance.variables[i].valueReference for i in inputs]
     before = jacobian(instance)
     seed = list(np.random.default_rng(35).normal(size=len(inputs)) * list(STATE[name].values()))
@@ -102,24 +104,106 @@ def test_stiffnesses_of_a_sheared_joint_have_the_slopes_of_their_differences(
     assert found["K_yy", "preload"] == pytest.approx(886_260, rel=1e-4)
 
 
-def test_derivatives_after_a_history_are_those_of_differences(host: Host, version: str) -> None:
-    """All outputs by all inputs at tried states: within both sides, which differ at corners."""
+SIZES = {"preload": 1e4, "moment": 500.0, "s_rel_x": 1e-6, "s_rel_y": 1e-6, "s_rel_z": 5e-7}
+SIZES |= {"theta_x": 1e-5, "theta_y": 1e-5, "theta_z": 2e-5, "v_rel_x": 1e-3, "omega_z": 1e-2}
+"""Sizes of the inputs [N, N.m, m, rad, m/s, rad/s]."""
+MOMENTS = ("initialization", "tried step", "accepted step")
+STEPS = (1e-4, 1e-5, 1e-6, 1e-7)
+"""Steps of differences over the size of an input [1]."""
+
+
+JUMPING = ("K_", "C_loop", "step_", "E_loss")
+"""Beginnings of outputs that can jump: stiffnesses at accepted inputs, where spots that slip stick in a
+motion back; the heat, by the third order of a step, where springs begin to touch at its end."""
+
+
+def random_state(rng: np.random.Generator, preload: float, still: float) -> dict[str, float]:
+    """Inputs at random; each motion is zero with the probability `still`."""
+    motions = {n: s * rng.uniform(-0.5, 0.5) * (rng.random() > still) for n, s in SIZES.items() if s < 1e-4}
+    state = dict.fromkeys(SIZES, 0.0) | {"preload": preload} | motions
+    if rng.random() < 0.6:
+        return state
+    return state | {"preload": preload * rng.uniform(0.6, 1.2), "moment": rng.uniform(-300.0, 300.0)}
+
+
+def after_a_history(instance: Fmu, moment: str, seed: int, preload: float) -> dict[str, float]:
+    """Inputs after random motion, at a moment of the simulation; every other motion leaves and meets the
+    tightened state."""
+    rng = np.random.default_rng(seed)
+    still = 0.3 if seed % 2 else 0.7
+    instance.begin()
+    instance.set_values(state := random_state(rng, preload, still))
+    if moment == "initialization":
+        return state
+    if not seed % 2:
+        instance.set_values(dict.fromkeys(SIZES, 0.0) | {"preload": preload})
+    instance.fmu.exitInitializationMode()
+    steps = 1 + seed % 4
+    for step in range(steps):
+        instance.set_values(state := random_state(rng, preload, still))
+        if step < steps - 1 or moment == "accepted step":
+            instance.step()
+    return state
+
+
+def check_mean_of_sides(instance: Fmu, state: dict[str, float], nominal: dict[str, float]) -> None:
+    """Derivatives of all outputs are the mean of the differences of both sides.
+
+    They agree over one of the STEPS at least: a shorter step has more round-off, a longer one goes over
+    other corners. The tolerance is 1e-4 of the larger side (truncation over 1e-4 of the sizes), 1 % of what
+    the sides differ by, and 1e-13 of the nominal value over the step (round-off; elastic sides find their
+    equilibrium to 1e-13 of all forces).
+    """
+    found = jacobian(instance)
+    for name, size in SIZES.items():
+        each = [sides(instance, state, name, step * size) for step in STEPS]
+        for output in instance.outputs:
+            value, missed = found[output, name], []
+            gaps = [abs(up - down) for up, down in (ends[output] for ends in each)]
+            if output.startswith(JUMPING) and gaps[-1] > 100.0 * gaps[0]:
+                continue  # it jumps
+            for step, gap, ends in zip(STEPS, gaps, each, strict=True):
+                up, down = ends[output]
+                least = 1e-13 * nominal.get(output, 1e4) / (step * size)
+                allowed = 1e-4 * max(abs(up), abs(down)) + 0.01 * gap + least
+                missed.append(abs(value - 0.5 * (up + down)) / allowed)
+            assert min(missed) <= 1.0, (output, name, value, [ends[output] for ends in each])
+
+
+@pytest.mark.parametrize("moment", MOMENTS)
+def test_derivatives_in_random_states_are_the_mean_of_both_sides(
+    host: Host, version: str, moment: str
+) -> None:
+    """All outputs by all inputs."""
     nominal = {v.name: v.nominal for v in MODELS["BoltedJoint"].outputs}
-    sizes = {"preload": 1e4, "s_rel_x": 1e-6, "s_rel_y": 1e-6, "s_rel_z": 5e-7}
-    sizes |= {"theta_x": 1e-5, "theta_y": 1e-5, "theta_z": 2e-5, "v_rel_x": 1e-3, "omega_z": 1e-3}
-    for seed in range(5):
-        rng, instance = np.random.default_rng(seed), host("BoltedJoint", version).start({"preload": 1e4})
-        for step in range(5):
-            state = {name: size * rng.uniform(-0.5, 0.5) for name, size in sizes.items() if size < 1.0}
-            instance.set_values(state := {"preload": 1e4 * (1.0 - 0.3 * (step % 2)), **state})
-            if step < 4:
-                instance.step()
-        here, found = instance.get(), jacobian(instance)
-        for name, size in sizes.items():
-            for output, ends in sides(instance, state, name, 1e-6 * size).items():
-                least = 1e-3 * max(abs(here[output]), 1e-6 * nominal[output]) / size
-                low, high = min(ends) - least, max(ends) + least
-                assert low <= found[output, name] <= high, (seed, output, name)
+    for seed in range(16):
+        instance = host("BoltedJoint", version)
+        check_mean_of_sides(instance, after_a_history(instance, moment, seed, 1e4), nominal)
+
+
+@needs("gmsh")
+@pytest.mark.parametrize("moment", MOMENTS)
+def test_derivatives_of_elastic_sides_are_the_mean_of_both_sides(
+    host: Host, elastic_joint: Path, version: str, moment: str
+) -> None:
+    """What slips on either side follows from how the sides deform in that direction."""
+    nominal = {v.name: v.nominal for v in MODELS["BoltedJoint"].outputs}
+    for seed in (1, 3, 5, 7, 9):
+        instance = host("BoltedJoint", version, elastic_joint)
+        check_mean_of_sides(instance, after_a_history(instance, moment, seed, 15e3), nominal)
+
+
+def test_the_largest_of_equal_pressures_has_the_mean_of_both_sides(host: Host, version: str) -> None:
+    """A tilt presses on one side and relieves the other, where pressures are equally large."""
+    instance = host("BoltedJoint", version).start({"preload": 1e4})
+    state = {"preload": 1e4, "theta_x": 0.0, "theta_y": 0.0, "moment": 0.0}
+    found = jacobian(instance)
+    for name in ("theta_x", "theta_y", "moment"):
+        up, down = sides(instance, state, name, 1e-4 * SIZES[name])["p_max"]
+        assert up == pytest.approx(-down, rel=1e-3)
+        assert up > 0.0
+        assert abs(found["p_max", name]) <= 1e-6 * up
+    assert found["p_max", "preload"] > 0.0
 
 
 def test_derivatives_by_parameters_and_of_inputs_are_refused(host: Host, version: str) -> None:

@@ -118,6 +118,20 @@ def test_a_state_of_a_joint_with_other_parameters_is_refused_by_name(
     assert numbers(receiver) == before
 
 
+def test_a_state_pointer_of_another_fmu_is_refused(host: Host, version: str, exchange: bool) -> None:
+    """A GearContact's state is smaller: what BoltedJoint reads of it stands before the first variable."""
+    bolted, gear = (host(name, version, exchange=exchange).start() for name in ("BoltedJoint", "GearContact"))
+    before, foreign = numbers(bolted), gear.fmu.getFMUState()
+    sizes = [len(f.fmu.serializeFMUState(f.fmu.getFMUState())) for f in (gear, bolted)]
+    assert sizes[0] < sizes[1]
+    for call in (bolted.fmu.setFMUState, bolted.fmu.serializeFMUState, bolted.fmu.freeFMUState):
+        said = bolted.refused(call, foreign)
+        assert said.endswith("this is no FMU state of BoltedJoint; expected one that it gave")
+        assert numbers(bolted) == before
+    gear.fmu.setFMUState(foreign)  # the refusals left it as it was
+    gear.fmu.freeFMUState(foreign)
+
+
 RESTORE = """
 import json, sys
 from pathlib import Path

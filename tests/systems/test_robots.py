@@ -142,7 +142,8 @@ def test_friction_of_the_motor_is_the_fmus(speed, since, folder, capsys):
     data, motor = mujoco.MjData(model), model.joint("motor").dofadr[0]
     model.dof_armature[:], model.opt.timestep = 1e12, 1e-5 / speed
     data.qvel[:] = speed, speed / drive.values["ratio"]
-    spring, (_, memory) = drive.spring, drive.spring.advance_motion((0.0, 0.0, 0.0, 0.0), drive.spring.initial_history())
+    spring = drive.spring
+    _, memory = spring.advance_motion((0.0, 0.0, 0.0, 0.0), spring.initial_history())
     for step in range(1, 5001):
         mujoco.mj_step(model, data)
         x = data.qpos[motor]

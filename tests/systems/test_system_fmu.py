@@ -82,7 +82,7 @@ def test_description_is_valid(joint, version):
 )
 @pytest.mark.parametrize("name", ["robot_joint", "bolted_column"])
 def test_any_step_passes_the_proof_in_each_importer(files_of, name, importer, version):
-    """All outputs at 1 and 10 ms, within the 0.5 % that docs/systems.md promises."""
+    """All outputs at 1 and 10 ms, within the 0.5 % that docs/systems_explanation.md promises."""
     found = prove(files_of(name)[version], importer)
     assert found.failures == []
     assert found.run_count == (3 if importer == "fmpy" else 2)

@@ -19,7 +19,7 @@ from jointfmu.quantity import build_parameter_set, flat_fields, flatten_paramete
 pytestmark = pytest.mark.slow
 
 REDUCED = 1e-4
-"""Relative error that the reduced evaluation states (docs/uncertainty.md)."""
+"""Relative error that the reduced evaluation states (docs/uncertainty_reference.md)."""
 
 
 @pytest.mark.parametrize(

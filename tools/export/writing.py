@@ -71,7 +71,8 @@ def export_springs(
         f"the joint's normal is the model's {placement.normal}",
     ]
     write, notes = _SPRING_WRITERS[file_format]
-    facts = {"pairs": len(field.nodes), "open": field.open_pairs, "correction": field.correction, **field.totals}
+    facts = {"pairs": len(field.nodes), "open": field.open_pairs, "correction": field.correction}
+    facts |= field.totals
     return ExportedFile(write(field, placement, [*about, *notes]), facts)
 
 
@@ -89,7 +90,8 @@ def export_contact(file_format: str, file: ParameterFile, units: UnitSet, error:
         f"straight lines keep to the law's pressure within {table.linear_errors[0]:.2g}, to its "
         "stiffness within "
         f"{table.linear_errors[1]:.2g},",
-        f"from {curve.closing_end_load:.4g} Pa (below, one line leads to first touch) to {curve.end[1]:.4g} Pa",
+        f"from {curve.closing_end_load:.4g} Pa (below, one line leads to first touch) to "
+        f"{curve.end[1]:.4g} Pa",
         *more,
     ]
     write, notes = _CONTACT_WRITERS[file_format]

@@ -138,7 +138,7 @@ def _mirror_shape(shape: Array, sign: float) -> tuple[Array, Array]:
 
 DEFAULT_REFINEMENT = 0.5
 """Refinement [1] of the meshes for frequencies in many load states. Twice this refinement lowers the
-frequencies of the box specimen by less than 1 % (docs/finite_elements.md)."""
+frequencies of the box specimen by less than 1 % (docs/finite_elements_explanation.md)."""
 
 
 def preloaded_modes(

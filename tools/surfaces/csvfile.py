@@ -1,4 +1,4 @@
-"""Read and write the CSV formats of this package for profiles and areal maps (docs/surfaces.md).
+"""Read and write the CSV formats of this package for profiles and areal maps (docs/surfaces_reference.md).
 
 The first line declares the layout:
 

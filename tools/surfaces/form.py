@@ -173,7 +173,7 @@ def prepare_scan(heights: Heights, form: str = FORMS[0], keep_spikes: bool = Fal
 
 MIN_WAVE_SPACINGS = 5.0
 """Shortest wavelength of the slope over the point spacing [1]. Shorter waves are noise or effects of the
-instrument (docs/surfaces.md)."""
+instrument (docs/surfaces_reference.md)."""
 MIN_WAVE_RATIO = 4.0
 """Smallest ratio of the longest to the shortest wavelength [1]."""
 

@@ -48,6 +48,7 @@ def _catalogue_file(joint: str, wanted: str) -> ParameterFile:
     """Parameters of a joint in its catalogue; an arm asks for them twice, for the ratio first."""
     found = load_tool_module(KINDS[joint], "new")
     assert found is not None
-    file = found.NEW.make_joint({option.name: None for option in found.NEW.options} | {"catalogue": wanted}).file
+    options = {option.name: None for option in found.NEW.options} | {"catalogue": wanted}
+    file = found.NEW.make_joint(options).file
     assert isinstance(file, ParameterFile)
     return file

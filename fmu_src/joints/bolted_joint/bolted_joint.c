@@ -824,14 +824,20 @@ bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, do
 
 COLD
 
-/* Derivatives */
+/* Derivatives
+ *
+ * At a corner they are the mean of both sides; each side has a derivative of its own. */
+
+static const double SAME_PRESSURE = 1e-11; /* of the largest: equal but for round-off and what equilibrium leaves */
 
 /* Rates of the sums over the nodes; those of the patches come from the sliders with memory. */
 static bool node_rates(Joint *joint, const double *inputs, const double *seed, const double *bolts, double *dx,
                        Text *why)
 {
     Kind *kind = &joint->kind;
-    double y[5], works[N_LAW_STATE], slopes[N_LAW_STATE], at[2 * N_E], e[N_ELASTIC] = {0.0}, largest = -1.0;
+    double y[5], works[N_LAW_STATE], slopes[N_LAW_STATE], at[2 * N_E], e[N_ELASTIC] = {0.0};
+    double first = 0.0;
+    bool found = false;
     for (int i = 0; i < n_nodes(); i++) {
         const double *node = data.nodes[i];
         const double approach = kind->start[i] - (apart_at(node, inputs) + kind->opened[i]);
@@ -862,52 +868,42 @@ static bool node_rates(Joint *joint, const double *inputs, const double *seed, c
         dx[SUM_TIGHTENED] += force;
         dx[SUM_TIGHTENED_X] += force * node[PLACE_X];
         dx[SUM_TIGHTENED_Y] += force * node[PLACE_Y];
-        if (y[0] > largest) {
-            largest = y[0];
-            dx[X_P_MAX] = y[1] * rate;
-        }
+        if (y[0] < (1.0 - SAME_PRESSURE) * kind->p_max)
+            continue;
+        if (!found) /* of equally large pressures that which grows most, on the other side that which grows least */
+            first = dx[X_P_MAX] = y[1] * rate;
+        found = true;
+        kind->corner = kind->corner || y[1] * rate != first;
+        dx[X_P_MAX] = kind->side * fmax(kind->side * dx[X_P_MAX], kind->side * (y[1] * rate));
     }
     return true;
 }
 
-/* Rates of a patch in a further motion from the place of the last evaluation, whose memory is `after`: the mean of
- * both directions, of which sliders at their limits slip on in one and stick in the other. */
-static Shear further_rates(const Joint *joint, int j, const double *after, const double ends[2], const double shift[3])
+Shear patch_rate(Joint *joint, int j, const double *inputs, const double *memory, const double *after, double rate,
+                 const double shift[3])
 {
-    const double *force = after + AT_FORCE + j * 2 * FOUNDATION_SLIDERS;
-    const Foundation *f = &joint->kind.foundation[j];
-    const Point *at = &joint->kind.to[j];
-    PatchPath path = {.force = {force, force + FOUNDATION_SLIDERS}, .from = at, .to = at};
-    Shear mean, on;
-    foundation_rates(f, &path, ends, shift, &mean);
-    path.onward = true;
-    foundation_rates(f, &path, ends, shift, &on);
-    for (int d = 0; d < 3; d++)
-        mean.traction[d] = 0.5 * (mean.traction[d] + on.traction[d]);
-    for (int d = 0; d < 6; d++)
-        mean.tangent[d] = 0.5 * (mean.tangent[d] + on.tangent[d]);
-    mean.loss = 0.5 * (mean.loss + on.loss);
-    return mean;
-}
-
-Shear patch_rate(const Joint *joint, int j, const double *inputs, const double *memory, const double *after,
-                 double rate, const double shift[3])
-{
-    const Kind *kind = &joint->kind;
+    Kind *kind = &joint->kind;
     const Foundation *f = &kind->foundation[j];
-    const double ends[2] = {after || memory[AT_STATE] != (double)UNKNOWN ? 0.0 : rate, rate};
-    const PatchPath path = path_of(joint, j, inputs, memory);
+    const bool first = !after && memory[AT_STATE] == (double)UNKNOWN;
+    const PathRate rates = {{first ? rate : 0.0, rate}, {shift[0], shift[1], shift[2]}};
+    PathRate towards = kind->towards[j];
+    towards.ends[0] = first ? towards.ends[1] : 0.0;
+    PatchPath path = path_of(joint, j, inputs, memory);
     Shear shear;
+    bool corner;
+    if (after) { /* a further motion from the place of the last evaluation */
+        const double *force = after + AT_FORCE + j * 2 * FOUNDATION_SLIDERS;
+        path = (PatchPath){.force = {force, force + FOUNDATION_SLIDERS}, .from = &kind->to[j], .to = &kind->to[j]};
+    }
     if (kind->moved == FULL_STICK) {
-        const PatchPath here = {.from = path.to, .to = path.to};
         double before[3];
         resting_traction(after ? after : memory, j, before);
-        foundation_rest_rates(f, after ? &here : &path, before, ends, shift, &shear);
-    } else if (after) {
-        shear = further_rates(joint, j, after, ends, shift);
+        corner = foundation_rest_rates(f, &path, before, &towards, &rates, &shear);
     } else {
-        foundation_rates(f, &path, ends, shift, &shear);
+        path.first = first;
+        corner = foundation_rates(f, &path, &towards, &rates, &shear);
     }
+    kind->corner = kind->corner || corner;
     return shear;
 }
 
@@ -926,22 +922,41 @@ void patch_slopes(Joint *joint, const double *inputs, const double *memory, doub
     }
 }
 
-static void patch_rates(Joint *joint, const double *inputs, const double *memory, const double *after,
-                        const double *seed, const double *bolts, double *dx)
+/* Rates of approach and shift of the patches along a seed. */
+static void patch_motions(Joint *joint, const double *seed, const double *bolts, PathRate *motion)
 {
     Kind *kind = &joint->kind;
-    Further sum = {.stick = {0.0}};
     double pressed[MOST_PATCHES];
     if (ELASTIC)
         whole_pressed(kind, kind->p_rate, pressed);
     for (int j = 0; j < n_patches(); j++) {
-        const double *patch = data.patches[j], stiffness = kind->to[j].y[1];
+        const double *patch = data.patches[j], stiffness = kind->to[j].y[1], *bent = kind->bent_rate[j];
         const double rate = !ELASTIC          ? tightening_rate(joint, patch, bolts, kind->patch_start[j]) - apart_at(patch, seed)
                             : stiffness > 0.0 ? pressed[j] / stiffness
                                               : 0.0;
-        const double shift[3] = {along_x(patch, seed) + kind->bent_rate[j][0],
-                                 along_y(patch, seed) + kind->bent_rate[j][1],
-                                 patch[RADIUS] * seed[THETA + 2] + kind->bent_rate[j][2]};
+        motion[j] = (PathRate){{0.0, rate},
+                               {along_x(patch, seed) + bent[0], along_y(patch, seed) + bent[1],
+                                patch[RADIUS] * seed[THETA + 2] + bent[2]}};
+    }
+}
+
+/* Let the rates be those on the side to which the patches move. */
+static void point_side(Kind *kind, const PathRate *motion)
+{
+    for (int j = 0; j < n_patches(); j++) {
+        kind->towards[j].ends[1] = kind->side * motion[j].ends[1];
+        for (int d = 0; d < 3; d++)
+            kind->towards[j].shift[d] = kind->side * motion[j].shift[d];
+    }
+}
+
+static void patch_rates(Joint *joint, const double *inputs, const double *memory, const double *after,
+                        const PathRate *motion, double *dx)
+{
+    Kind *kind = &joint->kind;
+    Further sum = {.stick = {0.0}};
+    for (int j = 0; j < n_patches(); j++) {
+        const double *patch = data.patches[j], rate = motion[j].ends[1], *shift = motion[j].shift;
         const double loop[4] = {rate, shift[0], shift[1], shift[2]};
         add_loop_rate(joint, j, inputs, loop, dx);
         if (!remembers(joint))
@@ -955,37 +970,57 @@ static void patch_rates(Joint *joint, const double *inputs, const double *memory
         tell_further(&sum, kind->along, dx);
 }
 
-/* How the amplitudes of elastic sides follow a seed. */
+enum { MAX_SIDE_ITERATIONS = 20 }; /* until the sliders that slip are those that the motion of the patches lets slip */
+
+/* How the amplitudes of elastic sides follow a seed, on one side of a corner. */
 static bool amplitude_rates(Joint *joint, const double *inputs, const double *memory, const double *after,
                             const double *seed, const double *bolts, Text *why)
 {
     Kind *kind = &joint->kind;
-    double unused[N_X] = {0.0};
-    memset(kind->opened_rate, 0, sizeof kind->opened_rate);
-    memset(kind->bent_rate, 0, sizeof kind->bent_rate);
-    if (!node_rates(joint, inputs, seed, bolts, unused, why))
-        return false;
-    patch_rates(joint, inputs, memory, after, seed, bolts, unused);
-    whole_rates(joint, inputs, memory, after, seed);
+    double before[MODES];
+    PathRate motion[MOST_PATCHES];
+    memset(kind->towards, 0, sizeof kind->towards);
+    for (int n = 0; n < MAX_SIDE_ITERATIONS; n++) {
+        double unused[N_X] = {0.0};
+        memcpy(before, kind->amplitude_rate, sizeof before);
+        memset(kind->opened_rate, 0, sizeof kind->opened_rate);
+        memset(kind->bent_rate, 0, sizeof kind->bent_rate);
+        if (!node_rates(joint, inputs, seed, bolts, unused, why))
+            return false;
+        patch_motions(joint, seed, bolts, motion);
+        if (n == 0)
+            point_side(kind, motion);
+        kind->corner = false;
+        patch_rates(joint, inputs, memory, after, motion, unused);
+        whole_rates(joint, inputs, memory, after, seed);
+        if (!kind->corner || (n > 0 && memcmp(before, kind->amplitude_rate, sizeof before) == 0))
+            break;
+        if (!node_rates(joint, inputs, seed, bolts, unused, why))
+            return false;
+        patch_motions(joint, seed, bolts, motion);
+        point_side(kind, motion);
+    }
     return true;
 }
 
-void joint_derivative(Joint *joint, const double *inputs, const double *memory, const double *after,
-                      const double *seed, double *result)
+/* Derivative along a seed on one side of a corner. */
+static bool side_derivative(Joint *joint, const double *inputs, const double *memory, const double *after,
+                            const double *seed, const double *bolts, double *result)
 {
-    const double at[4] = {inputs[PRELOAD], inputs[MOMENT], seed[PRELOAD], seed[MOMENT]};
-    double x[2 * N_X] = {0.0}, *dx = x + N_X, bolts[4];
+    Kind *kind = &joint->kind;
+    double x[2 * N_X] = {0.0}, *dx = x + N_X;
+    PathRate motion[MOST_PATCHES];
     Text ignored;
     text_clear(&ignored);
-    memcpy(x, joint->kind.known, sizeof joint->kind.known);
-    bolt_pressures(at, joint->c, bolts);
-    bolt_pressures_seed(at, joint->c, bolts + 2);
-    bolts_tighten_rates(joint, inputs, seed);
+    memcpy(x, kind->known, sizeof kind->known);
     if (ELASTIC && !amplitude_rates(joint, inputs, memory, after, seed, bolts, &ignored))
-        return;
+        return false;
     if (!node_rates(joint, inputs, seed, bolts, dx, &ignored))
-        return;
-    patch_rates(joint, inputs, memory, after, seed, bolts, dx);
+        return false;
+    patch_motions(joint, seed, bolts, motion);
+    if (!ELASTIC)
+        point_side(kind, motion);
+    patch_rates(joint, inputs, memory, after, motion, dx);
     if (ELASTIC)
         whole_sum_rates(joint, inputs, seed, dx);
     else
@@ -997,6 +1032,30 @@ void joint_derivative(Joint *joint, const double *inputs, const double *memory, 
     outputs_seed(x, joint->c, result);
     if (ELASTIC)
         whole_bolt_rates(joint, seed, result + N_INTERFACE_OUTPUTS);
+    return true;
+}
+
+void joint_derivative(Joint *joint, const double *inputs, const double *memory, const double *after,
+                      const double *seed, double *result)
+{
+    Kind *kind = &joint->kind;
+    const double at[4] = {inputs[PRELOAD], inputs[MOMENT], seed[PRELOAD], seed[MOMENT]};
+    double other[N_OUTPUTS], bolts[4];
+    bolt_pressures(at, joint->c, bolts);
+    bolt_pressures_seed(at, joint->c, bolts + 2);
+    bolts_tighten_rates(joint, inputs, seed);
+    if (after && kind->moved != FULL_STICK) /* as the next way begins */
+        for (int j = 0; j < n_patches() && remembers(joint); j++)
+            lay_from(kind, j, after, kind->to[j].approach);
+    kind->corner = false;
+    kind->side = 1.0;
+    if (!side_derivative(joint, inputs, memory, after, seed, bolts, result) || !kind->corner)
+        return;
+    kind->side = -1.0;
+    if (!side_derivative(joint, inputs, memory, after, seed, bolts, other))
+        return;
+    for (int k = 0; k < N_OUTPUTS; k++)
+        result[k] = 0.5 * (result[k] + other[k]);
 }
 
 END_OF_COLD

@@ -70,6 +70,9 @@ typedef struct {
     double amplitude_rate[MODES], opened_rate[MOST_NODES], bent_rate[MOST_PATCHES][3];
     double pressing[MOST_NODES], p_rate[MOST_NODES], stiffening[MOST_NODES];
     Shear shears[MOST_PATCHES];
+    double side; /* from which the rates are taken, 1 or -1 along the seed */
+    PathRate towards[MOST_PATCHES]; /* the way of the patches on that side */
+    bool corner; /* the other side has other rates */
     /* Room, as large frames need more on Windows: weights, weighted rows, stiffness by normal motions and shear beside
      * the modes, slopes of the patches, factors of a derivative by the amplitudes, forces of a patch that is tried, steps since it. */
     double by[MOST_OPENING + MOST_STRETCH];

@@ -1,5 +1,6 @@
 #include "friction.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -588,19 +589,22 @@ bool foundation_rest(const Foundation *f, const PatchPath *path, const double be
     return sqrt(t[0] * t[0] + t[1] * t[1] + t[2] * t[2]) <= most;
 }
 
-void foundation_rest_rates(const Foundation *f, const PatchPath *path, const double before[3], const double rates[2],
-                           const double shift[3], Shear *rate)
+bool foundation_rest_rates(const Foundation *f, const PatchPath *path, const double before[3],
+                           const PathRate *towards, const PathRate *rates, Shear *rate)
 {
     const Point *from = path->from, *to = path->to;
-    const double first = f->ratio * from->y[2] * rates[0], last = f->ratio * to->y[2] * rates[1];
-    const double x[2 * N_REST - 1] = {to->approach < from->approach, foundation_stick(f, from), foundation_stick(f, to),
-                                      first, last};
+    const double rises = towards->ends[1] - towards->ends[0];
+    const bool corner = to->approach == from->approach && rises != 0.0;
+    const bool falls = to->approach < from->approach || (corner && rises < 0.0);
+    const double first = f->ratio * from->y[2] * rates->ends[0], last = f->ratio * to->y[2] * rates->ends[1];
+    const double x[2 * N_REST - 1] = {falls, foundation_stick(f, from), foundation_stick(f, to), first, last};
     double rule[2], slopes[2];
     rest_rule(x, NULL, rule);
     rest_rule_seed(x, NULL, slopes);
     *rate = (Shear){.tangent = {last, 0.0, last, 0.0, 0.0, last}};
     for (int d = 0; d < 3; d++)
-        rate->traction[d] = slopes[0] * before[d] + slopes[1] * path->shift[d] + rule[1] * shift[d];
+        rate->traction[d] = slopes[0] * before[d] + slopes[1] * path->shift[d] + rule[1] * rates->shift[d];
+    return corner;
 }
 
 void foundation_spread(const Foundation *f, const Point *at, const double traction[3], double *const force[2])
@@ -618,17 +622,31 @@ void foundation_spread(const Foundation *f, const Point *at, const double tracti
 
 COLD
 
-/* Rates */
+/* Rates
+ *
+ * Forces have corners: where a slider at its limit slips in one direction and sticks in the other, where a path ends at
+ * a height, and where the load of springs stays on it, as those that lift off take their force with them. Each rate is
+ * that on the side to which a direction points. */
 
-/* Rates of a path: of the approaches at its ends, of the shift. */
+/* A path, its rates, and the direction to which the side points on which they are taken. */
 typedef struct {
-    double ends[2], shift[3];
-} PathRate;
+    const PatchPath *path;
+    const PathRate *towards, *rates;
+    bool *corner; /* set where the other side has other rates */
+} PathSide;
 
-/* What stands for the limits: in a further motion a little less, so that sliders at their limits slip. */
-static inline double least_limit(const PatchPath *path)
+/* A point that moves on, where it stands at a height: the ranges that touch are those just above or just below it. */
+static Point point_towards(const Foundation *f, const Point *at, double rises, bool *corner)
 {
-    return path->onward ? 1.0 - 2.0 * SLIDER_AT_LIMIT : 1.0;
+    Point p = *at;
+    if (p.full == 0 || p.full == HEIGHTS || p.approach != f->height[p.full] || rises == 0.0)
+        return p;
+    *corner = true;
+    if (rises > 0.0)
+        p.touched = p.full + 1;
+    else
+        p.full--;
+    return p;
 }
 
 /* What sliders have, with its rates: a range at a point, or one of its sliders after a way. */
@@ -659,49 +677,176 @@ static Pairs pairs_at(const Foundation *f, int i, const Point *p, double rate, d
     const double rates[] = {(p->y[1] - f->stiffness[i]) * rate, p->y[2] * rate, bend * rate, rate};
     memcpy(x + N_TOUCHING, rates, sizeof rates);
     touching_seed(x, NULL, &pairs.rate.K);
+    if (p->approach == f->height[i + 1]) { /* all touch: the same numbers, whose rates are of one side */
+        Point all = *p;
+        all.full = i + 1;
+        const Pair full = pair_at(f, i, &all);
+        pairs.at.K = full.K;
+        memcpy(pairs.at.limit, full.limit, sizeof full.limit);
+    }
     return pairs;
 }
 
-/* One slider of a range on a part of a path; `gained` and its rate are of `carrying`. */
-static Slid slide_on(const Foundation *f, const PatchPath *path, const PathRate *rates, double part, int k,
-                     const Pairs *start, const Pairs *end, const double gained[2], const double gains[2])
+/* Arguments of `slide_plane`; rates of those from P_KEEPS on follow them in its seed. */
+enum { P_FORCE, P_KEEPS = 2, P_CARRIES, P_SHIFT, P_BEFORE = 6, P_AFTER, P_K, P_PER_K, N_PLANE };
+
+/* A trial force this near to its limit is at it [1]: limits of springs that touch late are small differences. */
+static const double NEAR_LIMIT = 1e-9;
+/* By which a limit that begins to grow or to fall is another one before [1]: the rule of a slider has a corner there. */
+static const double OTHER_LIMIT = 1e-14;
+
+/* The trial force of a slider, or its rate with rates of the arguments. */
+static inline double trial_force(const double *x, int d)
 {
-    const int late = k % 2;
-    const double least = least_limit(path), K = end->at.K, per_K = K > 0.0 ? 1.0 / K : 0.0;
-    const double u = part * shift_of(f->turning, k, path->shift, 0), v = part * shift_of(f->turning, k, path->shift, 1);
-    const double du = part * shift_of(f->turning, k, rates->shift, 0), dv = part * shift_of(f->turning, k, rates->shift, 1);
-    const double before = least * start->at.limit[late], after = least * end->at.limit[late];
-    const double x[] = {path->force[0][k], path->force[1][k], gained[0], gained[1], u, v, before, after, K, per_K,
-                        gains[0], gains[1], du, dv,
-                        least * start->rate.limit[late], least * end->rate.limit[late], end->rate.K, -end->rate.K * per_K * per_K};
+    return x[P_KEEPS] * x[P_FORCE + d] + x[P_CARRIES] * x[P_SHIFT + d];
+}
+
+static inline double trial_rate(const double *x, const double rate[N_PLANE - P_KEEPS], int d)
+{
+    return rate[0] * x[P_FORCE + d] + rate[P_CARRIES - P_KEEPS] * x[P_SHIFT + d] +
+           x[P_CARRIES] * rate[P_SHIFT - P_KEEPS + d];
+}
+
+static bool near_limit(const double x[N_PLANE])
+{
+    const double u = trial_force(x, 0), v = trial_force(x, 1), limit = x[P_AFTER];
+    return fabs(sqrt(u * u + v * v) - limit) <= NEAR_LIMIT * limit;
+}
+
+/* Whether the rates of a slider can depend on the side. */
+static bool has_sides(const double x[N_PLANE])
+{
+    return x[P_BEFORE] == x[P_AFTER] || near_limit(x);
+}
+
+/* One slider with rates of its arguments, in the direction of others. */
+static Slid slide_towards(double x[2 * N_PLANE - P_KEEPS], const double towards[N_PLANE - P_KEEPS], bool *corner)
+{
     Slid slid;
+    const double u = trial_force(x, 0), v = trial_force(x, 1), limit = x[P_AFTER];
+    const double own[2] = {trial_rate(x, x + N_PLANE, 0), trial_rate(x, x + N_PLANE, 1)};
+    const bool at_limit = near_limit(x);
+    const double beyond = u * trial_rate(x, towards, 0) + v * trial_rate(x, towards, 1) - limit * towards[P_AFTER - P_KEEPS];
+    const double least = at_limit ? 1.0 - 2.0 * NEAR_LIMIT : 1.0;
+    const double grows = towards[P_AFTER - P_KEEPS] - towards[P_BEFORE - P_KEEPS];
+    if (x[P_BEFORE] == limit && grows != 0.0) {
+        x[P_BEFORE] *= 1.0 - copysign(OTHER_LIMIT, grows);
+        *corner = *corner || u * u + v * v > limit * limit;
+    }
+    for (int k = P_BEFORE; k <= P_AFTER; k++) {
+        x[k] *= least;
+        x[k + N_PLANE - P_KEEPS] *= least;
+    }
     slide_plane(x, NULL, slid.at);
     slide_plane_seed(x, NULL, slid.rate);
+    *corner = *corner || (at_limit && beyond != 0.0);
+    if (at_limit && !(beyond > 0.0)) { /* it sticks; its tangent stays that of a slider that slips */
+        slid.rate[0] = own[0];
+        slid.rate[1] = own[1];
+        slid.rate[SLID_LOSS] = slid.rate[SLID_SLIP] = 0.0;
+    }
     return slid;
 }
 
-/* Rates of the sliders of a range that is not all in contact. */
-static void range_rate(const Foundation *f, int i, const PatchPath *path, const PathRate *rates, const Point *middle,
-                       Shear *rate)
+/* Rates of the arguments of a slider k of a range: its stiffness and limits before and after have rates, the shift is
+ * that of a part of the path. */
+static void slider_rates(const Foundation *f, int k, const double gains[2], const PathRate *rates, double part,
+                         const double limits[2], double K_rate, double per_K, double out[N_PLANE - P_KEEPS])
 {
-    const Point *from = path->from, *to = path->to, *points[2] = {to, middle};
-    const double change = to->approach - from->approach, turned = rates->ends[1] - rates->ends[0];
-    const double bend = change != 0.0 ? (to->y[2] - from->y[2]) / change : 0.0;
-    const bool across = !stays(i, from, to);
-    const Pairs start = pairs_at(f, i, from, rates->ends[0], bend);
-    Pairs ends[2];
+    const double all[] = {gains[0], gains[1], part * shift_of(f->turning, k, rates->shift, 0),
+                          part * shift_of(f->turning, k, rates->shift, 1), limits[0], limits[1], K_rate,
+                          -K_rate * per_K * per_K};
+    memcpy(out, all, sizeof all);
+}
+
+/* What a range gains on a part of a path. */
+typedef struct {
+    Pairs start, end;
+    double gained[2], gains[2];
+} Gain;
+
+static Gain gain_on(const Foundation *f, int i, const PathSide *c, const Point *from, const Point *at, double part,
+                    const PathRate *rates)
+{
+    const double change = at->approach - from->approach, turned = part * (rates->ends[1] - rates->ends[0]);
+    const double rises = c->towards->ends[1] - c->towards->ends[0];
+    const double bend = change != 0.0 ? (c->path->to->y[2] - c->path->from->y[2]) /
+                                            (c->path->to->approach - c->path->from->approach)
+                                      : 0.0;
+    double x[2 * N_CARRYING - 1];
+    Gain g = {.end = pairs_at(f, i, at, rates->ends[0] + turned, bend)};
+    g.start = change != 0.0 || c->path->first ? pairs_at(f, i, from, rates->ends[0], bend) : (Pairs){.at = g.end.at};
+    gain(f, i, c->path, &g.start.at, &g.end.at, at, x);
+    if (change == 0.0 && rises != 0.0) { /* springs that lift off take their force with them */
+        x[X_CHANGE] = copysign(DBL_MIN, rises);
+        *c->corner = true;
+    }
+    ends_of(f, &g.start.rate, &g.end.rate, turned, x + N_CARRYING - 1);
+    carrying(x, NULL, g.gained);
+    carrying_seed(x, NULL, g.gains);
+    return g;
+}
+
+/* One slider of a range on a part of a path. */
+static Slid slide_on(const Foundation *f, const PathSide *c, int i, const Point *from, const Point *at, double part, int late,
+                     const Gain *own)
+{
+    const int k = 2 * i + late;
+    const double K = own->end.at.K, per_K = K > 0.0 ? 1.0 / K : 0.0;
+    double x[2 * N_PLANE - P_KEEPS] = {c->path->force[0][k], c->path->force[1][k], own->gained[0], own->gained[1],
+                                       part * shift_of(f->turning, k, c->path->shift, 0),
+                                       part * shift_of(f->turning, k, c->path->shift, 1),
+                                       own->start.at.limit[late], own->end.at.limit[late], K, per_K};
+    double direction[N_PLANE - P_KEEPS] = {0.0};
+    const double limits[2] = {own->start.rate.limit[late], own->end.rate.limit[late]};
+    slider_rates(f, k, own->gains, c->rates, part, limits, own->end.rate.K, per_K, x + N_PLANE);
+    if (has_sides(x)) {
+        const Gain towards = gain_on(f, i, c, from, at, part, c->towards);
+        const double ahead[2] = {towards.start.rate.limit[late], towards.end.rate.limit[late]};
+        slider_rates(f, k, towards.gains, c->towards, part, ahead, towards.end.rate.K, per_K, direction);
+    }
+    return slide_towards(x, direction, c->corner);
+}
+
+/* Of the elastic energy before [1]. */
+static const double HEAT_ROUND_OFF = 1e-13;
+
+/* Rate of the heat of a slider of a range that changes: where there is none, none can be lost on either side. */
+static double loss_rate(const PathSide *c, double x[2 * N_CHANGING - 3])
+{
+    double loss, more, rate, along = c->rates->ends[1] * c->towards->ends[1];
+    for (int d = 0; d < 3; d++)
+        along += c->rates->shift[d] * c->towards->shift[d];
+    changing_loss(x, NULL, &loss);
+    x[C_FIRST] *= 1.0 - HEAT_ROUND_OFF; /* a little more energy before: the heat is round-off if it is less */
+    changing_loss(x, NULL, &more);
+    changing_loss_seed(x, NULL, &rate);
+    if (loss > 0.5 * more)
+        return rate;
+    *c->corner = *c->corner || rate != 0.0;
+    return along < 0.0 ? fmin(rate, 0.0) : fmax(rate, 0.0);
+}
+
+/* Rates of the sliders of a range that is not all in contact, on one side of a path, whose points are given. */
+static void range_rate(const Foundation *f, int i, const PathSide *c, const Point *from, const Point *to,
+                       const Point *middle, Shear *rate)
+{
+    const PatchPath *path = c->path;
+    const Point *points[2] = {to, middle};
+    const bool across = !stays(i, path->from, to);
+    Gain own[2];
     Slid slid[2][2] = {{{{0.0}, {0.0}}}};
     for (int at = 0; at < (across ? 2 : 1); at++) {
         const double part = at > 0 ? 0.5 : 1.0;
-        double x[2 * N_CARRYING - 1], gained[2], gains[2];
-        ends[at] = pairs_at(f, i, points[at], rates->ends[0] + part * turned, bend);
-        gain(f, i, path, &start.at, &ends[at].at, points[at], x);
-        ends_of(f, &start.rate, &ends[at].rate, part * turned, x + N_CARRYING - 1);
-        carrying(x, NULL, gained);
-        carrying_seed(x, NULL, gains);
+        own[at] = gain_on(f, i, c, from, points[at], part, c->rates);
         for (int late = 0; late < 2; late++)
-            slid[at][late] = slide_on(f, path, rates, part, 2 * i + late, &start, &ends[at], gained, gains);
+            slid[at][late] = slide_on(f, c, i, from, points[at], part, late, &own[at]);
     }
+    if (to->approach == f->height[i]) { /* springs without load: no force is left, and it grows by second order */
+        memset(slid[0], 0, sizeof slid[0]);
+        own->end.rate.K = 0.0;
+    }
+    const Pairs *start = &own->start, *last = &own->end;
     for (int late = 0; late < 2; late++) {
         const Slid *end = &slid[0][late], *half = &slid[1][late];
         const double *moved = end->at;
@@ -710,76 +855,157 @@ static void range_rate(const Foundation *f, int i, const PatchPath *path, const 
         memcpy(dy, end->rate, sizeof dy);
         for (int d = 0; d < 2; d++) {
             shift[d] = shift_of(f->turning, k, path->shift, d);
-            rated[d] = shift_of(f->turning, k, rates->shift, d);
+            rated[d] = shift_of(f->turning, k, c->rates->shift, d);
         }
-        const double x[] = {across, path->force[0][k], path->force[1][k], moved[0], moved[1],
-                            shift[0], shift[1], start.at.K, ends[0].at.K, moved[SLID_SLIP], half->at[0], half->at[1],
-                            dy[0], dy[1], rated[0], rated[1], start.rate.K, ends[0].rate.K, dy[SLID_SLIP],
+        double x[] = {across, path->force[0][k], path->force[1][k], moved[0], moved[1],
+                            shift[0], shift[1], start->at.K, last->at.K, moved[SLID_SLIP], half->at[0], half->at[1],
+                            dy[0], dy[1], rated[0], rated[1], start->rate.K, last->rate.K, dy[SLID_SLIP],
                             half->rate[0], half->rate[1]};
-        if (start.at.K != ends[0].at.K)
-            changing_loss_seed(x, NULL, &dy[SLID_LOSS]);
+        if (start->at.K != last->at.K || start->rate.K != last->rate.K)
+            dy[SLID_LOSS] = loss_rate(c, x);
         add_one(dy, f->turning[0][k], f->turning[1][k], rate);
+    }
+}
+
+/* How stiffness and limit of a slider change with the approach, where the heights stay, or are laid around it. */
+typedef struct {
+    double K[FOUNDATION_SLIDERS], limit[FOUNDATION_SLIDERS];
+} SliderRate;
+
+/* Rates of the heights that are laid around an approach, see `lay_heights` and `foundation_lower`. */
+static void height_rates(const Foundation *f, double rate, double height[N_HEIGHTS])
+{
+    const double end = f->curve->end.y;
+    double y[2];
+    curve_at(f->curve, f->reference, 1, y);
+    const bool follow = y[0] > MIN_REFERENCE_RATIO * end && y[0] < MAX_REFERENCE_RATIO * end;
+    memset(height, 0, N_HEIGHTS * sizeof *height);
+    for (int i = 1; i < N_HEIGHTS - 1 && follow; i++) { /* loads in proportion below, in that of their logarithm above */
+        const double part = i > N_BELOW ? fmax(i - 2 - N_BELOW + f->offset, 0.0) / (double)N_ABOVE : 0.0;
+        const double load = f->load[i] / y[0] * (1.0 - part * part) * y[1] * rate;
+        height[i] = f->stiffness[i] > 0.0 ? load / f->stiffness[i] : 0.0;
+    }
+    if (follow)
+        height[N_BELOW + 1] = rate;
+    if (f->lowered > 0)
+        height[f->lowered] = rate;
+}
+
+/* Rates of the first `n` ranges, all in contact at the approach around which the heights are laid. */
+static void laid_rates(const Foundation *f, int n, double approach, double rate, SliderRate *out)
+{
+    double height[N_HEIGHTS], stiffness[N_HEIGHTS];
+    height_rates(f, rate, height);
+    for (int i = 0; i < N_HEIGHTS; i++) {
+        double y[3];
+        curve_at(f->curve, f->height[i], 2, y);
+        stiffness[i] = y[2] * height[i];
+    }
+    for (int i = 0; i < n; i++) {
+        const double width = f->height[i + 1] - f->height[i], left = f->height[i + 1] - approach;
+        const double springs = stiffness[i + 1] - stiffness[i];
+        const double normal = (f->stiffness[i + 1] - f->stiffness[i]) * height[i + 1] - stiffness[i] * width;
+        const double apart = f->apart[i] < f->normal[i] ? UNIFORM_DEVIATION * (springs * width + f->springs[i] * (height[i + 1] - height[i]))
+                                                        : normal;
+        for (int late = 0; late < 2; late++) {
+            out->K[2 * i + late] = 0.5 * f->ratio * springs;
+            out->limit[2 * i + late] = 0.5 * f->mu * (normal + (late ? apart : -apart) - springs * left -
+                                                      f->springs[i] * (height[i + 1] - rate));
+        }
     }
 }
 
 /* Rates of the first `n` sliders, of ranges all in contact. */
-static void full_rates(const Foundation *f, int n, const PatchPath *path, const PathRate *rates, Shear *rate)
+static void full_rates(const Foundation *f, int n, const PathSide *c, Shear *rate)
 {
+    const PatchPath *path = c->path;
     const double grown = f->mu / f->ratio, from = grown * path->from->approach, to = grown * path->to->approach;
-    const double least = least_limit(path);
+    const double *turn = c->rates->ends, *turned = c->towards->ends;
+    SliderRate own, ahead;
+    bool found = false;
+    if (path->first)
+        laid_rates(f, n / 2, path->to->approach, turn[1], &own);
     for (int k = 0; k < n; k++) {
-        double u[2], du[2];
-        for (int d = 0; d < 2; d++) {
-            u[d] = shift_of(f->turning, k, path->shift, d);
-            du[d] = shift_of(f->turning, k, rates->shift, d);
+        const double K = f->K[k], per_K = f->per_K[k], before = limit_at(f->limit[k], K, from), after = limit_at(f->limit[k], K, to);
+        double x[2 * N_PLANE - P_KEEPS] = {path->force[0][k], path->force[1][k], 1.0, K,
+                                           shift_of(f->turning, k, path->shift, 0), shift_of(f->turning, k, path->shift, 1),
+                                           before, after, K, per_K};
+        double direction[N_PLANE - P_KEEPS] = {0.0};
+        const double limits[2] = {path->first ? own.limit[k] : grown * K * turn[0], path->first ? own.limit[k] : grown * K * turn[1]};
+        const double stiffer = path->first ? own.K[k] : 0.0, gains[2] = {0.0, stiffer};
+        slider_rates(f, k, gains, c->rates, 1.0, limits, stiffer, per_K, x + N_PLANE);
+        const double u = trial_force(x, 0), v = trial_force(x, 1), least = (1.0 - 2.0 * NEAR_LIMIT) * after;
+        double dy[N_SLID] = {K * x[N_PLANE + 2] + stiffer * x[P_SHIFT], K * x[N_PLANE + 3] + stiffer * x[P_SHIFT + 1],
+                                   stiffer, 0.0, stiffer};
+        if (u * u + v * v >= least * least) {
+            const bool sides = path->first ? near_limit(x) : has_sides(x); /* both limits of a first path are the same */
+            if (sides && path->first && !found)
+                laid_rates(f, n / 2, path->to->approach, turned[1], &ahead);
+            found = found || sides;
+            if (sides) {
+                const double next[2] = {path->first ? ahead.limit[k] : grown * K * turned[0], path->first ? ahead.limit[k] : grown * K * turned[1]};
+                const double stiff = path->first ? ahead.K[k] : 0.0, gain_ahead[2] = {0.0, stiff};
+                slider_rates(f, k, gain_ahead, c->towards, 1.0, next, stiff, per_K, direction);
+            }
+            const Slid slid = slide_towards(x, direction, c->corner);
+            memcpy(dy, slid.rate, sizeof dy);
         }
-        const double K = f->K[k], before = least * limit_at(f->limit[k], K, from), after = least * limit_at(f->limit[k], K, to);
-        const double x[] = {path->force[0][k], path->force[1][k], 1.0, K, u[0], u[1], before, after, K, f->per_K[k],
-                            0.0, 0.0, du[0], du[1], grown * K * rates->ends[0], grown * K * rates->ends[1], 0.0, 0.0};
-        const double trial[] = {x[0], x[1], 1.0, K, u[0], u[1], after};
-        double y[3], dy[N_SLID] = {K * du[0], K * du[1]};
-        stick_plane(trial, NULL, y);
-        if (y[2] > 0.0)
-            slide_plane_seed(x, NULL, dy);
         add_one(dy, f->turning[0][k], f->turning[1][k], rate);
     }
 }
 
-/* Rates of a range i > 0 whose springs begin to touch at the end of a path. Their limits are of second order: where the
- * path shifts they slip along the shift, and are stiff across it alone. Where it does not, springs just below them lift
- * off as well in a motion the other way, so each goes along as its neighbour: it slips where that is at its limit. */
-static void touching_rate(const Foundation *f, int i, const PatchPath *path, const PathRate *rates, bool still, Shear *rate)
+/* Rates of a range i > 0 whose springs begin to touch beyond the end of a path. Their limits are of second order, and
+ * none of their force is left. They slip along the shift, and are stiff across it alone, where it is larger than what
+ * the load rises by lets stick; where the load falls to the height, along the part of their force that they keep, and the
+ * shift. Where nothing moves, each goes along as its neighbour below: it slips where that is at its limit. */
+static void touching_rate(const Foundation *f, int i, const PathSide *c, const Point *from, const Point *to, Shear *rate)
 {
-    const double K = pairs_at(f, i, path->to, rates->ends[1], 0.0).rate.K;
-    const Pair below = pair_at(f, i - 1, path->to);
-    for (int late = 0; late < 2; late++) {
-        const int k = 2 * (still ? i - 1 : i) + late;
-        const double u = still ? path->force[0][k] : shift_of(f->turning, k, path->shift, 0);
-        const double v = still ? path->force[1][k] : shift_of(f->turning, k, path->shift, 1);
-        const double square = u * u + v * v, least = (1.0 - SLIDER_AT_LIMIT) * below.limit[late];
-        const double per = square > (still ? least * least : 0.0) ? K / square : 0.0;
-        const double dy[N_SLID] = {0.0, 0.0, K - per * u * u, -per * u * v, K - per * v * v};
-        add_one(dy, f->turning[0][k], f->turning[1][k], rate);
-    }
-}
-
-void foundation_rates(const Foundation *f, const PatchPath *path, const double rates[2],
-                      const double shift[3], Shear *rate)
-{
-    const int full = full_on_way(path);
-    const double approach = fmax(path->from->approach, path->to->approach);
-    const PathRate moves = {{rates[0], rates[1]}, {shift[0], shift[1], shift[2]}};
-    const int touched = touched_on(path);
-    Middle middle = {.known = false};
+    const PatchPath *path = c->path;
     const bool still = path->shift[0] == 0.0 && path->shift[1] == 0.0 && path->shift[2] == 0.0;
+    const double K = pairs_at(f, i, to, c->rates->ends[1], 0.0).rate.K;
+    const double change = to->approach - from->approach;
+    const Pair below = pair_at(f, i - 1, to), start = pair_at(f, i, from);
+    const bool lifts = change < 0.0 && start.K > 0.0, follows = still && !lifts;
+    for (int late = 0; late < 2; late++) {
+        const int at = 2 * i + late, k = follows ? at - 2 : at;
+        const double sticks = f->mu / f->ratio * fmax(change, 0.0) * (late ? 1.0 + 2.0 * UNIFORM_DEVIATION : 1.0 - 2.0 * UNIFORM_DEVIATION);
+        const double least = follows ? (1.0 - 2.0 * NEAR_LIMIT) * below.limit[late] : sticks;
+        double way[2];
+        for (int d = 0; d < 2; d++) {
+            const double shift = shift_of(f->turning, k, path->shift, d), force = path->force[d][k];
+            way[d] = lifts ? force / start.K + shift : follows ? force : shift;
+        }
+        const double square = way[0] * way[0] + way[1] * way[1], per = square > least * least ? K / square : 0.0;
+        const double dy[N_SLID] = {0.0, 0.0, K - per * way[0] * way[0], -per * way[0] * way[1], K - per * way[1] * way[1]};
+        add_one(dy, f->turning[0][at], f->turning[1][at], rate);
+    }
+}
+
+bool foundation_rates(const Foundation *f, const PatchPath *path, const PathRate *towards, const PathRate *rates,
+                      Shear *rate)
+{
+    bool corner = false;
+    const PathSide path_side = {path, towards, rates, &corner};
+    const bool stays_there = path->from->approach == path->to->approach;
     *rate = (Shear){.loss = 0.0};
-    if (touched > 0 && touched < HEIGHTS && approach == f->height[touched])
-        touching_rate(f, touched, path, &moves, still, rate);
-    full_rates(f, 2 * full, path, &moves, rate);
-    if (touched > full)
-        middle_of(f, path, &middle);
-    for (int i = full; i < touched; i++)
-        range_rate(f, i, path, &moves, &middle.at, rate);
+    const Point to = path->first ? *path->to : point_towards(f, path->to, towards->ends[1], &corner);
+    const Point from = stays_there ? to : *path->from;
+    const int full = from.full < to.full ? from.full : to.full;
+    const bool enters = to.touched > to.full && to.approach == f->height[to.full];
+    const int touched = from.touched > to.touched ? from.touched : to.touched;
+    full_rates(f, 2 * full, &path_side, rate);
+    if (touched == full)
+        return corner;
+    Middle found = {.known = false};
+    const Point middle = stays_there ? to : *middle_of(f, path, &found);
+    for (int i = full; i < touched; i++) {
+        const bool begins = to.approach == f->height[i];
+        if (!begins || from.approach > to.approach)
+            range_rate(f, i, &path_side, &from, &to, &middle, rate);
+        if (begins && enters && i > 0)
+            touching_rate(f, i, &path_side, &from, &to, rate);
+    }
+    return corner;
 }
 
 END_OF_COLD

@@ -46,8 +46,13 @@ typedef struct {
     const Point *from, *to;
     double shift[3];
     bool straight; /* no force and no shift along y and around the centre */
-    bool onward;   /* for rates: sliders at their limits slip, as in a further motion */
+    bool first;    /* for rates: the first path, whose heights are laid around the approach at its end */
 } PatchPath;
+
+/* Rates of a path: of the approaches at its ends [m], of the shift [m]. */
+typedef struct {
+    double ends[2], shift[3];
+} PathRate;
 
 /* Ranges of which some springs touch on the way. */
 static inline int touched_on(const PatchPath *path)
@@ -116,13 +121,14 @@ void foundation_slopes(const Foundation *f, const PatchPath *path, double step, 
 double foundation_stick(const Foundation *foundation, const Point *at);
 /* A patch after a path on which all sliders stick, from a traction before; false: it moves more than hardly. */
 bool foundation_rest(const Foundation *foundation, const PatchPath *path, const double before[3], Shear *shear);
-/* Derivative of what it gives by the approach at both ends and the shift. */
-void foundation_rest_rates(const Foundation *foundation, const PatchPath *path, const double before[3],
-                           const double rates[2], const double shift[3], Shear *rate);
+/* Derivative of what it gives by the approach at both ends and the shift, on the side to which `towards` points; true:
+ * the path ends at a corner, whose other side has another one. */
+bool foundation_rest_rates(const Foundation *foundation, const PatchPath *path, const double before[3],
+                           const PathRate *towards, const PathRate *rates, Shear *rate);
 /* Forces of sliders that have stuck so far with a traction together. */
 void foundation_spread(const Foundation *foundation, const Point *at, const double traction[3], double *const force[2]);
-/* Derivative of what `foundation_move` gives by the approach at both ends and the shift. */
-void foundation_rates(const Foundation *foundation, const PatchPath *path, const double rates[2],
-                      const double shift[3], Shear *rate);
+/* The same of what `foundation_move` gives. */
+bool foundation_rates(const Foundation *foundation, const PatchPath *path, const PathRate *towards,
+                      const PathRate *rates, Shear *rate);
 
 #endif

@@ -39,8 +39,8 @@ void whole_bolt_rates(const Joint *joint, const double *seed, double *result);
 bool joint_forces(Joint *joint, const double *inputs, const double *memory, Text *why);
 bool joint_try(Joint *joint, const double *inputs, const double *memory, double *after, double *x, Text *why);
 bool joint_press(Joint *joint, const double *inputs, Text *why);
-Shear patch_rate(const Joint *joint, int j, const double *inputs, const double *memory, const double *after,
-                 double rate, const double shift[3]);
+Shear patch_rate(Joint *joint, int j, const double *inputs, const double *memory, const double *after, double rate,
+                 const double shift[3]);
 /* The slopes of a patch from its tangents xx, xy, yy, xt, yt, tt. */
 static inline void slopes_of(const double t[6], Slopes slope)
 {

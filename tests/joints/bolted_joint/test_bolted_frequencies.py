@@ -298,7 +298,7 @@ def ringing(lengths, **options):
 
 @needs("gmsh")
 def test_table_3(capsys):
-    # status 1: two predictions miss the 5.1 % of the paper's own model, as docs/finite_elements.md says
+    # status 1: two predictions miss the paper's 5.1 %, see docs/finite_elements_explanation.md
     assert main(["validate", "--frequencies", "--json"]) == 1
     found = json.loads(capsys.readouterr().out)
     rows = {row["id"]: row for row in found["rows"] if row["quantity"] == "natural_frequency"}

@@ -185,7 +185,8 @@ def test_noise_while_it_is_tightened_leaves_no_trace(spring, part):
         _, memory = MODEL.advance(spring, at(place, preload=preload), memory)
     approach = spring.curve.inverse(preload_pressure(JOINT, spring.patches, 3e4, 0.0))
     law = spring.foundation()
-    gross = law.friction_coefficient / law.stiffness_ratio * float(spring.patches.share @ (approach - spring.curve.displacement[0]))
+    compression = float(spring.patches.share @ (approach - spring.curve.displacement[0]))
+    gross = law.friction_coefficient / law.stiffness_ratio * compression
     amplitude, losses = part * gross, []
     for u in amplitude * np.concatenate([np.linspace(0, 1, 5), np.linspace(1, -1, 9), np.linspace(-1, 1, 9)]):
         out, memory = MODEL.advance(spring, at([u, 0, 0, 0, 0, 0], preload=3e4), memory)

@@ -294,14 +294,14 @@ def test_abaqus_is_read_by_abq2ccx(found, tmp_path):
 
 @pytest.mark.parametrize("dashpots", [False, True], ids=["calculix", "abaqus"])
 def test_meshio_has_no_name_for_the_elements(found, tmp_path, capsys, dashpots):
-    """What docs/export.md says: if meshio learns them, the sentence there goes."""
+    """What docs/export_reference.md says: if meshio learns them, the sentence there goes."""
     import meshio
 
     deck = tmp_path / "springs.inp"
     text = keywords.format_springs(found, Placement(MM, "z", first_number=1), ["about"], dashpots=dashpots)
     names = set(re.findall(r"^\*ELEMENT, TYPE=(\w+)", text, re.MULTILINE))
     assert names == ({"SPRING2", "DASHPOT2"} if dashpots else {"SPRING2"})
-    page = (Path(__file__).parents[3] / "docs" / "export.md").read_text()
+    page = (Path(__file__).parents[3] / "docs" / "export_reference.md").read_text()
     for name in sorted(names):
         assert f"`{name}`" in page
         blocks = re.findall(rf"^\*ELEMENT, TYPE={name},.*\n(?:\d.*\n)+", text, re.MULTILINE)

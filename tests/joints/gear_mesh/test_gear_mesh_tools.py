@@ -241,7 +241,7 @@ def test_component_gives_the_torques_of_the_package(
 
 
 REDUCED = 1e-4
-"""Relative error that the reduced evaluation states (docs/uncertainty.md)."""
+"""Relative error that the reduced evaluation states (docs/uncertainty_reference.md)."""
 STUDIES = {
     "surfaces": {
         "surface1.D": "1.35..1.6",

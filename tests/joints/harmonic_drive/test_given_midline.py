@@ -244,7 +244,7 @@ def test_a_file_without_an_interface_says_so(law, capsys):
     ],
 )
 def test_uncertainty(law, given):
-    """The reduced evaluation states 1e-4 (docs/uncertainty.md); it is exact here but for the inversion."""
+    """The stated error is 1e-4 (docs/uncertainty_reference.md); here only the inversion has one."""
     task = state_problem(load_default("harmonic_drive", law), given, None, 33)
     found = propagate.compute_bands(task, propagate.sample_designs(task, 64, 5)[0])
     assert found.refusals.count == 0

@@ -260,7 +260,8 @@ def test_torque_is_odd_and_stiffness_even(springs, name):
     for quantity in ("K_WTS", "K_TS", "K_FTS", "K_TS_pair", "p_max"):
         np.testing.assert_array_equal(back[quantity], there[quantity])
     T = np.geomspace(1e-9, 50.0, 51)
-    np.testing.assert_array_equal(springs[name].evaluate_torque(-T)["phi_rel"], -springs[name].evaluate_torque(T)["phi_rel"])
+    negative, positive = (springs[name].evaluate_torque(torque)["phi_rel"] for torque in (-T, T))
+    np.testing.assert_array_equal(negative, -positive)
 
 
 @pytest.mark.parametrize("name", SETS)

@@ -23,8 +23,9 @@ from ...proof import exchange
 from ...proof.task import Task
 
 TOLERANCE, SOLVER, HOST = 5e-3, 1e-9, 1e-5
-"""Of an output [1], over its scale: what docs/systems.md promises of any step; of the references' solver; of
-one whose host states none. Where these two part the motion is too sensitive to be compared."""
+"""Of an output [1], over its scale: what docs/systems_explanation.md promises of any step; of the
+references' solver; of one whose host states none. Where these two part the motion is too sensitive to be
+compared."""
 SMALL = 1e-2
 """Part of its nominal value [1] below which an output is judged by that part, not by its largest value."""
 STEP, LONGER = 1e-3, 10

@@ -26,8 +26,8 @@ bool joint_tabulate(Joint *joint, const double *parameters, Text *why);
 bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, double *after, double *outputs,
                     Text *why);
 
-/* Exact derivative of the outputs along `seed` at the inputs and with the memory of the last joint_evaluate; where the
- * inputs are accepted `after` is the memory that it gave, else NULL. */
+/* Exact derivative of the outputs along `seed`, at the inputs and with the memory of the last joint_evaluate; at a
+ * corner the mean of both sides. Where the inputs are accepted `after` is the memory that it gave, else NULL. */
 void joint_derivative(Joint *joint, const double *inputs, const double *memory, const double *after,
                       const double *seed, double *result);
 

@@ -20,6 +20,7 @@ static const char magic[16 + 1] = "jointfmu state 1";
 typedef struct {
     char magic[sizeof magic]; /* tells a state from another pointer */
     unsigned version;
+    char token[sizeof data.token]; /* of the FMU that gave it: states of others have other sizes */
     State state;
 } SavedState;
 
@@ -152,7 +153,8 @@ static bool is_saved(const Instance *m, const char *function, const SavedState *
 {
     if (!instance_has(m, function, "the FMU state", saved))
         return false;
-    if (memcmp(saved->magic, magic, sizeof magic) == 0 && saved->version == m->version)
+    if (memcmp(saved->magic, magic, sizeof magic) == 0 && saved->version == m->version &&
+        memcmp(saved->token, data.token, sizeof data.token) == 0)
         return true;
     return instance_refuse(m, function, "this is no FMU state of %s; expected one that it gave", data.name) == OK;
 }
@@ -246,6 +248,7 @@ static Status hand_over(const Instance *m, const char *function, const State *st
         return instance_refuse(m, function, "no memory is left; expected some for a state");
     memcpy(to->magic, magic, sizeof magic);
     to->version = m->version;
+    memcpy(to->token, data.token, sizeof data.token);
     to->state = *state;
     *saved = to;
     return OK;
