@@ -344,7 +344,7 @@ def elastic_joint(tmp_path_factory: pytest.TempPathFactory, solved_once: None) -
     from jointfmu_fmu_src.building import build
     from jointfmu_tools import cli
 
-    from jointfmu.parameters import load
+    from jointfmu.parameters import load_parameter_file
 
     words = ["--plate", "80x80", "--bolts", "4xM8", "--at", "50x50", "--grip", "20"]
     words += ["--material", "steel", "--Ra", "0.8", "--embedding", "0", "--preload", "15000"]
