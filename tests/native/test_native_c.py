@@ -32,7 +32,7 @@ from jointfmu_tools.systems.system import system
 from natives import SAID
 
 from jointfmu.joints import MODELS
-from jointfmu.parameters import ParameterFile, load_default
+from jointfmu.parameters import ParameterFile, load_default, load_parameter_file
 
 pytestmark = pytest.mark.slow
 
