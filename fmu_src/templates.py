@@ -21,7 +21,7 @@ def template(path: Path, *shared: Path) -> jinja2.Template:
 
     All templates can call `number` (format a value) and `policy` (Content-Security-Policy of a page).
 
-    shared : folders of further templates that this one extends or imports
+    template_folders : folders of further templates that this one extends or imports
     """
     return _environment((path.parent, *shared), path.suffix == ".html").get_template(path.name)
 

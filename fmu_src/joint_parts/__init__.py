@@ -21,7 +21,7 @@ Drawing = Callable[..., Sequence[chart.Panel]]
 
 
 class RampPanel(NamedTuple):
-    """Chart of the load ramp on the page: quantities of one unit against the input or output `over`."""
+    """Chart of the load ramp on the page: quantities of one unit against an input or output (`abscissa`)."""
 
     over: str
     quantities: tuple[str, ...]

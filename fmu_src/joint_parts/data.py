@@ -10,8 +10,8 @@ from jointfmu.quantity import Array, flatten_parameters
 class DataTable(NamedTuple):
     """Table (n, k) of numbers that follow from the parameters.
 
-    most   : largest number of rows; the data block reserves space for it
-    digits : whether the numbers are 2-byte integers; the size of a row is then a multiple of 8 bytes
+    max_rows   : largest number of rows; the data block reserves space for it
+    is_integer : whether the numbers are 2-byte integers; the size of a row is then a multiple of 8 bytes
     """
 
     rows: Array
@@ -29,9 +29,11 @@ class DataPart:
 
     By default every real number is data. All other values (choices, series, integers) select the C code.
 
-    stands : (parameter set) -> {structured name: value} of the parameter set that replaces it in the C code
-    of     : (parameter set) -> class of the replacing parameter set
-    tables : (parameter set) -> {name: table} that the C code reads as `data.NAME` with `data.n_NAME` rows
+    convert_parameters : (parameter set) -> {structured name: value} of the parameter set that replaces it in
+        the C code
+    find_class         : (parameter set) -> class of the replacing parameter set
+    make_tables        : (parameter set) -> {name: table} that the C code reads as `data.NAME` with
+        `data.n_NAME` rows
     """
 
     stands: Callable[..., Mapping[str, Any]] = flatten_parameters
@@ -42,11 +44,11 @@ class DataPart:
 class Split(NamedTuple):
     """Parameters of an FMU, divided by their role in C.
 
-    exposed : names of FMU variables, which a simulation tool can set
-    fixed   : {name: value} of real numbers in the data block
-    code    : {name: value} on which the generated code depends
-    of      : class of the parameter set with which the code is generated
-    tables  : {name: table} in the data block
+    variable_names  : names of FMU variables, which a simulation tool can set
+    data_values     : {name: value} of real numbers in the data block
+    code_values     : {name: value} on which the generated code depends
+    parameter_class : class of the parameter set with which the code is generated
+    tables          : {name: table} in the data block
     """
 
     exposed: Sequence[str]

@@ -24,7 +24,7 @@ Symbols = Sequence[Number]
 class Function:
     """C function `y = name(x, c)`; c are the constants, `doc` names x and y.
 
-    looped : whether the C calls it inside loops: then it is inlined whatever its length
+    called_in_loops : whether the C calls it inside loops: then it is inlined whatever its length
     """
 
     name: str
@@ -59,12 +59,18 @@ class Graph:
     def add_with_seed(
         self, name: str, doc: str, x: Sequence[ca.SX], y: Symbols, constant_count: int = 0
     ) -> None:
-        """Add a function, and its directional derivative `name_seed` in all x but the first `fixed`."""
+        """Add a function, and as `name_seed` its derivative along a seed.
+
+        constant_count : number of first x that are constant in the derivative
+        """
         self.add(name, doc, x, y)
         self.add_seed(name, "x", x, y, constant_count)
 
     def add_seed(self, name: str, doc: str, x: Sequence[ca.SX], y: Symbols, constant_count: int) -> None:
-        """Add the directional derivative `name_seed` of y in all x but the first `fixed`."""
+        """Add the derivative of y along a seed as `name_seed`.
+
+        constant_count : number of first x that are constant in the derivative
+        """
         variables = ca.vertcat(*x[constant_count:])
         seed = symbols("seed", len(x) - constant_count)
         slope = ca.densify(ca.jtimes(ca.vertcat(*map(ca.SX, y)), variables, ca.vertcat(*seed)))
@@ -94,8 +100,8 @@ class Graph:
 def graph(model: Model, split: Split, functions: Callable[["Graph", Model], None], tabulated: bool) -> Graph:
     """Build the C functions of an FMU. FMU variables and data are symbols; other parameters are numbers.
 
-    functions : adds the functions of the joint
-    tabulated : whether the joint has a tabulated curve: then functions of its validity limits are added
+    add_functions : adds the functions of the joint
+    is_tabulated  : whether the joint has a tabulated curve: then functions of its validity limits are added
     """
     previous_mode = ca.GlobalOptions.getNumpyMode()
     ca.GlobalOptions.setNumpyMode(1)
@@ -193,8 +199,8 @@ def _regimes(spots: SpotDistribution) -> tuple[list[Number], list[SpotDistributi
 def law_functions(g: Graph, law: Any, table: Sequence[str], state: Any) -> None:
     """Add the functions of an interface law that its inversion, its tables and the outputs need.
 
-    table : names of the sums over contact spots, besides the load, that are tabulated
-    state : (law between two switches, log-area) -> quantities with first and second derivatives
+    table_names     : names of the sums over contact spots, besides the load, that are tabulated
+    state_functions : (law between two switches, log-area) -> quantities with first and second derivatives
     """
     spots, u = law.spots(), ca.SX.sym("u")
     switches, regimes = _regimes(spots)

@@ -69,7 +69,7 @@ NUMBERS: Named = {
     ),
 }
 COUNTS: Named = {curve: ("MAX_REFINEMENT",), interface: ("MAX_ITERATIONS",)}
-"""Python constants that the C of every joint with tables needs: integers (NUMBERS: real numbers)."""
+"""Python constants that the C of every joint with tables needs: integers (NUMBER_NAMES: real numbers)."""
 
 
 def named(numbers: Named, counts: Named) -> Definitions:
@@ -85,10 +85,10 @@ def named(numbers: Named, counts: Named) -> Definitions:
 class NativePart:
     """Definition of the C code of a joint.
 
-    functions   : adds the functions that the C of the joint calls to a graph
-    shared      : stems of files in `runtime/law/` that it needs, besides the files of every FMU
-    definitions : (graph, model) -> constants of its C
-    memory      : layout of the history variables, of the largest size possible; offsets are `AT_NAME` in C
+    add_functions    : adds the functions that the C of the joint calls to a graph
+    shared_files     : stems of files in `runtime/law/` that it needs, besides the files of every FMU
+    make_definitions : (graph, model) -> constants of its C
+    history_layout   : layout of the history variables, of the largest size possible; C names are `AT_NAME`
     """
 
     functions: Callable[[Graph, Model], None]

@@ -45,8 +45,8 @@ _BODIES = {"kg.m2": (0.01, 0.1, 1.0, 10.0), "kg": (1.0, 10.0, 100.0, 1000.0)}
 class _StableSteps(NamedTuple):
     """Largest stable steps of a body on the joint, with the stiffness at the end of the load ramp.
 
-    inertia : unit of the inertias
-    rows    : (inertia, step with a sequential master [s], step with a parallel master [s])
+    inertia_unit : unit of the inertias
+    rows         : (inertia, step with a sequential master [s], step with a parallel master [s])
     """
 
     name: str
@@ -64,7 +64,7 @@ def documentation(model: Model, parameters: ParameterFile) -> dict[str, bytes]:
 
 
 def plain_page(model: Model, parameters: ParameterFile, page: Path, flanges: Sequence[Terminal] = ()) -> str:
-    """Render a page that lists the variables only, from the template `page`."""
+    """Render a page that lists the variables only, from the template at `template_path`."""
     return template(page, Path(__file__).parent).render(
         model=model,
         version=__version__,
@@ -74,7 +74,7 @@ def plain_page(model: Model, parameters: ParameterFile, page: Path, flanges: Seq
 
 
 def _page(model: Model, parameters: ParameterFile, page: Path) -> str:
-    """Render the page of a joint from the template `page`, which may extend templates of this folder."""
+    """Render the page of a joint from the template at `template_path`."""
     spring = model.tabulate(parameters.values)
     rest = {v.name: parameters.start_value(v.name) for v in model.inputs}
     model = model.with_load_range(spring, rest)
@@ -122,10 +122,11 @@ def _rows(parameters: ParameterFile) -> list[_ParameterRow]:
 def _steps(
     model: Model, spring: TabulatedJoint, rest: Mapping[str, float], parameters: ParameterFile
 ) -> _StableSteps | None:
-    """Largest stable steps with a body on the joint, at the end of the ramp; None if no input is a speed.
+    """Largest stable communication steps of a joint with a body, at the end of the load ramp.
 
     They follow from the largest stiffness and its damping by `stable_steps`: for a sequential master, which
-    passes on the force before the body steps, and for a parallel master with `lag_b` = 1.
+    passes on the force before the body steps, and for a parallel master with `lag_b` = 1. None: no input is a
+    speed, so the joint has no such limit.
     """
     stiffnesses = [v for v in model.outputs if v.unit in _STIFFNESS]
     if not stiffnesses or not any(v.unit in ("rad/s", "m/s") for v in model.inputs):

@@ -20,10 +20,16 @@ from .neighbours import neighbours
 from .reference import Stimulus, results, rounded, start_of
 from .series import TimeSeries
 
-RAMP, SMOKE_LEVELS, MIN_LEVELS = 20, 4, 2
-"""Number of levels [1] of: load ramp; smoke test and shipped models; boundary values and samples."""
-QUARTER, CYCLES = 6, 1
-"""Number of levels of a quarter cycle of the loop [1], and of cycles after first loading [1]."""
+RAMP = 20
+"""Number of levels of the load ramp [1]."""
+SMOKE_LEVELS = 4
+"""Number of levels of the smoke test and of the shipped models [1]."""
+MIN_LEVELS = 2
+"""Number of levels of boundary values and samples [1]."""
+QUARTER = 6
+"""Number of levels of a quarter cycle of the loop [1]."""
+CYCLES = 1
+"""Number of cycles of the loop after first loading [1]."""
 FRACTION = 0.25
 """Sampling interval of a time-dependent model over the interval of its ramp [1]."""
 SAMPLES = 6
@@ -39,7 +45,7 @@ class ReferenceExperiment:
 
     purpose  : one of `standard.PURPOSES`
     settings : {variable: value} that differ from the start values of the FMU
-    drive    : levels of the driven input
+    stimulus : levels of the driven input
     """
 
     purpose: str
@@ -78,9 +84,10 @@ def experiments(model: Model, parameters: ParameterFile) -> list[ReferenceExperi
 
 
 def models(model: Model, parameters: ParameterFile) -> list[tuple[ParameterFile, dict[str, object]]]:
-    """The parameter file, and the shipped files with the same C code, each with {parameter: other value}.
+    """The parameter file, and the shipped files with the same C code, each with {FMU variable: other value}.
 
-    Files that differ in a value that is neither an FMU variable nor a hidden number are left out.
+    Hidden numbers (no FMU variables) keep the values of the parameter file. Shipped files that differ in
+    other values, on which the C code depends, are left out.
     """
     files_and_settings = [(parameters, dict[str, object]())]
     if model.joint not in KINDS:

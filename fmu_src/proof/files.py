@@ -62,9 +62,9 @@ def archive(
 ) -> dict[str, bytes]:
     """Make the files of FMI-LS-REF inside an FMU: {path: content}.
 
-    models : parameter files, each with the values that differ from the first
-    study  : {parameter: distribution} of the uncertainty experiments
-    native : whether the FMU is native: then it supports model exchange and has a documentation page
+    models    : parameter files, each with the values that differ from the first
+    study     : {parameter: distribution} of the uncertainty experiments
+    is_native : whether the FMU is native: then it supports model exchange and has a documentation page
     """
     members: dict[str, bytes] = {}
     related: list[RelatedFile] = []

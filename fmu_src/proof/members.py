@@ -14,7 +14,7 @@ _kept: dict[tuple[str, str], tuple[ReferenceExperiment, ...]] = {}
 def proof(model: Model, parameters: ParameterFile, native: bool = True) -> dict[str, bytes]:
     """Make the verification files of an FMU, {path: content}; the package computes the reference results.
 
-    native : whether the FMU is native; False: python flavour, without page and model exchange
+    is_native : whether the FMU is native; False: python flavour, without page and model exchange
     """
     source = model, parameters
     return archive(*source, models(*source), computed(*source), study(*source), native)

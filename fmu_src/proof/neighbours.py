@@ -59,7 +59,7 @@ def neighbours(
 def _nearest_accepted(
     first: float, value: float, is_integer: bool, is_accepted: Callable[[float], bool]
 ) -> float | None:
-    """Accepted value nearest to `first`, by bisection; None if only the value of the file is accepted."""
+    """Accepted value nearest to `boundary_value`, by bisection; None if only the file's value is accepted."""
     round_value: Callable[[float], float] = round if is_integer else rounded
     if is_accepted(round_value(first)):
         return float(round_value(first))

@@ -23,9 +23,9 @@ DIGITS = 10
 class Stimulus:
     """Stepwise variation of one input of an FMU.
 
-    input    : name of the driven input
-    levels   : (n) values at the sampling instants, the first at the start
-    interval : time between two sampling instants [s]
+    input_name : name of the driven input
+    levels     : (n) values at the sampling instants, the first at the start
+    interval   : time between two sampling instants [s]
     """
 
     input: str

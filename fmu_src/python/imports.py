@@ -8,7 +8,7 @@ from pathlib import Path
 
 
 def imported(start: Sequence[str], roots: Collection[str]) -> dict[str, Path]:
-    """Find {name: file} of modules and of all modules that they import at top level, in the packages `roots`.
+    """Find {name: file} of modules and of all modules that they import at top level, in `root_packages`.
 
     Parent packages of a module are included. Imports inside functions are not: they are optional at run time.
     """

@@ -14,7 +14,7 @@ from ..host import read_description
 INPUTS = ["phi1", "w1", "phi2", "w2"]
 """First inputs of the FMU of a joint between two flanges."""
 TORQUES = ["tau1", "tau2"]
-"""First outputs of such an FMU."""
+"""First outputs of the FMU of a joint between two flanges."""
 
 
 def plugin(fmu: str | Path, out: str | Path) -> Path:

@@ -14,8 +14,10 @@ from .names import identifier
 from .plugged import spring_of
 from .poses import inertia, torques
 
-SETTLING, STOP = 0.5, 2.0
-"""Time [s] in which the weight is applied, and stop time [s] of the experiment."""
+SETTLING = 0.5
+"""Time [s] in which the weight is applied."""
+STOP = 2.0
+"""Stop time [s] of the experiment."""
 PER_PERIOD = 100
 """Communication steps of the system in the shortest period of vibration [1]."""
 

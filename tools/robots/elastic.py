@@ -31,8 +31,8 @@ _LIGHT = 1e-12
 class ElasticAxis:
     """Joint of the robot with its drive.
 
-    rotor : rotor inertia at the output [kg.m2]: that of the motor times the square of the ratio
-    noted : texts on deviations from the robot file or from the drive
+    rotor_inertia : rotor inertia at the output [kg.m2]: that of the motor times the square of the ratio
+    notes         : texts on deviations from the robot file or from the drive
     """
 
     joint: str
@@ -133,8 +133,8 @@ def with_drives(spec: Any, chosen: list[ElasticAxis], springs: bool = True) -> A
 
     Keyframes are omitted: they have no positions for the motors.
 
-    chosen  : axes with a drive
-    springs : whether to add the drives and the friction of the motors
+    axes_with_drive : axes with a drive
+    has_springs     : whether to add the drives and the friction of the motors
     """
     elastic_spec, model = spec.copy(), spec.compile()
     for key in [*elastic_spec.keys]:
@@ -178,13 +178,13 @@ def _motors(spec: Any, name: str) -> Any:
 
 
 def _add_motor(spec: Any, motors: Any, axis: ElasticAxis, rigid: Any) -> Any:
-    """Add the motor of an axis as a joint with the motor angle [rad] as coordinate; move the actuators there.
+    """Add the motor of an axis, whose coordinate is the motor angle [rad], and move the actuators to it.
 
-    The force of each actuator is limited by the limit of the robot's joint. This limit cannot be set for the
-    motor joint as a whole, since its friction is an actuator too. The joint is a slide: MuJoCo computes no
+    The force limit of the robot's joint is applied to each actuator, not to the motor joint as a whole, as
+    the friction of the motor is an actuator too. The motor joint is a slide: MuJoCo then computes no
     rotation, and the motor is uncoupled in the mass matrix.
 
-    rigid : MjModel of the robot without drives
+    rigid_model : MjModel of the robot without drives
     """
     import mujoco
 
@@ -220,7 +220,7 @@ def unit(model: Any, name: str) -> str:
 def joint_positions(model: Any, angles: Mapping[str, str]) -> Array:
     """Joint positions of the rigid robot: first keyframe or default pose, with given angles replaced.
 
-    angles : {joint: text of its position [rad or m]}
+    position_texts : {joint: text of its position [rad or m]}
 
     Raises ValueError for an unknown joint, or a position that is no number or outside the joint's range.
     """

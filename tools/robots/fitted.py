@@ -21,11 +21,12 @@ LOSSLESS = 1e-6
 
 @dataclass(frozen=True, slots=True)
 class FittedTendons:
-    """Torque [N.m] against wind-up x [rad] from rest: linear x + cubic x^3, and yielding springs in parallel.
+    """Torque [N.m] against wind-up x [rad] from rest: k x + k3 x^3, and yielding springs in parallel.
 
-    linear, cubic : coefficients [N.m/rad], [N.m/rad^3]; not negative, so the torque increases with wind-up
-    sliders       : (stiffness [N.m/rad], yield wind-up [rad]) of each yielding spring
-    torque        : largest torque [N.m] of the fit
+    linear_stiffness : coefficient [N.m/rad], not negative, so that the torque increases with wind-up
+    cubic_stiffness  : coefficient [N.m/rad^3], not negative
+    yielding_springs : (stiffness [N.m/rad], yield wind-up [rad]) of each yielding spring
+    max_torque       : largest torque [N.m] of the fit
     """
 
     linear: float

@@ -27,8 +27,10 @@ STEP = 0.002
 """Time step [s] of the written file, MuJoCo's default."""
 FREQUENCY = 60.0
 """Natural frequency [Hz] of the link in the written file, with locked motor; defines its inertia."""
-WIND_UP, AREA = 0.03, 0.05
-"""Relative tolerances [1] of the wind-up at the largest fit torque, and of the area of the loop."""
+WIND_UP = 0.03
+"""Relative tolerance [1] of the wind-up at the largest fit torque."""
+AREA = 0.05
+"""Relative tolerance [1] of the area of the hysteresis loop."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,7 +127,7 @@ def drive_torque(drive: Transmission, spring: FittedTendons, wind_up: Array) -> 
 
 
 def compare_with_fmu(drive: Transmission, spring: FittedTendons) -> Miss:
-    """Compare MuJoCo's drive with the FMU's law in first loading to the largest fit torque and one loop."""
+    """Compare MuJoCo's drive with the FMU's law, along first loading to the largest fit torque and a loop."""
     torques, x = drive.loop(spring.torque)
     simulated = drive_torque(drive, spring, x)
     fmu_area, mujoco_area = area(x, torques), area(x, simulated)

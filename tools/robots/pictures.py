@@ -15,8 +15,10 @@ from .poses import frequencies, sag
 if TYPE_CHECKING:
     from mujoco import MjModel
 
-POINTS, LOADS = 21, 11
-"""Number of angles per axis of the pose grid [1], and of payloads [1]."""
+POINTS = 21
+"""Number of angles per axis of the pose grid [1]."""
+LOADS = 11
+"""Number of payloads [1]."""
 SIZE = (9.0, 3.8)
 """Width and height of a figure [inch]."""
 
@@ -30,7 +32,7 @@ def swept(axes: Sequence[ElasticAxis]) -> Sequence[ElasticAxis]:
 
 
 def angles(model: "MjModel", axis: ElasticAxis) -> Array:
-    """Angles (POINTS) [rad] over the range of an axis; a full turn for an axis without limits."""
+    """Angles (GRID_ANGLES) [rad] over the range of an axis; a full turn for an axis without limits."""
     joint = model.joint(axis.joint)
     low, high = model.jnt_range[joint.id] if model.jnt_limited[joint.id] else (-np.pi, np.pi)
     return np.linspace(low, high, POINTS)

@@ -42,8 +42,8 @@ def plugins(files: Mapping[str, ParameterFile], out: Path) -> dict[str, Path]:
 def text(spec: Any, chosen: Sequence[ElasticAxis], files: Mapping[str, ParameterFile]) -> str:
     """Format the MJCF of a robot with plugins as drives.
 
-    chosen : axes with a drive
-    files  : {joint: parameter file of its drive}
+    axes  : axes with a drive
+    files : {joint: parameter file of its drive}
     """
     model_spec = with_drives(spec, list(chosen), springs=False)
     model_spec.compile()

@@ -12,25 +12,28 @@ from jointfmu.quantity import Array
 
 from ..joint_parts import load_tool_module
 
-RAMP, LOOP = 200, 800
-"""Number of points of the ramp to the largest torque, and of the loop after it [1]."""
+RAMP = 200
+"""Number of points of the ramp to the largest torque [1]."""
+LOOP = 800
+"""Number of points of the loop after the ramp [1]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Transmission:
     """A drive between a motor and a link.
 
-    name           : name of the parameter file
-    ratio          : motor speed over link speed [1], negative for opposite directions
-    damping        : at the output [N.m.s/rad]
-    rated_torque   : at the output [N.m]
-    max_torque     : largest tabulated torque at the output [N.m]
-    dry, viscous   : Coulomb friction [N.m] and viscous friction [N.m.s/rad] of the motor
-    static         : static friction of the motor [N.m]; equals `dry` without Stribeck effect
-    stribeck_speed : motor speed [rad/s] at which static - dry has decreased to 1/e
-    presliding     : motor angle [rad] at which dry friction reaches 1 - 1/e of its limit
-    wind_up        : (history of torques (n) [N.m] from rest) -> wind-ups (n) [rad] with locked motor
-    lacks          : texts on effects of the drive other than springs, sliders and friction
+    name             : name of the parameter file
+    ratio            : motor speed over link speed [1], negative for opposite directions
+    damping          : viscous damping at the output [N.m.s/rad]
+    rated_torque     : at the output [N.m]
+    max_torque       : largest tabulated torque at the output [N.m]
+    dry_friction     : Coulomb friction of the motor [N.m]
+    viscous_friction : viscous friction of the motor [N.m.s/rad]
+    static_friction  : static friction of the motor [N.m]; without Stribeck effect equal to dry_friction
+    stribeck_speed   : motor speed [rad/s] at which static minus dry friction has decreased to 1/e
+    presliding_angle : motor angle [rad] at which dry friction reaches 1 - 1/e of its limit
+    compute_wind_up  : (history of torques (n) [N.m] from rest) -> wind-ups (n) [rad] with locked motor
+    omitted_effects  : texts on effects of the drive other than springs, sliders and friction
     """
 
     name: str

@@ -10,9 +10,9 @@ from .transmission import transmission
 def write_drive(form: str, source: str, torque: float | None) -> tuple[str, list[str], dict[str, object]]:
     """Write a drive in a robot format, fitted up to a torque.
 
-    form   : a key of WRITERS
-    source : parameter file or name of the drive
-    torque : [N.m]; None: rated torque
+    robot_format : a key of WRITERS
+    source       : parameter file or name of the drive
+    torque       : [N.m]; None: rated torque
 
     Returns the file text, notes on fit errors and omitted effects, and the same as values in SI units.
 

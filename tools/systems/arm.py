@@ -1,4 +1,4 @@
-"""A serial arm with a drive in every axis, out of the section `[arm]` of a system's file.
+"""Serial arm with a drive in every axis, defined by the section `[arm]` of a system file.
 
     [arm]
     start, duration = ...
@@ -9,16 +9,17 @@
     catalogue = "CSG-40-100"
     ...
 
-with every number as { value, unit, kind, source }, and the drive as in any section of a component.
+Every number is { value, unit, kind, source }; the drive is defined as in any section of a component.
 
-Each axis is a motor that follows its motion exactly, the drive, and an inertia: what the axis turns at the
-end of the motion, the others held. On the inertia acts what the inverse dynamics of the rigid arm leaves
-over, so that the drive carries the rigid arm's torque and the oscillation of its own inertia. That one axis'
-wind-up moves the others is left out: it is small against the motion.
+Each axis consists of a motor that follows its motion exactly, the drive, and a link inertia. The inertia is
+that about the axis at the end of the motion with the other axes locked. A torque acts on it: the inertia
+torque of the motion minus the torque by inverse dynamics of the rigid arm. So the drive carries the torque of
+the rigid arm and the oscillation of the link inertia. The motion of an axis by the wind-up of the others is
+neglected: it is small against the prescribed motion.
 
-The arm itself: at zero angles it stands upright, every link lies along z, and turns about z or y against the
-one before. Newton-Euler recursion (Luh, Walker and Paul, J. Dyn. Sys. Meas. Control 102, 1980) in the
-ground's frame.
+At zero angles the arm is upright: every link is along z. Each link rotates about z or y relative to the link
+before it. Inverse dynamics by the Newton-Euler recursion (Luh, Walker and Paul, J. Dyn. Sys. Meas. Control
+102, 1980) in the ground frame.
 """
 
 from collections.abc import Mapping, Sequence
@@ -45,11 +46,12 @@ from jointfmu.quantity import (
 from .system_joint import joint_file
 
 AXES: Mapping[str, Array] = {"y": np.array([0.0, 1.0, 0.0]), "z": np.array([0.0, 0.0, 1.0])}
+"""{name of a rotation axis: unit vector (3) in the frame of the link}."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Link(CheckedParameters):
-    """One link behind its axis."""
+    """Link of an arm, from its axis to the next axis or to the tip."""
 
     length: float = quantity_field("m", "from this axis to the next one, or to the tip", ge=0.0)
     mass: float = quantity_field("kg", "mass of the link with the next drive", gt=0.0)
@@ -61,10 +63,13 @@ class Link(CheckedParameters):
 
 @dataclass(frozen=True)
 class Arm:
-    """An arm and one motion of it: all axes from upright to their travel, along a quintic from rest to rest.
+    """Serial arm and its motion: all axes rotate from zero to their travel, by a quintic from rest to rest.
 
-    names, axes, links : of the axes, from the ground on; axes are keys of AXES
-    start, duration    : of the motion [s]
+    axis_names    : names of the axes, starting at the ground
+    rotation_axes : rotation axis of each of them, a key of AXIS_VECTORS
+    links         : link behind each axis
+    start         : start time of the motion [s]
+    duration      : duration of the motion [s]
     """
 
     names: Sequence[str]
@@ -74,65 +79,74 @@ class Arm:
     duration: float
 
     def motion(self, time: ArrayLike) -> tuple[Array, Array, Array]:
-        """Angles [rad], speeds [rad/s], accelerations [rad/s2] of all axes, (times, axes)."""
+        """Angles [rad], speeds [rad/s], accelerations [rad/s2] of all axes, shape (times, axes)."""
         x = (np.asarray(time, dtype=np.float64)[:, None] - self.start) / self.duration
         travel = np.array([link.travel for link in self.links])
-        rate, bend = smooth_step_slopes(x)
-        return (travel * smooth_step(x), travel * rate / self.duration, travel * bend / self.duration**2)
+        first, second = smooth_step_slopes(x)
+        return (travel * smooth_step(x), travel * first / self.duration, travel * second / self.duration**2)
 
     def frames(self, q: Array) -> tuple[list[Array], list[Array], Array]:
-        """Turns of the links (n, 3, 3), places of axes and tip (n, 3) [m] at angles (n, axes) [rad]."""
-        turn, place = np.broadcast_to(np.eye(3), (len(q), 3, 3)), np.zeros((len(q), 3))
-        turns, places = [], []
+        """Kinematics at angles (n, axes) [rad].
+
+        Returns the rotation matrix (n, 3, 3) of each link, the position (n, 3) [m] of each axis, and the
+        position (n, 3) [m] of the tip.
+        """
+        rotation, position = np.broadcast_to(np.eye(3), (len(q), 3, 3)), np.zeros((len(q), 3))
+        rotations, positions = [], []
         for k, (axis, link) in enumerate(zip(self.axes, self.links, strict=True)):
-            turn = turn @ _rotation(axis, q[:, k])
-            turns.append(turn)
-            places.append(place)
-            place = place + link.length * turn[:, :, 2]
-        return turns, places, place
+            rotation = rotation @ _rotation(axis, q[:, k])
+            rotations.append(rotation)
+            positions.append(position)
+            position = position + link.length * rotation[:, :, 2]
+        return rotations, positions, position
 
     def tip(self, q: Array) -> Array:
-        """Place of the tip (n, 3) [m] at angles (n, axes) [rad]."""
+        """Position (n, 3) [m] of the tip at angles (n, axes) [rad]."""
         return self.frames(q)[2]
 
     def torques(self, q: Array, speed: Array, acceleration: Array, gravity: float = GRAVITY) -> Array:
-        """Torques (n, axes) [N.m] that move the links so against their inertia and weight."""
-        turns, places, tip = self.frames(q)
+        """Inverse dynamics: torques (n, axes) [N.m] of the rigid arm for a motion, with inertia and weight.
+
+        q, speed, acceleration : (n, axes) [rad], [rad/s], [rad/s2]
+        gravity                : [m/s2]
+        """
+        rotations, positions, tip = self.frames(q)
         n = len(q)
         w, alpha = np.zeros((n, 3)), np.zeros((n, 3))
         a = np.broadcast_to(np.array([0.0, 0.0, gravity]), (n, 3))
         forces, moments, centres = [], [], []
         for k, (axis, link) in enumerate(zip(self.axes, self.links, strict=True)):
             if k:
-                arm = places[k] - places[k - 1]
-                a = a + np.cross(alpha, arm) + np.cross(w, np.cross(w, arm))
-            along = turns[k] @ AXES[axis]
-            turning = along * speed[:, k, None]
-            alpha = alpha + along * acceleration[:, k, None] + np.cross(w, turning)
-            w = w + turning
-            centre = link.centre * turns[k][:, :, 2]
+                lever = positions[k] - positions[k - 1]
+                a = a + np.cross(alpha, lever) + np.cross(w, np.cross(w, lever))
+            axis_vector = rotations[k] @ AXES[axis]
+            relative_speed = axis_vector * speed[:, k, None]
+            alpha = alpha + axis_vector * acceleration[:, k, None] + np.cross(w, relative_speed)
+            w = w + relative_speed
+            centre = link.centre * rotations[k][:, :, 2]
             forces.append(link.mass * (a + np.cross(alpha, centre) + np.cross(w, np.cross(w, centre))))
             inertia = np.diag([link.J_across, link.J_across, link.J_along])
-            inertia = turns[k] @ inertia @ turns[k].transpose(0, 2, 1)
+            inertia = rotations[k] @ inertia @ rotations[k].transpose(0, 2, 1)
             moments.append(_of(inertia, alpha) + np.cross(w, _of(inertia, w)))
             centres.append(centre)
-        found = np.empty((n, len(self.links)))
-        force, moment, after = np.zeros((n, 3)), np.zeros((n, 3)), tip
+        torques = np.empty((n, len(self.links)))
+        force, moment, next_position = np.zeros((n, 3)), np.zeros((n, 3)), tip
         for k in reversed(range(len(self.links))):
-            arm = after - places[k]
-            moment = moments[k] + np.cross(centres[k], forces[k]) + moment + np.cross(arm, force)
-            force, after = force + forces[k], places[k]
-            found[:, k] = np.sum(moment * (turns[k] @ AXES[self.axes[k]]), axis=1)
-        return found
+            lever = next_position - positions[k]
+            moment = moments[k] + np.cross(centres[k], forces[k]) + moment + np.cross(lever, force)
+            force, next_position = force + forces[k], positions[k]
+            torques[:, k] = np.sum(moment * (rotations[k] @ AXES[self.axes[k]]), axis=1)
+        return torques
 
     def inertias(self, q: Array) -> Array:
-        """Inertia (axes) [kg.m2] that each axis turns at angles (axes), the others held."""
+        """Inertia (axes) [kg.m2] about each axis at angles q (axes) [rad], with the other axes locked."""
         count = len(self.links)
-        held = np.broadcast_to(q, (count, count))
-        return np.asarray(np.diag(self.torques(held, np.zeros((count, count)), np.eye(count), 0.0)))
+        angles = np.broadcast_to(q, (count, count))
+        return np.asarray(np.diag(self.torques(angles, np.zeros((count, count)), np.eye(count), 0.0)))
 
 
 def _rotation(axis: str, angle: Array) -> Array:
+    """Rotation matrices (n, 3, 3) about an axis of AXIS_VECTORS by angles (n) [rad]."""
     c, s, zero, one = np.cos(angle), np.sin(angle), np.zeros_like(angle), np.ones_like(angle)
     rows = {
         "y": [[c, zero, s], [zero, one, zero], [-s, zero, c]],
@@ -142,7 +156,7 @@ def _rotation(axis: str, angle: Array) -> Array:
 
 
 def _of(matrices: Array, vectors: Array) -> Array:
-    """A matrix times a vector, for each of many."""
+    """Products (n, 3) of matrices (n, 3, 3) and vectors (n, 3)."""
     return np.asarray((matrices @ vectors[:, :, None])[:, :, 0])
 
 
@@ -151,37 +165,45 @@ _MOTION = {
     "duration": quantity_field("s", "from its begin to its end", gt=0.0),
 }
 Sections = dict[str, dict[str, object]]
+"""{component: its section, as in a system file}."""
 
 
 def arm_parts(path: Path, section: object) -> tuple[Arm, Sections, list[tuple[str, str]]]:
-    """The arm, and the sections and connections of its components: `NAME_motor`, `NAME_drive`,
-    `NAME_link`, `NAME_load` of the axis NAME.
+    """Read the section [arm]: the arm, and sections and connections of its components.
+
+    The components of an axis NAME are `NAME_motor`, `NAME_drive`, `NAME_link` and `NAME_load`.
 
     Raises ValueError with one line that names the entry and what is allowed.
     """
     if not isinstance(section, Mapping):
         raise ValueError(f"arm = {section!r}, expected a section [arm]")
-    own = {key: value for key, value in section.items() if key in _MOTION}
+    motion = {key: value for key, value in section.items() if key in _MOTION}
     axes = {key: value for key, value in section.items() if key not in _MOTION}
-    times, _, _ = read_entries(path, _MOTION, own)
+    times, _, _ = read_entries(path, _MOTION, motion)
     for name, item in _MOTION.items():
         if text := find_problem(name, times.get(name), item):
             raise ValueError(f"arm.{text}")
     fields, links, drives = dict(flat_fields(Link)), [], {}
-    for name, given in axes.items():
-        if not isinstance(given, Mapping) or given.get("axis") not in AXES:
-            axis = given.get("axis") if isinstance(given, Mapping) else given
-            raise ValueError(f"arm.{name}.axis = {axis!r}, allowed are {', '.join(AXES)}")
+    for name, axis_section in axes.items():
+        if not isinstance(axis_section, Mapping) or axis_section.get("axis") not in AXES:
+            axis_name = axis_section.get("axis") if isinstance(axis_section, Mapping) else axis_section
+            raise ValueError(f"arm.{name}.axis = {axis_name!r}, allowed are {', '.join(AXES)}")
         try:
-            values, _, _ = read_entries(path, fields, {k: v for k, v in given.items() if k in fields})
+            values, _, _ = read_entries(path, fields, {k: v for k, v in axis_section.items() if k in fields})
             links.append(build_parameter_set(Link, values))
         except ValueError as error:
             raise ValueError(f"arm.{name}: {str(error).removeprefix(f'{path}: ')}") from None
-        drives[name] = {key: value for key, value in given.items() if key not in fields and key != "axis"}
+        drives[name] = {
+            key: value for key, value in axis_section.items() if key not in fields and key != "axis"
+        }
     if not axes:
         raise ValueError("arm has no axis, expected a section [arm.NAME] for each")
     arm = Arm(
-        list(axes), [given["axis"] for given in axes.values()], links, times["start"], times["duration"]
+        list(axes),
+        [axis_section["axis"] for axis_section in axes.values()],
+        links,
+        times["start"],
+        times["duration"],
     )
     sections: Sections = {}
     wires: list[tuple[str, str]] = []
@@ -197,11 +219,11 @@ def arm_parts(path: Path, section: object) -> tuple[Arm, Sections, list[tuple[st
 
 
 def _ratio(path: Path, name: str, drive: Mapping[str, object]) -> float:
-    """Of the drive of an axis: its own, or that of its parameters."""
+    """Gear ratio of the drive of an axis: given in its section, or by its parameter file."""
     model = drive.get("model")
     if model not in MODELS or "ratio" not in MODELS[model].parameter_fields():
-        able = [n for n, m in MODELS.items() if "ratio" in m.parameter_fields() and len(m.inputs) >= 4]
-        raise ValueError(f"arm.{name}.model = {model!r}, allowed are {', '.join(able)}")
+        models = [n for n, m in MODELS.items() if "ratio" in m.parameter_fields() and len(m.inputs) >= 4]
+        raise ValueError(f"arm.{name}.model = {model!r}, allowed are {', '.join(models)}")
     entry = drive.get("ratio")
     if isinstance(entry, Mapping) and isinstance(entry.get("value"), int | float):
         return float(entry["value"])
@@ -211,15 +233,15 @@ def _ratio(path: Path, name: str, drive: Mapping[str, object]) -> float:
 
 
 def _axis(arm: Arm, name: str, drive: Mapping[str, object], ratio: float) -> Sections:
-    """The sections of one axis."""
+    """Sections of the components of one axis."""
     k = arm.names.index(name)
     link = arm.links[k]
-    end = np.array([[one.travel for one in arm.links]])
+    end = np.array([[link.travel for link in arm.links]])
     inertia = float(arm.inertias(end[0])[k])
     phase = np.linspace(0.0, 1.0, 201)
     q, speed, acceleration = arm.motion(arm.start + arm.duration * phase)
-    left = inertia * acceleration[:, k] - arm.torques(q, speed, acceleration)[:, k]
-    points = TorqueCurve.fitted(phase, left)  # digits beyond 1e-8 N.m depend on the processor
+    load = inertia * acceleration[:, k] - arm.torques(q, speed, acceleration)[:, k]
+    points = TorqueCurve.fitted(phase, load)  # digits beyond 1e-8 N.m depend on the processor
     times = {"start": (arm.start, "s"), "duration": (arm.duration, "s")}
     return {
         f"{name}_motor": _section("AngleProfile", times | {"height": (ratio * link.travel, "rad")}),
@@ -234,8 +256,9 @@ def _axis(arm: Arm, name: str, drive: Mapping[str, object], ratio: float) -> Sec
 
 
 def _section(model: str, values: Mapping[str, tuple[float, str]]) -> dict[str, object]:
-    text = "kinematics and inverse dynamics of [arm]"
+    """Section of a component with derived values; values : {name: (value, unit)}."""
+    source = "kinematics and inverse dynamics of [arm]"
     return {"model": model} | {
-        name: {"value": value, "unit": unit, "kind": "derived", "source": text}
+        name: {"value": value, "unit": unit, "kind": "derived", "source": source}
         for name, (value, unit) in values.items()
     }

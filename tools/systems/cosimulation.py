@@ -1,4 +1,4 @@
-"""A whole system run by an own master, of either kind, on its FMUs of FMI 2.0."""
+"""Co-simulation of a system of FMI 2.0 FMUs, by a sequential or a parallel master."""
 
 from contextlib import ExitStack
 from itertools import accumulate
@@ -22,62 +22,64 @@ def simulate(
     step: float | None = None,
     stop: float | None = None,
 ) -> dict[str, Array]:
-    """{COMPONENT.OUTPUT: values} of all outputs that are connected, and `time` [s].
+    """Simulate a system; returns {COMPONENT.OUTPUT: values} of all connected outputs, and `time` [s].
 
-    folder     : of the FMUs (FMI 2.0)
-    master     : whether all components step side by side, or the joints after what moves them
-    step, stop : [s]; None: those of the system
+    folder : folder of the FMUs (FMI 2.0)
+    master : parallel (all components step together) or sequential (joints step after the bodies)
+    step   : communication step [s]; None: interval of the system
+    stop   : stop time [s]; None: that of the system
 
-    Raises ValueError for an FMU that is missing or refuses.
+    Raises ValueError if an FMU is missing or returns an error.
     """
     step = system.interval if step is None else step
     count = round((system.stop_time if stop is None else stop) / step)
-    signals, names, late = wires(system), fmu_names(system), lags(system)
-    fed = {name: [w for w in signals if w.target == name] for name in system.components}
-    read = {
+    signals, names, lag_parameters = wires(system), fmu_names(system), lags(system)
+    inputs = {name: [w for w in signals if w.target == name] for name in system.components}
+    outputs_read = {
         name: list(dict.fromkeys(w.output for w in signals if w.source == name)) for name in system.components
     }
-    columns = [f"{name}.{output}" for name in read for output in read[name]]
-    place = {column: k for k, column in enumerate(columns)}
+    columns = [f"{name}.{output}" for name in outputs_read for output in outputs_read[name]]
+    position = {column: k for k, column in enumerate(columns)}
     rows = np.empty((count + 1, len(columns)))
-    with ExitStack() as opened:
-        parts: dict[str, Slave] = {}
+    with ExitStack() as stack:
+        slaves: dict[str, Slave] = {}
         for name, component in system.components.items():
             start = {key: entry.value for key, entry in values(component).items()}
-            start |= dict.fromkeys(late.get(name, ()), master.lag)
+            start |= dict.fromkeys(lag_parameters.get(name, ()), master.lag)
             path = folder / f"{names[name]}.fmu"
-            parts[name] = opened.enter_context(Slave(path, start, [w.input for w in fed[name]], read[name]))
-        joints = [name for name, part in system.components.items() if part.file]
-        others = [name for name in parts if name not in joints]
-        at = {name: [place[f"{w.source}.{w.output}"] for w in fed[name]] for name in parts}
-        ends = dict(zip(read, accumulate(len(outputs) for outputs in read.values()), strict=True))
-        span = {name: slice(ends[name] - len(outputs), ends[name]) for name, outputs in read.items()}
-        now = [0.0] * len(columns)
+            input_names = [w.input for w in inputs[name]]
+            slaves[name] = stack.enter_context(Slave(path, start, input_names, outputs_read[name]))
+        joints = [name for name, component in system.components.items() if component.file]
+        others = [name for name in slaves if name not in joints]
+        sources = {name: [position[f"{w.source}.{w.output}"] for w in inputs[name]] for name in slaves}
+        ends = dict(zip(outputs_read, accumulate(map(len, outputs_read.values())), strict=True))
+        spans = {name: slice(ends[name] - len(outputs), ends[name]) for name, outputs in outputs_read.items()}
+        current = [0.0] * len(columns)
 
-        def feed(group: list[str]) -> None:
+        def set_inputs(group: list[str]) -> None:
             for name in group:
-                parts[name].set(*[now[k] for k in at[name]])
+                slaves[name].set(*[current[k] for k in sources[name]])
 
-        def look(group: list[str]) -> None:
+        def get_outputs(group: list[str]) -> None:
             for name in group:
-                now[span[name]] = parts[name].get()
+                current[spans[name]] = slaves[name].get()
 
-        look(others)
-        feed(joints)
-        look(joints)
-        rows[0] = now
+        get_outputs(others)
+        set_inputs(joints)
+        get_outputs(joints)
+        rows[0] = current
         groups = [others, joints] if master.in_turn else [[*others, *joints]]
         for k in track_progress(range(count), f"run {system.name}", count):
             for group in groups:
-                feed(group)
+                set_inputs(group)
                 for name in group:
-                    parts[name].step(k * step, step)
-                look(group)
-            rows[k + 1] = now
+                    slaves[name].step(k * step, step)
+                get_outputs(group)
+            rows[k + 1] = current
     time = np.asarray(step * np.arange(count + 1), dtype=np.float64)
-    return {"time": time} | {column: rows[:, k] for column, k in place.items()}
+    return {"time": time} | {column: rows[:, k] for column, k in position.items()}
 
 
 def arms(folder: Path) -> dict[str, tuple[System, dict[str, Array]]]:
-    """The shipped systems that are arms, and what they do; `folder` has the FMUs (FMI 2.0)."""
-    return {name: (one, simulate(one, folder)) for name, one in systems().items() if one.arm}
+    """Simulate the shipped systems that are arms, {name: (system, results)}; `folder` has FMI 2.0 FMUs."""
+    return {name: (system, simulate(system, folder)) for name, system in systems().items() if system.arm}

@@ -1,4 +1,4 @@
-"""A body let go on a joint with memory: frequency and damping over the falling amplitude, by running FMUs."""
+"""Free decay of a body on a joint with hysteresis: frequency and damping over amplitude, by running FMUs."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -18,29 +18,41 @@ from ..ramps import loops
 from .master import Slave, motion
 from .ringing import PER_PERIOD, Body, Rest, VibratingJoint, vibrating_joints
 
-PERIODS, SETTLED = 60, 10
-"""Periods of a decay, and the last ones, whose mean is where the joint settles: friction holds it off its
-working point."""
+PERIODS = 60
+"""Number of periods of a simulated decay [1]."""
+SETTLED = 10
+"""Number of last periods [1], whose mean is the final position; friction shifts it from the working point."""
 MAX_LOGARITHM_RATIO = 2.0
-"""Logarithm of a swing's first half over its middle, over the damping ratio [1]: pi/2, and a little more."""
-FREQUENCY_TOLERANCE, DAMPING_TOLERANCE = 5e-3, 2e-2
-"""Of a window of a decay against the loops of its mean amplitude [1]; the damping after the first window,
-within whose two periods half of the amplitude is lost."""
+"""Logarithm of the start amplitude of a half cycle over its mean amplitude, over the damping ratio [1].
+
+pi/2 for small damping, here with a margin.
+"""
+FREQUENCY_TOLERANCE = 5e-3
+"""Relative tolerance [1] of the frequency in a window of a decay, against a loop of equal amplitude."""
+DAMPING_TOLERANCE = 2e-2
+"""Relative tolerance [1] of the damping in a window of a decay, against a loop of equal amplitude.
+
+The damping is not compared in the first window, whose two periods take half of the amplitude.
+"""
 MIN_AMPLITUDE_RATIO = 0.01
-"""Amplitude over the first one [1] down to which a decay is followed."""
+"""Amplitude over the initial amplitude [1] below which a decay is not evaluated."""
 
 
 @dataclass(frozen=True, slots=True)
 class Decay:
-    """A decay about one working point.
+    """Free decay about one working point.
 
-    load      : on the joint, SI
-    amplitude, frequency, damping : (n) [m or rad], [rad/s], [1] as they fall
-    expected, stated : (n) frequency [rad/s] and damping ratio [1] by the energy of the joint's loops at
-        these amplitudes, about where it settles, and its viscous damping
-    law       : (n) half of the joint's output eta_loop [1] there; None: it has none
-    time, signal : [s], deflection from the working point [m or rad]
-    messages  : what the FMUs logged
+    load               : load on the joint, in SI units
+    amplitude          : (n) [m or rad], decreasing
+    frequency          : (n) angular frequency [rad/s] at these amplitudes
+    damping            : (n) damping ratio [1] at these amplitudes
+    expected_frequency : (n) angular frequency [rad/s] by the energy of the joint's loops about the final
+        position
+    expected_damping   : (n) damping ratio [1] by the same loops, with viscous damping
+    half_eta_loop      : (n) half of the joint's output eta_loop [1]; None: the joint has no such output
+    time               : [s]
+    signal             : deflection from the working point [m or rad]
+    messages           : log messages of the FMUs
     """
 
     load: float
@@ -56,12 +68,12 @@ class Decay:
 
 
 def examples(folder: Path) -> dict[str, list[Decay]]:
-    """The systems of one joint that says how it rings, pulled so that it slips.
+    """Simulate decays with slip for all shipped systems of one vibrating joint, {system: decays}.
 
-    folder : of the FMUs (FMI 2.0)
+    folder : folder of the FMUs (FMI 2.0)
     """
-    pulls = [(name, one, one.body.pull) for name, one in vibrating_joints().items()]
-    return {name: decays(one, folder, pull.deflection, [pull.load]) for name, one, pull in pulls}
+    pulls = [(name, joint, joint.body.pull) for name, joint in vibrating_joints().items()]
+    return {name: decays(joint, folder, pull.deflection, [pull.load]) for name, joint, pull in pulls}
 
 
 def decays(
@@ -72,14 +84,15 @@ def decays(
     inertia: float | None = None,
     settings: Mapping[str, object] | None = None,
 ) -> list[Decay]:
-    """The body of a system on its joint, pulled by `first` [m or rad] from its working point and let go.
+    """Simulate free decays of the body of a system on its joint, one for each load.
 
-    folder   : of the FMUs (FMI 2.0) of the joint and of the body
-    loads    : SI; None: the largest of those that show the joint
-    inertia  : [kg.m2 or kg] of the body; None: that of the system
-    settings : parameters of the joint beside those of the system
+    folder             : folder of the FMUs (FMI 2.0) of joint and body
+    initial_deflection : [m or rad] from the working point
+    loads              : in SI units; None: the largest example load of the joint
+    inertia            : [kg.m2 or kg] of the body; None: that of the system
+    settings           : parameters of the joint that replace those of the system
 
-    Raises ValueError for an FMU that is missing or refuses, and where too few periods stand out.
+    Raises ValueError if an FMU is missing or returns an error, or if too few periods can be resolved.
     """
     parameters = {**joint.parameters, **(settings or {})}
     loads = [max(joint.body.loads(folder / f"{joint.fmu}.fmu", parameters))] if loads is None else loads
@@ -98,27 +111,29 @@ def _decay_at(
     mass: float,
     first: float,
 ) -> Decay:
+    """Simulate the free decay at one load, and compute frequency and damping by the joint's loops."""
     body, path = joint.body, folder / f"{joint.fmu}.fmu"
     rest, partner = body.rest(path, load, parameters), PARTNERS[body.partner]
     states = [v.name for v in partner.outputs[: partner.state_count]]
-    pulled = rest.position + np.copysign(first, rest.position)  # one way from no load: the joint begins there
-    start, held = {joint.key: mass, states[0]: pulled}, {**parameters, **body.start(load)}
+    # away from zero: monotonic loading, as the FMU starts at zero
+    pulled = rest.position + np.copysign(first, rest.position)
+    start, settings = {joint.key: mass, states[0]: pulled}, {**parameters, **body.start(load)}
     step = 2.0 * np.pi / np.sqrt(rest.stiffness / mass) / PER_PERIOD
     with (
-        Slave(path, {**held, body.motion[0]: pulled}, body.motion, (body.force,)) as slave,
+        Slave(path, {**settings, body.motion[0]: pulled}, body.motion, (body.force,)) as slave,
         Slave(folder / f"{body.partner}.fmu", start, [v.name for v in partner.inputs], states) as moving,
     ):
         signal = motion(slave, moving, rest.force, step, PERIODS * PER_PERIOD)[:, 0] - rest.position
         messages = tuple(dict.fromkeys(slave.messages + moving.messages))
     time = np.asarray(step * np.arange(signal.size), dtype=np.float64)
-    found = decay.analyse_decay(time, signal, f"load = {load:g}: ")
-    seen = found.amplitude > MIN_AMPLITUDE_RATIO * first
-    amplitude = found.amplitude[seen]
-    widest = amplitude * np.exp(MAX_LOGARITHM_RATIO * found.damping[seen])
+    points = decay.analyse_decay(time, signal, f"load = {load:g}: ")
+    is_resolved = points.amplitude > MIN_AMPLITUDE_RATIO * first
+    amplitude = points.amplitude[is_resolved]
+    loop_amplitudes = amplitude * np.exp(MAX_LOGARITHM_RATIO * points.damping[is_resolved])
     settled = rest._replace(position=rest.position + float(np.mean(signal[-SETTLED * PER_PERIOD :])))
-    expected, stated, law = _of_loops(path, held, body, settled, mass, amplitude, widest)
-    frequency = 2.0 * np.pi * found.frequency[seen]
-    damping = found.damping[seen]
+    expected, stated, law = _of_loops(path, settings, body, settled, mass, amplitude, loop_amplitudes)
+    frequency = 2.0 * np.pi * points.frequency[is_resolved]
+    damping = points.damping[is_resolved]
     return Decay(load, amplitude, frequency, damping, expected, stated, law, time, signal, messages)
 
 
@@ -131,27 +146,30 @@ def _of_loops(
     amplitudes: Array,
     widest: Array,
 ) -> tuple[Array, Array, Array | None]:
-    """Frequency [rad/s] and damping ratio [1] by the energy of loops, a little wider than the amplitudes, and
-    half of `eta_loop` [1]."""
+    """Frequency (n) [rad/s], damping ratio (n) [1] by the energy of loops, and half of `eta_loop` (n) [1].
+
+    amplitudes      : (n) [m or rad] at which the loops are evaluated
+    loop_amplitudes : (n) [m or rad] of the simulated loops, a little larger
+    """
     swing = loops.CyclicPath(centre=rest.position, shape="sine", cycles=1)
     run = loops.run_loops(path, body.motion[0], widest.tolist(), swing, body.force, settings)
-    found = [
+    results = [
         of_loop(loop, rest.damping).decay(np.array([a]), mass)
         for loop, a in zip(run.loops, amplitudes, strict=True)
     ]
-    frequency, decrement = np.array(found)[:, :, 0].T
-    way, eta = np.abs(run.loops[0].motion - rest.position), run.loops[0].result.columns.get("eta_loop")
+    frequency, decrement = np.array(results)[:, :, 0].T
+    deflection, eta = np.abs(run.loops[0].motion - rest.position), run.loops[0].result.columns.get("eta_loop")
     first = slice(None, swing.points // 4 + 1)
-    law = None if eta is None else 0.5 * np.interp(amplitudes, way[first], eta[first])
+    law = None if eta is None else 0.5 * np.interp(amplitudes, deflection[first], eta[first])
     return frequency, decrement / np.hypot(np.pi, decrement), law
 
 
 def of_loop(loop: loops.HysteresisLoop, viscous: float) -> HysteresisLaw:
-    """The law by Masing's rule whose branches are the mean of a loop's two."""
+    """Hysteresis law by Masing's rule, whose branch is the mean of the two branches of a loop."""
     motion, force = loop.motion[loop.cycle_start :], loop.force[loop.cycle_start :]
     half = motion.size // 2
     falling, rising = slice(None, half + 1), slice(half, None)
-    way = 0.5 * (motion[0] - motion[falling])
+    deflection = 0.5 * (motion[0] - motion[falling])
     friction = 0.25 * (force[0] - force[falling] + force[rising] - force[half])
-    curve = CubicSpline(way, friction)
+    curve = CubicSpline(deflection, friction)
     return HysteresisLaw(curve, curve.antiderivative(), viscous=viscous)

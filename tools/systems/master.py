@@ -1,4 +1,4 @@
-"""A small master: an inertia or mass on a joint to the ground, as co-simulation of two FMUs (FMI 2.0)."""
+"""Co-simulation of two FMUs (FMI 2.0): an inertia or mass on a joint to the ground."""
 
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
@@ -17,10 +17,13 @@ T = TypeVar("T")
 
 
 class Slave:
-    """An instance of an FMU with the inputs and outputs that are wired; to be used with `with`.
+    """Initialized instance of an FMU with selected inputs and outputs; a context manager.
 
-    Raises ValueError if the file is no FMU for this platform, a name is unknown or the FMU refuses a value
-    (the message is the FMU's own). What it logs besides is in `messages`.
+    start    : {variable: start value}
+    messages : log messages of the FMU
+
+    Raises ValueError if the file is no FMU for this platform, a name is unknown, or the FMU returns an error
+    (with the message of the FMU).
     """
 
     def __init__(
@@ -54,7 +57,7 @@ class Slave:
         self._call(self._fmu.do_step, time, size)
 
     def _call(self, function: Callable[..., T], *arguments: float) -> T:
-        """Call a function of the FMU; ValueError with the FMU's reason if it refuses."""
+        """Call a function of the FMU; raises ValueError with the FMU's message if it returns an error."""
         try:
             return function(*arguments)
         except FMICallException as error:
@@ -72,12 +75,13 @@ class Slave:
 def motion(
     joint: Slave, body: Slave, load: float, step: float, count: int, side_by_side: bool = False
 ) -> Array:
-    """Position and speed (count + 1, 2) of a body on a joint under a constant load [N or N.m].
+    """Simulate position and speed (count + 1, 2) of a body on a joint under a constant load [N or N.m].
 
-    joint : inputs position and speed, output the force on the body
-    body  : inputs load and force, outputs position and speed
-    late  : the body gets the force of the communication point before, as in masters that step all
-            FMUs side by side; else the present one
+    joint          : inputs position and speed, output the force on the body
+    body           : inputs load and force, outputs position and speed
+    step           : communication step [s]
+    has_late_force : whether the body gets the force of the previous communication point, as with a parallel
+        master; otherwise the current force
     """
     states = np.empty((count + 1, 2))
     states[0] = body.get()
@@ -97,7 +101,7 @@ def motion(
 
 
 def peak(signal: Array, step: float) -> float:
-    """Frequency [rad/s] of the highest peak of a signal's spectrum besides its mean."""
+    """Angular frequency [rad/s] of the highest peak in the spectrum of a signal without its mean."""
     n = signal.size
     windowed = (signal - signal.mean()) * np.hanning(n)
     size = 16 * (1 << (n - 1).bit_length())
@@ -108,7 +112,7 @@ def peak(signal: Array, step: float) -> float:
 
 
 def damping_ratio(signal: Array) -> float:
-    """Damping ratio [1] of a free decay about zero, from the logarithmic decrement of its maxima."""
+    """Damping ratio [1] of a free decay about zero, by the logarithmic decrement of its maxima."""
     middle = signal[1:-1]
     tops = np.flatnonzero((middle > signal[:-2]) & (middle >= signal[2:]) & (middle > 0.0)) + 1
     left, top, right = signal[tops - 1], signal[tops], signal[tops + 1]

@@ -1,4 +1,4 @@
-"""What a nonlinear joint does in a system, by running FMUs: resonance over the load, and free decay."""
+"""Free vibration of a body on a nonlinear joint, by running FMUs: frequency and damping over the load."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -19,32 +19,37 @@ from .ssp import fmu_names, values
 from .system import Component, System, systems
 from .wiring import wires
 
-PER_PERIOD, PERIODS = 100, 25
+PER_PERIOD = 100
+"""Communication steps per period [1]."""
+PERIODS = 25
+"""Number of periods of a simulation [1]."""
 RESONANCE_TOLERANCE = 5e-3
-"""Peak of the spectrum against sqrt(K/J) [1]."""
+"""Relative tolerance [1] of the spectral peak frequency against sqrt(K/J)."""
 DAMPING_TOLERANCE = 1e-2
-"""Decrement of the free decay against the stated damping [1]."""
+"""Relative tolerance [1] of the damping ratio by the decrement against that of the joint."""
 LINE = 41
-"""Points of a line over the load."""
+"""Number of points of a curve over the load [1]."""
 RESOLVED = 1e-10
-"""Least first deflection over that of the working point [1]: round-off is 1e-6 of it."""
+"""Smallest initial deflection over that of the working point [1]: round-off is then 1e-6 of the former."""
 MOST_DAMPED = 0.1
-"""Damping ratio [1] up to which there are enough periods to find frequency and decrement."""
+"""Largest damping ratio [1]: more leaves too few periods to determine frequency and decrement."""
 _LEAST_DAMPED = 1e-6
-"""Damping ratio [1] below which the decrement, found to 2e-9, is not compared."""
+"""Damping ratio [1] below which the damping is not compared: the decrement is accurate to 2e-9."""
 
 
 @dataclass(frozen=True, slots=True)
 class Ringing:
-    """Free motion at one working point.
+    """Free vibration about one working point.
 
-    load            : on the joint, SI
-    inertia         : of the body [kg or kg.m2]
-    frequency       : peak of the simulated signal's spectrum [rad/s]
-    expected        : sqrt(K/J) with the joint's stiffness there [rad/s]
-    damping, stated : ratios [1], of the decay and of the joint's own damping
-    time, signal    : deflection from the working point [rad or m]
-    messages        : what the FMUs logged
+    load               : load on the joint, in SI units
+    inertia            : inertia or mass of the body [kg.m2 or kg]
+    frequency          : angular frequency [rad/s] of the spectral peak of the simulated signal
+    expected_frequency : sqrt(K/J) [rad/s] with the tangent stiffness K of the joint at the working point
+    damping            : damping ratio [1] of the simulated decay
+    expected_damping   : damping ratio [1] by the damping coefficient of the joint
+    time               : [s]
+    signal             : deflection from the working point [rad or m]
+    messages           : log messages of the FMUs
     """
 
     load: float
@@ -59,25 +64,30 @@ class Ringing:
 
     @property
     def damped(self) -> bool:
-        """Whether the joint states a damping that the decrement resolves."""
+        """Whether the joint has enough damping to be resolved by the decrement."""
         return self.stated > _LEAST_DAMPED
 
     @property
     def misses(self) -> list[str]:
-        """What lies outside the tolerances, one line each."""
+        """Texts on deviations beyond the tolerances, one line each."""
         pairs = [("frequency", self.frequency, self.expected, RESONANCE_TOLERANCE)]
         if self.damped:
             pairs.append(("damping", self.damping, self.stated, DAMPING_TOLERANCE))
         return [
-            f"load = {self.load:g}: {name} {simulated:.6g}, expected {expected:.6g} within {allowed:g}"
-            for name, simulated, expected, allowed in pairs
-            if not abs(simulated - expected) <= allowed * expected
+            f"load = {self.load:g}: {name} {simulated:.6g}, expected {expected:.6g} within {tolerance:g}"
+            for name, simulated, expected, tolerance in pairs
+            if not abs(simulated - expected) <= tolerance * expected
         ]
 
 
 class Rest(NamedTuple):
-    """A working point: the constant force or torque there, the position of rest, and the joint's stiffness
-    and damping (SI units)."""
+    """Working point of a joint with a body, in SI units.
+
+    force     : constant force or torque
+    position  : position of rest
+    stiffness : tangent stiffness of the joint
+    damping   : damping coefficient of the joint
+    """
 
     force: float
     position: float
@@ -86,7 +96,7 @@ class Rest(NamedTuple):
 
 
 class Axis(NamedTuple):
-    """Name of what a plot shows, its unit there, and the factor from SI to it."""
+    """Axis of a plot: name of the quantity, its unit, and the factor from SI to this unit."""
 
     name: str
     unit: str
@@ -98,7 +108,7 @@ class Axis(NamedTuple):
 
 
 class Pull(NamedTuple):
-    """A pull that makes the joint slip: load on the joint and deflection, SI, and what it is."""
+    """Initial deflection that makes the joint slip, load on the joint (SI units), and description."""
 
     load: float
     deflection: float
@@ -107,22 +117,25 @@ class Pull(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Body:
-    """How a joint rings with a body on it: RINGING in the joint's file.
+    """Vibration test of a joint with a body: RINGING in the joint's tool module.
 
-    model   : of the joint, motion in
-    motion  : its inputs, position and speed of the body
-    force   : its output, the force or torque on the body
-    partner : FMU of the body
-    over    : the variable that loads it
-    loads   : (the joint's FMU, its parameters) -> the loads that show the joint, SI
-    start   : load -> {input: value} of the joint's FMU under it
-    rest    : (the joint's FMU, load, its parameters) -> working point; ValueError where nothing rings
-    release : force or torque whose deflection is the first one [N or N.m]
-    load, deflection : as plots show them
-    doc     : how the body is held, for the report
-    stiffness : variable of the joint that the body feels
-    pull    : one that makes the joint slip
-    elastic : parameters of the joint without friction, where friction adds to its stiffness at tiny motion
+    model_name              : FMU of the joint, with motion as input
+    motion_inputs           : its inputs: position and speed of the body
+    force_output            : its output: force or torque on the body
+    body_model              : FMU of the body
+    load_variable           : variable that is the load on the joint
+    find_example_loads      : (FMU of the joint, its parameters) -> example loads, in SI units
+    find_start_values       : load -> {input of the joint: start value}
+    find_working_point      : (FMU of the joint, load, its parameters) -> working point; ValueError if there
+        is no vibration
+    release_force           : force or torque that causes the initial deflection [N or N.m]
+    load_axis               : plot axis of the load
+    deflection_axis         : plot axis of the deflection
+    doc                     : how the body is held, for the report
+    stiffness_output        : variable of the joint that is the stiffness for the motion of the body
+    slip_deflection         : initial deflection that makes the joint slip
+    frictionless_parameters : {parameter: value} of the joint without friction, which adds stiffness at small
+        amplitudes
     """
 
     model: str
@@ -143,21 +156,23 @@ class Body:
 
 
 def body_on(joint: str) -> Body:
-    """How a joint rings with a body on it; ValueError if it says nothing of that."""
-    ringing = load_tool_module(KINDS[joint], "ringing")
-    if ringing is None:
-        able = [name for name, kind in KINDS.items() if load_tool_module(kind, "ringing")]
-        raise ValueError(f"joint {joint!r} does not say how it rings, allowed are {', '.join(able)}")
-    body: Body = ringing.RINGING
+    """Vibration test of a kind of joint; raises ValueError if the joint defines none."""
+    tool_module = load_tool_module(KINDS[joint], "ringing")
+    if tool_module is None:
+        joints = [name for name, kind in KINDS.items() if load_tool_module(kind, "ringing")]
+        raise ValueError(f"joint {joint!r} does not say how it rings, allowed are {', '.join(joints)}")
+    body: Body = tool_module.RINGING
     return body
 
 
 @dataclass(frozen=True, slots=True)
 class VibratingJoint:
-    """A joint of a system, and the body on it that rings while all others are held.
+    """Joint of a system with the body that vibrates on it; all other bodies are locked.
 
-    fmu : name of the joint's FMU
-    key : the parameter of the body that is its inertia
+    test              : vibration test of the joint
+    fmu_name          : name of the joint's FMU
+    moving_body       : body that vibrates
+    inertia_parameter : parameter of this body that is its inertia
     """
 
     body: Body
@@ -168,18 +183,21 @@ class VibratingJoint:
 
     @property
     def parameters(self) -> dict[str, Any]:
-        """Of the joint's FMU: all of one of its own, which another joint may share; else what the system
-        gives it, for `--fmus` may hold a joint of other numbers."""
+        """{parameter of the joint's FMU: value}.
+
+        All parameters if the system has its own FMU of the joint, which several joints may share. Otherwise
+        only those that the system gives, as the FMU in `--fmus` may have other parameters.
+        """
         if not self.joint.own:
             return self.joint.parameters
         return {name: entry.value for name, entry in values(self.joint).items()}
 
     @property
     def inertia(self) -> float:
-        """Of the body [kg or kg.m2]."""
-        given = self.moving.values.get(self.key)
+        """Inertia [kg.m2] or mass [kg] of the body."""
+        value = self.moving.values.get(self.key)
         return float(
-            partner_parameters(self.moving.model).values_by_name[self.key] if given is None else given
+            partner_parameters(self.moving.model).values_by_name[self.key] if value is None else value
         )
 
     @property
@@ -197,11 +215,11 @@ class VibratingJoint:
 
 
 def vibrating_joint(system: System, joint: str | None = None) -> VibratingJoint:
-    """What rings in a system.
+    """Find a joint of a system and the body that vibrates on it.
 
-    joint : name of one of its joints; None: the only one
+    joint : name of the joint; None: the only joint of the system
 
-    Raises ValueError if there is none of that name, several, or one that says nothing of how it rings.
+    Raises ValueError if the system has no such joint or several, or if the joint has no vibration test.
     """
     joints = system.joints
     if joint is None and len(joints) > 1:
@@ -210,8 +228,8 @@ def vibrating_joint(system: System, joint: str | None = None) -> VibratingJoint:
     if name not in joints:
         raise ValueError(f"joint {name!r} is not in {system.name}, allowed are {', '.join(joints)}")
     body = body_on(joints[name].kind)
-    ends = [w.source for w in wires(system) if (w.target, w.input) == (name, body.motion[0])]
-    moving = system.components[ends[0]] if ends else None
+    body_names = [w.source for w in wires(system) if (w.target, w.input) == (name, body.motion[0])]
+    moving = system.components[body_names[0]] if body_names else None
     if joints[name].model != body.model or moving is None or moving.model != body.partner:
         raise ValueError(f"{name}: expected a {body.model} that takes {body.motion[0]} from a {body.partner}")
     key = next(iter(dict(flat_fields(PARTNERS[body.partner].parameters))))
@@ -219,27 +237,27 @@ def vibrating_joint(system: System, joint: str | None = None) -> VibratingJoint:
 
 
 def examples(folder: Path) -> dict[str, list[Ringing]]:
-    """The systems of one joint that says how it rings, over their loads; `folder` has the FMUs (FMI 2.0)."""
-    return {name: ring(one, folder) for name, one in vibrating_joints().items()}
+    """Simulate all shipped systems of one vibrating joint, {system: results}; `folder` has FMI 2.0 FMUs."""
+    return {name: ring(joint, folder) for name, joint in vibrating_joints().items()}
 
 
 def vibrating_joints() -> dict[str, VibratingJoint]:
-    """What rings in the shipped systems of one joint that says how, by the system's name."""
-    alone = {n: s for n, s in systems().items() if len(s.joints) == 1}
-    kinds = {n: next(iter(s.joints.values())).kind for n, s in alone.items()}
-    return {n: vibrating_joint(s) for n, s in alone.items() if load_tool_module(KINDS[kinds[n]], "ringing")}
+    """{system: vibrating joint} of the shipped systems with one joint that has a vibration test."""
+    single = {n: s for n, s in systems().items() if len(s.joints) == 1}
+    kinds = {n: next(iter(s.joints.values())).kind for n, s in single.items()}
+    return {n: vibrating_joint(s) for n, s in single.items() if load_tool_module(KINDS[kinds[n]], "ringing")}
 
 
 def ring(
     joint: VibratingJoint, folder: Path, loads: Sequence[float] | None = None, inertia: float | None = None
 ) -> list[Ringing]:
-    """The body of a system on its joint without friction, about working points under a load.
+    """Simulate free vibrations of a body on its joint without friction, one for each load.
 
-    folder  : of the FMUs (FMI 2.0) of the joint and of the body
-    loads   : SI; None: those that show the joint
+    folder  : folder of the FMUs (FMI 2.0) of joint and body
+    loads   : in SI units; None: the example loads of the joint
     inertia : [kg.m2 or kg] of the body; None: that of the system
 
-    Raises ValueError for an FMU that is missing or refuses, and where nothing rings.
+    Raises ValueError if an FMU is missing or returns an error, or if there is no vibration.
     """
     parameters = {**joint.parameters, **joint.body.elastic}
     if loads is None:
@@ -255,7 +273,7 @@ def ring(
 def stiffness_line(
     vibrating_joint: VibratingJoint, folder: Path, points: Sequence[Ringing]
 ) -> tuple[Array, Array]:
-    """Loads (n), evenly from the least to the largest of some points, and sqrt(K/J) there [rad/s]."""
+    """Loads (n), evenly spaced over the range of simulated points, and sqrt(K/J) (n) [rad/s] there."""
     joint, path = (
         {**vibrating_joint.parameters, **vibrating_joint.body.elastic},
         folder / f"{vibrating_joint.fmu}.fmu",
@@ -269,17 +287,17 @@ def stiffness_line(
 def _ring_at(
     joint: VibratingJoint, folder: Path, load: float, parameters: Mapping[str, Any], inertia: float
 ) -> Ringing:
-    """Free motion about one working point, with parameters of the joint."""
+    """Simulate the free vibration at one load, with given parameters of the joint."""
     body, path = joint.body, folder / f"{joint.fmu}.fmu"
     rest, partner = body.rest(path, load, parameters), PARTNERS[body.partner]
-    first, least = body.release / rest.stiffness, RESOLVED * abs(rest.position)
-    if not first > least:
+    initial, smallest = body.release / rest.stiffness, RESOLVED * abs(rest.position)
+    if not initial > smallest:
         raise ValueError(
             f"load = {load:g}: too large, its deflection of {rest.position:g} hides a first one of "
-            f"{first:.3g}; allowed is more than {least:.3g}"
+            f"{initial:.3g}; allowed is more than {smallest:.3g}"
         )
     states = [v.name for v in partner.outputs[: partner.state_count]]
-    start = {joint.key: inertia, states[0]: rest.position + first}
+    start = {joint.key: inertia, states[0]: rest.position + initial}
     forces = [v.name for v in partner.inputs]
     with (
         Slave(path, {**parameters, **body.start(load)}, body.motion, (body.force,)) as slave,
@@ -289,6 +307,7 @@ def _ring_at(
 
 
 def _ring(joint: Slave, body: Slave, rest: Rest, load: float, inertia: float) -> Ringing:
+    """Simulate the free vibration of two running FMUs about a working point."""
     expected = float(np.sqrt(rest.stiffness / inertia))
     stated = rest.damping / (2.0 * inertia * expected)
     if not stated < MOST_DAMPED:
@@ -300,5 +319,5 @@ def _ring(joint: Slave, body: Slave, rest: Rest, load: float, inertia: float) ->
     signal = motion(joint, body, rest.force, step, PERIODS * PER_PERIOD)[:, 0] - rest.position
     time = np.asarray(step * np.arange(signal.size), dtype=np.float64)
     messages = tuple(dict.fromkeys(joint.messages + body.messages))
-    found = peak(signal, step), expected, damping_ratio(signal), stated
-    return Ringing(load, inertia, *found, time, signal, messages)
+    results = peak(signal, step), expected, damping_ratio(signal), stated
+    return Ringing(load, inertia, *results, time, signal, messages)

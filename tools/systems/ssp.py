@@ -1,6 +1,4 @@
-"""Systems as SSP archives with their structure descriptions: SSP 1.0 with FMUs of FMI 2.0, SSP 2.0 with
-FMUs of FMI 3.0.
-"""
+"""SSP archives of systems: SSP 1.0 with FMUs of FMI 2.0, SSP 2.0 with FMUs of FMI 3.0."""
 
 from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
@@ -32,12 +30,13 @@ _TYPE = "application/x-fmu-sharedlibrary"
 
 
 class Master(NamedTuple):
-    """A kind of master that an archive is for.
+    """Kind of co-simulation master for which an archive is made.
 
-    suffix : of the archive's name
-    lag    : communication steps by which the force of a joint comes late there
-    doc    : why
-    in_turn : whether it updates the components in turn, as OMSimulator does
+    suffix        : suffix of the archive name
+    lag           : delay of the force of a joint on a body [communication steps]
+    doc           : reason for this lag
+    is_sequential : whether the master is sequential (Gauss-Seidel), as OMSimulator; otherwise parallel
+        (Jacobi)
     """
 
     suffix: str
@@ -64,18 +63,18 @@ MASTERS = (
 
 
 def structure(system: System, names: Mapping[str, str], version: str, master: Master) -> bytes:
-    """SystemStructure.ssd; the parameter sets lie in `parameters/`, the FMUs in `resources/`.
+    """Content of SystemStructure.ssd; parameter sets are in `parameters/`, FMUs in `resources/`.
 
-    names : {component: its FMU}
+    fmu_names_by_component : {component: name of its FMU}
     """
     spaces = {"xmlns:ssd": f"{SSP}Description", "xmlns:ssc": f"{SSP}Common"}
     head = {**spaces, "version": version, "name": system.name, **metadata()}
     root = Element("ssd:SystemStructureDescription", head)
-    text = f"{system.description}. {master.doc}"
-    root.set("description", text)
-    inside = SubElement(root, "ssd:System", name=system.name, description=text)
-    _bindings(inside, system.name)
-    elements = SubElement(inside, "ssd:Elements")
+    description = f"{system.description}. {master.doc}"
+    root.set("description", description)
+    system_node = SubElement(root, "ssd:System", name=system.name, description=description)
+    _bindings(system_node, system.name)
+    elements = SubElement(system_node, "ssd:Elements")
     signals = wires(system)
     units = set()
     for component in system.components.values():
@@ -95,41 +94,42 @@ def structure(system: System, names: Mapping[str, str], version: str, master: Ma
                 SubElement(connector, f"ssc:{NUMBER[version]}", unit=v.unit)
                 units.add(v.unit)
         _bindings(node, component.name)
-    connections = SubElement(inside, "ssd:Connections")
+    connections = SubElement(system_node, "ssd:Connections")
     for wire in signals:
         ends = zip(("startElement", "startConnector", "endElement", "endConnector"), wire, strict=True)
         SubElement(connections, "ssd:Connection", dict(ends))
     if master.in_turn:
-        _for_omsimulator(inside, system.interval)
+        _for_omsimulator(system_node, system.interval)
     add_units(root, "ssd", units)
     SubElement(root, "ssd:DefaultExperiment", startTime="0", stopTime=repr(system.stop_time))
     return serialized(root)
 
 
 def metadata() -> dict[str, str]:
-    """Who wrote an SSP file, and with what."""
-    found = {
+    """XML attributes of an SSP file: author, copyright, licence, generation tool, date if fixed."""
+    attributes = {
         "author": "the jointfmu authors",
         "copyright": copyright_line(),
         "license": "MIT",
         "generationTool": f"jointfmu {__version__}",
     }
     if when := fixed_time():
-        found["generationDateAndTime"] = when.strftime("%Y-%m-%dT%H:%M:%SZ")
-    return found
+        attributes["generationDateAndTime"] = when.strftime("%Y-%m-%dT%H:%M:%SZ")
+    return attributes
 
 
 def _bindings(node: Element, name: str) -> None:
+    """Bind the parameter set `parameters/NAME.ssv` to a system or component."""
     bindings = SubElement(node, "ssd:ParameterBindings")
     SubElement(bindings, "ssd:ParameterBinding", source=f"parameters/{name}.ssv")
 
 
 def _for_omsimulator(system: Element, step: float) -> None:
-    """Say what OMSimulator takes from an annotation alone: that this is a co-simulation of fixed step."""
+    """Add the annotation by which OMSimulator selects co-simulation with a fixed step [s]."""
     annotations = SubElement(system, "ssd:Annotations")
     annotation = SubElement(annotations, "ssc:Annotation", type="org.openmodelica")
-    own = SubElement(annotation, "oms:Annotations", {"xmlns:oms": _OMS})
-    information = SubElement(own, "oms:SimulationInformation")
+    oms_node = SubElement(annotation, "oms:Annotations", {"xmlns:oms": _OMS})
+    information = SubElement(oms_node, "oms:SimulationInformation")
     SubElement(information, "oms:FixedStepMaster", description="oms-ma", stepSize=repr(step))
 
 
@@ -146,17 +146,17 @@ def build_systems(
     pool: Executor | None = None,
     force: bool = False,
 ) -> list[Path]:
-    """Write the archives of systems, and their components as `out/fmi2/NAME.fmu` and `out/fmi3/NAME.fmu`.
+    """Write the archives of systems, and their component FMUs to `out/fmi2/NAME.fmu` and `out/fmi3/NAME.fmu`.
 
-    wanted      : None: all that are shipped
-    parameters  : of a joint, instead of that of the systems: then only systems with the joint are packed
-    joints      : build the systems' joints beside the partners; else they are there
-    variability : of the parameters, one of VARIABILITIES
-    pool        : processes that share the work; None: this one does it
-    force       : replace files of these names that jointfmu did not write
+    chosen_systems : systems to build; None: all shipped systems
+    parameters     : parameter file of a joint that replaces those of the systems; then only systems with this
+        kind of joint are built
+    build_joints   : whether to build the FMUs of the joints too; False: they exist already in `out`
+    variability    : of all parameters, one of VARIABILITIES
+    pool           : processes that build in parallel; None: build in this process
+    force          : also replace files that jointfmu did not write
 
-    Raises what `native.build.build` and `pack_system` raise, and ValueError if no system has the joint, or
-    two joints of one FMU differ in what is baked into it.
+    Raises as `native.build.build` and `write_archives`, and ValueError if no system has this kind of joint.
     """
     chosen = list(systems().values()) if wanted is None else list(wanted)
     if parameters:
@@ -165,23 +165,29 @@ def build_systems(
             allowed = ", ".join(sorted(kinds))
             raise ValueError(f"no system has a joint {parameters.joint!r}, allowed are {allowed}")
         chosen = [system.with_joint(parameters) for system in chosen if parameters.joint in system.kinds]
-    used: dict[str, Component] = {}
+    components: dict[str, Component] = {}
     for system in chosen:
         wires(system)
         for name, fmu in fmu_names(system).items():
-            used.setdefault(fmu, system.components[name])
-    wanted_fmus = {fmu: one for fmu, one in used.items() if joints or one.own or not one.file}
-    fmus_out = [out / f"fmi{version}" / f"{fmu}.fmu" for version in VERSIONS for fmu in wanted_fmus]
+            components.setdefault(fmu, system.components[name])
+    built_components = {
+        fmu: component
+        for fmu, component in components.items()
+        if joints or component.own or not component.file
+    }
+    fmus_out = [out / f"fmi{version}" / f"{fmu}.fmu" for version in VERSIONS for fmu in built_components]
     archives = [_target(system, out, *kind) for system in chosen for kind in product(FOLDERS, MASTERS)]
     check_outputs([*fmus_out, *archives], ARCHIVE, force)
-    work = partial(_versions, out, variability)
-    built = map_jobs(pool, work, "build FMUs of systems", [*wanted_fmus], [*wanted_fmus.values()])
-    fmus = [path for paths in zip(*built, strict=True) for path in paths]
+    build_versions = partial(_versions, out, variability)
+    fmu_paths = map_jobs(
+        pool, build_versions, "build FMUs of systems", [*built_components], [*built_components.values()]
+    )
+    fmus = [path for paths in zip(*fmu_paths, strict=True) for path in paths]
     return fmus + [path for system in chosen for path in pack_system(system, out)]
 
 
 def _versions(out: Path, variability: str, fmu: str, component: Component) -> list[Path]:
-    """Build an FMU of a component in all versions of FMI, which share what is compiled."""
+    """Build the FMU of a component for all FMI versions, which share the compiled model; return the files."""
     file = (component.file if component.own else component.base) or partner_parameters(component.model)
     alias = "" if fmu == component.model else fmu
     return [
@@ -191,31 +197,34 @@ def _versions(out: Path, variability: str, fmu: str, component: Component) -> li
 
 
 def pack_system(system: System, out: Path) -> list[Path]:
-    """Write `out/ssp/NAME.ssp` (SSP 1.0) and `out/ssp2/NAME.ssp` (SSP 2.0) for every one of MASTERS.
+    """Write `out/ssp/NAME.ssp` (SSP 1.0) and `out/ssp2/NAME.ssp` (SSP 2.0) for each kind of master.
 
-    They hold FMUs of `out/fmi2` and `out/fmi3`, and the system's numbers.
+    They contain the FMUs in `out/fmi2` and `out/fmi3`, and the parameters of the system.
 
-    Raises ValueError for flanges that do not fit, see `wiring.ends`, and folders that cannot be written.
+    Raises ValueError for invalid connections, see `wiring.find_connections`, or an unwritable folder.
     """
     return [_pack(system, out, version, master) for version, master in product(FOLDERS, MASTERS)]
 
 
 def _target(system: System, out: Path, version: str, master: Master) -> Path:
+    """Path of an archive."""
     return out / FOLDERS[version][0] / f"{system.name}{master.suffix}.ssp"
 
 
 def _pack(system: System, out: Path, version: str, master: Master) -> Path:
-    late, names = lags(system), fmu_names(system)
+    """Write the archive of a system for one SSP version and one kind of master."""
+    lag_parameters, names = lags(system), fmu_names(system)
     members = {"SystemStructure.ssd": structure(system, names, version, master)}
-    every: dict[str, Value] = {}
+    system_values: dict[str, Value] = {}
     for name, component in system.components.items():
-        own = values(component) | {lag: Value(master.lag, "1", master.doc) for lag in late.get(name, ())}
-        every |= {f"{name}.{variable}": value for variable, value in own.items()}
+        lag_values = {lag: Value(master.lag, "1", master.doc) for lag in lag_parameters.get(name, ())}
+        component_values = values(component) | lag_values
+        system_values |= {f"{name}.{variable}": value for variable, value in component_values.items()}
         members[f"resources/{names[name]}.fmu"] = (
             out / FOLDERS[version][1] / f"{names[name]}.fmu"
         ).read_bytes()
-        members[f"parameters/{name}.ssv"] = parameter_set(system.name, own, version, metadata())
-    members[f"parameters/{system.name}.ssv"] = parameter_set(system.name, every, version, metadata())
+        members[f"parameters/{name}.ssv"] = parameter_set(system.name, component_values, version, metadata())
+    members[f"parameters/{system.name}.ssv"] = parameter_set(system.name, system_values, version, metadata())
     target = _target(system, out, version, master)
     with workshop(target) as work:
         pack(members, work / target.name)
@@ -223,20 +232,20 @@ def _pack(system: System, out: Path, version: str, master: Master) -> Path:
 
 
 def values(component: Component) -> dict[str, Value]:
-    """{variable: value} of a component: of the joint's file, and of the system's.
+    """{variable: value} of a component, from the parameter file of its joint and from the system file.
 
-    Booleans of the joint's file are the start values of its FMU: fmpy takes every Boolean of a parameter set
-    for true.
+    Booleans of the parameter file are omitted: they are start values of the FMU, and fmpy reads every Boolean
+    of a parameter set as true.
     """
-    found: dict[str, Value] = {}
+    joint_values: dict[str, Value] = {}
     if component.file:
         for name, item in model_of(component).parameter_fields().items():
             value = component.file.values_by_name[name]
             if not isinstance(value, bool):
-                found[name] = Value(
+                joint_values[name] = Value(
                     value, item.metadata.get("unit", ""), component.file.sources.get(name, "")
                 )
-    return found | {
+    return joint_values | {
         name: Value(value, component.units[name], component.sources[name])
         for name, value in component.values.items()
         if name in component.parameters or name in component.state
@@ -244,22 +253,27 @@ def values(component: Component) -> dict[str, Value]:
 
 
 def fmu_names(system: System) -> dict[str, str]:
-    """{component: its FMU}: the model's name; where it is another, SYSTEM_COMPONENT of the first one with the
-    same baked values."""
-    found: dict[str, str] = {}
+    """{component: name of its FMU}.
+
+    The name is that of the model, or SYSTEM_COMPONENT if the system has its own FMU of the joint. Components
+    with equal fixed values share the FMU of the first one.
+    """
+    names: dict[str, str] = {}
     variants: list[tuple[str, Mapping[str, Any], str]] = []
     for name, component in system.components.items():
         if not (component.file and component.own):
-            found[name] = component.model
+            names[name] = component.model
             continue
         exposed = model_of(component).parameter_fields()
-        baked = {
+        fixed_values = {
             key: value
             for key, value in component.file.values_by_name.items()
             if key not in exposed or isinstance(value, bool)
         } | {"law": component.file.law}
-        same = [fmu for model, values, fmu in variants if (model, values) == (component.model, baked)]
-        found[name] = same[0] if same else f"{system.name}_{name}"
-        if not same:
-            variants.append((component.model, baked, found[name]))
-    return found
+        equal_fmus = [
+            fmu for model, values, fmu in variants if (model, values) == (component.model, fixed_values)
+        ]
+        names[name] = equal_fmus[0] if equal_fmus else f"{system.name}_{name}"
+        if not equal_fmus:
+            variants.append((component.model, fixed_values, names[name]))
+    return names

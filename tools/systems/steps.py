@@ -1,4 +1,4 @@
-"""Largest stable step of a system's co-simulation, joint by joint."""
+"""Largest stable communication step of a system, from the largest stable step of each joint."""
 
 from collections.abc import Mapping, Sequence
 
@@ -14,49 +14,49 @@ from .wiring import End, ends, model_of, wires
 _BODIES = {"flange1": "inertia1", "flange2": "inertia2"} | dict.fromkeys(
     ("flange_x", "flange_y", "flange_z"), "mass"
 )
-"""{flange of a joint: its parameter that is the inertia of the body there}."""
+"""{flange of a joint: parameter with the inertia of the body on this flange}."""
 
 
 def longest_step(system: System, run: Mapping[str, Array] | None = None) -> tuple[float, str]:
-    """The shortest of the joints' largest stable steps [s] where all components step side by side, and its
-    joint, each with the bodies on it alone.
+    """Largest stable step [s] of a system with a parallel master, and the name of the joint that limits it.
 
-    run : of the system: at the largest loads of each joint in it; None: where the system starts
+    Each joint is treated alone with the bodies on it. An undamped joint has no stable step with a parallel
+    master; then the step of a sequential master is used.
 
-    A joint without damping, of which no step is stable there, has that of a force that arrives at once.
+    results : of a simulation: the step is evaluated at the largest loads in it; None: at the start values
 
-    Raises ValueError as `wiring.ends`.
+    Raises ValueError as `wiring.find_connections`.
     """
-    connected, signals, found = ends(system), wires(system), [(MAX_STEP, "")]
-    for name, part in system.joints.items():
-        bodies = _bodies(part, connected)
-        if not part.file or not any(bodies.values()):
+    connected, signals, steps = ends(system), wires(system), [(MAX_STEP, "")]
+    for name, component in system.joints.items():
+        bodies = _bodies(component, connected)
+        if not component.file or not any(bodies.values()):
             continue
-        model = model_of(part)
-        spring = model.tabulate(replace_values(part.file.values, bodies))
-        start = {v.name: part.file.start_value(v.name) for v in model.inputs} | part.state
-        places: list[dict[str, float]] = [{}]
+        model = model_of(component)
+        spring = model.tabulate(replace_values(component.file.values, bodies))
+        start = {v.name: component.file.start_value(v.name) for v in model.inputs} | component.state
+        operating_points: list[dict[str, float]] = [{}]
         if run:
             rows = {int(np.argmax(np.abs(run[f"{name}.{w.output}"]))) for w in signals if w.source == name}
-            fed = {w.input: run[f"{w.source}.{w.output}"] for w in signals if w.target == name}
-            places = [{key: float(column[k]) for key, column in fed.items()} for k in rows]
-        for inputs in places:
+            input_values = {w.input: run[f"{w.source}.{w.output}"] for w in signals if w.target == name}
+            operating_points = [{key: float(column[k]) for key, column in input_values.items()} for k in rows]
+        for inputs in operating_points:
             out = model.evaluate(spring, start | inputs)
-            at_once, late = (float(out.get(key, MAX_STEP)) for key, _ in STABLE_STEP_OUTPUTS)
-            found.append((late or at_once, name))
-    return min(found)
+            sequential, parallel = (float(out.get(key, MAX_STEP)) for key, _ in STABLE_STEP_OUTPUTS)
+            steps.append((parallel or sequential, name))
+    return min(steps)
 
 
 def _bodies(component: Component, connected: Sequence[tuple[End, End]]) -> dict[str, float]:
-    """{parameter of a joint: inertia of the body on its flange}, 0 where it is held."""
-    found = {
+    """{parameter of a joint: inertia of the body on its flange}; 0 for a flange on the ground."""
+    inertias = {
         key: 0.0
         for key in ("inertia1", "inertia2")
         if component.file and key in component.file.values_by_name
     }
-    for one, other in connected:
-        key = _BODIES.get(one.flange.name) if one.component is component and one.flange else None
-        if key and other.component:
-            inertia = other.component.values[PARTNERS[other.component.model].parameters.inertia]
-            found[key] = min(inertia, found.get(key) or inertia)
-    return found
+    for first, second in connected:
+        key = _BODIES.get(first.flange.name) if first.component is component and first.flange else None
+        if key and second.component:
+            inertia = second.component.values[PARTNERS[second.component.model].parameters.inertia]
+            inertias[key] = min(inertia, inertias.get(key) or inertia)
+    return inertias

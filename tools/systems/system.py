@@ -1,17 +1,17 @@
-"""Systems of joints: TOML files of named components and what connects them, the same for every tool.
+"""System files (TOML): components and their connections, read by all tools for systems.
 
-A file is `schema = 1`, `name = ...`, `description = ...`, and a section for every component,
+A file has `schema = 1`, `name = ...`, `description = ...`, and a section for each component:
 
     [drive]
     model = "HarmonicDriveSpring"
     parameters = "my_drive.toml"
     hysteresis_loss = { value = 2.9e-4, unit = "rad", kind = "catalogue", source = "1 arcmin" }
 
-with its FMU as `model`, of a joint its parameter file or, as `catalogue`, its name in the catalogue
-(neither: the default), and values of its own: parameters, and of a joint the inputs at which the system
-holds it. `connect` is a list of pairs: a load and the flange that it acts on, two flanges, or a flange of
-a joint and "ground". A section `[experiment]` has `stop_time` and `interval`. A section `[arm]` stands for
-the components of a serial arm, see `arm`.
+`model` is the FMU of the component. A joint has the parameter file in `parameters`, or the item of the
+catalogue named in `catalogue`, or its default parameter file. Further entries are values of parameters, and
+of inputs of a joint that the system keeps constant. `connect` is a list of pairs: a load and a flange on
+which it acts, two flanges, or a flange of a joint and "ground". The section `[experiment]` has `stop_time`
+and `interval`. A section `[arm]` defines the components of a serial arm, see `arm`.
 """
 
 from collections.abc import Mapping, Sequence
@@ -32,7 +32,7 @@ from .arm import arm_parts
 from .system_joint import KEYS, joint_file
 
 GROUND = "ground"
-"""What holds a flange of a joint."""
+"""Name of the ground in connections; it fixes a flange of a joint."""
 _EXPERIMENT = {
     "stop_time": quantity_field("s", "end of the simulation", gt=0.0),
     "interval": quantity_field("s", "between two points of the result", gt=0.0),
@@ -42,14 +42,14 @@ _HEAD = ("schema", "name", "description", "connect", "experiment", "arm")
 
 @dataclass(frozen=True, slots=True)
 class Component:
-    """One part of a system.
+    """Component of a system: joint, body or load.
 
-    model : what it is exported as, a joint's or a partner's
-    base  : parameters of a joint without those that the system gives; None: of a partner
-    file  : the same with them
-    own   : whether its FMU is another than the model's: the system names a file for it, or gives a parameter
-        that is baked in
-    values, units, sources : {parameter or input: SI value, unit, text} that the system gives it
+    model_name             : name of its model, of a joint or of a partner
+    base_file              : parameter file of a joint, without values of the system; None: a partner
+    parameter_file         : parameter file of a joint, with values of the system; None: a partner
+    has_own_fmu            : whether the system needs its own FMU of the joint: it names a parameter file or a
+        catalogue item, or sets a parameter that is no FMU variable
+    values, units, sources : {parameter or input: SI value, unit, source} given in the system file
     """
 
     name: str
@@ -63,31 +63,37 @@ class Component:
 
     @property
     def kind(self) -> str:
-        """Kind of a joint; empty for a partner."""
+        """Kind of joint; empty for a partner."""
         return self.file.joint if self.file else ""
 
     @property
     def state(self) -> dict[str, float]:
-        """{input of a joint: value} at which the system holds it."""
+        """{input of a joint: value} that the system keeps constant."""
         inputs = {v.name for v in MODELS[self.model].inputs} if self.file else set()
         return {name: value for name, value in self.values.items() if name in inputs}
 
     @property
     def parameters(self) -> dict[str, Any]:
-        """{parameter of its FMU: value} that the system gives it."""
-        held, fields = self.state, _exposed(self.model, self.file)
-        return {name: value for name, value in self.values.items() if name not in held and name in fields}
+        """{parameter of its FMU: value} given in the system file."""
+        constant_inputs, fields = self.state, _exposed(self.model, self.file)
+        return {
+            name: value
+            for name, value in self.values.items()
+            if name not in constant_inputs and name in fields
+        }
 
 
 @dataclass(frozen=True, slots=True)
 class System:
-    """A system.
+    """System of joints, bodies and loads, as read from a system file.
 
-    name        : identifier, the file's stem
-    components  : {name: component}
-    connections : pairs of ends, `COMPONENT.FLANGE`, the name of a load, or GROUND
-    stop_time, interval : [s]
-    arm         : the parameters of a serial arm, if it is one
+    name                : identifier, the stem of the file
+    title               : name given in the file
+    components          : {name: component}
+    connections         : pairs of ends: `COMPONENT.FLANGE`, the name of a load, or GROUND
+    stop_time, interval : of the experiment [s]
+    arm                 : serial arm with its motion; None: the system is no arm
+    experiment_sources  : {entry of the experiment: source}
     """
 
     name: str
@@ -102,46 +108,47 @@ class System:
 
     @property
     def kinds(self) -> set[str]:
-        """Kinds of the joints that have the parameters of their model's FMU."""
+        """Kinds of the joints that use the FMU of their model with its default parameters."""
         return {joint.kind for joint in self.joints.values() if not joint.own}
 
     @property
     def joints(self) -> dict[str, Component]:
-        return {name: part for name, part in self.components.items() if part.file}
+        """{name: component} of the joints."""
+        return {name: component for name, component in self.components.items() if component.file}
 
     @property
     def values(self) -> dict[str, Any]:
-        """{COMPONENT.NAME: SI value} of all that the system gives its components."""
+        """{COMPONENT.NAME: SI value} of all parameters and inputs given in the system file."""
         return {
-            f"{part.name}.{name}": value
-            for part in self.components.values()
-            for name, value in part.values.items()
+            f"{component.name}.{name}": value
+            for component in self.components.values()
+            for name, value in component.values.items()
         }
 
     def with_joint(self, file: ParameterFile) -> "System":
-        """The same system with these parameters for all joints of their kind that have none of their own."""
-        parts = dict(self.components)
-        for name, part in self.joints.items():
-            if part.kind == file.joint and not part.own:
-                given = {key: value for key, value in part.values.items() if key not in part.state}
-                whole = file.with_values(given, "user", f"system {self.name}")
-                parts[name] = replace(part, base=file, file=whole)
-        return replace(self, components=parts)
+        """Copy of the system with another parameter file for all joints of its kind without their own FMU."""
+        components = dict(self.components)
+        for name, joint in self.joints.items():
+            if joint.kind == file.joint and not joint.own:
+                changes = {key: value for key, value in joint.values.items() if key not in joint.state}
+                changed_file = file.with_values(changes, "user", f"system {self.name}")
+                components[name] = replace(joint, base=file, file=changed_file)
+        return replace(self, components=components)
 
 
 def names() -> tuple[str, ...]:
-    """The systems that are shipped, by name: one file each."""
+    """Sorted names of the shipped systems."""
     paths = (files("jointfmu_models") / "systems").iterdir()
     return tuple(sorted(path.name.removesuffix(".toml") for path in paths if path.name.endswith(".toml")))
 
 
 def systems() -> dict[str, System]:
-    """{name: system} of all that are shipped."""
+    """{name: system} of all shipped systems."""
     return {name: system(name) for name in names()}
 
 
 def system(name: str) -> System:
-    """One of `names()`, or a file.
+    """Read a system: a shipped one by name, or a file by path.
 
     Raises ValueError with one line that names the entry and what is allowed.
     """
@@ -154,11 +161,12 @@ def system(name: str) -> System:
 
 @cache
 def _shipped(name: str) -> System:
+    """Read a shipped system; cached."""
     return read_system(Path(str(files("jointfmu_models") / "systems" / f"{name}.toml")))
 
 
 def read_system(path: Path) -> System:
-    """Read and check a system's file, each component for itself; flanges are the builders' matter.
+    """Read and check a system file; connections are checked later, by `wiring.find_connections`.
 
     Raises ValueError with one line that names the file, the entry and what is allowed.
     """
@@ -172,9 +180,10 @@ def read_system(path: Path) -> System:
 
 
 def _system(path: Path, document: Mapping[str, Any]) -> System:
+    """Make a system from the document of its file."""
     if "experiment" not in document:
-        own = f"; it is of a {document['joint']}" if "joint" in document else ""
-        raise ValueError(f"has no section [experiment], expected a system's file{own}")
+        hint = f"; it is of a {document['joint']}" if "joint" in document else ""
+        raise ValueError(f"has no section [experiment], expected a system's file{hint}")
     experiment, _, times = read_entries(path, _EXPERIMENT, document["experiment"])
     for name, item in _EXPERIMENT.items():
         if text := find_problem(name, experiment.get(name), item):
@@ -183,22 +192,22 @@ def _system(path: Path, document: Mapping[str, Any]) -> System:
     connections = _pairs(document.get("connect", []))
     arm = None
     if "arm" in document:
-        arm, parts, wires = arm_parts(path, document["arm"])
-        sections, connections = parts | sections, [*wires, *connections]
-    found = {key: _component(path, key, value) for key, value in sections.items()}
-    for one in found:
-        if longer := [name for name in found if name != one and name.startswith(one)]:
+        arm, arm_sections, arm_connections = arm_parts(path, document["arm"])
+        sections, connections = arm_sections | sections, [*arm_connections, *connections]
+    components = {key: _component(path, key, value) for key, value in sections.items()}
+    for prefix in components:
+        if longer := [name for name in components if name != prefix and name.startswith(prefix)]:
             raise ValueError(
-                f"component {longer[0]!r} begins like {one!r}, which fmpy mixes up; allowed are names of "
+                f"component {longer[0]!r} begins like {prefix!r}, which fmpy mixes up; allowed are names of "
                 "which none begins another"
             )
-    if not any(part.file for part in found.values()):
+    if not any(component.file for component in components.values()):
         raise ValueError(f"no component is a joint, allowed models are {', '.join(MODELS)}")
     return System(
         path.stem,
         str(document.get("name", path.stem)),
         str(document.get("description", "")),
-        found,
+        components,
         connections,
         float(experiment["stop_time"]),
         float(experiment["interval"]),
@@ -208,6 +217,7 @@ def _system(path: Path, document: Mapping[str, Any]) -> System:
 
 
 def _pairs(value: Any) -> list[tuple[str, str]]:
+    """Check the value of `connect` and convert it to pairs of ends."""
     pairs = []
     for pair in value if isinstance(value, list) else [value]:
         if not (isinstance(pair, list) and len(pair) == 2 and all(isinstance(end, str) for end in pair)):
@@ -217,6 +227,7 @@ def _pairs(value: Any) -> list[tuple[str, str]]:
 
 
 def _component(path: Path, name: str, section: Any) -> Component:
+    """Make a component from its section."""
     models = [*MODELS, *PARTNERS]
     if not isinstance(section, Mapping):
         raise ValueError(f"{name} = {section!r}, expected a section [{name}] with its model")
@@ -226,7 +237,7 @@ def _component(path: Path, name: str, section: Any) -> Component:
     if not isinstance(model, str) or model not in models:
         raise ValueError(f"{name}.model = {model!r}, allowed are {', '.join(models)}")
     body = {key: value for key, value in section.items() if key not in ("model", *KEYS)}
-    given = None
+    joint_parameters = None
     if model in PARTNERS:
         for key in KEYS:
             if key in section:
@@ -236,12 +247,14 @@ def _component(path: Path, name: str, section: Any) -> Component:
         file, declared, inputs = None, dict(flat_fields(PARTNERS[model].parameters)), {}
         needed = getattr(PARTNERS[model].parameters, "inertia", None)
         if needed and needed not in section:
-            meant = declared[needed].metadata
-            raise ValueError(f"{name}.{needed} is not stated, expected the {meant['doc']} [{meant['unit']}]")
+            missing = declared[needed].metadata
+            raise ValueError(
+                f"{name}.{needed} is not stated, expected the {missing['doc']} [{missing['unit']}]"
+            )
     else:
         joint = MODELS[model].joint
-        given = joint_file(path.parent, name, joint, section)
-        file = given or load_default(joint)
+        joint_parameters = joint_file(path.parent, name, joint, section)
+        file = joint_parameters or load_default(joint)
         declared = {key: item for key, item in flat_fields(type(file.values)) if key in file.values_by_name}
         inputs = {v.name: quantity_field(v.unit, v.doc, ge=v.minimum) for v in MODELS[model].inputs}
         declared |= inputs
@@ -255,7 +268,7 @@ def _component(path: Path, name: str, section: Any) -> Component:
         if text := find_problem(key, value, declared[key]):
             raise ValueError(f"{name}.{text}")
         values[key] = float(value) if isinstance(value, int) and not isinstance(value, bool) else value
-    own, base = given is not None, file
+    own, base = joint_parameters is not None, file
     if file:
         changes = {key: value for key, value in values.items() if key not in inputs}
         file = file.with_values(changes, "user", f"system {path.stem}")
@@ -265,7 +278,7 @@ def _component(path: Path, name: str, section: Any) -> Component:
 
 
 def _exposed(model: str, file: ParameterFile | None) -> dict[str, Any]:
-    """Fields of the parameters that an FMU has."""
+    """{parameter: dataclass field} of the FMU variables of a model."""
     if file is None:
         return dict(flat_fields(PARTNERS[model].parameters))
     return MODELS[model].with_parameters(file.joint, file.values).parameter_fields()

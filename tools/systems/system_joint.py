@@ -1,4 +1,4 @@
-"""The parameters of a joint that a section of a system's file names."""
+"""Parameter file of a joint, as named in a section of a system file."""
 
 from collections.abc import Mapping
 from functools import cache
@@ -11,31 +11,32 @@ from jointfmu.parameters import ParameterFile, load_parameter_file
 from ..joint_parts import load_tool_module
 
 KEYS = {"parameters", "catalogue"}
-"""Entries that name them: a parameter file beside the system's, or the joint's name in its catalogue."""
+"""Entries that select a parameter file: a path relative to the system file, or a name in the catalogue."""
 
 
 def joint_file(folder: Path, name: str, joint: str, section: Mapping[str, Any]) -> ParameterFile | None:
-    """The parameters that the section `name` gives a joint of a kind; None: those of its model.
+    """Load the parameter file that the section `name` gives a joint; None: the section gives none.
 
-    folder : of the system's file
+    folder : folder of the system file
+    joint  : kind of joint
 
     Raises ValueError with one line that names the entry and what is allowed.
     """
-    given = {key: value for key, value in section.items() if key in KEYS}
-    if len(given) > 1:
-        raise ValueError(f"{name} has {' and '.join(sorted(given))}, allowed is one of them")
-    for key, value in given.items():
+    entries = {key: value for key, value in section.items() if key in KEYS}
+    if len(entries) > 1:
+        raise ValueError(f"{name} has {' and '.join(sorted(entries))}, allowed is one of them")
+    for key, value in entries.items():
         if not isinstance(value, str):
             raise ValueError(f"{name}.{key} = {value!r}, expected a text")
-    if "catalogue" in given:
-        return _bought(name, joint, given["catalogue"])
-    return load_parameter_file(folder / given["parameters"], joint) if given else None
+    if "catalogue" in entries:
+        return _bought(name, joint, entries["catalogue"])
+    return load_parameter_file(folder / entries["parameters"], joint) if entries else None
 
 
 def _bought(name: str, joint: str, wanted: str) -> ParameterFile:
-    """As `jointfmu new` makes it."""
-    found = load_tool_module(KINDS[joint], "new")
-    if found is None or "catalogue" not in {option.name for option in found.NEW.options}:
+    """Load a catalogue item for the section `name`, as `jointfmu new` does; raises ValueError."""
+    tool_module = load_tool_module(KINDS[joint], "new")
+    if tool_module is None or "catalogue" not in {option.name for option in tool_module.NEW.options}:
         raise ValueError(f"{name}.catalogue = {wanted!r}, expected none of a {joint}: it has no catalogue")
     try:
         return _catalogue_file(joint, wanted)
@@ -45,10 +46,10 @@ def _bought(name: str, joint: str, wanted: str) -> ParameterFile:
 
 @cache
 def _catalogue_file(joint: str, wanted: str) -> ParameterFile:
-    """Parameters of a joint in its catalogue; an arm asks for them twice, for the ratio first."""
-    found = load_tool_module(KINDS[joint], "new")
-    assert found is not None
-    options = {option.name: None for option in found.NEW.options} | {"catalogue": wanted}
-    file = found.NEW.make_joint(options).file
+    """Make the parameter file of a catalogue item; cached, as an arm needs it twice (first for its ratio)."""
+    tool_module = load_tool_module(KINDS[joint], "new")
+    assert tool_module is not None
+    options = {option.name: None for option in tool_module.NEW.options}
+    file = tool_module.NEW.make_joint(options | {"catalogue": wanted}).file
     assert isinstance(file, ParameterFile)
     return file

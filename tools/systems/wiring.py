@@ -1,4 +1,4 @@
-"""Signals between the components of a system, from the flanges that it connects."""
+"""Signals between the components of a system, derived from the connections of flanges."""
 
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
@@ -14,7 +14,7 @@ from .system import GROUND, Component, System
 
 
 class Wire(NamedTuple):
-    """An output that feeds an input."""
+    """Signal from an output of the component `source` to an input of the component `target`."""
 
     source: str
     output: str
@@ -23,9 +23,10 @@ class Wire(NamedTuple):
 
 
 class End(NamedTuple):
-    """One end of a connection: a flange, a load over time without one, or the ground without a component.
+    """End of a connection: a flange, a prescribed load (no flange), or the ground (no component).
 
-    members : {member: variable}
+    label   : the end as written in the system file
+    members : {Modelica member: variable}; of a load {output: output}
     """
 
     text: str
@@ -35,87 +36,97 @@ class End(NamedTuple):
 
     @property
     def joint(self) -> bool:
+        """Whether the end is a flange of a joint."""
         return self.component is not None and self.component.file is not None
 
     @property
     def load(self) -> bool:
+        """Whether the end is a prescribed load or motion over time."""
         return self.component is not None and self.flange is None
 
     @property
     def body(self) -> bool:
+        """Whether the end is a flange of a body (inertia or mass)."""
         return not self.joint and self.flange is not None
 
     @property
     def flow(self) -> str:
-        """The member of a flange that is a force or torque."""
+        """Name of the flange member that is a force or torque."""
         assert self.flange
         return next(name for name, (_, kind) in self.flange.members.items() if kind != "signal")
 
 
 def model_of(component: Component) -> Model:
-    """What it is exported as."""
+    """Model of the FMU of a component."""
     if component.file is None:
         return PARTNERS[component.model]
     return MODELS[component.model].with_parameters(component.file.joint, component.file.values)
 
 
 def ends(system: System) -> list[tuple[End, End]]:
-    """All connections, the one that drives first: a load, a joint; the ground last.
+    """Connections of a system as pairs of ends: a load or joint first, then a body; the ground last.
 
-    Raises ValueError with one line that names the end and what is allowed: an unknown component or flange,
-    one that is connected twice or to nothing, ends that do not fit, a loop.
+    Raises ValueError, one line that names the end and what is allowed, for: an unknown component or flange,
+    an end that is connected twice or not at all, incompatible ends, a kinematic loop.
     """
-    found = []
-    seen: dict[str, str] = {}
+    pairs = []
+    partners: dict[str, str] = {}
     for connection in system.connections:
         pair = [_end(system, text) for text in connection]
         for end, other in zip(connection, reversed(connection), strict=True):
-            if end != GROUND and end in seen:
-                raise ValueError(f"{end} is connected to {seen[end]} and to {other}; allowed is one of them")
-            seen[end] = other
+            if end != GROUND and end in partners:
+                raise ValueError(
+                    f"{end} is connected to {partners[end]} and to {other}; allowed is one of them"
+                )
+            partners[end] = other
         pair.sort(key=lambda end: (end.component is None, not end.load, not end.joint))
         _check_pair(*pair)
-        found.append((pair[0], pair[1]))
+        pairs.append((pair[0], pair[1]))
     for component in system.components.values():
         flanges = [f"{component.name}.{flange.name}" for flange in terminals(model_of(component))]
-        if component.file and (free := [name for name in flanges if name not in seen]):
+        if component.file and (unconnected := [name for name in flanges if name not in partners]):
             raise ValueError(
-                f'{free[0]} is connected to nothing; allowed are a flange of a body, or "{GROUND}"'
+                f'{unconnected[0]} is connected to nothing; allowed are a flange of a body, or "{GROUND}"'
             )
-        if not seen.keys() & {component.name, *flanges}:
+        if not partners.keys() & {component.name, *flanges}:
             raise ValueError(
                 f"{component.name} is connected to nothing; allowed is a flange of a body or joint"
             )
-    _check_loops(found)
-    _check_held(system, found)
-    return found
+    _check_loops(pairs)
+    _check_held(system, pairs)
+    return pairs
 
 
 def wires(system: System) -> list[Wire]:
-    """All signals. Raises ValueError as `ends`."""
-    found = []
-    for one, other in ends(system):
-        if one.component is None or other.component is None:
+    """All signals of a system. Raises ValueError as `find_connections`."""
+    signals = []
+    for first, second in ends(system):
+        if first.component is None or second.component is None:
             continue
-        here, there = one.component.name, other.component.name
-        drives = [*one.members] if one.load else [one.flow]
-        found += [Wire(here, one.members[m], there, other.members[m]) for m in drives]
-        if one.joint:
-            moves = [m for m in one.members if m not in drives]
-            found += [Wire(there, other.members[m], here, one.members[m]) for m in moves]
-    return found
+        first_name, second_name = first.component.name, second.component.name
+        driving_members = [*first.members] if first.load else [first.flow]
+        signals += [
+            Wire(first_name, first.members[m], second_name, second.members[m]) for m in driving_members
+        ]
+        if first.joint:
+            motion_members = [m for m in first.members if m not in driving_members]
+            signals += [
+                Wire(second_name, second.members[m], first_name, first.members[m]) for m in motion_members
+            ]
+    return signals
 
 
 def lags(system: System) -> dict[str, list[str]]:
-    """{body: parameters `lag_...` of the flanges that a joint loads}."""
-    found: dict[str, list[str]] = {}
-    for one, other in ends(system):
-        if one.joint and other.component and other.flange:
-            found.setdefault(other.component.name, []).append(f"lag_{other.flange.side}")
-    return found
+    """{body: its parameters `lag_...`, for the flanges that are connected to a joint}."""
+    lag_parameters: dict[str, list[str]] = {}
+    for first, second in ends(system):
+        if first.joint and second.component and second.flange:
+            lag_parameters.setdefault(second.component.name, []).append(f"lag_{second.flange.side}")
+    return lag_parameters
 
 
 def _end(system: System, text: str) -> End:
+    """Parse an end of a connection: `COMPONENT.FLANGE`, the name of a load, or "ground"."""
     name, _, flange = text.partition(".")
     if text == GROUND:
         return End(text, None, None, {})
@@ -131,7 +142,7 @@ def _end(system: System, text: str) -> End:
             raise ValueError(f"connect: {text!r}: a {model.name} has no flange, allowed is {name}")
         return End(text, component, None, {v.name: v.name for v in model.outputs})
     if flange not in known:
-        allowed = ", ".join(f"{name}.{one}" for one in known) or "none"
+        allowed = ", ".join(f"{name}.{known_flange}" for known_flange in known) or "none"
         raise ValueError(f"connect: unknown flange {text!r} of a {model.name}, allowed are {allowed}")
     members = known[flange].members
     if component.file and "inflow" in {kind for _, kind in members.values()}:
@@ -143,52 +154,54 @@ def _end(system: System, text: str) -> End:
 
 
 def _check_pair(first: End, second: End) -> None:
-    """Refuse ends that do not fit."""
-    said = f"{first.text} and {second.text} do not fit"
+    """Raise ValueError if two ends are incompatible."""
+    prefix = f"{first.text} and {second.text} do not fit"
     if second.component is None:
         if not first.joint:
-            raise ValueError(f'{said}; allowed on "{GROUND}" are flanges of joints')
+            raise ValueError(f'{prefix}; allowed on "{GROUND}" are flanges of joints')
     elif first.load:
-        takes = (
+        expected_members = (
             {second.flow} if second.body else {*second.members} - ({second.flow} if second.flange else set())
         )
-        if second.load or {*first.members} != takes:
+        if second.load or {*first.members} != expected_members:
             raise ValueError(
-                f"{said}; allowed are a force or torque on a body's flange, an angle on a joint's flange"
+                f"{prefix}; allowed are a force or torque on a body's flange, an angle on a joint's flange"
             )
     elif first.joint == second.joint:
-        raise ValueError(f"{said}; allowed is a joint's flange on a body's")
+        raise ValueError(f"{prefix}; allowed is a joint's flange on a body's")
     elif first.members.keys() != second.members.keys():
-        raise ValueError(f"{said}; allowed are two that turn or two that shift")
+        raise ValueError(f"{prefix}; allowed are two that turn or two that shift")
 
 
 def _check_held(system: System, connections: Sequence[tuple[End, End]]) -> None:
-    """Refuse a joint that nothing moves."""
-    moved = {
-        one.component.name for one, other in connections if one.joint and one.component and other.component
+    """Raise ValueError if all flanges of a joint are on the ground."""
+    moved_joints = {
+        first.component.name
+        for first, second in connections
+        if first.joint and first.component and second.component
     }
-    moved |= {other.component.name for one, other in connections if other.joint and other.component}
+    moved_joints |= {second.component.name for _, second in connections if second.joint and second.component}
     for name in system.joints:
-        if name not in moved:
+        if name not in moved_joints:
             raise ValueError(
                 f'{name}: all its flanges are on "{GROUND}"; allowed is a joint with a flange on a body'
             )
 
 
 def _check_loops(connections: Sequence[tuple[End, End]]) -> None:
-    """Refuse a joint that closes a ring of bodies and joints."""
-    group: dict[str, str] = {}
+    """Raise ValueError if bodies and joints form a closed loop."""
+    parents: dict[str, str] = {}
 
     def root(name: str) -> str:
-        while group.get(name, name) != name:
-            name = group[name]
+        while parents.get(name, name) != name:
+            name = parents[name]
         return name
 
-    for one, other in connections:
-        if one.joint and other.body and one.component and other.component:
-            ends = root(one.component.name), root(other.component.name)
-            if ends[0] == ends[1]:
+    for first, second in connections:
+        if first.joint and second.body and first.component and second.component:
+            roots = root(first.component.name), root(second.component.name)
+            if roots[0] == roots[1]:
                 raise ValueError(
-                    f"{one.text} on {other.text} closes a loop; allowed are chains of joints and bodies"
+                    f"{first.text} on {second.text} closes a loop; allowed are chains of joints and bodies"
                 )
-            group[ends[0]] = ends[1]
+            parents[roots[0]] = roots[1]

@@ -57,7 +57,7 @@ def element(panels: Sequence[Panel]) -> str:
 
 
 def script(*names: str) -> str:
-    """JavaScript that draws charts; with `figures` also those of all page elements of class `figure`."""
+    """JavaScript that draws charts; the name `figures` adds code for all page elements of class `figure`."""
     return '"use strict";\n' + "".join(_read_file(f"{name}.js") for name in ("text", "chart", *names))
 
 

@@ -11,7 +11,7 @@ from ...joint_parts.native import APPROACH, NativePart
 
 
 def _functions(g: Graph, model: Model) -> None:
-    """Add the functions that the C of the gear contact calls."""
+    """Add the functions that the C code of the gear contact calls."""
     joint = g.joint
     f, approach, stiffness, area, elastic = symbols("x", 5)
     pressure = np.maximum(f, 0.0) / joint.A_0

@@ -11,7 +11,7 @@ from ...joint_parts.native import APPROACH, Definitions, NativePart
 
 
 def _functions(g: Graph, model: Model) -> None:
-    """Add the functions that the C of the gear mesh calls."""
+    """Add the functions that the C code of the gear mesh calls."""
     mesh = g.joint
     law_functions(g, mesh, ("normal",), lambda spots, u: [])
     add_closing(g)

@@ -14,7 +14,7 @@ from ...joint_parts.sliders import SLIDERS, add_sliders
 
 
 def _functions(g: Graph, model: Model) -> None:
-    """Add the functions that the C of the harmonic drive calls."""
+    """Add the functions that the C code of the harmonic drive calls."""
     drive = g.joint
     add_sliders(g)
     if isinstance(drive, CatalogueDrive):
@@ -73,11 +73,11 @@ NUMBERS: Named = {
     friction: ("PRIOR_ROTATION_TIME",),
 }
 COUNTS: Named = {hysteresis: ("MAX_LIMIT_ITERATIONS", "HYSTERESIS_SLIDERS"), friction: ("FRICTION_SLIDERS",)}
-"""Python constants of the drive that have the same names in C: integers (NUMBERS: real numbers)."""
+"""Python constants of the drive that have the same names in C: integers (NUMBER_NAMES: real numbers)."""
 
 
 def _definitions(g: Graph, model: Model) -> Definitions:
-    """Constants of the C of the harmonic drive."""
+    """Constants for the C code of the harmonic drive."""
     counts = {"ARGUMENT_IS_LOAD": int(_given_torque(model)), "DRIVE_STEPS": spring.MIN_TABLE_STEPS}
     counts["N_HARMONICS"] = len(HARMONICS)
     sliders = column("BRAKE_SPRINGS", "N_BRAKE_SPRINGS", friction.STIFFNESS_SHARES)

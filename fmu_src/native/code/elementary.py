@@ -13,7 +13,7 @@ LOG_BEGIN = 0x3FE6AAAA00000000
 """Bit pattern of the double at which the table of the logarithm begins; 1 lies inside an interval."""
 _BITS_OF_ONE = 0x3FF0000000000000
 LOG_BITS = 47
-"""Mantissa bits below the interval index: 52 - log2(PLACES)."""
+"""Mantissa bits below the interval index: 52 - log2(TABLE_INTERVALS)."""
 _DIGITS = 60
 _PI = Decimal("3.1415926535897932384626433832795028841971693993751058209749445923078164")
 _ERF_PER_PLACE, _ERF_END, _N_ERF = 4, 6, 15

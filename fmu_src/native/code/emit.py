@@ -84,7 +84,7 @@ def function(name: str, doc: str, x: ca.SX, c: ca.SX, y: Sequence[ca.SX], deriva
     Every intermediate value becomes a constant, in the order of evaluation. Repeated divisions by the same
     number become products with its reciprocal, except in a derivative.
 
-    derivative : whether y is a directional derivative. Then 0/0 is 0, so that a zero seed gives zero even
+    is_derivative : whether y is a directional derivative. Then 0/0 is 0, so that a zero seed gives zero even
         at an infinite slope; and the derivative of min or max of two equal values is that of the first.
     """
     graph = ca.Function("f", [x, c], [ca.vertcat(*(ca.SX(value) for value in y))])
@@ -151,7 +151,7 @@ def _conditional_product(names: Sequence[str], operations: _Operations) -> str |
 def _choice(names: Sequence[str], operations: _Operations) -> str | None:
     """C conditional expression for CasADi's form of `condition ? a : b`: a sum with one term equal to 0.
 
-    None: another sum.
+    Returns None for another sum.
     """
     (code, first), (other, second) = (operations.get(name, (None, [])) for name in names)
     if code != ca.OP_IF_ELSE_ZERO or other != ca.OP_IF_ELSE_ZERO:

@@ -48,10 +48,10 @@ def libraries(
 ) -> dict[str, bytes]:
     """Compile C sources to {platform: shared library}; the libraries export the FMI functions.
 
-    sources : {file name: text} of all C files and headers; the FMI headers come from fmpy
-    units   : names of the .c files to compile
-    stem    : file name of the libraries without extension; empty: `name`
-    linked  : compiler options for a further library
+    sources        : {file name: text} of all C files and headers; the FMI headers come from fmpy
+    units          : names of the .c files to compile
+    stem           : file name of the libraries without extension; empty: `name`
+    linker_options : compiler options for a further library
 
     zig caches compiled units, also for later builds. Equal sources give equal bytes.
 

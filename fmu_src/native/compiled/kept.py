@@ -1,7 +1,8 @@
-"""Compiled models, shared by all parameter files of one structure: from the wheel, the cache or the compiler.
+"""Compiled models, shared by all FMUs with the same C code: from the wheel, the cache or the compiler.
 
-The file name of a compiled model contains a digest of the structure and of all sources. Wheels contain
-compiled models in `native/parts`; models compiled on this machine are stored in the user's cache.
+The values on which the C code depends are called structure. The file name of a compiled model contains a
+digest of the structure and of all sources. Wheels contain compiled models in `native/parts`; models compiled
+on this machine are stored in the user's cache.
 """
 
 import io
@@ -45,7 +46,7 @@ _MEMBER = re.compile(r"sources/\w[\w.-]*|\d/[\w-]+")
 
 
 class CompiledModel(NamedTuple):
-    """C sources and libraries that all FMUs of one structure share.
+    """C sources and libraries shared by all FMUs with the same C code (see `ParameterSplit.structure_key`).
 
     sources   : {file name: text} of all C files but data.c
     libraries : {FMI version: {platform: library}} with placeholders for data and name

@@ -1,4 +1,4 @@
-"""A system's file as a system of models, in the order of their evaluation."""
+"""Conversion of a system to models with their connections, in the order of evaluation."""
 
 from dataclasses import replace
 
@@ -9,32 +9,39 @@ from ..wiring import ends, model_of, wires
 from .model import LAGS, Feed, SystemComponent, SystemModel
 
 LEAST_INTERVAL = 1e-3
-"""Communication step [s] of the default experiment, where the system's own is shorter: it need not be."""
+"""Smallest communication step [s] of the default experiment: the implicit step needs no smaller one."""
 
 
 def assembly(system: System) -> SystemModel:
-    """Components in the order of their evaluation, with what feeds them.
+    """Make the model of a system: components in the order of evaluation, with the sources of their inputs.
 
-    Raises ValueError as `wiring.ends`, and for a system without a body.
+    Raises ValueError as `wiring.find_connections`, and for a system without a body.
     """
     feeds: dict[str, dict[str, Feed | None]] = {name: {} for name in system.components}
     for wire in wires(system):
         feeds[wire.target][wire.input] = Feed(wire.source, wire.output)
-    for one, other in ends(system):
-        if one.joint and one.component and other.component is None:  # held by the ground
-            feeds[one.component.name] |= {one.members[m]: None for m in one.members if m != one.flow}
-    parts = []
-    for name, part in system.components.items():
-        model = model_of(part)
+    for first, second in ends(system):
+        if first.joint and first.component and second.component is None:  # fixed to the ground
+            zero_inputs = {variable: None for m, variable in first.members.items() if m != first.flow}
+            feeds[first.component.name] |= zero_inputs
+    components = []
+    for name, component in system.components.items():
+        model = model_of(component)
         if model.state_count:
             model = replace(model, fixed_parameters=LAGS)
-        file = part.file or partner_parameters(part.model).with_values(part.parameters, "user", system.name)
-        start = {v.name: file.start_value(v.name) for v in model.inputs} | part.state
-        parts.append(SystemComponent(name, model, file, feeds[name], start))
-    if not any(part.model.state_count for part in parts):
+        file = component.file or partner_parameters(component.model).with_values(
+            component.parameters, "user", system.name
+        )
+        start = {v.name: file.start_value(v.name) for v in model.inputs} | component.state
+        components.append(SystemComponent(name, model, file, feeds[name], start))
+    if not any(component.model.state_count for component in components):
         raise ValueError(
             f"{system.name}: no component is a body; allowed in one FMU are systems with one or more"
         )
-    parts.sort(key=lambda part: (part.model.state_count > 0, not part.model.is_time_dependent))
+    components.sort(
+        key=lambda component: (component.model.state_count > 0, not component.model.is_time_dependent)
+    )
     interval = max(system.interval, LEAST_INTERVAL)
-    return SystemModel(system.name, system.description, parts, system.stop_time, interval, system.interval)
+    return SystemModel(
+        system.name, system.description, components, system.stop_time, interval, system.interval
+    )

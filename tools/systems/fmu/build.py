@@ -1,4 +1,4 @@
-"""Build the FMU of a system, FMI 2.0 and 3.0 on five platforms."""
+"""Build the FMU of a whole system, for FMI 2.0 and 3.0 and five platforms."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -20,15 +20,15 @@ from .proof import proof
 
 
 def fmu_paths(title: str, out: Path, versions: Sequence[str] = ("2", "3")) -> list[Path]:
-    """Paths of the FMUs of a system below a folder."""
+    """Paths of the FMUs of a system below the folder `out`."""
     return [out / f"fmi{version}" / f"{title}.fmu" for version in versions]
 
 
 def all_sources(assembly: SystemModel) -> tuple[dict[str, str], str]:
-    """{file name: text} of all C of a system's FMU with its data, and its instantiation token."""
+    """{file name: text} of all C sources of a system's FMU, with its data, and the instantiation token."""
     model, files = assembly.model(), sources(assembly)
-    parameters, given = assembly.parameters(model), Split((), {}, {}, model.parameters, NO_TABLES)
-    data = data_of(model, parameters, given, files, of_file=False)
+    parameters, parameter_split = assembly.parameters(model), Split((), {}, {}, model.parameters, NO_TABLES)
+    data = data_of(model, parameters, parameter_split, files, of_file=False)
     files |= {"data.h": data.header(), "data.c": data.source(f" from the system {assembly.name!r}")}
     return files, data.token
 
@@ -40,10 +40,13 @@ def build_system(
     platforms: Sequence[str] = tuple(TARGETS),
     force: bool = False,
 ) -> list[Path]:
-    """Write `out/fmi2/NAME.fmu` and `out/fmi3/NAME.fmu` with their proof; equal content gives equal files.
+    """Write `out/fmi2/NAME.fmu` and `out/fmi3/NAME.fmu` with reference results.
 
-    platforms : of its binaries, names of FMI 3.0
-    force     : replace FMUs of its name that jointfmu did not write
+    Equal content gives equal files.
+
+    versions  : of FMI, "2" and "3"
+    platforms : of the binaries, names of FMI 3.0
+    force     : also replace files that jointfmu did not write
 
     Raises ImportError if a package is missing, RuntimeError if the compiler fails, ValueError if a folder
     cannot be written or the system is too large.
@@ -54,15 +57,17 @@ def build_system(
     parameters = assembly.parameters(model)
     files, token = all_sources(assembly)
     page = plain_page(model, parameters, Path(__file__).with_name("page.html")).encode()
-    pages = {f"documentation/{path}": it for path, it in {"index.html": page, **licences()}.items()}
-    written, found = [], None
+    documents = {"index.html": page, **licences()}
+    pages = {f"documentation/{path}": content for path, content in documents.items()}
+    written_files, proof_files = [], None
     for version, target in zip(versions, files_out, strict=True):
-        built = libraries(model.name, files, exported(sorted(files), version), platforms)
-        members = fmu_members(model, parameters, version, files, token, built) | pages
+        binaries = libraries(model.name, files, exported(sorted(files), version), platforms)
+        members = fmu_members(model, parameters, version, files, token, binaries) | pages
         with workshop(target) as work:
-            if found is None:  # the first FMU computes what both carry
-                pack({path: it for path, it in members.items() if is_needed_to_run(path)}, work / target.name)
-                found = proof(model, assembly.stop, assembly.own_interval, work / target.name)
-            pack(members | found, work / target.name)
-        written.append(target)
-    return written
+            if proof_files is None:  # the first FMU computes the reference results of both
+                runnable = {path: content for path, content in members.items() if is_needed_to_run(path)}
+                pack(runnable, work / target.name)
+                proof_files = proof(model, assembly.stop, assembly.own_interval, work / target.name)
+            pack(members | proof_files, work / target.name)
+        written_files.append(target)
+    return written_files

@@ -1,4 +1,4 @@
-"""A system as its FMU is made of it: components in the order of their evaluation, and what feeds them."""
+"""Model of a system for its FMU: components in the order of evaluation, and the sources of their inputs."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, make_dataclass, replace
@@ -10,13 +10,13 @@ from jointfmu.quantity import flat_fields
 from jointfmu.quantity.declaration import group_field
 
 SYSTEM = "system"
-"""What stands for the kind of joint in the model of a system."""
+"""Value of `Model.joint` for the model of a system."""
 LAGS = ("lag_a", "lag_b")
-"""Parameters of bodies that only a master of separate FMUs needs."""
+"""Parameters of bodies that are needed only if joints and bodies are separate FMUs."""
 
 
 class Feed(NamedTuple):
-    """An output that feeds an input."""
+    """Source of an input: an output of another component."""
 
     component: str
     output: str
@@ -24,11 +24,12 @@ class Feed(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class SystemComponent:
-    """A load, joint or body.
+    """Component of a system: load, joint or body.
 
-    model : of a body without LAGS
-    feeds : {input: what feeds it}; None: nothing, it is zero. Inputs without an entry are the system's
-    start : {input of the system: start value} where it is not zero
+    model        : for a body without the parameters in LAG_PARAMETERS
+    sources      : {input: its source}; None: the input is zero. Inputs without an entry are inputs of the
+        system
+    start_values : {input of the system: start value} if it is not zero
     """
 
     name: str
@@ -39,22 +40,24 @@ class SystemComponent:
 
     @property
     def free(self) -> list[Variable]:
-        """Inputs that are the system's."""
+        """Inputs that are inputs of the system."""
         return [v for v in self.model.inputs if v.name not in self.feeds]
 
     @property
     def exposed(self) -> list[str]:
-        """Its parameters that are the system's."""
+        """Names of the parameters that are FMU variables of the system."""
         return [*self.model.parameter_fields()]
 
 
 @dataclass(frozen=True, slots=True)
 class SystemModel:
-    """A system.
+    """Model of a system.
 
-    components : loads, then joints, then bodies: each takes from those before it, and the states of bodies
-    stop, interval : of the default experiment [s]
-    own_interval : step [s] that its motion asks of separate FMUs
+    components        : loads, then joints, then bodies: the inputs of each depend on those before and on
+        states
+    stop_time         : stop time [s] of the default experiment
+    interval          : communication step [s] of the default experiment
+    separate_interval : communication step [s] that separate FMUs would need
     """
 
     name: str
@@ -66,25 +69,28 @@ class SystemModel:
 
     @property
     def bodies(self) -> list[SystemComponent]:
-        """Components with states."""
-        return [part for part in self.components if part.model.state_count]
+        """Bodies: components with states."""
+        return [component for component in self.components if component.model.state_count]
 
     @property
     def inputs(self) -> list[tuple[SystemComponent, Variable]]:
-        """Inputs of the system, by component."""
-        return [(part, v) for part in self.components for v in part.free]
+        """(component, variable) of the inputs of the system."""
+        return [(component, v) for component in self.components for v in component.free]
 
     @property
     def outputs(self) -> list[tuple[SystemComponent, Variable]]:
-        """Outputs: places, speeds, accelerations of all bodies; then those of loads and joints."""
+        """(component, variable) of the outputs: positions, speeds, accelerations of bodies; then others."""
         bodies = self.bodies
-        moving = [(part, part.model.outputs[k]) for k in range(3) for part in bodies]
+        moving = [(component, component.model.outputs[k]) for k in range(3) for component in bodies]
         return moving + [
-            (part, v) for part in self.components if not part.model.state_count for v in part.model.outputs
+            (component, v)
+            for component in self.components
+            if not component.model.state_count
+            for v in component.model.outputs
         ]
 
     def model(self) -> Model:
-        """What is exported; variables are called COMPONENT.VARIABLE."""
+        """Make the model of the FMU, whose variables are called COMPONENT.VARIABLE."""
         sets = [(p.name, type(p.parameters.values), group_field(p.model.doc)) for p in self.components]
         hidden = [
             f"{p.name}.{name}"
@@ -98,8 +104,8 @@ class SystemModel:
             doc=self.doc,
             parameters=make_dataclass("SystemParameters", sets, frozen=True, kw_only=True),
             tabulate=lambda values: values,
-            inputs=[with_component_name(part, v) for part, v in self.inputs],
-            outputs=[with_component_name(part, v) for part, v in self.outputs],
+            inputs=[with_component_name(component, v) for component, v in self.inputs],
+            outputs=[with_component_name(component, v) for component, v in self.outputs],
             evaluate=_not_in_python,
             validity_limits=(),
             ramp=LoadRamp("", self.stop, self.interval, self.interval),
@@ -112,43 +118,44 @@ class SystemModel:
         )
 
     def parameters(self, model: Model) -> ParameterFile:
-        """Of all components, in the form of a joint's."""
+        """Make the parameter file of the system from those of all components."""
 
-        def every(of: str) -> dict[str, Any]:
+        def collect(attribute: str) -> dict[str, Any]:
             return {
                 f"{p.name}.{name}": value
                 for p in self.components
-                for name, value in getattr(p.parameters, of).items()
+                for name, value in getattr(p.parameters, attribute).items()
             }
 
         values = model.parameters(**{p.name: p.parameters.values for p in self.components})
-        starts = {f"{part.name}.{v.name}": part.start.get(v.name, v.start) for part, v in self.inputs}
-        return ParameterFile(SYSTEM, self.name, values, every("origins"), every("sources"), starts)
+        starts = {f"{p.name}.{v.name}": p.start.get(v.name, v.start) for p, v in self.inputs}
+        return ParameterFile(SYSTEM, self.name, values, collect("origins"), collect("sources"), starts)
 
     def _dependencies(self) -> dict[str, list[str]]:
-        """{output: inputs of the system and states that it depends on}."""
-        found: dict[str, dict[str, None]] = {}
-        for part in self.bodies:
-            for v in part.model.outputs[:2]:
-                found[f"{part.name}.{v.name}"] = {f"{part.name}.{v.name}": None}
-        for part in self.components:
-            states = {v.name for v in part.model.outputs[: part.model.state_count]}
-            for v in part.model.outputs[part.model.state_count :]:
-                reached: dict[str, None] = {}
-                for name in part.model.list_dependencies(v.name):
-                    feed = part.feeds.get(name)
-                    if name in states or name not in part.feeds:
-                        reached[f"{part.name}.{name}"] = None
+        """{output: inputs of the system and states on which it depends}."""
+        dependencies: dict[str, dict[str, None]] = {}
+        for component in self.bodies:
+            for v in component.model.outputs[:2]:
+                dependencies[f"{component.name}.{v.name}"] = {f"{component.name}.{v.name}": None}
+        for component in self.components:
+            states = {v.name for v in component.model.outputs[: component.model.state_count]}
+            for v in component.model.outputs[component.model.state_count :]:
+                sources: dict[str, None] = {}
+                for name in component.model.list_dependencies(v.name):
+                    feed = component.feeds.get(name)
+                    if name in states or name not in component.feeds:
+                        sources[f"{component.name}.{name}"] = None
                     elif feed:
-                        reached |= found[f"{feed.component}.{feed.output}"]
-                found[f"{part.name}.{v.name}"] = reached
-        return {name: [*reached] for name, reached in found.items()}
+                        sources |= dependencies[f"{feed.component}.{feed.output}"]
+                dependencies[f"{component.name}.{v.name}"] = sources
+        return {name: [*sources] for name, sources in dependencies.items()}
 
 
 def with_component_name(component: SystemComponent, v: Variable) -> Variable:
-    """A variable of a component with the component's name before its own."""
+    """Copy of a variable with the name COMPONENT.VARIABLE."""
     return replace(v, name=f"{component.name}.{v.name}", doc=f"{v.doc} ({component.name})")
 
 
 def _not_in_python(*given: object) -> Any:
+    """Raise NotImplementedError: replaces the functions of a model that exist only in C."""
     raise NotImplementedError("a system is evaluated in C alone")

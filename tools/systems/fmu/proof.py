@@ -1,7 +1,7 @@
-"""The proof inside the FMU of a system: its own experiment, judged by model exchange at a tight tolerance.
+"""Reference results inside the FMU of a system: its experiment, by model exchange at a tight tolerance.
 
-The laws of the joints are proved by the joints' FMUs, against the package. What a system adds are wires,
-memory and the implicit step: references are of the same equations, integrated by CVode.
+The FMUs of the single joints verify the joint laws against the package. The FMU of a system adds connections,
+history variables and the implicit step. Its references are the same equations, integrated by CVode.
 """
 
 from collections.abc import Mapping
@@ -22,22 +22,38 @@ from ...host import unpack_fmu
 from ...proof import exchange
 from ...proof.task import Task
 
-TOLERANCE, SOLVER, HOST = 5e-3, 1e-9, 1e-5
-"""Of an output [1], over its scale: what docs/systems_explanation.md promises of any step; of the
-references' solver; of one whose host states none. Where these two part the motion is too sensitive to be
-compared."""
+TOLERANCE = 5e-3
+"""Tolerance of an output over its scale [1], as stated in docs/systems_explanation.md."""
+SOLVER = 1e-9
+"""Relative tolerance of the solver for the references [1]."""
+HOST = 1e-5
+"""Default relative tolerance of a host [1].
+
+The references end where results with this and with the solver tolerance differ by more than TOLERANCE:
+from there the motion is too sensitive to be compared.
+"""
 SMALL = 1e-2
-"""Part of its nominal value [1] below which an output is judged by that part, not by its largest value."""
-STEP, LONGER = 1e-3, 10
-"""Communication step [s], of which an experiment has ten at least, and how many make the longer one."""
-FINE, MOST_STEPS, ROWS = 3, 100_000, 200
-"""Steps of model exchange in an interval of the system, after each of which memory is accepted; of them at
-most: a longer experiment is proved up to there; about the rows of a file."""
-JUMP, JUMP_DISTANCE = 10.0, 3
-"""An output jumps where it changes by more than TOLERANCE between two fine steps, and by this many times [1]
-what it changes before and after: a stiffness does where motion turns. A step that is right finds the turn a
-little earlier or later, so within so many intervals of a jump nothing is compared."""
+"""Smallest scale of an output over its nominal value [1]."""
+STEP = 1e-3
+"""Short communication step [s]; at most a tenth of the stop time."""
+LONGER = 10
+"""Long communication step over the short one [1]."""
+FINE = 3
+"""Integrator steps of model exchange per interval of the system [1]; each is accepted as a load step."""
+MOST_STEPS = 100_000
+"""Largest number of integrator steps [1]; longer experiments are cut."""
+ROWS = 200
+"""Approximate number of rows of a result file [1]."""
+JUMP = 10.0
+"""Criterion of a jump: change of an output in a fine step over its changes before and after [1].
+
+The change must also exceed TOLERANCE. A stiffness jumps where the motion reverses.
+"""
+JUMP_DISTANCE = 3
+"""Intervals [1] next to a jump in which results are not compared: correct steps find a reversal slightly
+earlier or later."""
 DIGITS = 7
+"""Significant digits of results [1]."""
 _PAGE = """\
 The proof inside this FMU
 
@@ -61,28 +77,29 @@ output: a stiffness jumps where the motion turns and friction sticks again.
 
 
 def proof(model: Model, stop: float, interval: float, fmu: Path) -> dict[str, bytes]:
-    """{path in the FMU: content}; where its experiment cannot be run here a text that says why.
+    """Make the reference files of a system's FMU, {path: content}; only a text if no experiment can be run.
 
-    stop, interval : of the system's experiment [s]; what separate FMUs need is followed more finely here
+    stop, interval : stop time and interval of the system's experiment [s]
+    fmu            : path of the FMU, with all files that are needed to run it
     """
     step = min(STEP, stop / LONGER)
-    parts = max(int(np.ceil(FINE * step / interval - 1e-6)), 1)
-    count = LONGER * max(min(int(stop / (LONGER * step) + 1e-6), MOST_STEPS // (LONGER * parts)), 1)
-    fine = step / parts
+    substeps = max(int(np.ceil(FINE * step / interval - 1e-6)), 1)
+    count = LONGER * max(min(int(stop / (LONGER * step) + 1e-6), MOST_STEPS // (LONGER * substeps)), 1)
+    fine = step / substeps
     try:
-        times = fine * np.arange(count * parts + 1)
-        found, rough = (_exchanged(model, fmu, times, tolerance) for tolerance in (SOLVER, HOST))
-        while (parted := _first_difference(model, found, rough)) < found.time.size:
-            count = (parted - 1) // (LONGER * parts) * LONGER
+        times = fine * np.arange(count * substeps + 1)
+        results, coarse_results = (_exchanged(model, fmu, times, tolerance) for tolerance in (SOLVER, HOST))
+        while (difference_row := _first_difference(model, results, coarse_results)) < results.time.size:
+            count = (difference_row - 1) // (LONGER * substeps) * LONGER
             if not count:
                 raise RuntimeError("its own experiment is too sensitive from the start")
-            found = _first_rows(found, count * parts + 1)
+            results = _first_rows(results, count * substeps + 1)
     except Exception as error:  # fmpy raises bare Exception
         return {TEXT: f"There is no proof inside this FMU: where it was built {error}\n".encode()}
-    scales = _scales(model, found)
-    smooth = _is_smooth(found, scales)
+    scales = _scales(model, results)
+    smooth = _is_smooth(results, scales)
     short, long = (f"experiments/{model.title}_{n}_ref.csv" for n in (1, LONGER))
-    members = {path: _result_file(found, smooth, n * parts) for path, n in ((short, 1), (long, LONGER))}
+    members = {path: _result_file(results, smooth, n * substeps) for path, n in ((short, 1), (long, LONGER))}
     runs = {
         CO_SIMULATION: [(step, short), (LONGER * step, long)],
         MODEL_EXCHANGE: [(fine, short)],
@@ -121,31 +138,34 @@ def proof(model: Model, stop: float, interval: float, fmu: Path) -> dict[str, by
 
 
 def _scales(model: Model, results: TimeSeries) -> dict[str, float]:
-    """{output: its scale}."""
+    """{output: scale for its tolerance}: largest absolute value, or a share of the nominal value."""
     return {
         v.name: max(float(np.abs(results.columns[v.name]).max()), SMALL * v.nominal) for v in model.outputs
     }
 
 
 def _first_difference(model: Model, fine: TimeSeries, coarse: TimeSeries) -> int:
-    """The row of results at which rougher ones part from them, the number of rows if they do not."""
+    """Index of the first row at which two results differ by more than TOLERANCE; number of rows if none does.
+
+    Rows near jumps are not compared.
+    """
     scales, rows = _scales(model, fine), fine.time.size
-    apart = [
+    differs = [
         np.abs(column - coarse.columns[name][:rows]) > TOLERANCE * scales[name]
         for name, column in fine.columns.items()
     ]
-    missed = np.flatnonzero(np.any(apart, axis=0) & _is_smooth(fine, scales))
-    return int(missed[0]) if missed.size else rows
+    rows_differing = np.flatnonzero(np.any(differs, axis=0) & _is_smooth(fine, scales))
+    return int(rows_differing[0]) if rows_differing.size else rows
 
 
 def _first_rows(results: TimeSeries, rows: int) -> TimeSeries:
-    """The first rows."""
+    """First rows of a time series."""
     return TimeSeries(results.time[:rows], {name: column[:rows] for name, column in results.columns.items()})
 
 
 def _exchanged(model: Model, fmu: Path, times: np.ndarray, tolerance: float) -> TimeSeries:
-    """All outputs at the times, by model exchange; raises whatever prevents it."""
-    names, said = [v.name for v in model.outputs], list[str]()
+    """Simulate all outputs at given times by model exchange; RuntimeError with the reason of a failure."""
+    names, messages = [v.name for v in model.outputs], list[str]()
     if not exchange.has_solver():
         raise RuntimeError("fmpy has no solver for model exchange")
     with unpack_fmu(fmu, model_exchange=True) as (folder, _):
@@ -159,27 +179,30 @@ def _exchanged(model: Model, fmu: Path, times: np.ndarray, tolerance: float) -> 
             tolerance=tolerance,
         )
         try:
-            rows = exchange.run_fmpy_exchange(task, said)
+            rows = exchange.run_fmpy_exchange(task, messages)
         except Exception as error:
-            raise RuntimeError(f"its own experiment failed: {said[0] if said else error}") from None
+            raise RuntimeError(f"its own experiment failed: {messages[0] if messages else error}") from None
     return TimeSeries(times, dict(zip(names, np.array(rows).T, strict=True)))
 
 
 def _is_smooth(results: TimeSeries, scales: Mapping[str, float]) -> np.ndarray:
-    """Whether no output jumps near a time."""
+    """Whether no output jumps near a row (n)."""
     jumps = np.zeros(results.time.size - 1, dtype=bool)
     for name, column in results.columns.items():
         change = np.abs(np.diff(column))
-        around = np.maximum(np.append(change[1:], 0.0), np.append(0.0, change[:-1]))
-        jumps |= (change > TOLERANCE * scales[name]) & (change > JUMP * around)
+        neighbour_change = np.maximum(np.append(change[1:], 0.0), np.append(0.0, change[:-1]))
+        jumps |= (change > TOLERANCE * scales[name]) & (change > JUMP * neighbour_change)
     near = np.convolve(jumps, np.ones(2 * FINE * JUMP_DISTANCE, dtype=int))[FINE * JUMP_DISTANCE - 1 :]
     smooth = np.asarray(near[: results.time.size] == 0)
-    smooth[0] = True  # nothing has moved yet
+    smooth[0] = True  # at the start nothing has changed yet
     return smooth
 
 
 def _result_file(results: TimeSeries, smooth: np.ndarray, step: int) -> bytes:
-    """A file of the results at some ends of steps of so many fine ones."""
+    """CSV file of results at the ends of communication steps of `step` fine steps, about ROWS_PER_FILE rows.
+
+    is_smooth : (n) whether a row is far from jumps; other rows are left out
+    """
     rows = step * np.flatnonzero(smooth[::step])
     rows = rows[:: -(-rows.size // ROWS)]
     columns = {name: column[rows] for name, column in results.columns.items()}
@@ -190,6 +213,7 @@ def _result_file(results: TimeSeries, smooth: np.ndarray, step: int) -> bytes:
 def _experiments(
     model: Model, stop: float, steps: list[tuple[float, str]], scales: Mapping[str, float]
 ) -> bytes:
+    """XML of the experiments with steps of given sizes [s], each with its reference file."""
     root = Element("Experiments", name=f"{model.title}, its own experiment", description=model.doc)
     for step, path in steps:
         name = f"steps of {1e3 * step:g} ms"
@@ -197,7 +221,7 @@ def _experiments(
         times = {"startTime": 0.0, "stopTime": stop, "stepSize": step}
         SubElement(node, standard.TRANSIENT, {key: f"{value:.12g}" for key, value in times.items()})
         SubElement(node, "References", source=path)
-        given = SubElement(SubElement(node, "Annotations"), "Annotation", type=standard.SCALES)
+        annotation = SubElement(SubElement(node, "Annotations"), "Annotation", type=standard.SCALES)
         for output, scale in scales.items():
-            SubElement(given, "Scale", name=output, value=f"{scale:.{DIGITS}g}")
+            SubElement(annotation, "Scale", name=output, value=f"{scale:.{DIGITS}g}")
     return serialized(root)
