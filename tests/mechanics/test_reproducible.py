@@ -18,7 +18,7 @@ from jointfmu.mechanics.footprint.shape import PressureDistribution
 TIMES = 20
 """Each moves thousands of numbers, so that many lie where rounding changes its mind if any do."""
 AGREE = 1e-9
-NUMBERS = ("share", "position", "equal", "tilt")
+NUMBERS = ("share", "position", "preload_shape", "moment_shape")
 
 
 def shape_of(name: str) -> PressureDistribution:

@@ -400,7 +400,7 @@ def test_fitted_values_are_marked_in_the_code_and_in_the_file(joint):
 def refitted(monkeypatch, fits):
     """Let the calibration use other fits."""
     monkeypatch.setattr(
-        calibration, "published", lambda kind: replace(published_numbers(kind), calibration=fits)
+        calibration, "published_numbers", lambda kind: replace(published_numbers(kind), calibration=fits)
     )
 
 

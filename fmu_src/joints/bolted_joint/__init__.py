@@ -123,7 +123,7 @@ def _loops(spring: Any, end: float) -> list[chart.Panel]:
     approach = spring.preloaded_approach(preload, 0.0)
     foundation, share = spring.foundation(), spring.shape.share
     mean = share @ np.maximum(approach - spring.curve.displacement[0], 0.0)
-    slips = foundation.friction_coefficient / foundation.ratio * float(mean)
+    slips = foundation.friction_coefficient / foundation.stiffness_ratio * float(mean)
 
     def force(shift: Array) -> Array:
         """Of first shear [N]."""

@@ -90,7 +90,7 @@ def test_points_press_on_the_patches_around_them_with_all_their_force(spring):
     reach = np.sqrt(points.share @ np.min(distance, axis=0) ** 2)
     assert np.max(distance[part > 0.1] - np.min(distance, axis=0)[np.nonzero(part > 0.1)[1]]) < 3.0 * reach
     one = replace(
-        patches, **{name: getattr(patches, name)[:1] for name in ("share", "position", "equal", "tilt")}
+        patches, **{name: getattr(patches, name)[:1] for name in ("share", "position", "preload_shape", "moment_shape")}
     )
     np.testing.assert_array_equal(force_transfer(points, one), np.ones((1, points.share.size)))
 
@@ -192,7 +192,7 @@ def test_noise_while_it_is_tightened_leaves_no_trace(spring, part):
         out, memory = MODEL.advance(spring, at([u, 0, 0, 0, 0, 0], preload=3e4), memory)
         losses.append(float(out["E_loss"]))
     theory = JOINT.A_0 * float(
-        spring.patches.share @ law.loop(approach, np.full(approach.size, amplitude))[0]
+        spring.patches.share @ law.cycle_energies(approach, np.full(approach.size, amplitude))[0]
     )
     assert losses[-1] - losses[4] == pytest.approx(theory, rel=0.05)
 

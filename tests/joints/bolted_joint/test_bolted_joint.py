@@ -56,7 +56,7 @@ def even(spring):
     position = np.array([[0.1, 0.02], [-0.05, 0.1], [-0.025, -0.2]])
     share = np.array([0.4, 0.4, 0.2])
     shape = PressureDistribution(share, position, np.ones(3), np.zeros(3))
-    return replace(spring.on(shape), joint=replace(JOINT, plastic_damping=True))
+    return replace(spring.on_nodes(shape), joint=replace(JOINT, plastic_damping=True))
 
 
 def total(preload):
