@@ -127,7 +127,7 @@ def _loops(spring: Any, end: float) -> list[chart.Panel]:
 
     def force(shift: Array) -> Array:
         """Of first shear [N]."""
-        return np.asarray(spring.joint.A_0 * (foundation.backbone(approach, shift[:, None]) @ share))
+        return np.asarray(spring.joint.A_0 * (foundation.virgin_traction(approach, shift[:, None]) @ share))
 
     lines = []
     for part in reversed(AMPLITUDES):

@@ -473,7 +473,7 @@ def test_a_path_far_into_slip_and_opening_is_found_with_few_parts(made, monkeypa
             there = way.at(place, amplitude)
             bolts = self.bolts.tangent(tight.bolt_force, self.stretch(place, amplitude))
             slopes = way.slopes(place, amplitude)
-            exact = self._derivative(there.stiffness, way.apart(there), slopes, bolts)
+            exact = self._jacobian(there.stiffness, way.apart(there), slopes, bolts)
             apart.append(np.max(np.abs(exact - rises)) / np.max(np.abs(rises - rises.T)))
         found.append(newton(self, way, part, tight, amplitude, derivative))
         return found[-1]
