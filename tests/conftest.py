@@ -123,14 +123,14 @@ class Fmu(Instance):
         names = names or tuple(self.outputs)
         return dict(zip(names, self.read([self.variables[n].valueReference for n in names]), strict=True))
 
-    def begin(self, start: float = 0.0, stop: float | None = None) -> None:
+    def enter_initialization(self, start: float = 0.0, stop: float | None = None) -> None:
         """Enter initialization mode."""
         super().enter_initialization(start, stop)
         self.time = start
 
     def start(self, values: Mapping[str, Any] | None = None) -> "Fmu":
         """Set start values in initialization mode and leave it."""
-        self.begin()
+        self.enter_initialization()
         self.set_values(values or {})
         self.fmu.exitInitializationMode()
         return self

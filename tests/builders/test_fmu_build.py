@@ -192,7 +192,7 @@ path, own = list(sys.path), pythonfmu.__file__
 build(["GearContact"], ["python"], None, Path(sys.argv[2]))
 assert (sys.path, sys.modules["pythonfmu"].__file__) == (path, own)
 instance.at({"f": 1.0})
-instance.free()
+instance.free_instance()
 """
 
 

@@ -47,7 +47,7 @@ for parameter, value in bad:
     assert bystander.get() == before, "another instance was harmed"
 assert instance.start(good).get() == before, "wrong numbers after reset"
 bystander.step()
-instance.free(), bystander.free()
+instance.free_instance(), bystander.free_instance()
 print(json.dumps(messages))
 """
 
@@ -197,25 +197,25 @@ path = Path(sys.argv[1]) / "HarmonicDriveSpring.fmu"
 bystander, instance = Fmu(path).start({"phi2": 6e-4}), Fmu(path).start({"phi2": 6e-4})
 before, (ratio,) = bystander.get(), instance.get("ratio").values()
 for i in range(60):
-    instance.set({"w1": math.nan})
+    instance.set_values({"w1": math.nan})
     instance.refused(instance.step)
     instance.refused(instance.get)
-    instance.set({"w1": 0.0, "ratio": 0.0})
+    instance.set_values({"w1": 0.0, "ratio": 0.0})
     instance.refused(instance.step)
-    instance.set({"ratio": ratio})
+    instance.set_values({"ratio": ratio})
     if i % 3 == 0:
         instance.reset()
         instance.refused(instance.start, {"ratio": 0.0})
         instance.reset()
         instance.start({"phi2": 6e-4})
-    instance.set({"w1": 0.0})
+    instance.set_values({"w1": 0.0})
     assert instance.get() == before and bystander.get() == before
 for i in range(30):
     third = Fmu(path)
     third.refused(third.start, {"mu": math.nan})
-    third.free()
+    third.free_instance()
 assert bystander.get() == before
-instance.free(), bystander.free()
+instance.free_instance(), bystander.free_instance()
 print("alive")
 """
 
@@ -235,7 +235,7 @@ instance = Fmu(path).start({"f": 900.0})
 before, fmu = instance.get(), instance.fmu
 calls = {
     "getReal of an unknown reference": lambda: fmu.getReal([9999]),
-    "setReal of an output": lambda: instance.set({"K_N": 1.0}),
+    "setReal of an output": lambda: instance.set_values({"K_N": 1.0}),
     "getInteger of a Real": lambda: fmu.getInteger([0]),
     "setInteger of a Real": lambda: fmu.setInteger([0], [1]),
     "getString of a Real": lambda: fmu.getString([0]),
@@ -253,7 +253,7 @@ for name, call in calls.items():
             assert instance.get() == before
         else:
             raise SystemExit("was not refused")
-instance.free()
+instance.free_instance()
 print("alive")
 """
 

@@ -131,7 +131,7 @@ def after_a_history(instance: Fmu, moment: str, seed: int, preload: float) -> di
     tightened state."""
     rng = np.random.default_rng(seed)
     still = 0.3 if seed % 2 else 0.7
-    instance.begin()
+    instance.enter_initialization()
     instance.set_values(state := random_state(rng, preload, still))
     if moment == "initialization":
         return state

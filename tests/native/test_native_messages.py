@@ -97,7 +97,7 @@ def test_a_value_at_the_end_of_every_interval_is_refused_or_not_as_in_the_packag
         beside = [math.nextafter(x, side) for x in ends for side in (-math.inf, math.inf) if x or side < 0.0]
         for value in (math.nan, math.inf, -math.inf, *ends, *beside):
             instance.reset()
-            instance.begin()
+            instance.enter_initialization()
             instance.set_values({parameter: value})
             reason = attempt(lambda v: model.tabulate(make(model.parameters, v)), start | {parameter: value})[
                 1

@@ -145,7 +145,7 @@ for case in json.load(sys.stdin):
     instance.fmu.freeFMUState(state)
     found = [value.hex() for value in instance.get().values()]
     assert found == case["outputs"], (case["path"], found)
-    instance.free()
+    instance.free_instance()
 print("same")
 """
 

@@ -122,7 +122,7 @@ def test_each_parameter_changes_the_outputs_that_it_should(host: Host, name: str
     start, case = flatten_parameters(load_default(MODELS[name].joint).values), CASES[name]
     base = dict(case.tuning.base)
     instance, without = host(name, version), set()
-    instance.begin()  # while it initializes a joint with memory comes from rest, as in the package
+    instance.enter_initialization()  # while it initializes a joint with memory comes from rest, as in the package
     before = instance.at(base | STATE[name])
     for parameter in MODELS[name].parameter_fields():
         value = (start | base)[parameter]
@@ -156,7 +156,7 @@ def test_outputs_are_right_in_initialization_and_after_each_set(
     expected, instance = package(name), host(name, version, exchange=exchange)
     first, second, third = random_inputs(name, 3, seed=24)
     instance.set_values(first)  # start values may be set right after instantiation
-    instance.begin()
+    instance.enter_initialization()
     assert instance.get() == close(expected(first))
     assert instance.at(second) == close(expected(second))
     instance.fmu.exitInitializationMode()
@@ -175,7 +175,7 @@ def test_outputs_are_right_in_initialization_and_after_each_set(
 def test_parameters_count_until_initialization_ends(host: Host, version: str, exchange: bool) -> None:
     instance = host("HarmonicDriveCompliance", version, exchange=exchange)
     instance.set_values({"K_FTS0": 1e4, "tau": 3.0})
-    instance.begin()
+    instance.enter_initialization()
     assert instance.get("K_FTS") == {"K_FTS": 1e4}
     instance.set_values({"K_FTS0": 3e4})
     assert instance.get("K_FTS", "K_FTS0") == {"K_FTS": 3e4, "K_FTS0": 3e4}
@@ -209,7 +209,7 @@ def test_steps_of_any_size_end_where_they_should_and_change_nothing(
 def test_a_simulation_may_start_at_any_time(host: Host, version: str) -> None:
     instance = host("GearContact", version)
     instance.set_values({"f": 900.0})
-    instance.begin(start=-5.0, stop=-3.0)
+    instance.enter_initialization(start=-5.0, stop=-3.0)
     instance.fmu.exitInitializationMode()
     instance.step()
     assert reached(instance) == -4.0

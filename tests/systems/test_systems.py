@@ -158,7 +158,7 @@ def test_a_partner_computes_the_packages_equations(make: Make, name: str, versio
     lags = {"lag_a", "lag_b"} & set(model.parameter_fields())
     given = {n: float(rng.uniform(0.1, 2.0)) for n in model.parameter_fields()} | dict.fromkeys(lags, 0.0)
     values = {v.name: float(rng.normal()) for v in (*model.inputs, *model.outputs[: model.state_count])}
-    fmu.begin(0.7)
+    fmu.enter_initialization(0.7)
     fmu.set_values(given | values)
     expected = model.evaluate(model.parameters(**given), values | {"time": 0.7})
     assert fmu.get() == pytest.approx(dict(expected), rel=1e-14)  # at once, without a step
@@ -204,7 +204,7 @@ def test_loads_have_no_corner() -> None:
 @BOTH
 def test_states_are_set_before_they_move_and_not_after(make: Make, version: str) -> None:
     fmu = make("RotationalInertia", version)
-    fmu.begin()
+    fmu.enter_initialization()
     fmu.set_values({"phi": 0.3, "w": -2.0, "J": 2.0, "m": 1.0, "l": 0.5, "tau_a": 1.0, "tau_b": 3.0})
     expected = (4.0 - GRAVITY * 0.5 * math.sin(0.3)) / 2.0
     assert fmu.get() == pytest.approx({"phi": 0.3, "w": -2.0, "a": expected}, rel=1e-14)

@@ -260,7 +260,7 @@ instance.time = 3.0
 for phi in way:
     print(*(x.hex() for x in instance.at({"phi2": float(phi)}).values()))
     instance.step()
-instance.free()
+instance.free_instance()
 """
 
 
