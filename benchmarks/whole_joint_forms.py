@@ -160,7 +160,7 @@ class Lap:
         for body, ends in zip(joint.bodies, joint.attachment_unknowns, strict=True):
             z = np.abs(body.nodes[2])
             held.append(np.union1d(ends, 3 * np.flatnonzero(z > z.max() - 1e-9) + 2))
-        joint = replace(joint, held=(held[0], held[1]))
+        joint = replace(joint, attachment_unknowns=(held[0], held[1]))
         at = patches(joint.interface)
         one = np.ones(at.area.size)
         x, y = (at.position - at.area @ at.position / at.area.sum()).T

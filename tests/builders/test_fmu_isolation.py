@@ -148,8 +148,8 @@ def doubled_sources(tmp_path_factory: pytest.TempPathFactory) -> Path:
         python_build.runtime_sources(KINDS["gear_contact"]),
     )
     sources["joints/gear_contact/spring.py"] += """
-_single = GearContactSpring.approach
-GearContactSpring.approach = lambda self, f: _single(self, f) | {"K_N": 2.0 * _single(self, f)["K_N"]}
+_single = GearContactSpring.evaluate
+GearContactSpring.evaluate = lambda self, f: _single(self, f) | {"K_N": 2.0 * _single(self, f)["K_N"]}
 """
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(python_build, "runtime_sources", lambda kind: sources)

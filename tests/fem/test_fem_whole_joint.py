@@ -41,7 +41,7 @@ def test_a_lap_has_the_compliance_of_shear_lag(reach):
     # no bending: both plates stay in their planes
     flat = [np.arange(2, body.unknown_count, 3) for body in joint.bodies]
     joint = replace(
-        joint, held=tuple(np.union1d(a, b) for a, b in zip(joint.attachment_unknowns, flat, strict=True))
+        joint, attachment_unknowns=tuple(np.union1d(a, b) for a, b in zip(joint.attachment_unknowns, flat, strict=True))
     )
     springs = even(joint, 0.5 * beta**2 * plate.E * plate.thickness, 1e12)
     found = joint.compliances(springs, 0.0).total[0]
@@ -92,7 +92,7 @@ def test_a_mirrored_side_moves_as_the_mirror_image(monkeypatch):
 
     found = moved()
     soft = replace(joint, bodies=(joint.bodies[0], replace(joint.bodies[1], E=1e11)))
-    pulled = replace(joint, heads=(joint.bolt_head_loads[0], 2.0 * joint.bolt_head_loads[1]))
+    pulled = replace(joint, bolt_head_loads=(joint.bolt_head_loads[0], 2.0 * joint.bolt_head_loads[1]))
     others = (soft, pulled, JointFiniteElements.from_assembly(block(), "edge"))
     assert [each.is_mirrored for each in (joint, *others)] == [True, False, False, False]
     monkeypatch.setattr(JointFiniteElements, "is_mirrored", False)

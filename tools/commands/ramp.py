@@ -148,6 +148,8 @@ def _draw_ramp(figure: "Figure", result: ramp.RampResult) -> None:
 
 def _run_loops(args: argparse.Namespace) -> CommandResult:
     stated = {name: getattr(args, name) for name in LOOP_OPTIONS[:4] if getattr(args, name) is not None}
+    if "about" in stated:
+        stated["centre"] = stated.pop("about")
     swing = loops.CyclicPath(**stated)
     found = loops.run_loops(args.fmu, args.input, args.loop, swing, args.output, dict(args.settings))
     for message in found.messages:

@@ -99,7 +99,7 @@ def figures(outcome: Any) -> list[Figure]:
 
 def _spring_fmu(outcome: Any) -> Path:
     """Path of the FMU HarmonicDriveSpring, FMI 2.0."""
-    paths: list[Path] = outcome.built
+    paths: list[Path] = outcome.fmu_paths
     return next(p for p in paths if (p.parent.name, p.stem) == ("fmi2", "HarmonicDriveSpring"))
 
 

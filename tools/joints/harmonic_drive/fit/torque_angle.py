@@ -155,7 +155,7 @@ def _resize_start(
     """
     drive_, reach = start.values, float(np.max(np.abs(torque)))
     if rated_torque is not None:
-        factor = drive_.reach / drive_.rated_torque
+        factor = drive_.max_table_torque / drive_.rated_torque
         start = drive.resize_drive(start, rated_torque, factor, "user", "stated with the torque-angle curve")
     if isinstance(start.values, ContactPairDrive) and reach > start.values.max_torque:
         raise InputRefusal(
