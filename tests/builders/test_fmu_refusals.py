@@ -314,7 +314,7 @@ def test_a_pulled_gear_is_apart_and_says_so_once(fmu: Host) -> None:
         assert list(instance.at({"f": f}).values()) == [0.0] * 4
         instance.step()
     (warning,) = instance.warnings
-    assert warning.startswith("f = -5 N is outside [0, inf) N: it pulls")
+    assert warning.startswith("f = -5 N is outside [0, inf) N: the force is tensile")
     instance.at({"f": 1e6})
     assert len(instance.warnings) == 2  # another limit, its own warning
 
@@ -491,7 +491,7 @@ def test_json_prints_one_object_and_a_warning_goes_to_standard_error(
     found = json.loads(out)
     assert found["columns"]["f"] == [0.0, -10.0, -20.0]
     assert found["units"]["K_N"] == "N/m"
-    assert err.startswith("f = -10 N is outside [0, inf) N: it pulls")
+    assert err.startswith("f = -10 N is outside [0, inf) N: the force is tensile")
     assert err.count("\n") == 1
 
 

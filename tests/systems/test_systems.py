@@ -1073,7 +1073,7 @@ def test_ring_writes_a_table_and_a_picture(rung: Path) -> None:
     np.testing.assert_allclose(found[:, 2], expected, rtol=1e-5)  # six digits printed
     np.testing.assert_allclose(found[:, 1], expected, rtol=ringing.RESONANCE_TOLERANCE)
     frequency, zeta = math.tau * found[:, 2], found[:, 4]
-    at_once = 2.0 * (np.sqrt(1.0 + 4.0 * zeta**2) - 2.0 * zeta)  # docs/systems_reference.md, test_stable_steps
+    at_once = 2.0 * (np.sqrt(1.0 + 4.0 * zeta**2) - 2.0 * zeta)  # docs/systems_reference.md
     late = (2.0 * zeta / (1.0 + (2.0 * zeta) ** 4 / 0.39**3)) ** (1 / 3)
     np.testing.assert_allclose(found[:, 5:7] * frequency[:, None], np.stack([at_once, late], 1), rtol=1e-5)
     assert (rung / "a.png").read_bytes().startswith(b"\x89PNG")
