@@ -83,7 +83,7 @@ def test_casadi_evaluates_and_differentiates_it(
         exact, sizes = jacobian(instance), STATE[name] | CASES[name].numbers.sizes
         for (o, i), slope in zip(itertools.product(outputs, inputs), J.ravel(), strict=True):
             # CasADi scales its seeds; terms that cancel in a slope are as large as the output over the input,
-            # or, where the output is 0, as the sums over springs: far below the nominal values, far above 1e-12
+            # or, where the output is 0, as the sums over springs: far below the nominal values
             scale = max(abs(exact[o, i]), abs(values[o] / sizes[i]), 1e-3 * nominal[o] / nominal[i])
             assert abs(slope - exact[o, i]) <= ROUND_OFF * scale, (o, i)
         terms = np.array(seed)[:, None] * J
