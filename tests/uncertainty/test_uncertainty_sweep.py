@@ -262,7 +262,8 @@ sys.path.insert(0, sys.argv[3])
 import test_uncertainty_sweep as tests
 from jointfmu_tools.uncertainty import sweep
 sweep.local_run = tests.local_dies_at_five
-done = sweep.sweep(tests.Path(sys.argv[1]), tests.DRIVE, [{"surface.D": 2.5}] * 24, tests.Path(sys.argv[2]), workers=2)
+fmu, out = map(tests.Path, sys.argv[1:3])
+done = sweep.sweep(fmu, tests.DRIVE, [{"surface.D": 2.5}] * 24, out, workers=2)
 print(done.runs, done.now, done.failed, done.first_failure)
 """
 DIED = {"run": 5, "parameters": {"surface.D": 2.5}, "error": "the process of the run died"}
