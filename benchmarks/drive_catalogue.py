@@ -2,7 +2,7 @@
 
     python benchmarks/drive_catalogue.py
 
-The tables of docs/harmonic_drive.md. Set by it: a parameter comes from the published number.
+The tables of docs/harmonic_drive_explanation.md. Set by it: a parameter comes from the published number.
 """
 
 import csv

@@ -2,8 +2,8 @@
 
     python benchmarks/drive_friction.py
 
-The tables of docs/harmonic_drive.md. Left out: a drive's friction from that of all others. What is decided of
-the robot's joints, and from where, is told there.
+The tables of docs/harmonic_drive_explanation.md. Left out: a drive's friction from that of all others. The
+decisions on the joints of the robot, and their sources, are in that page.
 """
 
 import csv

@@ -2,8 +2,9 @@
 
     python benchmarks/log_round_trips.py [SEEDS]
 
-The table of docs/fitting.md: a joint with the exported spring of the package, its arm swinging under gravity
-while the drive warms up, seen through a quantized encoder and a noisy current; and tables of steady speeds.
+The table of docs/fitting_explanation.md: a joint with the exported spring of the package, its arm swinging
+under gravity while the drive warms up, seen through a quantized encoder and a noisy current; and tables of
+steady speeds.
 """
 
 import sys

@@ -46,7 +46,7 @@ def test_the_page_of_every_law_says_each_number_and_its_source(joint: str, law: 
         assert line in page
     (opening,) = re.findall(r"<main[^>]*>\s*<p>(.*?)</p>", page)
     assert KINDS[joint].title in opening
-    assert re.search(r"Its stiffness \w+ (grows|falls|is) .*\d", opening)
+    assert re.search(r"The stiffness \w+ (rises|falls|is) .*\d", opening)
     # one file: nothing is fetched
     assert not re.search(r"<link|<script[^>]*\bsrc=|<img[^>]*\bsrc=(?!\"data:)|@import|url\(", page)
 

@@ -280,7 +280,9 @@ def test_the_reference_has_every_public_name(site: Path) -> None:
     ids, text = Links(page).ids, page.read_text(encoding="utf-8")
     for name in (*(f"jointfmu{n}" for n in jointfmu.__all__), "jointbuild", "drivejointwind_up"):
         assert name.lower() in ids, name
-    assert re.search(r"<li><code>efficiency</code>: at rated torque and 2000 rev/min \[1\]</li>", text)
+    assert re.search(
+        r"<li><code>efficiency</code>: efficiency at rated torque and 2000 rev/min \[1\]</li>", text
+    )
     assert '"reference.html#drivejointwind_up"' in (site / "search.json").read_text("utf-8")
 
 

@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from clients import needs
-from conftest import refused_line
+from conftest import refused_line, run_host
 from jointfmu_tools import cli
 from jointfmu_tools.ramps import ramp
 from jointfmu_tools.uncertainty import journal
@@ -256,23 +256,33 @@ def local_dies_at_five(job):
     return dies_at_five(*job)
 
 
-@pytest.mark.parametrize("where", ["local", "cluster"])
-def test_a_run_that_kills_its_process(where, fmu, request, tmp_path, monkeypatch):
+LOCAL = """
+import sys
+sys.path.insert(0, sys.argv[3])
+import test_uncertainty_sweep as tests
+from jointfmu_tools.uncertainty import sweep
+sweep.local_run = tests.local_dies_at_five
+fmu, out = map(tests.Path, sys.argv[1:3])
+done = sweep.sweep(fmu, tests.DRIVE, [{"surface.D": 2.5}] * 24, out, workers=2)
+print(done.runs, done.new_runs, done.failed, done.first_failure)
+"""
+DIED = {"run": 5, "parameters": {"surface.D": 2.5}, "error": "the process of the run died"}
+
+
+def test_a_local_run_that_kills_its_process(fmu, tmp_path):
+    """It is recorded with its parameters. In a process of its own, so that no worker of the tests can die."""
+    done = run_host(LOCAL, fmu, tmp_path, Path(__file__).parent)
+    assert done.stdout == f"24 24 1 {DIED}\n", done.stderr
+    assert sorted(indices(tmp_path)) == list(range(24))
+
+
+def test_a_run_that_kills_its_process_of_a_cluster(fmu, cluster, tmp_path, monkeypatch):
     """It is recorded with its parameters; those whose results went down with it are done again."""
-    if where == "local":
-        monkeypatch.setattr("jointfmu_tools.uncertainty.sweep.local_run", local_dies_at_five)
-        place = {"workers": 2}
-    else:
-        monkeypatch.setattr("jointfmu_tools.uncertainty.plugin.distributed_run", dies_at_five)
-        place = {"scheduler": request.getfixturevalue("cluster")}
-    done = sweep(fmu, DRIVE, [{"surface.D": 2.5}] * 24, tmp_path, **place)
+    monkeypatch.setattr("jointfmu_tools.uncertainty.plugin.distributed_run", dies_at_five)
+    done = sweep(fmu, DRIVE, [{"surface.D": 2.5}] * 24, tmp_path, scheduler=cluster)
     assert (done.runs, done.new_runs, done.failed) == (24, 24, 1)
     assert sorted(indices(tmp_path)) == list(range(24))
-    assert done.first_failure == {
-        "run": 5,
-        "parameters": {"surface.D": 2.5},
-        "error": "the process of the run died",
-    }
+    assert done.first_failure == DIED
 
 
 def test_bands_of_the_runs(fmu, cluster, tmp_path):

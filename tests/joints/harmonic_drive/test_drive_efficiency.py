@@ -244,7 +244,8 @@ def test_the_study_prints_its_tables(capsys):
     for part in ("single_drives", "over_load", "over_speed", "over_both", "worked_examples"):
         getattr(drive_catalogue, part)()
     out = capsys.readouterr().out
-    page = (Path(__file__).resolve().parents[3] / "docs" / "harmonic_drive.md").read_text(encoding="utf-8")
+    docs = Path(__file__).resolve().parents[3] / "docs"
+    page = (docs / "harmonic_drive_explanation.md").read_text(encoding="utf-8")
     for line in out.splitlines():
         if line.startswith("| RT1-H"):
             assert line in page

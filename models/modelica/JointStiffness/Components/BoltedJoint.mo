@@ -2,7 +2,7 @@ within JointStiffness.Components;
 model BoltedJoint "Bolted joint at a fixed preload: three axes, side 1 fixed"
   parameter JointStiffness.Data.BoltedJoint data = JointStiffness.Data.Box_specimen_of_Zhao_2018_9_kN() "The tightened joint"
     annotation (choicesAllMatching=true);
-  parameter Modelica.Units.SI.Mass mass(min=0) = data.mass "mass of the structure, used for the equivalent viscous damping C_N, C_T";
+  parameter Modelica.Units.SI.Mass mass(min=0) = data.mass "mass of the structure, for the viscous equivalent";
   parameter Boolean memory = data.memory "friction with partial slip and memory; without it an elastic joint";
   parameter Boolean damping = data.damping "the dashpots C_xx, C_yy, C_zz of Zhao 2018 act";
   parameter Boolean plastic_damping = data.plastic_damping "normal damping by the plastic work of first loading (Zhao 2018, Eqs. 19-20)";

@@ -3,7 +3,7 @@ record BoltedJoint "A bolted joint at a fixed preload and moment"
   extends Modelica.Icons.Record;
   parameter Modelica.Units.SI.Force preload(min=0) "Pre-tightening force of each bolt";
   parameter Modelica.Units.SI.Torque moment "Bending moment on the joint";
-  parameter Modelica.Units.SI.Mass mass(min=0) "mass of the structure, used for the equivalent viscous damping C_N, C_T";
+  parameter Modelica.Units.SI.Mass mass(min=0) "mass of the structure, for the viscous equivalent";
   parameter Modelica.Units.SI.TranslationalSpringConstant bolts(min=0) "Stiffness of all bolts, beside the interface";
   parameter Modelica.Units.SI.Force bolt_forces[:](each min=0) "Force of each bolt at tightening, which has an equal part of this stiffness";
   parameter Boolean plastic_damping = false "normal damping by the plastic work of first loading (Zhao 2018, Eqs. 19-20)";
