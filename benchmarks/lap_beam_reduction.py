@@ -102,7 +102,11 @@ def patches(interface):
     area = np.asarray(share.sum(axis=1)).ravel()
     mean = sp.diags(1.0 / area) @ share
     return Interface(
-        interface.basis, interface.nodes, (mean @ interface.interpolation).tocsr(), area, mean @ interface.position
+        interface.basis,
+        interface.nodes,
+        (mean @ interface.interpolation).tocsr(),
+        area,
+        mean @ interface.position,
     )
 
 

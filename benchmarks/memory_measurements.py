@@ -106,7 +106,11 @@ def joint_decay():
 def response(law, inertia, forces, frequencies):
     """Frequency, force and amplitude at several levels."""
     f, F = (column.ravel() for column in np.meshgrid(frequencies, forces))
-    return f, F, Oscillator(law, inertia).response_amplitude(f, F, F / law.equivalent_spring(np.array([1e-9]))[0])
+    return (
+        f,
+        F,
+        Oscillator(law, inertia).response_amplitude(f, F, F / law.equivalent_spring(np.array([1e-9]))[0]),
+    )
 
 
 @cache

@@ -41,7 +41,10 @@ def test_a_lap_has_the_compliance_of_shear_lag(reach):
     # no bending: both plates stay in their planes
     flat = [np.arange(2, body.unknown_count, 3) for body in joint.bodies]
     joint = replace(
-        joint, attachment_unknowns=tuple(np.union1d(a, b) for a, b in zip(joint.attachment_unknowns, flat, strict=True))
+        joint,
+        attachment_unknowns=tuple(
+            np.union1d(a, b) for a, b in zip(joint.attachment_unknowns, flat, strict=True)
+        ),
     )
     springs = even(joint, 0.5 * beta**2 * plate.E * plate.thickness, 1e12)
     found = joint.compliances(springs, 0.0).total[0]

@@ -118,7 +118,9 @@ def test_no_static_library_of_the_compiler_is_linked_in(platform: str, tmp_path:
     command = [sys.executable, "-m", "ziglang", "cc", *options, "run.c", "-v", "-o", "run.bin"]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True, timeout=300)
     linked = [x for x in done.stderr.splitlines() if re.match(r"(zig ld|ld\.lld|lld-link) ", x)]
-    (line,) = [x for x in linked if "run.bin" in x]  # with an empty cache, zig also links stubs of the C library
+    (line,) = [
+        x for x in linked if "run.bin" in x
+    ]  # with an empty cache, zig also links stubs of the C library
     inputs = {re.split(r"[/\\]", word)[-1] for word in line.split() if re.search(r"^[^-].*\.(a|lib)$", word)}
     stubs = {f"api-ms-win-crt-{part}-l1-1-0.lib" for part in compiler._UCRT}
     assert inputs <= stubs | {"libc_nonshared.a"}

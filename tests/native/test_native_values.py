@@ -122,7 +122,7 @@ def test_each_parameter_changes_the_outputs_that_it_should(host: Host, name: str
     start, case = flatten_parameters(load_default(MODELS[name].joint).values), CASES[name]
     base = dict(case.tuning.base)
     instance, without = host(name, version), set()
-    instance.enter_initialization()  # while it initializes a joint with memory comes from rest, as in the package
+    instance.enter_initialization()  # from rest, as in the package
     before = instance.at(base | STATE[name])
     for parameter in MODELS[name].parameter_fields():
         value = (start | base)[parameter]

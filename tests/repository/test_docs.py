@@ -182,7 +182,11 @@ def python_of(folder: str) -> str:
 
 def test_every_part_of_a_joint_is_explained() -> None:
     """Those that a tool asks for, and those that the builders read."""
-    asked = set(re.findall(r'(?<!def )\bload_tool_module\((?:[^()"]|\([^()]*\)|\[[^]]*\])*"(\w+)"', python_of("tools")))
+    asked = set(
+        re.findall(
+            r'(?<!def )\bload_tool_module\((?:[^()"]|\([^()]*\)|\[[^]]*\])*"(\w+)"', python_of("tools")
+        )
+    )
     assert asked == {*TOOL_NAMES}
     for tool in TOOL_NAMES:
         assert re.search(rf"^\| `{tool}` \| `[A-Z_a-z]+`", ARCHITECTURE, re.M), tool

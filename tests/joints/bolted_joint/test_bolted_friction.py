@@ -90,7 +90,11 @@ def test_points_press_on_the_patches_around_them_with_all_their_force(spring):
     reach = np.sqrt(points.share @ np.min(distance, axis=0) ** 2)
     assert np.max(distance[part > 0.1] - np.min(distance, axis=0)[np.nonzero(part > 0.1)[1]]) < 3.0 * reach
     one = replace(
-        patches, **{name: getattr(patches, name)[:1] for name in ("share", "position", "preload_shape", "moment_shape")}
+        patches,
+        **{
+            name: getattr(patches, name)[:1]
+            for name in ("share", "position", "preload_shape", "moment_shape")
+        },
     )
     np.testing.assert_array_equal(force_transfer(points, one), np.ones((1, points.share.size)))
 
