@@ -34,15 +34,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     print("|---|" + "---|" * (len(ROWS) + 2))
     for attached in ("faces", "edge", "heads"):
         found = {name: value for name, (value, _, _) in facts(attached).items()}
-        cells = [f"{found[f'whole_K_{row}']:.3g}" for row in ROWS]
-        cells += [f"{found['whole_load_factor']:.3f}", f"{found['interface_share']:.1%}"]
+        cells = [f"{found[f'joint_K_{row}']:.3g}" for row in ROWS]
+        cells += [f"{found['joint_load_factor']:.3f}", f"{found['interface_share']:.1%}"]
         print(f"| `{attached}` | " + " | ".join(cells) + " |")
     single = EXAMPLE | {"plate": "80x80", "bolts": "M16", "at": None, "preload": "60e3"}
     found = {name: value for name, (value, _, _) in facts("heads", single).items()}
-    members = found["whole_K_zz"] - found["bolt_stiffness"]
+    members = found["joint_K_zz"] - found["bolt_stiffness"]
     print(f"\none M16, heads: members with interface {members:.4g} N/m, ", end="")
     print(f"VDI 2230 {found['member_stiffness']:.4g};")
-    print(f"load factor {found['whole_load_factor']:.4f}, VDI 2230 {found['load_factor']:.4f}")
+    print(f"load factor {found['joint_load_factor']:.4f}, VDI 2230 {found['load_factor']:.4f}")
     return 0
 
 

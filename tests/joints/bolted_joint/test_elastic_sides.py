@@ -570,7 +570,7 @@ def test_an_assembly_makes_the_whole_joint(made, plates, tmp_path, capsys, monke
     less than the interface has of the compliance; a field alone leaves no body behind. Coarse elements do."""
     drawn, out = embedded(made(*FOUR, preload=15e3), tmp_path / "drawn.toml"), tmp_path / "whole.toml"
     monkeypatch.setattr(
-        JointFiniteElements, "of", partial(JointFiniteElements.from_assembly, refinement=0.35)
+        JointFiniteElements, "from_assembly", partial(JointFiniteElements.from_assembly, refinement=0.35)
     )
     words = ["footprint", "compute", str(plates), "--params", str(drawn.path), "--preload", "14200"]
     field, back = tmp_path / "field.csv", tmp_path / "back.toml"
@@ -579,12 +579,12 @@ def test_an_assembly_makes_the_whole_joint(made, plates, tmp_path, capsys, monke
     spring = BoltedJointSpring.of(load_parameter_file(out).values)
     assert spring.joint.elastic
     assert (
-        f"whole_K_zz         {spring.evaluate(15e3, 0.0, *[(0.0,) * 3] * 2)['K_zz']:.4g} N/m"
+        f"joint_K_zz         {spring.evaluate(15e3, 0.0, *[(0.0,) * 3] * 2)['K_zz']:.4g} N/m"
         in capsys.readouterr().out
     )
     found, before = spring.compliances(15e3), drawn.spring.compliances(15e3)
-    assert np.all((found.total < before.whole) & (found.total > 0.6 * before.whole))
-    assert found.bolt_stiffness == pytest.approx(before.bolts, rel=1e-3)
+    assert np.all((found.total < before.total) & (found.total > 0.6 * before.total))
+    assert found.bolt_stiffness == pytest.approx(before.bolt_stiffness, rel=1e-3)
     corners = 0.03 * np.array([[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]])
     even = ContactField(np.full(4, 1e-3), corners, np.full(4, 15e6))
     alone, _ = with_field(load_parameter_file(out), even, 15e3, "four nodes")

@@ -251,14 +251,14 @@ def _fact_rows(compliances: Compliances, tension: float, attached: str, fmu_suff
 def _stiffness_facts(compliances: Compliances, attached: str, fmu_suffix: str) -> Facts:
     """Stiffnesses in all directions, first of the complete joint, then of its members."""
     rows, members = {}, {}
-    for name, unit, (whole, interface, alone, _), parts in compliances.rows():
+    for name, unit, (joint, interface, alone, _), parts in compliances.rows():
         shares = ", ".join(f"{share:.0%} {part}" for share, part in zip(parts, COMPONENTS, strict=True))
-        rows[f"whole_{name}"] = (
-            whole,
+        rows[f"joint_{name}"] = (
+            joint,
             unit,
-            f"of the whole joint between {ATTACHMENTS[attached]}, other motions held"
-            + (f" (the FMU's {name}{fmu_suffix})" if fmu_suffix else "")
-            + f"; of its energy {shares}; the interface alone is {interface / whole:.3g} times as stiff",
+            f"complete joint between {ATTACHMENTS[attached]}, other motions held"
+            + (f": output {name} of the FMU{fmu_suffix}" if fmu_suffix else "")
+            + f"; compliance: {shares}; the interface alone is {interface / joint:.3g} times as stiff",
         )
         members[f"members_{name}"] = (
             alone,
@@ -286,8 +286,8 @@ def _load_facts(compliances: Compliances, tension: float, attached: str) -> Fact
     opens = compliances.opening_load(tension)
     free = f"{where}, other motions free"
     return {
-        "whole_load_factor": (compliances.load_factor, "1", f"n Phi_K: share that the bolts carry of {free}"),
-        "whole_bolt_share": (
+        "joint_load_factor": (compliances.load_factor, "1", f"n Phi_K: share that the bolts carry of {free}"),
+        "bolt_load_share": (
             float(compliances.bolt_force[:, 2].max()),
             "1",
             f"largest share that one bolt carries of {free}",

@@ -107,7 +107,7 @@ def make_joint(options: DrawingOptions) -> NewJoint:
     if options["field"] == "computed":
         file, shape = compute_pressure_field(file, plates)
     facts = _design_facts(file, bolt, heights, preload)
-    alone = _interface_only_text(facts["K_zz"][0] / count, bolt)
+    alone = _interface_only_text(facts["interface_K_zz"][0] / count, bolt)
     if options["tapped"] and options["thickness"] is None:
         return NewJoint(
             file, facts, [*warnings, f"{alone}: for the whole joint state --thickness of both plates"]
@@ -332,8 +332,12 @@ def _design_facts(
         "p_mean": (float(state["p_mean"]), "Pa", "mean pressure on the plate"),
         "p_max": (float(state["p_max"]), "Pa", "largest pressure, near a bolt"),
         "h": (float(file.values_by_name.get("h", np.nan)), "m", "combined rms height of both faces"),
-        "K_zz": (K, "N/m", "normal stiffness of the interface at this preload, without the bolts"),
-        "K_xx": (float(state["K_xx"]), "N/m", "tangential stiffness of the interface"),
+        "interface_K_zz": (
+            K,
+            "N/m",
+            "normal stiffness of the interface alone at this preload, without the bolts",
+        ),
+        "interface_K_xx": (float(state["K_xx"]), "N/m", "tangential stiffness of the interface alone"),
         "bolt_stiffness": (clamped_bolt.bolt_stiffness, "N/m", "of one bolt, 1/delta_S of VDI 2230"),
         "member_stiffness": (
             clamped_bolt.member_stiffness,
@@ -349,6 +353,6 @@ def _design_facts(
     facts |= _friction_facts(file, preload)
     if heights.h_max > heights.h_min and file.law == "roughness":
         h = float(file.values_by_name["h"])
-        facts["K_zz_low"] = (K * h / heights.h_max, "N/m", "with the roughest usual finish")
-        facts["K_zz_high"] = (K * h / heights.h_min, "N/m", "with the finest usual finish")
+        facts["interface_K_zz_low"] = (K * h / heights.h_max, "N/m", "with the roughest usual finish")
+        facts["interface_K_zz_high"] = (K * h / heights.h_min, "N/m", "with the finest usual finish")
     return {name: fact for name, fact in facts.items() if np.isfinite(fact[0])}
