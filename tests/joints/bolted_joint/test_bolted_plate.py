@@ -353,8 +353,8 @@ def test_the_load_at_the_faces_passes_the_bolts_by(capsys, fine_elements):
     assert faces["joint_load_factor"] < 0.5 * heads["joint_load_factor"]
     assert heads["joint_K_zz"] < faces["joint_K_zz"] < faces["interface_K_zz"]
     assert (
-        "between the outer faces, other motions held: output K_zz of the FMU at preload = 60000 N; compliance: "
-        in found["facts"]["joint_K_zz"]["text"]
+        "between the outer faces, other motions held: output K_zz of the FMU at preload = 60000 N; "
+        "compliance: " in found["facts"]["joint_K_zz"]["text"]
     )
     assert "the FMU is the whole" in found["facts"]["interface_share"]["text"]
 
