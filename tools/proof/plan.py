@@ -67,13 +67,13 @@ class ExperimentPlan:
                 "kinds": {n: variable_kind(variables[n]) for n in (*inputs, *outputs)},
             }
             if stimuli:
-                for key, left_limit in (("inputs", False), ("before", True)):
+                for key, left_limit in (("inputs", False), ("inputs_before", True)):
                     values[key] = {n: input_values(variables[n], stimuli, times, left_limit) for n in inputs}
         except ValueError as error:
             return cls(experiment, interface, {}, {}, str(error))
         values |= {"times": times.tolist(), "outputs": outputs, "tolerance": SOLVER * _tolerance(experiment)}
         if experiment.references:
-            values["due"] = experiment.references.time.tolist()
+            values["comparison_times"] = experiment.references.time.tolist()
         nominal = {n: abs(float(getattr(variables[n], "nominal", None) or 1.0)) for n in outputs}
         return cls(experiment, interface, nominal, task_fields(fmu, folder, interface, **values))
 

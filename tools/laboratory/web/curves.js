@@ -53,9 +53,9 @@ class Curves {
   }
 
   measured(over, quantities, lab) {
-    const some = this.joint.about.measured.filter((m) => m.over === over.name && quantities.some((v) => v.name === m.quantity));
+    const some = this.joint.about.measured.filter((m) => m.abscissa === over.name && quantities.some((v) => v.name === m.ordinate));
     return some.map((m, k) => {
-      const v = this.joint.variables.get(m.quantity), times = lab.values.get(m.times) * v.factor;
+      const v = this.joint.variables.get(m.ordinate), times = lab.values.get(m.scale_parameter) * v.factor;
       return { name: k ? `measured: ${m.label}` : "measured joints, each named in the table", quiet: k > 0, titles: m.x.map(() => `measured: ${m.label} (${m.source})`), x: shown(over, m.x), y: m.y.map((y) => y * times), dashed: true, faint: true, colour: `hsl(${(k * 67) % 360} 35% 55%)` };
     });
   }

@@ -5,14 +5,14 @@ const [TURN_STEPS, LOADS, RUN_IN, LONG] = [180, 24, 20, 0.5];
 class Turn {
   constructor(place, joint, lab) {
     [this.joint, this.lab, this.about] = [joint, lab, joint.about.turn];
-    const v = (name) => joint.variables.get(name), { driven, speed, torque, load, error } = this.about;
+    const v = (name) => joint.variables.get(name), { input_angle: driven, speed, torque, load, error } = this.about;
     [this.driven, this.speed, this.torque, this.load, this.error] = [driven, speed, torque, load, error].map(v);
     this.rated = lab.values.get(this.about.rated);
-    [this.load_now, this.speed_now] = [this.rated / 2, this.about.usual];
+    [this.load_now, this.speed_now] = [this.rated / 2, this.about.default_speed];
     const asked = (key, like, doc, span) => lab.beside({ ...like, name: key.replace("_now", ""), doc, span, log: true }, this[key], (x) => { if (x > 0) { this[key] = x; lab.redraw(); } });
     place.append(element("div", { class: "row" },
       asked("load_now", this.load, "torque at the output that resists the motion", [0.02 * this.rated, 2 * this.rated]).node,
-      asked("speed_now", this.speed, this.speed.doc, [this.about.usual / 20, 3 * this.about.usual]).node));
+      asked("speed_now", this.speed, this.speed.doc, [this.about.default_speed / 20, 3 * this.about.default_speed]).node));
     const charts = element("div", { class: "charts" });
     place.append(charts);
     this.over = new Chart(charts, `Torque to turn ${driven}`, "");
@@ -27,7 +27,7 @@ class Turn {
   /** From rest to a load that resists the motion; false if the joint does not carry it. */
   loaded(load) {
     const { joint, lab, about } = this, values = new Map(lab.values);
-    for (const name of [about.driven, about.speed, about.follower, about.follower_speed]) values.set(name, 0);
+    for (const name of [about.input_angle, about.speed, about.follower, about.follower_speed]) values.set(name, 0);
     this.ratio = values.get(about.ratio);
     if (!joint.begin(values)) return false;
     const target = -Math.sign(this.ratio) * load; // the other shaft lags
@@ -44,9 +44,9 @@ class Turn {
   /** On to an angle of the driven shaft; the torque that it takes. */
   to(angle, speed) {
     const { joint, about } = this;
-    joint.set(about.driven, angle);
-    const slope = joint.derivative(about.error, about.driven), ahead = joint.get(about.error);
-    joint.step({ [about.driven]: angle, [about.speed]: speed, [about.follower]: angle / this.ratio + this.wound + ahead - this.start, [about.follower_speed]: speed * (1 / this.ratio + slope) });
+    joint.set(about.input_angle, angle);
+    const slope = joint.derivative(about.error, about.input_angle), ahead = joint.get(about.error);
+    joint.step({ [about.input_angle]: angle, [about.speed]: speed, [about.follower]: angle / this.ratio + this.wound + ahead - this.start, [about.follower_speed]: speed * (1 / this.ratio + slope) });
     return -joint.get(about.torque);
   }
 
