@@ -94,7 +94,9 @@ def levelling(assembly: box.Assembly, plot: Path | None) -> None:
     """f1 over the preload (Fig. 12)."""
     joint = load_default("bolted_joint").values
     states = [(float(p), 0.0) for p in PRELOADS]
-    found, even = (box.frequencies(assembly, joint, states, count=1, even=e) for e in (False, True))
+    found, even = (
+        box.frequencies(assembly, joint, states, count=1, uniform_pressure=e) for e in (False, True)
+    )
     for preload, f, g in zip(PRELOADS, found[:, 0], even[:, 0], strict=True):
         print(f"{preload / 1e3:5.0f} kN: f1 {f:8.2f} Hz, with uniform pressure {g:8.2f} Hz")
     slopes = np.diff(found[:, 0]) / np.diff(PRELOADS) * 1e3
@@ -132,7 +134,7 @@ def main() -> None:
     if args.identify:
         assembly = identify(assembly)
     joint = load_default("bolted_joint").values
-    found, even = (box.frequencies(assembly, joint, STATES, even=e) for e in (False, True))
+    found, even = (box.frequencies(assembly, joint, STATES, uniform_pressure=e) for e in (False, True))
     table(found, even)
     fine = box.frequencies(assembly, joint, STATES[:1], refinement=1.0)
     row("9 kN on elements half as long, change [%]", 100 * (fine[0] / found[0] - 1), "8.2f")

@@ -50,7 +50,7 @@ class Springs:
         moment, carries = np.diff(self.edges * slope - load), self.stiffness > 1e-12 * slope[-1]
         return np.divide(moment, self.stiffness, out=middle, where=carries)
 
-    def at_rest(self, count: int) -> Array:
+    def virgin_forces(self, count: int) -> Array:
         """Forces (count, 2, n) [Pa] of springs that have not moved."""
         return np.zeros((count, 2, self.edges.size - 1))
 

@@ -19,7 +19,7 @@ def shanks(beam, bodies):
             [6.0 * long, two, -6.0 * long, four],
         ]
     )
-    total = sp.csr_matrix((sum(b.size for b in bodies),) * 2)
+    total = sp.csr_matrix((sum(b.unknown_count for b in bodies),) * 2)
     for i, at in enumerate(beam.holes):
         motion = [_disc(body, body.mesh.boundaries[f"head{i}"], at) for body in bodies]
         stretch = sp.hstack([motion[0][2:], -motion[1][2:]])

@@ -23,7 +23,7 @@ SAME = 1e-12
 
 def runs(fmu, experiments):
     """{(experiment, interface): {output: course}, or what is wrong} of an FMU."""
-    with unpack_fmu(fmu, exchange=True) as (folder, description):
+    with unpack_fmu(fmu, model_exchange=True) as (folder, description):
         plans = [
             ExperimentPlan.create(fmu, folder, one, interface, description)
             for one in experiments

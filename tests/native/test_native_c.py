@@ -123,7 +123,7 @@ def c_of(name: str) -> Sources:
     """The sources of an FMU, or of the joint in a folder of tests/native/hosts."""
     if name == ELASTIC:
         (file,) = ELASTIC_FILES
-        model = MODELS["BoltedJoint"].of(file.joint, file.values)
+        model = MODELS["BoltedJoint"].with_parameters(file.joint, file.values)
         files = sources(model.name, file)
         return Sources(files, len(model.inputs), len(model.outputs), len(model.parameter_fields()))
     if model := (MODELS | PARTNERS).get(name):

@@ -452,14 +452,14 @@ def test_there_is_a_date_only_if_it_is_given(
 
 DIGEST = """
 import hashlib
-from jointfmu.parameters import default
+from jointfmu.parameters import load_default
 from jointfmu_fmu_src.native.description import build_description, fmi2_xml, fmi3_xml
 from jointfmu_fmu_src.native.page import documentation
 from jointfmu_fmu_src.native.terminals import terminals_and_icons
 from jointfmu.joints import MODELS
 
 for model in MODELS.values():
-    file = default(model.joint)
+    file = load_default(model.joint)
     files = documentation(model, file) | terminals_and_icons(model)
     files |= {"2": fmi2_xml(model, file, "{}", ["a.c"]), "3": fmi3_xml(model, file, "{}")}
     files |= {"build": build_description(model, ["a.c"])}

@@ -31,7 +31,7 @@ def pairs(*given: Named) -> list[tuple[ModuleType, str]]:
 
 TABLES = pairs(NUMBERS, COUNTS)
 EVERY = {
-    DRIVE: (*TABLES, *pairs(drive_native.NUMBERS), (hysteresis, "MOST_CORRECTIONS")),
+    DRIVE: (*TABLES, *pairs(drive_native.NUMBERS), (hysteresis, "MAX_LIMIT_ITERATIONS")),
     GEAR: (*TABLES, (curve, "CLOSING_RATIO")),
 }
 
@@ -77,7 +77,7 @@ def test_runtime_types_none_of_them_again() -> None:
 
 @pytest.mark.parametrize(
     ("name", "module", "constant", "size"),
-    [(DRIVE, curve, "MOST_NODES", "CURVE_NODES"), (BOLTED, curve, "MOST_NODES", "CURVE_NODES")],
+    [(DRIVE, curve, "MAX_NODES", "CURVE_NODES"), (BOLTED, curve, "MAX_NODES", "CURVE_NODES")],
 )
 def test_arrays_follow_a_count(
     monkeypatch: pytest.MonkeyPatch,
@@ -98,7 +98,7 @@ def test_arrays_follow_a_count(
 @pytest.mark.parametrize(
     ("name", "source", "module", "constant", "value"),
     [
-        (GEAR, "curve.c", curve, "MOST_NODES", 70_000),  # buckets hold a segment's number in 16 bits
+        (GEAR, "curve.c", curve, "MAX_NODES", 70_000),  # buckets hold a segment's number in 16 bits
         (GEAR, "approach.c", curve, "CLOSING_STEPS", 49),  # the error is measured on pairs of segments
     ],
 )

@@ -37,9 +37,9 @@ TOKEN = re.compile(r"\{[0-9a-f-]{36}\}")
 COARSE = """import sys
 from functools import partial
 from jointfmu_tools.cli import main
-from jointfmu_tools.fem.whole_joint import WholeJoint
+from jointfmu_tools.fem.whole_joint import JointFiniteElements
 
-WholeJoint.of = partial(WholeJoint.of, refinement={bodies})
+JointFiniteElements.from_assembly = partial(JointFiniteElements.from_assembly, refinement={bodies})
 sys.exit(main(sys.argv[1:]))"""
 COMMITTED = Path(__file__).resolve().parents[2] / "models" / "modelica"
 SURFACE = ["--material", "steel", "--Ra", "0.8"]

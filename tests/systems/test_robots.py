@@ -126,7 +126,7 @@ def test_loops_inside_have_the_area_of_the_fmus(name):
     springs = fit(own, own.rated_torque)
     for share in (0.1, 0.2, 0.3, 0.5, 0.7):
         torques, x = own.loop(share * own.rated_torque)
-        assert area(x, springs.torque(x)) == pytest.approx(area(x, torques), rel=0.05), share
+        assert area(x, springs.torque_at(x)) == pytest.approx(area(x, torques), rel=0.05), share
 
 
 @pytest.mark.parametrize(("speed", "since"), [(0.01, 0.0), (5.0, 0.045), (60.0, 0.045)])

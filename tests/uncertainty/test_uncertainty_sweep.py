@@ -261,7 +261,7 @@ import sys
 sys.path.insert(0, sys.argv[3])
 import test_uncertainty_sweep as tests
 from jointfmu_tools.uncertainty import sweep
-sweep.local_run = tests.local_dies_at_five
+sweep.run_locally = tests.local_dies_at_five
 fmu, out = map(tests.Path, sys.argv[1:3])
 done = sweep.sweep(fmu, tests.DRIVE, [{"surface.D": 2.5}] * 24, out, workers=2)
 print(done.runs, done.new_runs, done.failed, done.first_failure)
@@ -278,7 +278,7 @@ def test_a_local_run_that_kills_its_process(fmu, tmp_path):
 
 def test_a_run_that_kills_its_process_of_a_cluster(fmu, cluster, tmp_path, monkeypatch):
     """It is recorded with its parameters; those whose results went down with it are done again."""
-    monkeypatch.setattr("jointfmu_tools.uncertainty.plugin.distributed_run", dies_at_five)
+    monkeypatch.setattr("jointfmu_tools.uncertainty.plugin.run_on_dask_worker", dies_at_five)
     done = sweep(fmu, DRIVE, [{"surface.D": 2.5}] * 24, tmp_path, scheduler=cluster)
     assert (done.runs, done.new_runs, done.failed) == (24, 24, 1)
     assert sorted(indices(tmp_path)) == list(range(24))

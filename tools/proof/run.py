@@ -96,7 +96,7 @@ def _check_importer(importer: str) -> None:
             "install it with: pip install 'jointfmu[test]'"
         )
     if importer in SYSTEM_LIBRARIES:
-        code = f"from {__package__}.importers import load; load({importer!r})"
+        code = f"from {__package__}.importers import load_importer; load_importer({importer!r})"
         command = [sys.executable, "-c", code]
         result = subprocess.run(command, capture_output=True, text=True, errors="replace")
         if result.returncode:

@@ -71,7 +71,7 @@ def _joint_figures(kind: JointKind, outcome: Any) -> list[Figure]:
     module = load_tool_module(kind, "figures")
     figures: list[Figure] = module.figures(outcome) if module else []
     figures += [
-        *resonance_figures(outcome.ringing, kind.name, outcome.fmus),
+        *resonance_figures(outcome.ringing, kind.name, outcome.fmi2_folder),
         *ring_down_figures(outcome.decays, kind.name),
     ]
     return figures + motion_figures(outcome.arms, kind.name)

@@ -231,7 +231,7 @@ def test_no_closed_path_creates_energy(spring):
 
 def stored(spring, memory):
     """Elastic energy of the sliders [J]."""
-    it = spring.memory.split(memory)
+    it = spring.history_layout.split(memory)
     sliders = spring.foundation(it["reference"], it["lowest"])
     stiff = sliders.carried(it["approach"]).stiffness[:, None, :]
     each = np.divide(it["force"] ** 2, 2.0 * stiff, out=np.zeros_like(it["force"]), where=stiff > 0.0)

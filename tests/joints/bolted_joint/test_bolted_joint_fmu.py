@@ -379,7 +379,7 @@ def test_the_picture_of_points_without_an_outline() -> None:
     file = load_default("bolted_joint")
     shape = file.values.pattern.pressure_distribution()
     half = np.flatnonzero(shape.position[:, 1] > 0.0)
-    some = shape.part(half)
+    some = shape.select_nodes(half)
     share = some.share / some.share.sum()
     moved = replace(some, share=share, position=some.position - share @ some.position)
     moved = replace(moved, equal=some.equal / (share @ some.equal), tilt=some.tilt - share @ some.tilt)

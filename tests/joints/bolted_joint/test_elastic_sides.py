@@ -82,8 +82,8 @@ def embedded(joint, path):
 
 
 def at(spring, *six, memory=None, preload=PRELOAD, moment=0.0):
-    start = spring.at_rest() if memory is None else memory
-    return spring.evolve(preload, moment, RelativeDisplacement(np.array(six)), STILL, start)
+    start = spring.initial_history() if memory is None else memory
+    return spring.advance(preload, moment, RelativeDisplacement(np.array(six)), STILL, start)
 
 
 def stiffness(spring):
@@ -126,7 +126,7 @@ def test_the_report_states_the_whole_beside_its_parts(made):
     np.testing.assert_allclose(1.0 / found.whole, [out[name] for name in AXES], rtol=1e-6)  # the same motions
     fe = joint.fe
     np.testing.assert_allclose(found.shares, fe.shares, atol=0.02)
-    np.testing.assert_allclose(found.rigid, fe.rigid, rtol=0.03)
+    np.testing.assert_allclose(found.interface_stiffness, fe.rigid, rtol=0.03)
     np.testing.assert_allclose(found.bolt_force[:, 2], fe.bolt_force[:, 2], rtol=0.05)
 
     model = KINDS[joint.file.joint].models[0]
@@ -182,7 +182,7 @@ def test_a_tapped_joint_is_near_vdi_2230(made, capsys):
     words = [*M16, "--tapped", "--thickness", "40", "60", "--attached", "heads"]
     joint = made(*words)
     k, found = joint.file.values.bolt_stiffness, joint.spring.compliances(PRELOAD)
-    members = 1.0 / (1.0 / 4.403e9 + found.rigid[2])
+    members = 1.0 / (1.0 / 4.403e9 + found.interface_stiffness[2])
     assert 1.0 / found.whole[2] == pytest.approx(members + k, rel=0.15)
     assert found.load_factor == pytest.approx(k / (k + 4.403e9), rel=0.15)
     np.testing.assert_allclose(found.whole, joint.fe.whole, rtol=0.03)
@@ -297,7 +297,7 @@ def test_closed_paths_never_give_work(made):
     unit = np.array([3e-6, 3e-6, 1e-6, 2e-5, 2e-5, 5e-5])
     for _ in range(4):
         a, b = rng.uniform(-1.0, 1.0, (2, 6)) * unit
-        memory, before, work = spring.at_rest(), None, 0.0
+        memory, before, work = spring.initial_history(), None, 0.0
         for angle in np.linspace(0.0, 2.0 * np.pi, 25):
             six = a * np.sin(angle) + b * (1.0 - np.cos(angle))
             out, memory = at(spring, *six, memory=memory, preload=15e3)
@@ -328,7 +328,7 @@ def test_the_fmu_is_the_package(made, tmp_path, flavour):
         build(["BoltedJoint"], [flavour], joint.file, tmp_path)
     (path,) = tmp_path.rglob("BoltedJoint.fmu")
     rng, six = np.random.default_rng(3), np.zeros(6)
-    unit, memory = np.array([1e-6, 1e-6, 5e-7, 1e-5, 1e-5, 2e-5]), joint.spring.at_rest()
+    unit, memory = np.array([1e-6, 1e-6, 5e-7, 1e-5, 1e-5, 2e-5]), joint.spring.initial_history()
     _, memory = at(joint.spring, *six, memory=memory, preload=15e3)
     fmu = Fmu(path).start({"preload": 15e3})
     for step in range(30):
@@ -401,7 +401,7 @@ def test_the_fmu_loses_and_regains_preload_as_the_package(made, tmp_path, flavou
     (path,) = tmp_path.rglob("BoltedJoint.fmu")
     least = {"f": 1e-5, "m": 1e-6, "F": 1e-5, "K": 100.0, "s": 1e-9, "C": 1e-2, "E": 1e-12, "e": 1e-9}
     for seed, exchange in enumerate((False, True, False, True)):
-        rng, memory = np.random.default_rng(seed), joint.spring.at_rest()
+        rng, memory = np.random.default_rng(seed), joint.spring.initial_history()
         fmu = Fmu(path, exchange=exchange).start({"preload": 15e3})
         _, memory = at(joint.spring, *STILL, preload=15e3, memory=memory)
         for preload, six in random_preloads(rng, 15e3, 800.0, 30):
@@ -481,7 +481,7 @@ def test_a_path_far_into_slip_and_opening_is_found_with_few_parts(made, monkeypa
     monkeypatch.setattr(equilibrium.JointAssembly, "_solve_newton", watched)
     for _ in range(24):
         a, b = rng.uniform(-1.0, 1.0, (2, 6)) * unit
-    memory = spring.at_rest()
+    memory = spring.initial_history()
     for angle in np.linspace(0.0, 2.0 * np.pi, 25)[:15]:
         six = a * np.sin(angle) + b * (1.0 - np.cos(angle))
         memory = at(spring, *six, memory=memory, preload=15e3)[1]
@@ -494,7 +494,7 @@ def test_long_steps_back_from_gross_slip_are_found(made):
     spring, rng = made(*M16, "--attached", "heads").spring, np.random.default_rng(1)
     unit = np.array([5e-6, 5e-6, 5e-6, 1e-4, 1e-4, 3e-4])
     a, b = rng.uniform(-1.0, 1.0, (3, 2, 6))[2] * unit
-    memory = spring.at_rest()
+    memory = spring.initial_history()
     for angle in np.linspace(0.0, 4.0 * np.pi, 17):
         out, memory = at(spring, *(a * np.sin(angle) + b * (1.0 - np.cos(angle))), memory=memory)
     assert out["E_loss"] > 0.0
@@ -636,7 +636,7 @@ def test_loops_give_friction_and_roughness_of_the_whole(made, tmp_path, monkeypa
     """Loops of the joint itself are its law's within 0.2 % of the friction, in 24 steps, where Masing's rule
     alone misses more; with noise they give what was put in, here in 12 steps."""
     joint, path, noise = made(*FOUR, preload=15e3), tmp_path / "loops.csv", np.random.default_rng(1)
-    rows, past = [], joint.spring.at_rest()
+    rows, past = [], joint.spring.initial_history()
     for x in (2.4e-6 * np.sin(np.linspace(0.0, 3.0 * np.pi, 73))).tolist():
         out, past = at(joint.spring, x, *STILL[1:], memory=past, preload=15e3)
         rows.append((x, -out["f_x"]))

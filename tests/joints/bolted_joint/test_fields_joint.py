@@ -60,7 +60,7 @@ def direct(joint, shape, load):
     elastic = replace(joint, memory=False)
     curve = SumFunctions.from_joint(joint, PRELOAD, preload_pressure).curve
     spring = replace(BoltedJointSpring.of_nodes(elastic, shape), curve=curve)
-    force = load.preload * PRELOAD
+    force = load.preload_ratio * PRELOAD
     moment = load.moment * force * joint.row_distance * joint.row_bolts
     start = spring.preloaded_approach(force, moment)
     found = []
@@ -75,7 +75,7 @@ def direct(joint, shape, load):
 def test_points_keep_the_sums(reduced):
     """At loads that the reduction never saw, within what it promises; the peak pressure exactly."""
     joint, shape, found = reduced
-    assert found.points < 0.35 * found.nodes
+    assert found.point_count < 0.35 * found.nodes
     assert found.deviation <= RELATIVE_TOLERANCE
     rng = np.random.default_rng(11)
     lowest = SumFunctions.from_joint(joint, PRELOAD, preload_pressure).curve.displacement[0]
@@ -99,7 +99,7 @@ def test_points_balance(reduced):
     assert np.all(points.share > 0.0)
     for one in (shape, points):
         assert one.share.sum() == pytest.approx(1.0, rel=1e-12)
-        assert one.share @ one.equal == pytest.approx(1.0, rel=1e-12)
+        assert one.share @ one.preload_shape == pytest.approx(1.0, rel=1e-12)
         assert one.share @ one.tilt == pytest.approx(0.0, abs=1e-12)
         np.testing.assert_allclose(one.share @ one.position, 0.0, atol=1e-14)
         # a moment M shifts M/L_a from row to row: the pressures balance it if this is L_a
@@ -236,7 +236,7 @@ def test_file_survives_and_says_where_it_comes_from(imported, tmp_path):
     assert float(FIELD.area.sum()) == again.values.A_0
     assert "pattern." not in " ".join(flatten_parameters(again.values))
     assert again.origins["field.tilt"] == "derived"
-    assert again.sources["field.share"].endswith(f"{found.points} points for {found.nodes} nodes")
+    assert again.sources["field.share"].endswith(f"{found.point_count} points for {found.nodes} nodes")
     assert again.sources["A_0"] == "a test's field, sum of the nodal areas"
 
 

@@ -61,7 +61,7 @@ def test_angle_of_the_polygon():
 def test_angles_are_kept(one):
     found = catalogue.fit_pair(one)
     kept = np.array([one.T1, one.T2, one.rated])
-    np.testing.assert_allclose(wind_up(found.parameters.values, kept), one.angle(kept), rtol=0.01)
+    np.testing.assert_allclose(wind_up(found.parameters.values, kept), one.wind_up(kept), rtol=0.01)
     assert found.parameters.values.max_torque == catalogue.MAX_TORQUE_RATIO * one.rated
 
 

@@ -15,6 +15,4 @@ def _line(spring, state, error):
 
 
 COLUMNS = (KIND.variables["s_rel"], Variable("pull", "N", "force that holds it"), KIND.variables["K"])
-EXPORTS = Exports(
-    curve=LoadCurve(meaning="pull over elongation", columns=COLUMNS, name="force", compute_table=_line)
-)
+EXPORTS = Exports(curve=LoadCurve("pull over elongation", COLUMNS, "force", _line))
