@@ -27,7 +27,10 @@ EXTRAS = (
     "ziglang",
 )
 PROGRAM = f"import sys; sys.modules.update(dict.fromkeys({EXTRAS}));"
-FEW = "from jointfmu_tools.report import course; course._RAMP_POINTS = 11; course._LOAD_CYCLE = course.CyclicPath(points=8);"
+FEW = (
+    "from jointfmu_tools.report import course; course._RAMP_POINTS = 11;"
+    "course._LOAD_CYCLE = course.CyclicPath(points=8);"
+)
 """A page's ramp and loops of few points are drawn as those of many are."""
 MAIN = "from jointfmu_tools.cli import main; sys.exit(main(sys.argv[1:]))"
 
