@@ -1,4 +1,4 @@
-"""Print every figure of docs/validity.md on partial slip, two minutes; `--images` draws its picture too.
+"""Print the tables of docs/validity_friction.md, two minutes; `--images` draws its picture too.
 
 `python benchmarks/partial_slip.py [--images]`
 """

@@ -1,4 +1,4 @@
-"""Print every figure of docs/validity.md on the law `roughness`, six minutes.
+"""Print the tables of docs/validity_stiffness.md on the law `roughness`, six minutes.
 
 `python benchmarks/roughness_law.py`
 """

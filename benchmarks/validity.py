@@ -1,4 +1,4 @@
-"""Print every figure of docs/validity.md, a quarter of an hour; `--images` draws its pictures too.
+"""Print the tables of docs/validity_stiffness.md, a quarter of an hour; `--images` draws its pictures too.
 
 `python benchmarks/validity.py [--images]`
 """

@@ -1,4 +1,4 @@
-"""Tables of docs/validity.md that need no boundary elements: laws and measured joints."""
+"""Tables of docs/validity_stiffness.md that need no boundary elements: laws and measured joints."""
 
 from dataclasses import replace
 

@@ -145,7 +145,7 @@ def test_law_without_load(law_json, law):
 HEIGHTS = {
     "both sides": (["Ra1=0.8e-6", "Ra2=1.6e-6"], np.sqrt(np.pi / 2.0) * np.hypot(0.8e-6, 1.6e-6), None),
     "one side": (["Rq2=0.8e-6"], 0.8e-6, None),
-    # docs/validity.md: 7.2 um of Zhao's surface
+    # docs/validity_stiffness.md: 7.2 um of Zhao's surface
     "a surface": (["surface.D=1.42", "surface.G=1.21e-8", "longest_wave=1e-3"], 7.2e-6, 0.58),
 }
 

@@ -1,7 +1,7 @@
 """The law `roughness` against boundary elements on fresh surfaces, measured joints, a published contact law.
 
-The tables of docs/validity.md come from benchmarks/roughness_law.py; here are few surfaces with seeds of
-their own, and every measured joint. Bounds are those that the law has to keep.
+The tables of docs/validity_stiffness.md come from benchmarks/roughness_law.py. The tests have few surfaces,
+with other seeds, and every measured joint. Bounds are those that the law has to keep.
 """
 
 import interface_laws

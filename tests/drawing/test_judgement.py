@@ -112,7 +112,7 @@ def test_beyond_the_hardness_and_the_nominal_area():
 
 
 def test_the_law_roughness_is_proven_in_a_range():
-    """x = p A_0/(E* h longest_wave) from 0.3, y = p longest_wave/(E* h) to 1.5 (docs/validity.md)."""
+    """x = p A_0/(E* h longest_wave) from 0.3, y = p longest_wave/(E* h) to 1.5 (validity_stiffness.md)."""
     law = load_default("gear_mesh", "roughness").values
     modulus = 0.5 * 206e9 / (1.0 - 0.26**2) * law.h
     few, flat = 0.3 * modulus * law.longest_wave / law.A_0, 1.5 * modulus / law.longest_wave

@@ -1,8 +1,8 @@
 """Friction with memory against boundary elements with partial slip, which know nothing of its theory.
 
-The tables of docs/validity.md come from benchmarks/partial_slip.py; here are surfaces of other seeds, on 64
-points. Bounds on displacements and loops are those that the theory keeps where many hills carry, 5 % and
-10 %, and on most single ones; the solver's own are errors seen on these grids, less than three times.
+The tables of docs/validity_friction.md come from benchmarks/partial_slip.py. The tests have surfaces of other
+seeds, on 64 points. Bounds on displacements and loops are those that the theory keeps where many hills carry,
+5 % and 10 %, and on most single ones; the solver's own are errors seen on these grids, less than three times.
 """
 
 import numpy as np

@@ -1,4 +1,4 @@
-"""Boundary elements against closed forms, and what docs/validity.md says of the laws, on small grids.
+"""Boundary elements against closed forms, and claims of docs/validity_stiffness.md, on small grids.
 
 The numbers of the document come from benchmarks/validity.py; the bounds here are wide enough for grids
 of 64 and 128 points, whose answers were seen to lie within a factor of two of those of 256.

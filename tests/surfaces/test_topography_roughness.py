@@ -61,7 +61,7 @@ def test_one_surface_has_one_height():
 
 
 def test_specimen_of_zhao():
-    """Waves up to 1 mm of its D and G: 7.2 um, the figure of docs/validity.md."""
+    """Waves up to 1 mm of its D and G: 7.2 um, the figure of docs/validity_stiffness.md."""
     assert fractal.rms_height(1.42, 1.21e-8, 1e-3) == pytest.approx(7.2e-6, rel=0.01)
 
 

@@ -112,15 +112,16 @@ ORIGIN_MEANINGS = {
     "user": "set by you",
 }
 """{origin of a number: meaning}, for all parameters.ORIGINS."""
-TOPICS = (
-    "In short",
-    "The laws on their own surfaces",
-    "Measured joints",
-    "Tangential stiffness",
-    "Damping",
-    "What this does not show",
-)
-"""Headings of docs/validity.md that the page refers to."""
+TOPICS = {
+    "docs/validity.md": ("In short", "What this does not show"),
+    "docs/validity_stiffness.md": (
+        "The laws on their own surfaces",
+        "Measured joints",
+        "Tangential stiffness",
+    ),
+    "docs/validity_friction.md": ("Damping",),
+}
+"""{page of the documentation: headings} that the report refers to."""
 
 
 class _ReportRow(NamedTuple):

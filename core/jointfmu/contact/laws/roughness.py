@@ -3,7 +3,8 @@
 The law has no sum over single spots: the combined rms height h of both surfaces determines the stiffness. For
 many spots p ~ exp(approach/(gamma h)) (Persson 2007; Akarapu, Sharp, Robbins 2011), so the stiffness per area
 is p/(gamma h), independent of the modulus. At small load only a few hills of the longest wave are in contact,
-and the stiffness is larger (finite size; Pastewka and others 2013). Range of validity: docs/validity.md.
+and the stiffness is larger (finite size; Pastewka and others 2013). Range of validity:
+docs/validity_stiffness.md.
 """
 
 from dataclasses import dataclass
@@ -23,7 +24,7 @@ ONSET_LOAD_RATIO = 1e-6
 """Load over E* h longest_wave [1] at which the stiffness begins: far below the load of a single hill."""
 MIN_LOAD_RATIO = 0.3
 """Smallest load over E* h longest_wave [1] at which the law was compared with boundary elements: below, a
-single hill is in contact (docs/validity.md).
+single hill is in contact (docs/validity_stiffness.md).
 """
 MAX_PRESSURE_RATIO = 1.5
 """Largest pressure over E* h/longest_wave [1] at which the law was compared with boundary elements: above,
