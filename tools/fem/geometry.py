@@ -86,9 +86,9 @@ LENGTH_TOLERANCE = 1e-9
 class Layer:
     """Layer of a body: a rectangular slab with an optional opening.
 
-    bottom, top    : distances from the contact plane [m]
-    outline        : half lengths (2) of the outer rectangle along x and y [m]
-    opening        : half lengths (2) of the rectangular opening along x and y [m]; 0: no opening
+    bottom_distance, top_distance : distances from the contact plane [m]
+    outline_half_lengths : half lengths (2) of the outer rectangle along x and y [m]
+    opening_half_lengths : half lengths (2) of the rectangular opening along x and y [m]; 0: no opening
     has_bolt_holes : whether the bolt holes pass through the layer
     """
 
