@@ -100,12 +100,13 @@ MAX_GROUPS = 4096
 class LoadSums:
     """The 9 sums of a field in m load cases, relative to their scale.
 
-    loads   : (m) load cases
-    opening : (m) [m] normal motion
-    groups  : (m, 9, g) sums over groups of nodes (`nodes_per_group`), over `scale`
-    total   : (m, 9) sums over all nodes, over `scale`
-    scale   : (m, 9) sum in the load case, or in the preloaded joint where that is larger. For first and mixed
-              moments: force or stiffness times the radius of gyration, times COUPLING_FACTOR
+    load_cases : (m) load cases
+    opening    : (m) [m] normal motion
+    group_sums : (m, 9, g) sums over groups of nodes (`nodes_per_group`), over `sum_scales`
+    total_sums : (m, 9) sums over all nodes, over `sum_scales`
+    sum_scales : (m, 9) sum in the load case, or in the preloaded joint where that is larger. For first and
+                 mixed moments: force or stiffness times the radius of gyration, times
+                 COUPLING_TOLERANCE_FACTOR
     """
 
     loads: tuple[LoadCase, ...]
@@ -136,10 +137,10 @@ class SumFunctions:
 
     These are the pressure p times 1, x, y, and the stiffness k = dp/d(approach) times 1, x, y, y^2, x^2, x y.
 
-    curve     : pressure as a function of the approach
-    preload   : [N] per bolt of the field
-    pressures : function of the joint for nodal pressures, see FieldAdapter
-    approach_table : pressures, their cubic roots and approaches, for the start of Newton's method
+    curve           : pressure as a function of the approach
+    preload         : [N] per bolt of the field
+    nodal_pressures : function of the joint for nodal pressures, see FieldAdapter
+    approach_table  : pressures, their cubic roots and approaches, for the start of Newton's method
     """
 
     joint: BoltedInterface
@@ -282,7 +283,7 @@ def _node_blocks(
 ) -> Iterator[PressureDistribution]:
     """Divide the nodes into blocks whose values in all load cases fit into the processor's cache.
 
-    loads        : number of load cases
+    case_count   : number of load cases
     whole_groups : divide only between groups
     """
     unit = nodes_per_group(shape.share.size) if whole_groups else 1
