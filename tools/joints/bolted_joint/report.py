@@ -226,4 +226,4 @@ def _bolt_force_panel(spring: BoltedJointSpring, preload: float, moment: float, 
 
 FIGURES = {"BoltedJoint": joint_figures}
 BESIDE: dict[str, Callable[[Model, ParameterFile], list[ComparisonRow]]] = {}
-"""Empty: there are no catalogue values of bolted joints to compare with."""
+"""Comparisons with catalogue values: none, because there are no catalogues of bolted joints."""

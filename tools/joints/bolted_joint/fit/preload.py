@@ -154,9 +154,9 @@ def fit(
 class PreloadCurve:
     """Measured stiffness or frequency as a function of the preload.
 
-    quantity : "stiffness" [N/m] or "frequency" [Hz]
-    preload  : (n) [N] of each bolt, ascending
-    value    : (n) measured values
+    quantity_name   : "stiffness" [N/m] or "frequency" [Hz]
+    preload         : (n) [N] of each bolt, ascending
+    measured_values : (n) measured values
     """
 
     quantity: str

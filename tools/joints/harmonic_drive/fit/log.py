@@ -339,7 +339,7 @@ def _speed_picture(samples: Samples, fitted_log: FittedLog, misfit: Array) -> Pi
 
 
 def _friction_picture(x: Array, y: Array, misfit: Array, line: tuple[Array, Array], label: str) -> Picture:
-    """Picture of friction torques y (n) [N.m] over x (n), with errors (n) [N.m] and a curve of the law."""
+    """Plot of friction torques (n) [N.m] over an abscissa (n): log, law, and errors (n) [N.m] of the law."""
     return Picture(
         x,
         MILLI_PER_UNIT * y,
