@@ -32,7 +32,7 @@ class BoltedContact:
 
     @classmethod
     def from_assembly(cls, assembly: Assembly, refinement: float = 1.0) -> "BoltedContact":
-        """Mesh an assembly.
+        """Mesh an assembly and compute the nodal loads of unit bolt forces.
 
         refinement : [1] divides the sizes of all elements
 

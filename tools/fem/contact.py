@@ -42,7 +42,7 @@ class PressureLaw(Protocol):
 
 @dataclass(frozen=True)
 class Interface:
-    """Quadrature of the plane contact area.
+    """Plane contact area of two bodies: finite-element basis and quadrature points.
 
     basis                : finite-element basis of scikit-fem on a plane mesh [m]
     nodes                : (2, n) [m]; the corners of the mesh come first
@@ -69,7 +69,7 @@ class Interface:
 
     @classmethod
     def from_mesh(cls, mesh: MeshQuad, element: Element | None = None) -> "Interface":
-        """Interface on a plane mesh.
+        """Basis and quadrature points on a plane mesh of the contact area.
 
         element : restriction of the bodies' element to the contact plane; None: quadratic, of ElementHexS2
         """

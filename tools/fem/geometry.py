@@ -121,7 +121,7 @@ class Plate(CheckedParameters):
         return self.thickness
 
     def layers(self) -> tuple[Layer, ...]:
-        """The slabs of the body, from the contact outward."""
+        """Layers of the body, from the contact outward."""
         return (Layer(0.0, self.thickness, (0.5 * self.length, 0.5 * self.width), has_bolt_holes=True),)
 
 
@@ -139,7 +139,7 @@ class TappedPlate(Plate):
             )
 
     def layers(self) -> tuple[Layer, ...]:
-        """The slabs of the body, from the contact outward."""
+        """Layers of the body, from the contact outward."""
         half = (0.5 * self.length, 0.5 * self.width)
         return Layer(0.0, self.depth, half, has_bolt_holes=True), Layer(self.depth, self.thickness, half)
 
@@ -182,7 +182,7 @@ class BoxSection:
         return self.flange_thickness
 
     def layers(self) -> tuple[Layer, ...]:
-        """The slabs of the body, from the contact outward."""
+        """Layers of the body, from the contact outward."""
         opening = self._half_lengths(self.flange_width)
         outside, inside = self._half_lengths(self.wall_inset), self._half_lengths(self.wall_inset + self.wall)
         base, end = self.flange_thickness, self.height - self.floor

@@ -57,7 +57,7 @@ class ContactEnergy:
     law: Callable[[Array], list[Array]]
 
     def minimise(self, offset: Array, initial_minimum: EnergyMinimum | None = None) -> EnergyMinimum:
-        """Find the minimum by Newton's method.
+        """Find the minimum of the energy by Newton's method.
 
         approach_offset : (q) [m] approach at zero displacement
         initial_minimum : minimum of the same energy under another load, to start from; None: start at u = 0

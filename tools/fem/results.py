@@ -19,7 +19,7 @@ from .modes import NaturalModes
 
 
 def vtu_content(points: Array, cell_type: str, cells: Index, data: Mapping[str, Array]) -> bytes:
-    """Content of a VTU file.
+    """Content of a VTU file of a mesh, with values at its points.
 
     points     : (k, 3) [m]
     cell_type  : name of the cell type in meshio

@@ -56,9 +56,9 @@ class ContactPlane:
 
 @dataclass(frozen=True, slots=True)
 class ContactSurface:
-    """Nodes (n) of the contact.
+    """Contact surface: nodes (n) with area, position in the plane of the joint, and pressure.
 
-    source_result : nodal result they come from
+    source_result : nodal result from which the nodes come
     node_indices  : (n) indices in the nodal result
     area          : (n) [m2]
     position      : (n, 2) [m] in the plane of the joint

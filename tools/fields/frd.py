@@ -31,7 +31,7 @@ RESULT_NAME, PRESSURE_COMPONENT = "CONTACT", "CPRESS"
 
 
 def read_frd(path: Path, length_unit: float, pressure_unit: float) -> NodalResult:
-    """Read the last contact result of a file.
+    """Read the last contact result of a CalculiX file.
 
     length_unit, pressure_unit : units of the file in SI units
 

@@ -257,7 +257,7 @@ class _SumSystem:
         sample: PressureDistribution,
         load_sums: LoadSums,
     ) -> "_SumSystem":
-        """System with the sums in the first load cases."""
+        """System of the balance and of the sums in initial load cases."""
         scale = np.maximum(np.max(np.abs(balance_functions(shape)), axis=0), np.finfo(float).tiny)
         mixing = np.random.default_rng(SEED).standard_normal((SKETCH_ROWS, sample.share.size))
         mixing *= np.sqrt(sample.share / SKETCH_ROWS)

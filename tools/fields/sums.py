@@ -55,7 +55,7 @@ def max_moment_ratio(joint: BoltedInterface, shape: PressureDistribution) -> flo
 
 
 def initial_load_cases(moment_limit: float) -> list[LoadCase]:
-    """Initial load cases of the selection.
+    """Load cases from which the selection of points starts.
 
     moment_limit : largest moment over the moment that unloads a row of bolts [1]
     """
@@ -116,12 +116,12 @@ class LoadSums:
     scale: Array
 
     def select(self, index: NDArray[np.intp] | NDArray[np.bool_]) -> "LoadSums":
-        """Sums in the selected load cases."""
+        """Select the sums in some of the load cases."""
         loads = tuple(self.loads[i] for i in np.arange(len(self.loads))[index])
         return LoadSums(loads, self.opening[index], self.groups[index], self.total[index], self.scale[index])
 
     def concatenate(self, other: "LoadSums") -> "LoadSums":
-        """Sums in the load cases of both objects."""
+        """Concatenate the sums in the load cases of two objects."""
         return LoadSums(
             self.loads + other.loads,
             np.concatenate([self.opening, other.opening]),
@@ -153,7 +153,7 @@ class SumFunctions:
     def from_joint(
         cls, joint: BoltedInterface, preload: float, pressures: PressureFunction
     ) -> "SumFunctions":
-        """Functions of a joint at a preload [N] per bolt."""
+        """Functions whose sums a joint needs, at a preload [N] per bolt."""
         curve = tabulate_approach(joint)
         x = curve.displacement
         fine = np.append(x[:-1, None] + np.diff(x)[:, None] * _TABLE_FRACTIONS, x[-1])

@@ -18,7 +18,7 @@ from .decay import DecayPoints, analyse_decay
 from .hysteresis import ForcedResponse, FreeVibration
 
 MIN_ROWS = 8
-"""Minimum number of rows of a file."""
+"""Minimum number of rows of a measurement file."""
 RUN_COLUMN = "run"
 """Column with the number of the run, if a file holds several runs."""
 COLUMN_SYNONYMS = {

@@ -71,7 +71,7 @@ class MeasurementModel:
 def build_model(
     measurement: Measurement, law: Law, inertia_option: str, inertia: float | None, damping: float
 ) -> MeasurementModel:
-    """Build the model of a measurement.
+    """Build the model of a measurement; check inertia and damping ratio.
 
     inertia_option : name of the option for the inertia, used in error messages
 

@@ -142,7 +142,7 @@ def _to_tuple(values: Array) -> tuple[float, ...]:
 
 
 def _energy_modes(linear: LinearJoint, states: Array, motions: Array) -> Array:
-    """Modes (n, k), orthonormal in the energy norm.
+    """Compute modes (n, k) of the bodies that are orthonormal in the energy norm.
 
     The first modes span the response of the linear joint to unit motions; the others come from the proper
     orthogonal decomposition of the remaining deformation.

@@ -57,7 +57,7 @@ def shear_combinations(motion: Array) -> Array:
 
 @dataclass(frozen=True)
 class ShearStates:
-    """States of the joint in shear.
+    """States of the joint in shear: motion of side 2, and modal coordinates of the bodies.
 
     motion            : (s, 3) [m, rad] of side 2 along x, along y and about z
     modal_coordinates : (s, k) [m]
@@ -303,7 +303,7 @@ class PatchFit:
             return np.einsum("scm,cmh->shm", *factors)
 
         def patch_sums(slider_values: Array) -> Array:
-            """Sum (s, m) over the sliders of each patch."""
+            """Sum of slider values (s, m) over the sliders of each patch."""
             return slider_values.reshape(n_states, -1, count).sum(axis=1)
 
         forces, loss = np.zeros((2, n_states, 3 + modes, 2, count)), np.zeros((n_states, 2, count))

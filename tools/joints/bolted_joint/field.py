@@ -42,7 +42,7 @@ class PlaneLayout:
 
     @classmethod
     def from_joint(cls, joint: Bolted) -> "PlaneLayout":
-        """Layout from the parameters of a joint."""
+        """Bolt layout and outline of the contact, from the parameters of a joint."""
         pattern = joint.pattern
         bodies = joint.bodies if isinstance(joint.bodies, ElasticBodies) else None
         head = bodies.head_diameter if bodies else 0.0

@@ -87,7 +87,7 @@ def friction_figures(load_history: LoadHistory) -> list[Figure]:
 
 
 class FrictionResult(NamedTuple):
-    """Effect of one friction coefficient.
+    """Gross-slip force and loss factor for one friction coefficient.
 
     mu          : friction coefficient [1]
     slip_force  : shear force [N] of gross slip

@@ -104,7 +104,7 @@ def list_drives() -> tuple[CatalogueEntry, ...]:
 
 
 def _drives_of_row(row: Mapping[str, str], torques: TorqueTable) -> Iterator[CatalogueEntry]:
-    """Drives for which a row of stiffness holds."""
+    """Yield the drives for which a row of the table of stiffnesses holds."""
     group = row["series"].removeprefix("HD ")
     ratios = [row["ratio"]]
     if row["ratio"].endswith("+"):

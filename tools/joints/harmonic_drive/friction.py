@@ -66,7 +66,7 @@ class ScaledNumber(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class ScaledFriction:
-    """Scaled friction of one drive.
+    """Friction of one drive, scaled from drives with published friction.
 
     starting_torque : [N.m]
     viscous_torque  : [N.m] increase of the torque from start to 2000 rev/min

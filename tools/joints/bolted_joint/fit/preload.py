@@ -171,7 +171,7 @@ class PreloadCurve:
 
 
 def _read_curve(path: Path) -> PreloadCurve:
-    """Read and check the file."""
+    """Read and check a measured curve: stiffness or frequency over preload."""
     table = columns.read_columns(path, COLUMN_UNITS, MIN_POINTS)
     preload = table.require_column("preload", COLUMN_UNITS)
     quantities = [name for name in ("stiffness", "frequency") if name in table.columns]

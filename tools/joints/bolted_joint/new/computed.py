@@ -196,7 +196,7 @@ def _interface_stiffness(
 
 
 Facts = dict[str, tuple[float, str, str]]
-"""{name: (value, unit, explanation)}."""
+"""Results of a joint: {name: (value, unit, explanation)}."""
 
 
 def compute_facts(

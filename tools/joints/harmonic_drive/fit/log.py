@@ -236,7 +236,7 @@ def _confidence_intervals(solution: Solution) -> dict[str, tuple[float, float]]:
 
 
 def _describe_ranges(samples: Samples) -> str:
-    """Text with the ranges of speed and temperature."""
+    """Describe the ranges of speed and temperature in logs, as text."""
     speed = np.abs(samples.dq)
     text = f"speeds of the joint {speed.min():.3g} to {speed.max():.3g} rad/s"
     known = samples.temperature[np.isfinite(samples.temperature)]

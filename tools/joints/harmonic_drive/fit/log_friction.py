@@ -39,7 +39,7 @@ class LinearTerms:
 
     @classmethod
     def at_samples(cls, samples: Samples, ratio: float) -> "LinearTerms":
-        """Terms at samples of logs, for a speed ratio > 0."""
+        """Evaluate the linear terms at samples of logs, for a speed ratio > 0."""
         columns: dict[str, Array] = {}
         dynamic = samples.is_dynamic.astype(float)
         measured = np.isfinite(samples.gravity)

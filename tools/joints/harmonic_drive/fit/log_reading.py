@@ -68,7 +68,7 @@ class Samples:
     is_developed: NDArray[np.bool_]
 
     def select(self, rows: NDArray[np.bool_] | SampleIndices) -> "Samples":
-        """Select rows, by a mask or by indices."""
+        """Select samples, by a mask or by indices."""
         return Samples(*(getattr(self, field.name)[rows] for field in fields(self)))
 
 

@@ -119,14 +119,14 @@ def read_curve(path: str | Path, start: ParameterFile | None, rated_torque: floa
 
 
 def describe_range(line: loop.Backbone) -> str:
-    """Text with the range of torques."""
+    """Describe the range of torques of a measured curve, as text."""
     return f"torque {line.torque[0]:.4g} to {line.torque[-1]:.4g} N.m"
 
 
 def make_result(
     record: MeasuredCurve, result: ParameterFile, solution: Solution, offset: float, noise: float
 ) -> FitResult:
-    """Result of a fit with facts, picture and notes.
+    """Make the result of a fit: parameter file, facts, plot and notes.
 
     angle_offset : [rad] angle at zero torque
     angle_noise  : [rad] standard deviation of one sample
