@@ -6,9 +6,9 @@ from contextlib import contextmanager
 
 @contextmanager
 def require_fem_packages(feature: str) -> Iterator[None]:
-    """Context for finite elements: a missing package or system library of gmsh raises ValueError (one line).
+    """Context manager for finite-element calculations: a missing package or library raises ValueError.
 
-    feature : names the calculation in the message
+    feature : name of the calculation in the message
 
     Inside, BLAS uses one thread. More threads gain little, and they wait for each other if other processes
     share the cores.

@@ -36,11 +36,11 @@ corners of a body, and its contact, give values of order 1."""
 class RigidBalance:
     """Generalised forces of loads and contact on the rigid-body motions (each of rms displacement 1 m).
 
-    force                : (m) [N] of the loads on the motions that only the contact can stop
+    generalised_load     : (m) [N] of the loads on the motions that only the contact can stop
     rigid_approach       : (q, m) [1] approach at the quadrature points for these motions
     unsupported_approach : (q, k) [1] approach for the motions that no support stops in the computation
     total_load           : [N] sum of the loads' magnitudes
-    corners              : indices of the quadrature points on the convex hull of the contact
+    hull_points          : indices of the quadrature points on the convex hull of the contact
     """
 
     force: Array
@@ -62,9 +62,10 @@ class RigidBalance:
     ) -> "RigidBalance":
         """Balance of bodies under loads (n) [N] on each body.
 
-        traces   : matrices (q, n) [1]: approach at the quadrature points per displacement of each body
-        supports : unknowns of each body that stay zero
-        position : (q, 2) [m] of the quadrature points
+        approach_matrices   : matrices (q, n) [1]: approach at the quadrature points per displacement of each
+                              body
+        supported_unknowns  : unknowns of each body that stay zero
+        quadrature_position : (q, 2) [m] of the quadrature points
         supports_carry_load : True: supports may carry load. False: they only stop motions that are not loaded
         """
         motions = [rigid_motions(body) for body in bodies]

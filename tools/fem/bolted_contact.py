@@ -32,7 +32,7 @@ class BoltedContact:
 
     @classmethod
     def from_assembly(cls, assembly: Assembly, refinement: float = 1.0) -> "BoltedContact":
-        """Mesh an assembly.
+        """Mesh an assembly and compute the nodal loads of unit bolt forces.
 
         refinement : [1] divides the sizes of all elements
 
@@ -150,7 +150,9 @@ DEFAULT_MOMENT_RATIO = 1.0 / 3.0
 def with_contact_field(
     file: ParameterFile, solution: JointSolution, preload: float, moment: float = 0.0
 ) -> tuple[ParameterFile, PressureDistribution]:
-    """Parameters of the joint with the computed pressure field, and the field at all nodes.
+    """Insert the computed pressure field into the parameters of a joint.
+
+    Returns the parameters, and the pressure shape at all nodes.
 
     A second field gives the change of pressure with a moment about x.
 

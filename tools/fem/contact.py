@@ -31,7 +31,7 @@ QUADRATURE_DEGREE = 4
 
 
 class PressureLaw(Protocol):
-    """Pressure as a function of the approach, for example a curve of jointfmu.mechanics.curve."""
+    """Contact pressure as a function of the approach, for example a curve of jointfmu.mechanics.curve."""
 
     def derivatives(self, x: Array, order: int = 1) -> list[Array]:
         """Pressure [Pa] and its derivatives [Pa/m] at approaches x [m]; 0 where the contact is open."""
@@ -42,13 +42,13 @@ class PressureLaw(Protocol):
 
 @dataclass(frozen=True)
 class Interface:
-    """Quadrature of the plane contact area.
+    """Plane contact area of two bodies: finite-element basis and quadrature points.
 
-    basis         : finite-element basis of scikit-fem on a plane mesh [m]
-    nodes         : (2, n) [m]; the corners of the mesh come first
-    interpolation : (q, n) [1] matrix from nodal values to values at the quadrature points
-    area          : (q) [m2] weight of each quadrature point
-    position      : (q, 2) [m] of the quadrature points
+    basis                : finite-element basis of scikit-fem on a plane mesh [m]
+    nodes                : (2, n) [m]; the corners of the mesh come first
+    interpolation_matrix : (q, n) [1] matrix from nodal values to values at the quadrature points
+    quadrature_area      : (q) [m2] weight of each quadrature point
+    quadrature_position  : (q, 2) [m] of the quadrature points
     """
 
     basis: Basis
@@ -69,7 +69,7 @@ class Interface:
 
     @classmethod
     def from_mesh(cls, mesh: MeshQuad, element: Element | None = None) -> "Interface":
-        """Interface on a plane mesh.
+        """Basis and quadrature points on a plane mesh of the contact area.
 
         element : restriction of the bodies' element to the contact plane; None: quadratic, of ElementHexS2
         """
@@ -88,12 +88,13 @@ class Interface:
 class ContactModel:
     """Contact problem of two elastic bodies, for any loads.
 
-    bodies    : side 1 (below z = 0) and side 2; side 2 alone if side 1 and its loads are the mirror image
-    interface : quadrature of the contact area
-    law       : pressure as a function of the approach
-    gap       : distance [m] of the unloaded faces at positions x, y (...) [m]; None: the faces are plane
+    bodies         : side 1 (below z = 0) and side 2; side 2 alone if side 1 and its loads are the mirror
+                     image
+    interface      : quadrature of the contact area
+    pressure_law   : pressure as a function of the approach
+    gap            : distance [m] of the unloaded faces at positions x, y (...) [m]; None: the faces are plane
     fixed_unknowns : unknowns of each body that stay zero and may carry load. None: the fewest that stop its
-                rigid-body motions; the loads must balance without them
+                     rigid-body motions; the loads must balance without them
     """
 
     bodies: tuple[ElasticBody, ...]
@@ -136,7 +137,7 @@ class ContactModel:
 
     @cached_property
     def _unloaded_energy(self) -> ContactEnergy:
-        """Energy in the free unknowns, without loads."""
+        """Energy of bodies and contact as a function of the free unknowns, without loads."""
         blocks = [
             body.stiffness[free][:, free] for body, free in zip(self.bodies, self._free_unknowns, strict=True)
         ]
@@ -211,10 +212,10 @@ class ContactModel:
 class ContactSolution:
     """Equilibrium of two bodies in contact.
 
-    loads        : (n) [N] on each body
-    displacement : (n) [m] of each body, three values per node
-    offset       : [m] approach at zero displacement where the gap is zero
-    minimum      : minimum of the energy
+    loads           : (n) [N] on each body
+    displacement    : (n) [m] of each body, three values per node
+    approach_offset : [m] approach at zero displacement where the gap is zero
+    minimum         : minimum of the energy
     """
 
     model: ContactModel
@@ -230,12 +231,12 @@ class ContactSolution:
 
     @property
     def steps(self) -> int:
-        """How many steps Newton's method took."""
+        """Number of steps of Newton's method."""
         return self.minimum.steps
 
     @property
     def pressure(self) -> Array:
-        """(q) [Pa] at the quadrature points."""
+        """Contact pressure (q) [Pa] at the quadrature points."""
         return self.model.law.derivatives(self.approach, 1)[0]
 
     @property

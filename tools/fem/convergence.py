@@ -31,10 +31,10 @@ bolts, normal stiffness and bending stiffness about x and y."""
 class MeshResult:
     """Size of one mesh, and results on it.
 
-    refinement : [1] divides all element sizes
-    elements   : number of elements on the contact
-    unknowns   : number of unknowns of all meshed bodies
-    values     : {name in RESULT_UNITS: value}; `between` is nan if no two bolts are neighbours
+    refinement    : [1] divides all element sizes
+    element_count : number of elements on the contact
+    unknown_count : number of unknowns of all meshed bodies
+    result_values : {name in RESULT_UNITS: value}; `between` is nan if no two bolts are neighbours
     """
 
     refinement: float
@@ -44,9 +44,9 @@ class MeshResult:
 
 
 def refinements(count: int, base: float = 1.0) -> list[float]:
-    """Refinements [1] of `count` meshes, each REFINEMENT_RATIO times finer than the one before.
+    """Refinements [1] of `mesh_count` meshes, each REFINEMENT_RATIO times finer than the one before.
 
-    base : refinement [1] of the second mesh, or of the only one
+    base_refinement : refinement [1] of the second mesh, or of the only one
     """
     return [base * REFINEMENT_RATIO**k for k in range(-1, count - 1)] if count > 1 else [base]
 
@@ -122,7 +122,7 @@ def first_equivalent_bolts(bolts: Array, has_moment: bool) -> NDArray[np.int64]:
     Mirror planes are x = 0 and, without a moment about x, y = 0. The bodies are symmetric about both planes.
     A mirror plane counts only if it maps all bolts onto bolts.
 
-    bolts : (n, 2) [m]
+    bolt_positions : (n, 2) [m]
     """
     first = np.arange(len(bolts))
     for mirror in ((-1.0, 1.0),) if has_moment else ((-1.0, 1.0), (1.0, -1.0)):

@@ -86,9 +86,9 @@ LENGTH_TOLERANCE = 1e-9
 class Layer:
     """Layer of a body: a rectangular slab with an optional opening.
 
-    bottom, top    : distances from the contact plane [m]
-    outline        : half lengths (2) of the outer rectangle along x and y [m]
-    opening        : half lengths (2) of the rectangular opening along x and y [m]; 0: no opening
+    bottom_distance, top_distance : distances from the contact plane [m]
+    outline_half_lengths : half lengths (2) of the outer rectangle along x and y [m]
+    opening_half_lengths : half lengths (2) of the rectangular opening along x and y [m]; 0: no opening
     has_bolt_holes : whether the bolt holes pass through the layer
     """
 
@@ -121,7 +121,7 @@ class Plate(CheckedParameters):
         return self.thickness
 
     def layers(self) -> tuple[Layer, ...]:
-        """The slabs of the body, from the contact outward."""
+        """Layers of the body, from the contact outward."""
         return (Layer(0.0, self.thickness, (0.5 * self.length, 0.5 * self.width), has_bolt_holes=True),)
 
 
@@ -139,7 +139,7 @@ class TappedPlate(Plate):
             )
 
     def layers(self) -> tuple[Layer, ...]:
-        """The slabs of the body, from the contact outward."""
+        """Layers of the body, from the contact outward."""
         half = (0.5 * self.length, 0.5 * self.width)
         return Layer(0.0, self.depth, half, has_bolt_holes=True), Layer(self.depth, self.thickness, half)
 
@@ -182,7 +182,7 @@ class BoxSection:
         return self.flange_thickness
 
     def layers(self) -> tuple[Layer, ...]:
-        """The slabs of the body, from the contact outward."""
+        """Layers of the body, from the contact outward."""
         opening = self._half_lengths(self.flange_width)
         outside, inside = self._half_lengths(self.wall_inset), self._half_lengths(self.wall_inset + self.wall)
         base, end = self.flange_thickness, self.height - self.floor

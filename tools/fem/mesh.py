@@ -51,7 +51,7 @@ def find_contact_cells(plan: PlanMesh, assembly: Assembly) -> NDArray[np.bool_]:
 
 
 def contact_mesh(plan: PlanMesh, in_contact: NDArray[np.bool_]) -> MeshQuad:
-    """Plane mesh of the cells (m) in contact."""
+    """Plane mesh of the contact area: the cells of the plan that are in contact."""
     used, cells = np.unique(plan.cells[:, in_contact], return_inverse=True)
     return MeshQuad(np.ascontiguousarray(plan.points[:, used]), np.ascontiguousarray(cells.reshape(4, -1)))
 

@@ -33,9 +33,9 @@ MIN_ELASTIC_FREQUENCY = 1.0
 class NaturalModes:
     """Elastic natural modes of an assembly, in order of increasing frequency.
 
-    frequency : (k) [Hz]
-    shape     : for each mode, displacement (n, 3) [1] of the nodes of each body, of modal mass 1 kg
-    mass      : mass of the assembly [kg]
+    frequency     : (k) [Hz]
+    mode_shapes   : for each mode, displacement (n, 3) [1] of the nodes of each body, of modal mass 1 kg
+    assembly_mass : mass of the assembly [kg]
     """
 
     frequency: Array
@@ -50,12 +50,12 @@ def compute_modes(
     tangential_stiffness: Array,
     count: int = 6,
 ) -> NaturalModes:
-    """The lowest elastic modes of an assembly without supports.
+    """Compute the lowest elastic modes of an assembly without supports.
 
-    bodies     : side 1 and side 2, or side 2 alone if side 1 is its mirror image
-    normal_stiffness : normal stiffness per area (q) [N/m3] at the quadrature points of the interface
-    tangential_stiffness : tangential stiffness per area (q) [N/m3] there
-    count      : number of modes
+    bodies               : side 1 and side 2, or side 2 alone if side 1 is its mirror image
+    normal_stiffness     : normal stiffness per area (q) [N/m3] at the quadrature points of the interface
+    tangential_stiffness : tangential stiffness per area (q) [N/m3] at these points
+    mode_count           : number of modes
 
     Raises RuntimeError if the contact stiffness leaves more than six rigid-body modes.
     """
@@ -94,7 +94,7 @@ def _interface_stiffness(
 ) -> sp.csr_matrix:
     """Stiffness matrix (n, n) [N/m] of the interface.
 
-    stiffness : {axis 0, 1 or 2: stiffness per area (q) [N/m3]}; axes that are missing have none
+    stiffness_per_area : {axis 0, 1 or 2: stiffness per area (q) [N/m3]}; axes that are missing have none
     """
     signs = (1.0, -1.0)[: len(bodies)]
     total: sp.csr_matrix | float = 0.0
@@ -130,7 +130,7 @@ def _lowest_modes(
 def _mirror_shape(shape: Array, sign: float) -> tuple[Array, Array]:
     """Mode shapes (n, 3) of both bodies, of modal mass 1 kg, from the shape of side 2.
 
-    Side 1 is the mirror image of side 2 in the plane z = 0, times `sign` (1 or -1).
+    Side 1 is the mirror image of side 2 in the plane z = 0, times `mirror_sign` (1 or -1).
     """
     side2 = np.sqrt(0.5) * shape
     return sign * side2 * np.array([1.0, 1.0, -1.0]), side2
@@ -147,7 +147,7 @@ def preloaded_modes(
     """Natural modes of a preloaded joint: the contact stiffness at each point follows from its pressure.
 
     tangential_stiffness_ratio : [1] tangential over normal stiffness of the interface
-    count : number of modes
+    mode_count : number of modes
     """
     return _modes_with_stiffness(
         solution.joint, solution.contact.stiffness, tangential_stiffness_ratio, count
@@ -160,7 +160,7 @@ def uniform_pressure_modes(
     """Natural modes for a uniform contact pressure: the total bolt force [N] over the contact area.
 
     tangential_stiffness_ratio : [1] tangential over normal stiffness of the interface
-    count : number of modes
+    mode_count : number of modes
     """
     area = joint.interface.area
     approach = law.inverse(np.asarray(force / area.sum()))
@@ -177,11 +177,11 @@ def compute_frequencies(
     count: int = 6,
     uniform_pressure: bool = False,
 ) -> Array:
-    """Natural frequencies (states, count) [Hz] of an assembly in several load states.
+    """Compute the natural frequencies (load states, modes) [Hz] of an assembly in several load states.
 
-    joint  : gives the interface law; its contact area is replaced by that of the assembly
+    joint : gives the interface law; its contact area is replaced by that of the assembly
     tangential_stiffness_ratio : [1] tangential over normal stiffness of the interface
-    states : preload [N] per bolt and moment [N.m] about x of each load state
+    load_states : preload [N] per bolt and moment [N.m] about x of each load state
     uniform_pressure : distribute the bolt force uniformly over the contact, instead of computing the pressure
     """
     law = tabulate_approach(replace(joint, A_0=assembly.contact_area))

@@ -25,12 +25,12 @@ MAX_CG_ITERATIONS = 12
 
 @dataclass(frozen=True)
 class EnergyMinimum:
-    """Minimum of the energy.
+    """Minimum of the energy of bodies in contact.
 
-    displacement : u (n) [m]
-    approach     : (q) [m] at the quadrature points
-    steps        : number of steps of Newton's method
-    factor       : Cholesky factor of the tangent of an earlier step, used as preconditioner
+    displacement   : u (n) [m]
+    approach       : (q) [m] at the quadrature points
+    newton_steps   : number of steps of Newton's method
+    tangent_factor : Cholesky factor of the tangent of an earlier step, used as preconditioner
     """
 
     displacement: Array
@@ -46,8 +46,8 @@ class ContactEnergy:
     stiffness       : K (n, n) [N/m]
     load            : f (n) [N]
     approach_matrix : T (q, n) [1] approach at the quadrature points per displacement
-    weight          : area (q) [m2] of each quadrature point
-    law             : function of the approach (q) [m]: pressure [Pa] and its derivative [Pa/m]
+    quadrature_area : area (q) [m2] of each quadrature point
+    pressure_law    : function of the approach (q) [m]: pressure [Pa] and its derivative [Pa/m]
     """
 
     stiffness: sp.csr_matrix
@@ -57,9 +57,9 @@ class ContactEnergy:
     law: Callable[[Array], list[Array]]
 
     def minimise(self, offset: Array, initial_minimum: EnergyMinimum | None = None) -> EnergyMinimum:
-        """Find the minimum by Newton's method.
+        """Find the minimum of the energy by Newton's method.
 
-        offset          : (q) [m] approach at zero displacement
+        approach_offset : (q) [m] approach at zero displacement
         initial_minimum : minimum of the same energy under another load, to start from; None: start at u = 0
 
         The tangent is factorised in the first step. Later steps use conjugate gradients with this factor as
@@ -103,7 +103,7 @@ class ContactEnergy:
         )
 
     def _apply_tangent(self, spring: Array, u: Array) -> Array:
-        """Tangent times displacement: (K + T^T diag(spring) T) u, with contact stiffness (q) [N/m]."""
+        """Tangent times displacement u: (K + T^T diag(k) T) u, with the contact stiffness k (q) [N/m]."""
         return np.asarray(self.stiffness @ u + self.approach_matrix.T @ (spring * (self.approach_matrix @ u)))
 
     def _step_length(self, approach: Array, change: Array, linear: float, quadratic: float) -> float:
@@ -112,8 +112,8 @@ class ContactEnergy:
         A full step is taken if its final slope is at most a tenth of the initial one.
 
         approach : (q) [m], at the start of the step
-        change   : (q) [m] of the approach by the full step
-        linear, quadratic : [J] slope of elastic energy minus load work is linear + length * quadratic
+        approach_change : (q) [m] of the approach by the full step
+        initial_slope, slope_rate : [J] slope of elastic energy minus load work is linear + length * quadratic
         """
 
         def energy_slope(length: float) -> float:

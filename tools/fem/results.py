@@ -1,4 +1,4 @@
-"""Files of the computed contact and of natural modes: nodal CSV, VTU for ParaView, a plot."""
+"""Write the computed contact and natural modes to files: nodal CSV, VTU for ParaView, a plot."""
 
 import tempfile
 from collections.abc import Mapping
@@ -19,12 +19,12 @@ from .modes import NaturalModes
 
 
 def vtu_content(points: Array, cell_type: str, cells: Index, data: Mapping[str, Array]) -> bytes:
-    """Content of a VTU file.
+    """Content of a VTU file of a mesh, with values at its points.
 
-    points    : (k, 3) [m]
-    cell_type : name of the cell type in meshio
-    cells     : (m, corners) indices of points
-    data      : {name: values (k, ...) at the points}
+    points     : (k, 3) [m]
+    cell_type  : name of the cell type in meshio
+    cells      : (m, corners) indices of points
+    point_data : {name: values (k, ...) at the points}
     """
     import meshio
 

@@ -71,7 +71,7 @@ class JointFiniteElements:
     interface           : quadrature of the contact area
     bolt_head_loads     : for each body, nodal load (n, bolts) [N/N] of a unit bolt force along +z; the same
                           weights give the mean displacement along z under a bolt head
-    bolts               : positions (bolts, 2) [m]
+    bolt_positions      : positions (bolts, 2) [m]
     """
 
     bodies: tuple[ElasticBody, ElasticBody]
@@ -84,7 +84,7 @@ class JointFiniteElements:
     def from_assembly(
         cls, assembly: Assembly, attachment: str, refinement: float = 1.0
     ) -> "JointFiniteElements":
-        """Mesh an assembly.
+        """Mesh an assembly and find the unknowns at its attachments.
 
         attachment : kind of attachment, a key of ATTACHMENT_NODES
         refinement : [1] divides the sizes of all elements
@@ -125,10 +125,10 @@ class JointFiniteElements:
         ).tocsr()
 
     def compliances(self, springs: Array, bolt_stiffness: float) -> Compliances:
-        """Compliances of the complete joint.
+        """Compliances of the complete joint, by their sources: interface, members, bolts.
 
-        springs        : stiffness per area (q, 3) [N/m3] of the interface along x, y, z
-        bolt_stiffness : of each bolt [N/m]
+        interface_stiffness : stiffness per area (q, 3) [N/m3] of the interface along x, y, z
+        bolt_stiffness      : of each bolt [N/m]
 
         Raises RuntimeError if a body can move freely.
         """
@@ -140,7 +140,9 @@ class JointFiniteElements:
         return np.concatenate([-self.bolt_head_loads[0], self.bolt_head_loads[1]])
 
     def linearize(self, springs: Array, bolt_stiffness: float) -> "LinearJoint":
-        """Linear joint with springs as interface, solved for unit motions. Parameters as for `compliances`.
+        """Linearise the joint, with springs as interface, and solve for unit motions.
+
+        Parameters as for `compliances`.
 
         Raises RuntimeError if a body can move freely.
         """
@@ -195,7 +197,7 @@ class MirrorFactorisation:
 
     Symmetric and antisymmetric displacements decouple: each has its own matrix (n, n).
 
-    mirror : (n) sign of each unknown of the first body in the mirror image
+    mirror_signs : (n) sign of each unknown of the first body in the mirror image
     """
 
     def __init__(self, matrix: sp.csr_matrix, mirror: Array) -> None:
@@ -220,11 +222,12 @@ class LinearJoint:
     """Linear model of a joint: the interface is a layer of springs.
 
     body_matrix, contact_matrix, bolt_matrix : stiffness matrices (n, n) [N/m] of bodies, interface, bolts
-    bolt_stiffness     : of each bolt [N/m]
-    displacement       : (n, 6) for unit motions of side 2's attachment, about the centroid of the contact
+    bolt_stiffness : of each bolt [N/m]
+    unit_motion_displacement : (n, 6) for unit motions of side 2's attachment, about the centroid of the
+        contact
     rigid_displacement : (n, 6) for the same motions if the bodies were rigid
-    free_unknowns      : unknowns that no attachment prescribes
-    factor             : factorisation of the stiffness matrix of the free unknowns
+    free_unknowns : unknowns that no attachment prescribes
+    stiffness_factor : factorisation of the stiffness matrix of the free unknowns
     """
 
     joint: JointFiniteElements
@@ -252,7 +255,7 @@ class LinearJoint:
         )
 
     def compliances(self) -> Compliances:
-        """Compliances of the joint, by their sources, about the centroid of its contact."""
+        """Compliances of the joint about its contact centroid, by source: interface, members, bolts."""
         sources, total = (self.contact_matrix, self.body_matrix, self.bolt_matrix), np.diag(self.stiffness)
         stored = np.stack(
             [np.sum(self.displacement * (matrix @ self.displacement), axis=0) for matrix in sources]

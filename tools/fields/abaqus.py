@@ -28,11 +28,11 @@ _SUMMARIES = ("MINIMUM", "MAXIMUM", "TOTAL")
 class ListingRow(NamedTuple):
     """One row of a listing: values at a node.
 
-    location : file and line
-    frame    : step and increment
-    instance : part instance of the node
-    node     : number of the node
-    values   : {column: value}; a vector has one column for each component
+    location      : file and line
+    frame         : step and increment
+    part_instance : part instance of the node
+    node          : number of the node
+    column_values : {column: value}; a vector has one column for each component
     """
 
     location: str

@@ -149,7 +149,7 @@ def _classify_row(
 ) -> tuple[str, list[float]]:
     """Content of a row (see `_listing_rows`) and its relevant numbers, from the head of its table.
 
-    previous : content of the row before
+    previous_content : content of the row before
     """
     if head[0] == "ELEM":
         if not all(x % 1.0 == 0.0 for x in numbers):

@@ -1,4 +1,4 @@
-"""Interface of a kind of bolted joint for the commands that use pressure fields (`footprint`, `modes`)."""
+"""Functions and parameters of a kind of bolted joint for the commands that use pressure fields."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -62,13 +62,14 @@ class BoltLayout(Protocol):
 class FieldAdapter:
     """Functions of a kind of joint for pressure fields: the constant `FIELD` in field.py of its folder.
 
-    pressures   : nodal pressure (m, n) [Pa] for parameters, a pressure shape (n), preloads (m) [N] per bolt
-                  and moments (m) [N.m]: (preload n_bolts preload_shape + moment/L_a moment_shape)/A_0, >= 0
-    shear_ratio : tangential over normal stiffness [1] for parameters, the same at every pressure
+    nodal_pressures : nodal pressure (m, n) [Pa] for parameters, a pressure shape (n), preloads (m) [N] per
+        bolt and moments (m) [N.m]: (preload n_bolts preload_shape + moment/L_a moment_shape)/A_0, >= 0
+    tangential_stiffness_ratio : tangential over normal stiffness [1] for parameters, the same at every
+        pressure
     bolt_layout : bolt positions, hole and head sizes for parameters, as far as they have them
-    with_elastic_bodies : parameter file with elastic bodies, from a parameter file, an assembly, the preload
-                  [N] per bolt, the name of the attachment and the pressure shape of all nodes
-    facts       : {name: (value, unit, meaning)} of the complete joint for such a file and preload
+    insert_elastic_bodies : parameter file with elastic bodies, from a parameter file, an assembly, the
+        preload [N] per bolt, the name of the attachment and the pressure shape of all nodes
+    describe_joint : {name: (value, unit, meaning)} of the complete joint for such a file and preload
     """
 
     pressures: PressureFunction

@@ -27,9 +27,10 @@ OPEN_NODE_OPTIONS = ("refuse", "keep", "drop")
 class ContactPlane:
     """Orientation of the contact plane in the coordinate system of a file.
 
-    normal : axis x, y or z normal to the contact
-    rows   : axis x, y or z along the bolt rows: the x axis of the joint; None: the axis after `normal`
-    side   : body whose surface is read, one of BODY_SIDES; None: all bodies with pressure
+    normal_axis   : axis x, y or z normal to the contact
+    bolt_row_axis : axis x, y or z along the bolt rows: the x axis of the joint; None: the axis after
+                    `normal_axis`
+    body_side     : body whose surface is read, one of BODY_SIDES; None: all bodies with pressure
 
     The y axis of the joint completes a right-handed system.
     """
@@ -55,13 +56,13 @@ class ContactPlane:
 
 @dataclass(frozen=True, slots=True)
 class ContactSurface:
-    """Nodes (n) of the contact.
+    """Contact surface: nodes (n) with area, position in the plane of the joint, and pressure.
 
-    result   : nodal result they come from
-    index    : (n) indices in the nodal result
-    area     : (n) [m2]
-    position : (n, 2) [m] in the plane of the joint
-    pressure : (n) [Pa]
+    source_result : nodal result from which the nodes come
+    node_indices  : (n) indices in the nodal result
+    area          : (n) [m2]
+    position      : (n, 2) [m] in the plane of the joint
+    pressure      : (n) [Pa]
     """
 
     result: NodalResult
@@ -71,7 +72,7 @@ class ContactSurface:
     pressure: Array
 
     def describe_node(self, i: int) -> str:
-        """File and number of node i, for messages."""
+        """File and number of a node of the contact, for messages."""
         return self.result.describe_node(int(self.index[i]))
 
     def select_field(self, selected: NDArray[np.bool_]) -> ContactField:

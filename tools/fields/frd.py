@@ -31,7 +31,7 @@ RESULT_NAME, PRESSURE_COMPONENT = "CONTACT", "CPRESS"
 
 
 def read_frd(path: Path, length_unit: float, pressure_unit: float) -> NodalResult:
-    """Read the last contact result of a file.
+    """Read the last contact result of a CalculiX file.
 
     length_unit, pressure_unit : units of the file in SI units
 
@@ -58,7 +58,7 @@ def _read_text(path: Path) -> str:
 
 
 def _block_lines(lines: list[str], start: int) -> Iterator[tuple[int, str]]:
-    """Lines of a block as (line number, line): those after `start`, up to the end of the block."""
+    """Lines of a block as (line number, line): those after `start_line`, up to the end of the block."""
     for number in range(start + 1, len(lines)):
         if lines[number].startswith(" -3"):
             return
@@ -68,7 +68,7 @@ def _block_lines(lines: list[str], start: int) -> Iterator[tuple[int, str]]:
 def _find_block(path: Path, lines: list[str], key: str, content: str) -> int:
     """Line number of the last block with this key; ValueError if there is none or if it is binary.
 
-    content : name of the content in the message
+    content_name : name of the content in the message
     """
     starts = [i for i, line in enumerate(lines) if line.startswith(key)]
     if not starts:

@@ -47,16 +47,17 @@ def with_field(
 
     Parameters
     ----------
-    file    : parameter file of a joint whose pressure may be a field; `n_bolts`, `row_bolts` and
-              `row_distance` relate the field to the bolt forces
-    preload : [N] per bolt, at which the field was computed
-    source  : origin of the field, written to the file
-    moment_field : field at the same nodes with an additional bending moment. None: the change of pressure by
-              a moment is in proportion to the distance from the centre of pressure
-    moment  : [N.m] of `moment_field`, positive if it increases the pressure at y > 0
-    bolts   : (n, 2) [m] positions of the bolts, for their bending stiffness; None: no bending stiffness
-    tolerance : [1] largest relative difference of the field's force from the bolt force, to which the field
-              is scaled
+    file            : parameter file of a joint whose pressure may be a field; `n_bolts`, `row_bolts` and
+                      `row_distance` relate the field to the bolt forces
+    preload         : [N] per bolt, at which the field was computed
+    field_source    : origin of the field, written to the file
+    moment_field    : field at the same nodes with an additional bending moment. None: the change of pressure
+                      by a moment is in proportion to the distance from the centre of pressure
+    moment          : [N.m] of `moment_field`, positive if it increases the pressure at y > 0
+    bolt_positions  : (n, 2) [m] positions of the bolts, for their bending stiffness; None: no bending
+                      stiffness
+    force_tolerance : [1] largest relative difference of the field's force from the bolt force, to which the
+                      field is scaled
 
     Raises ValueError if the pressure of the joint cannot be a field, if the force of a field differs from the
     bolt force by more than the tolerance, if the two fields have different nodes, or if the moment of the
@@ -110,7 +111,7 @@ def pressure_shape(
     moment: float | None = None,
     tolerance: float = FORCE_TOLERANCE,
 ) -> PressureDistribution:
-    """Pressure shape of a joint with all nodes of a field. Parameters as for `with_field`.
+    """Pressure shape of a joint with all nodes of a field. Parameters as for `insert_field`.
 
     With e = `preload_shape` and t = `moment_shape`, the pressure at a node is p_m e + M/(L_a A_0) t: p_m bolt
     force over contact area, M moment, L_a distance of the bolt rows. Equilibrium requires sum(share t y) =

@@ -146,9 +146,9 @@ def label_bodies(cells: Mapping[str, NodeIndices], node_count: int) -> NDArray[n
 class FiniteElementMesh:
     """Nodes and cells of a mesh.
 
-    numbers  : (n) node numbers in the file
-    position : (n, 3) in the unit of the file
-    cells    : {cell type of meshio: (k, m) indices of nodes in these arrays}, surfaces or volumes
+    node_numbers : (n) node numbers in the file
+    position     : (n, 3) in the unit of the file
+    cells        : {cell type of meshio: (k, m) indices of nodes in these arrays}, surfaces or volumes
     """
 
     numbers: NDArray[np.int64]

@@ -24,7 +24,7 @@ def read_mesh(path: Path, length_unit: float, pressure_unit: float, data: str | 
     """Read a nodal contact result from the point data of a mesh.
 
     length_unit, pressure_unit : units of the file in SI units
-    data : name of the point data with the pressure; NAME:3 is the third component
+    point_data_name : name of the point data with the pressure; NAME:3 is the third component
 
     Raises ValueError (one line): meshio is missing or cannot read the file, the point data do not exist (the
     message lists the existing ones), a cell type is not supported.

@@ -65,15 +65,15 @@ PRESSURE_UNITS = unit_sizes("Pa", "kPa", "MPa", "GPa")
 class NodalResult:
     """Nodal pressure as read from a file, in SI units, not yet checked.
 
-    path     : path of the file
-    label    : word for a node in messages: line or node
-    numbers  : (n) number of each node
-    position : (n, 3) [m]
-    pressure : (n) [Pa], NaN where the file has none
-    area     : (n) [m2] of each node, if the file has it
-    faces    : blocks (k, 3 | 4 | 6 | 8 | 9) of node indices in these arrays: surface cells, or boundary faces
-               of the bodies; corners first, then mid-side nodes, then the centre
-    body_of_node : (n) number of the body of each node, if there are bodies
+    path             : path of the file
+    node_label       : word for a node in messages: line or node
+    node_numbers     : (n) number of each node
+    position         : (n, 3) [m]
+    pressure         : (n) [Pa], NaN where the file has none
+    area             : (n) [m2] of each node, if the file has it
+    faces            : blocks (k, 3 | 4 | 6 | 8 | 9) of node indices in these arrays: surface cells, or
+                       boundary faces of the bodies; corners first, then mid-side nodes, then the centre
+    body_of_node     : (n) number of the body of each node, if there are bodies
     omits_open_nodes : whether the file leaves out open nodes: on the contact, NaN then means zero pressure
     """
 
@@ -88,7 +88,7 @@ class NodalResult:
     omits_open_nodes: bool = False
 
     def describe_node(self, i: int) -> str:
-        """File and number of node i, for messages."""
+        """File and number of the node with an index, for messages."""
         return f"{self.path}: {self.label} {self.numbers[i]}"
 
 

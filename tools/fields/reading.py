@@ -31,13 +31,13 @@ LISTING_READERS = {"ansys": ansys.read_ansys, "abaqus": abaqus.read_abaqus}
 class FieldReader:
     """Options for reading a pressure field.
 
-    format   : one of FORMATS; None: chosen by the suffix
-    length_unit : unit of lengths, one of LENGTH_UNITS; None for CSV, whose heading states it
-    pressure_unit : unit of pressures, one of PRESSURE_UNITS; None for CSV
-    data     : name of the point data with the pressure, for meshes
+    format          : one of FIELD_FORMATS; None: chosen by the suffix
+    length_unit     : unit of lengths, one of LENGTH_UNITS; None for CSV, whose heading states it
+    pressure_unit   : unit of pressures, one of PRESSURE_UNITS; None for CSV
+    point_data_name : name of the point data with the pressure, for meshes
     companion_files : more listings of the same result, or its mesh (ANSYS, Abaqus)
-    plane    : orientation of the contact plane in the file
-    open_nodes : treatment of nodes without pressure, one of OPEN_NODE_OPTIONS
+    contact_plane   : orientation of the contact plane in the file
+    open_nodes      : treatment of nodes without pressure, one of OPEN_NODE_OPTIONS
     """
 
     format: str | None = None

@@ -44,9 +44,9 @@ GROUPS_PER_SUM = 2
 def recombine(values: Array, weights: Array, transform: Array) -> tuple[NodeIndices, Array]:
     """Select at most d nodes with new weights that keep the weighted sums of d functions (recombination).
 
-    values    : (n, d) of the functions at the nodes
-    weights   : (n) > 0
-    transform : (d, d) matrix that makes the d functions independent
+    values               : (n, d) of the functions at the nodes
+    weights              : (n) > 0
+    orthogonal_transform : (d, d) matrix that makes the d functions independent
 
     Returns the indices of the nodes and their weights. Raises RuntimeError if round-off prevents a solution.
     """
@@ -69,7 +69,7 @@ def recombine(values: Array, weights: Array, transform: Array) -> tuple[NodeIndi
 RELATIVE_TOLERANCE = 1e-6
 """Largest relative deviation of a sum [1] of a reduced field."""
 LARGE_FIELD_TOLERANCE = 1e-5
-"""The same limit for a field with more nodes than can all be kept [1]."""
+"""Largest relative deviation of a sum [1] of a reduced field with more than MAX_KEPT_NODES nodes."""
 GOAL_RATIO, ACCEPTANCE_RATIO, ADDITION_RATIO = 0.05, 0.6, 0.15
 """Deviations over the tolerance [1]: goal in the load cases of the selection; limit in the test load cases
 (the margin is for untested ones); deviation from which a test load case is added to the selection."""
@@ -99,15 +99,17 @@ MAX_ROUNDS = 8
 class Reduction:
     """Result of the reduction of a pressure field.
 
-    shape      : pressure shape of the reduced points
+    reduced_shape : pressure shape of the reduced points
     full_shape : pressure shape of all nodes
-    deviation  : [1] largest deviation of the sums in `test_count` load cases outside the selection: total
-                 force, K_zz (and K_xx, proportional to K_zz), K_rx and K_ry, each over its value or its value
-                 in the preloaded joint, whichever is larger. Deviations of the moments of the force and of
-                 coupling stiffnesses count a hundredth
-    test_count : number of these load cases
-    moment_ratio : [1] largest moment in these load cases over the moment that unloads a row of bolts
-    deviation_beyond : [1] largest deviation at moment ratios from `moment_ratio` to 1
+    largest_deviation : [1] largest deviation of the sums in `test_case_count` load cases outside the
+        selection: total force, K_zz (and K_xx, proportional to K_zz), K_rx and K_ry, each over its value or
+        its value in the preloaded joint, whichever is larger. Deviations of the moments of the force and of
+        coupling stiffnesses count a hundredth
+    test_case_count : number of these load cases
+    max_tested_moment_ratio : [1] largest moment in these load cases over the moment that unloads a row of
+        bolts
+    deviation_above_tested_moments : [1] largest deviation at moment ratios from `max_tested_moment_ratio` to
+        1
     """
 
     shape: PressureDistribution
@@ -136,9 +138,9 @@ def reduce_field(
     If no points do, all nodes are kept. A field with more than MAX_KEPT_NODES nodes then takes the points
     within LARGE_FIELD_TOLERANCE.
 
-    preload   : [N] per bolt of the field. Load cases cover PRELOAD_RANGE of it, from compression to full
-                opening, with moments up to `max_moment_ratio`
-    pressures : function of the joint for nodal pressures, see FieldAdapter
+    preload         : [N] per bolt of the field. Load cases cover PRELOAD_RATIO_RANGE of it, from compression
+                      to full opening, with moments up to `max_moment_ratio`
+    nodal_pressures : function of the joint for nodal pressures, see FieldAdapter
 
     Raises RuntimeError if the field has too many nodes and no points are within LARGE_FIELD_TOLERANCE.
     """
@@ -178,9 +180,9 @@ def _search_points(
 
     Each round tests the points in new load cases, and adds those to the selection in which the points miss.
 
-    shape     : pressure shape of all nodes, rounded
-    sample    : sample of these nodes, for finding the independent sums
-    unrounded : pressure shape of all nodes
+    rounded_shape   : pressure shape of all nodes, rounded
+    sample_shape    : sample of these nodes, for finding the independent sums
+    unrounded_shape : pressure shape of all nodes
     """
     limit = max_moment_ratio(sums.joint, shape)
     loads, tests = (
@@ -228,13 +230,13 @@ def _deviation_beyond(
 class _SumSystem:
     """The r sums that the reduced points must keep: balance of the field, and sums in load cases.
 
-    shape         : pressure shape of all nodes, rounded
-    unrounded     : pressure shape of all nodes
-    sample        : sample (c) of the nodes, for finding the independent sums
-    mixing        : random matrix (SKETCH_ROWS, c)
-    load_sums     : sums in the load cases
-    balance_scale : divisors of the balance functions
-    sketch        : (SKETCH_ROWS, r) random combinations of the functions at the sample nodes
+    rounded_shape   : pressure shape of all nodes, rounded
+    unrounded_shape : pressure shape of all nodes
+    sample_shape    : sample (c) of the nodes, for finding the independent sums
+    mixing_matrix   : random matrix (SKETCH_ROWS, c)
+    load_sums       : sums in the load cases
+    balance_scale   : divisors of the balance functions
+    sketch_matrix   : (SKETCH_ROWS, r) random combinations of the functions at the sample nodes
     """
 
     sums: SumFunctions
@@ -255,7 +257,7 @@ class _SumSystem:
         sample: PressureDistribution,
         load_sums: LoadSums,
     ) -> "_SumSystem":
-        """System with the sums in the first load cases."""
+        """System of the balance and of the sums in initial load cases."""
         scale = np.maximum(np.max(np.abs(balance_functions(shape)), axis=0), np.finfo(float).tiny)
         mixing = np.random.default_rng(SEED).standard_normal((SKETCH_ROWS, sample.share.size))
         mixing *= np.sqrt(sample.share / SKETCH_ROWS)
@@ -281,7 +283,7 @@ class _SumSystem:
     def find_points(self) -> PressureDistribution | None:
         """Find the fewest nodes that keep the sums; None if no nodes do.
 
-        The nodes with the highest pressure (`highest`) are always kept, with their own share.
+        The nodes with the highest pressure (`find_peak_nodes`) are always kept, with their own share.
         """
         independent, turn = self._independent_sums()
         fixed = find_peak_nodes(self.shape)

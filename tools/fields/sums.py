@@ -55,7 +55,7 @@ def max_moment_ratio(joint: BoltedInterface, shape: PressureDistribution) -> flo
 
 
 def initial_load_cases(moment_limit: float) -> list[LoadCase]:
-    """Initial load cases of the selection.
+    """Load cases from which the selection of points starts.
 
     moment_limit : largest moment over the moment that unloads a row of bolts [1]
     """
@@ -100,12 +100,13 @@ MAX_GROUPS = 4096
 class LoadSums:
     """The 9 sums of a field in m load cases, relative to their scale.
 
-    loads   : (m) load cases
-    opening : (m) [m] normal motion
-    groups  : (m, 9, g) sums over groups of nodes (`nodes_per_group`), over `scale`
-    total   : (m, 9) sums over all nodes, over `scale`
-    scale   : (m, 9) sum in the load case, or in the preloaded joint where that is larger. For first and mixed
-              moments: force or stiffness times the radius of gyration, times COUPLING_FACTOR
+    load_cases : (m) load cases
+    opening    : (m) [m] normal motion
+    group_sums : (m, 9, g) sums over groups of nodes (`nodes_per_group`), over `sum_scales`
+    total_sums : (m, 9) sums over all nodes, over `sum_scales`
+    sum_scales : (m, 9) sum in the load case, or in the preloaded joint where that is larger. For first and
+                 mixed moments: force or stiffness times the radius of gyration, times
+                 COUPLING_TOLERANCE_FACTOR
     """
 
     loads: tuple[LoadCase, ...]
@@ -115,12 +116,12 @@ class LoadSums:
     scale: Array
 
     def select(self, index: NDArray[np.intp] | NDArray[np.bool_]) -> "LoadSums":
-        """Sums in the selected load cases."""
+        """Select the sums in some of the load cases."""
         loads = tuple(self.loads[i] for i in np.arange(len(self.loads))[index])
         return LoadSums(loads, self.opening[index], self.groups[index], self.total[index], self.scale[index])
 
     def concatenate(self, other: "LoadSums") -> "LoadSums":
-        """Sums in the load cases of both objects."""
+        """Concatenate the sums in the load cases of two objects."""
         return LoadSums(
             self.loads + other.loads,
             np.concatenate([self.opening, other.opening]),
@@ -136,10 +137,10 @@ class SumFunctions:
 
     These are the pressure p times 1, x, y, and the stiffness k = dp/d(approach) times 1, x, y, y^2, x^2, x y.
 
-    curve     : pressure as a function of the approach
-    preload   : [N] per bolt of the field
-    pressures : function of the joint for nodal pressures, see FieldAdapter
-    approach_table : pressures, their cubic roots and approaches, for the start of Newton's method
+    curve           : pressure as a function of the approach
+    preload         : [N] per bolt of the field
+    nodal_pressures : function of the joint for nodal pressures, see FieldAdapter
+    approach_table  : pressures, their cubic roots and approaches, for the start of Newton's method
     """
 
     joint: BoltedInterface
@@ -152,7 +153,7 @@ class SumFunctions:
     def from_joint(
         cls, joint: BoltedInterface, preload: float, pressures: PressureFunction
     ) -> "SumFunctions":
-        """Functions of a joint at a preload [N] per bolt."""
+        """Functions whose sums a joint needs, at a preload [N] per bolt."""
         curve = tabulate_approach(joint)
         x = curve.displacement
         fine = np.append(x[:-1, None] + np.diff(x)[:, None] * _TABLE_FRACTIONS, x[-1])
@@ -282,7 +283,7 @@ def _node_blocks(
 ) -> Iterator[PressureDistribution]:
     """Divide the nodes into blocks whose values in all load cases fit into the processor's cache.
 
-    loads        : number of load cases
+    case_count   : number of load cases
     whole_groups : divide only between groups
     """
     unit = nodes_per_group(shape.share.size) if whole_groups else 1

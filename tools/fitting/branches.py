@@ -43,14 +43,14 @@ _MAX_REST_ITERATIONS, _REST_DIFFERENCE = 6, 1e-4
 
 @dataclass(frozen=True, slots=True)
 class Loops:
-    """Samples of the branches of measured hysteresis loops, branch after branch.
+    """Measured hysteresis loops: samples of their branches, branch after branch.
 
-    motion, force : (n) samples
-    branch : (n) index of the branch of each sample
-    start  : (branches) motion at the turning point at which the branch begins
-    start_deviation : (branches) standard deviation of `start`
-    run    : (n) index of the run of each sample
-    areas  : for each run with a closed loop: area [J] and range of motion of the widest loop
+    motion, force          : (n) samples
+    branch_index           : (n) index of the branch of each sample
+    start_motion           : (branches) motion at the turning point at which the branch begins
+    start_motion_deviation : (branches) standard deviation of `start_motion`
+    run_index              : (n) index of the run of each sample
+    widest_loops           : for each run with a closed loop: area [J] and range of motion of the widest loop
     """
 
     motion: Array
@@ -63,12 +63,12 @@ class Loops:
 
     @property
     def noise_groups(self) -> NDArray[np.int64]:
-        """Index (n) of the noise group of each sample: its run."""
+        """Noise group (n) of each sample: the index of its run."""
         return self.run
 
     @property
     def scale(self) -> Array:
-        """Range (n) of the force in the run of each sample."""
+        """Scale (n) of the force residuals: range of the force in the run of each sample."""
         return np.array([np.ptp(self.force[self.run == k]) for k in range(self.run[-1] + 1)])[self.run]
 
     @property
@@ -91,8 +91,8 @@ class Loops:
     def fit_turning_points(self, law: HysteresisLaw, scale: Array) -> tuple[Array, Array, Array]:
         """Fit the turning points to the samples: force and motion (branches) there, and residual force (n).
 
-        Linear least squares for each branch. `scale` (n) are the standard deviations of the force; the motion
-        at the turning point is measured with the deviation `start_deviation`.
+        Linear least squares for each branch. `residual_scale` (n) are the standard deviations of the force;
+        the motion at the turning point has the standard deviation `start_motion_deviation`.
         """
         residual, derivative = self._force_residuals(law, 0.0), self._force_residuals(law, 1.0)
         derivative = (derivative - residual) / self.start_deviation[self.branch]
@@ -130,14 +130,17 @@ class Loops:
         return position
 
     def residuals(self, law: HysteresisLaw, scale: Array) -> Array:
-        """Residual force over `scale` (n), then turning point shifts over `start_deviation` (branches)."""
+        """Residuals against a law, over their standard deviations [1].
+
+        These are the force errors (n), then the shifts of the turning points (branches).
+        """
         _, start, residual = self.fit_turning_points(law.shift_rest(self.rest_position(law, scale)), scale)
         return np.concatenate([residual / scale, (start - self.start) / self.start_deviation])
 
     def _force_residuals(self, law: HysteresisLaw, deviations: float) -> Array:
         """Force (n) minus the force change by the law since the turning point.
 
-        The turning points are shifted by `doubts` standard deviations [1].
+        The turning points are shifted by `start_shift` standard deviations [1] of their motion.
         """
         return self.force - law.force_change(
             self.motion, (self.start + deviations * self.start_deviation)[self.branch]
@@ -194,7 +197,7 @@ def _branches_of_run(
 ) -> Iterator[tuple[Array, Array, float, float]]:
     """Yield for each branch of a run: motion, force, motion at the turning point and its standard deviation.
 
-    ends : indices of the turning points, and of the last sample
+    branch_ends : indices of the turning points, and of the last sample
     """
     deviation = noise_deviation(motion)
     turns = [turning_value(motion, k, deviation) for k in ends]
@@ -223,9 +226,9 @@ def find_reversals(signal: Array, prominence: float) -> NDArray[np.int64]:
 
 
 def turning_value(motion: Array, index: int, deviation: float) -> float:
-    """Motion at the turning point of index `index`: vertex of a parabola through the nearest samples.
+    """Motion at the turning point at sample `sample_index`: vertex of a parabola through the nearest samples.
 
-    deviation : standard deviation of the noise of the motion
+    motion_noise : standard deviation of the noise of the motion
 
     The parabola uses the samples within TURNING_POINT_WIDTH deviations of the turning point.
     The extreme sample itself would overestimate the motion, because of its noise.
@@ -254,14 +257,17 @@ def noise_deviation(signal: Array) -> float:
 
 
 def _check_sign(name: str, motion: Array, force: Array) -> None:
+    """Raise ValueError if the force falls as the motion rises."""
     if np.sum((motion - motion.mean()) * (force - force.mean())) <= 0.0:
         raise ValueError(f"{name}the force falls as the motion rises; reverse the sign of one column")
 
 
 def _check_energy(name: str, motion: Array, force: Array, ends: Sequence[int]) -> list[tuple[float, float]]:
-    """Area [J] and range of motion of the widest closed loop of a run, as a list of one or no element.
+    """Check that the loops of a run dissipate energy; return the widest closed loop.
 
-    ends : indices of the turning points, and of the last sample
+    Returns its area [J] and range of motion, as a list of one or no element.
+
+    branch_ends : indices of the turning points, and of the last sample
 
     Raises ValueError if the loops create more energy (mean negative area) than noise explains.
     """

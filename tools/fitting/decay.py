@@ -20,7 +20,7 @@ from jointfmu.quantity import Array
 WINDOW_PERIODS = (2, 5)
 """Minimum and maximum number of periods of a window."""
 WINDOW_DECAY = 0.3
-"""Logarithmic decrement of the amplitude over a window [1] that is aimed at, within PERIODS."""
+"""Logarithmic decrement of the amplitude over a window [1] that is aimed at, within WINDOW_PERIODS."""
 MAX_WINDOW_DECAY = 1.0
 """Logarithmic decrement over a window [1], from which the window is left out: the two periods of the window
 are too different."""
@@ -31,7 +31,7 @@ MIN_WINDOWS = 4
 MIN_SIGNAL_TO_NOISE = 4.0
 """Amplitude over the standard deviation of the residuals [1], below which a window is not used."""
 FREQUENCY_ERROR, DAMPING_ERROR = 8e-3, 1e-1
-"""Relative error of frequency and damping of a window without noise, over the square of the logarithmic
+"""Relative error of frequency and of damping in a window without noise, over the square of the logarithmic
 decrement over the window [1]. Source: simulated decays of known laws."""
 RECORD_END_FRACTION = 0.2
 """Last fraction of a record [1]: if the motion is largest there, the record is no decay."""
@@ -41,10 +41,10 @@ RECORD_END_FRACTION = 0.2
 class DecayPoints:
     """Frequency and damping of a free vibration at amplitudes (n) [m or rad].
 
-    frequency : undamped natural frequency (n) [Hz]
-    damping   : damping ratio (n) [1]
-    frequency_spread : relative standard deviation (n) [1] of the frequency, up to a common factor
-    damping_spread : standard deviation (n) [1] of the damping ratio, up to a common factor
+    frequency           : undamped natural frequency (n) [Hz]
+    damping_ratio       : damping ratio (n) [1]
+    frequency_deviation : relative standard deviation (n) [1] of the frequency, up to a common factor
+    damping_deviation   : standard deviation (n) [1] of the damping ratio, up to a common factor
     """
 
     amplitude: Array
@@ -55,9 +55,9 @@ class DecayPoints:
 
 
 def analyse_decay(time: Array, motion: Array, name: str = "") -> DecayPoints:
-    """Frequency and damping as functions of the amplitude, from time (n) [s] and motion (n) [m or rad].
+    """Compute frequency and damping over the amplitude, from time (n) [s] and motion (n) [m or rad].
 
-    Raises ValueError, with `name` as the prefix of its message: time does not rise, too few samples or
+    Raises ValueError, whose message begins with `message_prefix`: time does not rise, too few samples or
     periods, or a growing motion.
     """
     if np.any(np.diff(time) <= 0.0):
@@ -104,7 +104,9 @@ def _main_frequency(time: Array, motion: Array) -> float:
 
 
 def _fit_windows(time: Array, motion: Array, w: float) -> Iterator[tuple[float, ...]]:
-    """Yield for each window: amplitude, w and s [1/s], their standard deviations [1/s], length [s].
+    """Fit a decaying oscillation in each window of a record.
+
+    Yields for each window: amplitude, w and s [1/s], their standard deviations [1/s], length [s].
 
     w : angular frequency [rad/s] with which the first window is chosen
     """
@@ -131,10 +133,10 @@ def _fit_windows(time: Array, motion: Array, w: float) -> Iterator[tuple[float, 
 
 
 def _fit_window(first: Array, t: Array, u: Array) -> Array:
-    """Fit w, s and their rates (4) in one window; `first` (2) are the start values of w and s.
+    """Fit w, s and their rates (4) in one window; `start_values` (2) are the start values of w and s.
 
-    Times t (n) and all results are made dimensionless with the length of the window. w and s are first fitted
-    with zero rates, then all four together.
+    `window_time` (n) and all results are made dimensionless with the length of the window. w and s are first
+    fitted with zero rates, then all four together.
     """
     constant = scipy.optimize.least_squares(
         lambda x: _window_residual(np.append(x, [0.0, 0.0]), t, u), first
@@ -144,7 +146,10 @@ def _fit_window(first: Array, t: Array, u: Array) -> Array:
 
 
 def _window_residual(shape: Array, t: Array, u: Array) -> Array:
-    """Residuals (n) of the linear fit of c, d, A, B to a signal u (n); shape (4): w, s and their rates."""
+    """Residuals (n) of the linear fit of c, d, A, B to a signal (n).
+
+    window_parameters : w, s and their rates (4)
+    """
     matrix = _design_matrix(shape, t)
     return np.asarray(u - matrix @ np.linalg.lstsq(matrix, u)[0])
 
@@ -152,7 +157,7 @@ def _window_residual(shape: Array, t: Array, u: Array) -> Array:
 def _design_matrix(shape: Array, t: Array) -> Array:
     """Design matrix (n, 4) of c, d, A, B: ones, time, decaying cosine, decaying sine.
 
-    shape : w, s and their rates (4)
+    window_parameters : w, s and their rates (4)
     """
     w, s, w_rate, s_rate = shape
     angle, decay = (w + 0.5 * w_rate * t) * t, np.exp(-(s + 0.5 * s_rate * t) * t)

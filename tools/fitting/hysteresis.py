@@ -34,7 +34,7 @@ _ANGLE, _WEIGHT = np.polynomial.legendre.leggauss(64)
 _ANGLE, _WEIGHT = 0.5 * np.pi * (1.0 + _ANGLE), 0.5 * np.pi * _WEIGHT
 """Gauss-Legendre angles (64) [rad] from 0 to pi, and their weights: half an oscillation u = a cos(angle)."""
 _MAX_SECANT_STEPS, _MAX_DECREMENT = 12, 3.0
-"""Secant iterations for the logarithmic decrement of half a period, and its upper limit [1]."""
+"""Number of secant iterations for the logarithmic decrement of half a period, and upper limit of it [1]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,10 +49,10 @@ class NonlinearSpring:
 class HysteresisLaw:
     """Force as a function of the motion and its turning points: Masing friction and a parallel spring.
 
-    friction : B(u), friction force or torque in first loading from rest, for motions u (...) >= 0
-    friction_work : integral [J] of B from 0 to u, for motions u (...) >= 0
-    elastic  : parallel nonlinear spring; None: no spring
-    viscous  : viscous damping [N.s/m or N.m.s/rad]; acts in vibrations only
+    friction        : B(u), friction force or torque in first loading from rest, for motions u (...) >= 0
+    friction_work   : integral [J] of B from 0 to u, for motions u (...) >= 0
+    elastic_spring  : parallel nonlinear spring; None: no spring
+    viscous_damping : viscous damping [N.s/m or N.m.s/rad]; acts in vibrations only
     """
 
     friction: Force
@@ -61,7 +61,10 @@ class HysteresisLaw:
     viscous: float = 0.0
 
     def force_change(self, motion: Array, start: Array) -> Array:
-        """Change (...) of the force from turning points `start` (...) to motions (...), by Masing's rule."""
+        """Change (...) of the force from the turning points to motions (...), by Masing's rule.
+
+        turning_motion : motion (...) at the turning points
+        """
         distance = motion - start
         change = np.copysign(2.0 * self.friction(0.5 * np.abs(distance)), distance)
         if self.elastic is None:
@@ -69,7 +72,7 @@ class HysteresisLaw:
         return np.asarray(change + self.elastic.force(motion) - self.elastic.force(start))
 
     def shift_rest(self, rest: float) -> "HysteresisLaw":
-        """Copy of the law whose elastic force is zero at the motion `rest`."""
+        """Copy of the law, shifted so that its elastic force is zero at the motion `rest_motion`."""
         if self.elastic is None:
             return self
         force, energy = self.elastic.force, self.elastic.energy
@@ -121,7 +124,7 @@ class HysteresisLaw:
     def _decrement(self, half_distance: Array, viscous: Array) -> Array:
         """Logarithmic decrement b (n) [1] of half a period, by the secant method.
 
-        viscous : viscous part (n) of G over h, pi d omega/4
+        viscous_slope : viscous part (n) of G over h, pi d omega/4
         """
 
         def dissipated_force(distance: Array) -> Array:
@@ -141,7 +144,11 @@ class HysteresisLaw:
         return high
 
     def _frequency(self, half_distance: Array, b: Array) -> Array:
-        """Angular frequency (n) [rad/s] of free vibration with a unit inertia, at the decrement b (n) [1]."""
+        """Angular frequency (n) [rad/s] of free vibration with a unit inertia.
+
+        half_distance : h (n), half the distance between two consecutive turning points
+        decrement     : logarithmic decrement b (n) [1] of half a period
+        """
         start = 2.0 * half_distance / (1.0 + np.exp(-b))
         distance = half_distance[:, None] * (1.0 - np.cos(_ANGLE))
         force = 2.0 * self.friction_work(half_distance) / half_distance - self._released_energy(
@@ -155,7 +162,7 @@ class HysteresisLaw:
         return np.asarray(np.pi / ((half_distance[:, None] * np.sin(_ANGLE) / speed) @ _WEIGHT))
 
     def _released_energy(self, half_distance: Array, b: Array) -> Array:
-        """Elastic energy released between two turning points over their distance 2 h: D (n) [N or N.m]."""
+        """Elastic energy released between two turning points, over their distance 2 h: D (n) [N or N.m]."""
         if self.elastic is None:
             return np.zeros_like(half_distance)
         start = 2.0 * half_distance / (1.0 + np.exp(-b))
@@ -167,7 +174,7 @@ AMPLITUDE_SEARCH_FACTOR = 30.0
 """Factor [1] below the smallest and above the largest measured amplitude: range in which amplitudes of forced
 vibration are searched."""
 _TABLE_POINTS, _MAX_BISECTIONS = 80, 50
-"""Amplitudes at which the equivalent spring is tabulated, and bisections for the amplitude."""
+"""Number of amplitudes at which the equivalent spring is tabulated, and of bisections for the amplitude."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -218,24 +225,25 @@ class FreeVibration:
 
     @property
     def noise_groups(self) -> NDArray[np.int64]:
-        """Index (2 n) of the noise group of each residual: 0 for frequencies, 1 for damping ratios."""
+        """Noise group (2 n) of each residual: 0 for frequencies, 1 for damping ratios."""
         return np.repeat([0, 1], self.points.amplitude.size)
 
     @property
     def scale(self) -> Array:
-        """Standard deviations (2 n) [1] of `misfit`, up to a factor for each noise group."""
+        """Standard deviations (2 n) [1] of the misfits, up to a factor for each noise group."""
         return np.concatenate([self.points.frequency_spread, self.points.damping_spread])
 
     def misfit(self, model: Oscillator) -> Array:
-        """Relative errors of the frequencies (data over model minus 1), then data minus model of the damping
-        ratios; (2 n) [1].
+        """Misfits (2 n) [1] of an oscillator.
+
+        Frequencies: data over model minus 1; then damping ratios: data minus model.
         """
         frequency, damping = model.free_vibration(self.points.amplitude)
         data = self.points
         return np.concatenate([data.frequency / frequency - 1.0, data.damping - damping])
 
     def residuals(self, model: Oscillator, scale: Array) -> Array:
-        """`misfit` over its standard deviations `scale`, both of the same shape."""
+        """Misfits of an oscillator over their standard deviations `residual_scale`."""
         return self.misfit(model) / scale
 
 
@@ -251,18 +259,18 @@ class ForcedResponse:
 
     @property
     def noise_groups(self) -> NDArray[np.int64]:
-        """Index (n) of the noise group of each amplitude: 0, all have the same noise."""
+        """Noise group (n) of each amplitude: 0, because all have the same noise."""
         return np.zeros(self.amplitude.size, dtype=np.int64)
 
     @property
     def scale(self) -> Array:
-        """Standard deviations (n) [1] of `misfit`, up to a common factor."""
+        """Standard deviations (n) [1] of the misfits, up to a common factor."""
         return np.ones(self.amplitude.size)
 
     def misfit(self, model: Oscillator) -> Array:
-        """Logarithm (n) [1] of the ratio of measured to modelled amplitude."""
+        """Misfits (n) [1] of an oscillator: logarithm of measured over computed amplitude."""
         return np.log(self.amplitude / model.response_amplitude(self.frequency, self.force, self.amplitude))
 
     def residuals(self, model: Oscillator, scale: Array) -> Array:
-        """`misfit` over its standard deviations `scale`, both of the same shape."""
+        """Misfits of an oscillator over their standard deviations `residual_scale`."""
         return self.misfit(model) / scale

@@ -4,10 +4,10 @@ A thin layer over `scipy.optimize.least_squares` (trust region reflective). The 
 the parameters. Residuals are infinite at parameters that the model refuses, so the search steps back. The
 covariance follows from the Jacobian at the solution.
 
-During the search a parameter may be replaced by a derived quantity (`Exchange`). Example: level and exponent
-of a law together give a stiffness, which the data determine a thousand times better than level or exponent
-alone. Steps in level and exponent leave the narrow curved valley of the cost at once. With the stiffness as
-unknown instead of the level, the valley is straight.
+During the search a parameter may be replaced by a derived quantity (`UnknownExchange`). Example: level and
+exponent of a law together give a stiffness, which the data determine a thousand times better than level or
+exponent alone. Steps in level and exponent leave the narrow curved valley of the cost at once. With the
+stiffness as unknown instead of the level, the valley is straight.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -31,15 +31,15 @@ TOLERANCE = 1e-8
 MAX_EVALUATIONS = 300
 """Maximum number of function evaluations of one fit, without those for the Jacobian."""
 RIDGE = 0.01
-"""Weight of the regularisation towards the start: standard deviations of a residual per unit of a logarithm
-[1]. Too weak to move determined parameters, strong enough to hold undetermined parameters."""
+"""Weight of the regularisation towards the start values: standard deviations of a residual per unit of a
+logarithm [1]. Too weak to move determined parameters, strong enough to hold undetermined parameters."""
 BOUND_DISTANCE = 1e-6
 """Distance to a bound, in the logarithm [1], below which a parameter counts as being on the bound."""
 
 
 @dataclass(frozen=True, slots=True)
 class Unknown:
-    """Positive parameter to be fitted: start value and open bounds (`low`, `high`) in its SI unit."""
+    """Positive parameter to be fitted: name, unit, start value and open bounds in this SI unit."""
 
     name: str
     unit: str
@@ -60,14 +60,14 @@ class Unknown:
 class Solution:
     """Least-squares solution and its uncertainty.
 
-    values     : {name: value} [SI]
-    residuals  : residuals (n) [1] at the solution
-    noise      : standard deviation of one residual [1]
-    jacobian   : derivatives (n, k) [1] of the residuals with respect to the logarithms
-    covariance : covariance (k, k) [1] of the logarithms
-    at_bound   : names of the parameters on a bound
-    limit      : error message of the model next to the solution, if the fit ended where the model refuses
-        values; else None
+    values          : {name: value} [SI]
+    residuals       : residuals (n) [1] at the solution
+    noise           : standard deviation of one residual [1]
+    jacobian        : derivatives (n, k) [1] of the residuals with respect to the logarithms
+    covariance      : covariance (k, k) [1] of the logarithms
+    names_at_bound  : names of the parameters on a bound
+    refusal_message : error message of the model next to the solution, if the fit ended where the model
+                      refuses values; else None
     """
 
     unknowns: tuple[Unknown, ...]
@@ -108,11 +108,11 @@ def solve(
 
     Parameters
     ----------
-    unknowns  : parameters to be fitted
-    residuals : residual function; all residuals have the same standard deviation
-    noise     : standard deviation of a residual [1]; estimated from the residuals if None
-    nuisances : number of parameters that the residual function itself eliminates (for example an offset)
-    tolerance : relative change of cost or parameters at which the fit ends [1]
+    unknowns       : parameters to be fitted
+    residuals      : residual function; all residuals have the same standard deviation
+    noise          : standard deviation of a residual [1]; estimated from the residuals if None
+    nuisance_count : number of parameters that the residual function itself eliminates (for example an offset)
+    tolerance      : relative change of cost or parameters at which the fit ends [1]
 
     Raises
     ------
@@ -170,10 +170,11 @@ def select_start(
     starts: Mapping[str, Sequence[float]],
     evaluate_start: Callable[[dict[str, float]], tuple[Mapping[str, float], float]],
 ) -> Sequence[Unknown]:
-    """Select the starting point with the lowest cost: the unknowns, with their start values there.
+    """Select the start values with the lowest cost; return the unknowns with these start values.
 
-    starts : {name: alternative start values}; all combinations with the unknowns' own starts are tried
-    evaluate_start : function: starting point -> values, which it may adjust, and their cost
+    alternative_starts : {name: alternative start values}; all combinations with the unknowns' own starts are
+                         tried
+    evaluate_start     : function: starting point -> values, which it may adjust, and their cost
 
     If the model refuses all points, the unknowns keep their own starts.
     """
@@ -209,7 +210,7 @@ class _LogarithmicModel:
         self.retreated = False
 
     def values_by_name(self, logs: Array) -> dict[str, float]:
-        """{name: value} of logarithms (k)."""
+        """Values {name: value} of the parameters, from their logarithms (k)."""
         with np.errstate(over="ignore"):
             return dict(zip(self.names, np.exp(logs).tolist(), strict=True))
 
@@ -255,17 +256,18 @@ def covariance(jacobian: Array, noise: float) -> Array:
 
 
 EXCHANGE_TOLERANCE, MAX_SECANT_STEPS = 1e-10, 40
-"""Relative tolerance [1] of the quantity of an `Exchange`, and maximum number of secant steps to meet it."""
+"""Relative tolerance [1] of the derived quantity of an `UnknownExchange`, largest number of secant steps."""
 
 
 @dataclass(frozen=True, slots=True)
 class Exchange:
     """Replacement of an unknown by a derived quantity during a fit.
 
-    name     : name of the unknown that is replaced
-    quantity : function {name: value} -> derived quantity; positive, and monotone in the replaced unknown
-    unit     : unit of the quantity
-    label    : name of the quantity
+    exchanged_name : name of the unknown that is replaced
+    quantity       : function {name: value} -> derived quantity; positive, and monotone in the replaced
+                     unknown
+    unit           : unit of the quantity
+    quantity_label : name of the quantity
     """
 
     name: str
@@ -274,12 +276,14 @@ class Exchange:
     label: str
 
     def unknown(self, unknowns: Mapping[str, Unknown]) -> Unknown:
-        """The derived quantity as an unknown, which starts at its value for the starts of `unknowns`."""
+        """Unknown for the derived quantity, with the value at the start values of `unknowns` as its start."""
         start = self.quantity({name: u.start for name, u in unknowns.items()})
         return Unknown(self.label, self.unit, start, 0.0, np.inf)
 
     def restore_unknowns(self, values: Mapping[str, float], start: float) -> dict[str, float]:
-        """Values of the original unknowns from values with the derived quantity; secant method from `start`.
+        """Convert values with the derived quantity to values of the original unknowns, by the secant method.
+
+        start_value : of the exchanged unknown, for the secant method
 
         Raises ValueError if no value of the replaced unknown gives the quantity.
         """

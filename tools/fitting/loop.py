@@ -33,9 +33,9 @@ MIN_REVERSAL = 0.1
 CENTRAL_FRACTION = 0.25
 """Central fraction of the torque range [1], in which friction is fully reversed on both branches."""
 MIN_BRANCH_SPAN = 0.9
-"""Fraction of the torque range [1], from which a branch counts as covering the full range."""
+"""Range of a branch over the torque range [1], from which the branch counts as covering the full range."""
 MAX_KNOTS, POINTS_PER_KNOT = 41, 20
-"""Maximum number of knots of the piecewise linear curves, and samples for each knot."""
+"""Maximum number of knots of the piecewise linear curves, and number of samples for each knot."""
 MAX_POINTS = 400
 """Maximum number of points of the backbone; more samples are averaged in groups of neighbouring torque."""
 MIN_DRIFT_FRACTION = 0.05
@@ -50,8 +50,8 @@ class Backbone:
     """Backbone curve of a torque-angle record, and the hysteresis and drift that were separated from it.
 
     torque, angle : (n) [N.m], (n) [rad], ascending in torque
-    count         : number of samples (n) averaged in each point
-    branches      : number of branches used
+    sample_counts : number of samples (n) averaged in each point
+    branch_count  : number of branches used
     loop_area     : energy dissipated in one loop [J]
     backlash      : angle between the branches at zero torque [rad]
     drift         : drift of the angle over the whole record [rad]
@@ -70,7 +70,7 @@ class Backbone:
 
 @dataclass(frozen=True, slots=True)
 class _Branch:
-    """Samples between two turning points: their indices, and lowest and highest torque [N.m]."""
+    """Branch between two turning points: indices of its samples, direction, torque range [N.m]."""
 
     indices: NDArray[np.int64]
     rising: bool
@@ -104,7 +104,7 @@ def find_backbone(torque: Array, angle: Array) -> Backbone:
 
 
 def _branches(torque: Array) -> list[_Branch]:
-    """All branches between the turning points of the torque, in the order of the measurement."""
+    """Cut a record into branches at the turning points of the torque, in the order of the measurement."""
     turns = find_reversals(torque, MIN_REVERSAL * float(np.ptp(torque)))
     ends = np.concatenate([[0], turns, [torque.size - 1]])
     branches = []
@@ -130,7 +130,7 @@ def _separate_hysteresis(
 ) -> Backbone:
     """Separate backbone, hysteresis and drift by one linear least-squares problem.
 
-    low, high : torque range [N.m] common to rising and falling branches
+    min_torque, max_torque : torque range [N.m] common to rising and falling branches
     """
     indices = np.concatenate([b.indices for b in branches])
     direction = np.concatenate([np.where(b.rising, 1.0, -1.0) * np.ones(b.indices.size) for b in branches])
@@ -192,15 +192,15 @@ def _friction(torque: Array, angle: Array, direction: Array) -> float:
 
 
 def _hat_functions(T: Array, grid: Array) -> scipy.sparse.csr_matrix:
-    """Piecewise linear basis functions (n, k) at torques (n), for knots `grid` (k)."""
+    """Piecewise linear basis functions (n, k) at torques (n), for the knots `grid` (k)."""
     return scipy.sparse.csr_matrix(BSpline.design_matrix(T, np.pad(grid, 1, mode="edge"), 1))
 
 
 def _has_turning_point(branches: list[_Branch], end: float, span: float, side: int) -> bool:
     """Whether a rising and a falling branch meet at an end of the torque range.
 
-    end, span : torque of that end, and length of the range [N.m]
-    side      : 0: lower end, -1: upper end
+    end_torque, torque_range : torque of that end, and length of the range [N.m]
+    end_index : 0: lower end, -1: upper end
     """
     pairs = pairwise(branches)
     return any(
@@ -221,7 +221,10 @@ def _is_drift_determined(design: scipy.sparse.csr_matrix) -> bool:
 
 
 def _average_groups(torque: Array, angle: Array) -> tuple[Array, Array, Array]:
-    """Average samples in at most MAX_POINTS groups of neighbouring torque: torque, angle, group size."""
+    """Average samples in groups of neighbouring torque, at most MAX_BACKBONE_POINTS.
+
+    Returns mean torque, mean angle and size (n) of the groups.
+    """
     order = np.argsort(torque, kind="stable")
     starts = np.linspace(0, order.size, min(order.size, MAX_POINTS) + 1).astype(int)[:-1]
     count = np.diff(np.append(starts, order.size)).astype(float)

@@ -18,7 +18,7 @@ from .decay import DecayPoints, analyse_decay
 from .hysteresis import ForcedResponse, FreeVibration
 
 MIN_ROWS = 8
-"""Minimum number of rows of a file."""
+"""Minimum number of rows of a measurement file."""
 RUN_COLUMN = "run"
 """Column with the number of the run, if a file holds several runs."""
 COLUMN_SYNONYMS = {
@@ -35,16 +35,16 @@ WRONG_UNIT_RATIO = 50.0
 """Ratio [1] of measured stiffness to stiffness of the start values, or its inverse, from which a wrong unit
 is assumed. Degrees read as radians give 57."""
 EXPLAINED_RATIO = 5.0
-"""Ratio [1] of measured stiffness to stiffness of the start values, or its inverse, up to which another unit
-counts as the explanation of a wrong ratio."""
+"""Ratio [1] of measured stiffness to stiffness of the start values that remains with another unit, or its
+inverse, up to which that unit counts as the explanation."""
 
 
 @dataclass(frozen=True, slots=True)
 class ColumnNames:
     """Names and units of the columns for force (or torque) and motion (displacement or angle) of a joint.
 
-    force, motion   : names of the columns
-    forces, motions : {unit: size in SI units} allowed for each, SI unit first
+    force_column, motion_column : names of the columns
+    force_units, motion_units : {unit: size in SI units} allowed for each, SI unit first
     """
 
     force: str
@@ -70,13 +70,13 @@ class ColumnNames:
         return next(iter(self.forces)), next(iter(self.motions))
 
     def check_level(self, path: Path, ratio: float, units: Mapping[str, str], start: ParameterFile) -> None:
-        """Refuse a measurement whose stiffness is far from that of the start values.
+        """Check that the measured stiffness is near the stiffness of the start values.
 
-        ratio : measured stiffness over stiffness of the start values [1]
-        units : {column: unit in the heading}
-        start : parameter file with the start values
+        stiffness_ratio : measured stiffness over stiffness of the start values [1]
+        stated_units    : {column: unit in the heading}
+        start_file      : parameter file with the start values
 
-        Raises Refusal, with a likely unit error, if the ratio or its inverse reaches WRONG_UNIT_RATIO.
+        Raises InputRefusal, with a likely unit error, if the ratio or its inverse reaches WRONG_UNIT_RATIO.
         """
         if 1.0 / WRONG_UNIT_RATIO < ratio < WRONG_UNIT_RATIO:
             return
@@ -88,9 +88,10 @@ class ColumnNames:
         )
 
     def likely_unit(self, ratio: float, units: Mapping[str, str]) -> str:
-        """Text that names the unit error which best explains a stiffness `ratio` times too large [1].
+        """Describe the unit error that best explains a wrong ratio of stiffnesses, as text.
 
-        units : {column: unit in the heading}
+        stiffness_ratio : measured stiffness over stiffness of the start values [1]
+        stated_units    : {column: unit in the heading}
 
         If a wrong unit of either column explains the ratio equally well, the text names both.
         """
@@ -150,9 +151,9 @@ def split_runs(table: columns.Columns) -> list[tuple[str, dict[str, Array]]]:
 class Measurement:
     """Measurement of a joint, read from a file.
 
-    kind  : "loops", "response", "backbone" or "decay", see `read_columns`
-    heads : names and units of the columns
-    units : {column: unit in the heading}
+    kind         : "loops", "response", "backbone" or "decay", see `read_columns`
+    column_names : names and units of the columns
+    stated_units : {column: unit in the heading}
     """
 
     path: Path
@@ -194,7 +195,7 @@ class Measurement:
 
     @property
     def range_text(self) -> str:
-        """Kind of the measurement and largest amplitude, as text."""
+        """Range of the data as text: kind of the measurement and largest amplitude."""
         return f"{self.kind} up to {self.heads.motion} {self.amplitude:.4g} {self.heads.si_units[1]}"
 
 

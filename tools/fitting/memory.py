@@ -1,6 +1,6 @@
 """Fit of hysteresis laws to measurements: model, search, derived facts, notes and plots.
 
-Common to the fits of all joints with hysteresis.
+The fits of all joints with hysteresis use this module.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -37,9 +37,9 @@ Law = Callable[[Mapping[str, float]], HysteresisLaw]
 class MeasurementModel:
     """Model of a measurement: hysteresis law as a function of the unknowns, and the vibrating inertia.
 
-    law     : function {name: value} of the unknowns -> hysteresis law
-    inertia : mass [kg] or moment of inertia [kg.m2] on the joint; None for loops
-    damping : damping ratio of the structure [1], if it is not an unknown
+    make_law      : function {name: value} of the unknowns -> hysteresis law
+    inertia       : mass [kg] or moment of inertia [kg.m2] on the joint; None for loops
+    damping_ratio : damping ratio of the structure [1], if it is not an unknown
     """
 
     law: Law
@@ -53,7 +53,10 @@ class MeasurementModel:
     def residuals(
         self, data: Loops | FreeVibration | ForcedResponse, values: Mapping[str, float], scale: Array
     ) -> Array:
-        """Residuals of the data at values of the unknowns, over the standard deviations `scale` (n)."""
+        """Residuals of the data at values of the unknowns.
+
+        residual_scale : standard deviations (n) of the data, by which the residuals are divided
+        """
         law = self.hysteresis_law(values)
         if isinstance(data, Loops):
             return data.residuals(law, scale)
@@ -68,9 +71,9 @@ class MeasurementModel:
 def build_model(
     measurement: Measurement, law: Law, inertia_option: str, inertia: float | None, damping: float
 ) -> MeasurementModel:
-    """Build the model of a measurement.
+    """Build the model of a measurement; check inertia and damping ratio.
 
-    setting : name of the option for the inertia, used in error messages
+    inertia_option : name of the option for the inertia, used in error messages
 
     Raises ValueError if the inertia is stated for loops, is missing for a vibration, or if inertia or damping
     ratio are out of range.
@@ -101,10 +104,12 @@ def fit_measurement(
 ) -> tuple[Solution, Array, Measurement]:
     """Fit the unknowns twice: the first fit estimates the noise of each group of data, the second uses it.
 
-    starts : {name: alternative start values} of the search
-    level  : stiffness at rest, and the unknown that is adjusted at each start to the measured stiffness
-    moved  : whether the stiffness at rest replaces that unknown during the search (`Exchange`)
-    corrected : function: values of the first fit -> corrected measurement, used in the second fit
+    alternative_starts  : {name: alternative start values} of the search
+    level_exchange      : stiffness at rest, and the unknown that is adjusted at each start to the measured
+                          stiffness
+    is_level_exchanged  : whether the stiffness at rest replaces that unknown during the search
+                          (`UnknownExchange`)
+    correct_measurement : function: values of the first fit -> corrected measurement, used in the second fit
 
     Returns the solution, the noise (n) of the data, and the measurement of the second fit.
 
@@ -162,9 +167,9 @@ def _clip_to_bounds(unknown: Unknown, value: float) -> float:
 
 
 def facts(measurement: Measurement, solution: Solution, law: HysteresisLaw, scale: Array) -> Facts:
-    """Facts of a fit apart from its parameters: points, amplitude, offset, loop area, loss factor, noise.
+    """Results of a fit besides its parameters: points, amplitude, offset, loop area, loss factor, noise.
 
-    scale : noise (n) of the data
+    residual_scale : noise (n) of the data
     """
     data, (_, unit) = measurement.data, measurement.heads.si_units
     result = {
@@ -192,7 +197,7 @@ def facts(measurement: Measurement, solution: Solution, law: HysteresisLaw, scal
 
 
 def notes(measurement: Measurement, solution: Solution) -> list[str]:
-    """Note for the user if the residuals show that the law misses the data systematically; else empty."""
+    """Notes for the user if the residuals show that the law misses the data systematically; else empty."""
     if measurement.kind == "response":
         return []
     residuals = solution.residuals[: measurement.data.noise_groups.size]
@@ -201,7 +206,7 @@ def notes(measurement: Measurement, solution: Solution) -> list[str]:
 
 
 _CURVE_POINTS = 120
-"""Points of a plotted curve of the law."""
+"""Number of points of a plotted curve of the law."""
 
 
 def pictures(

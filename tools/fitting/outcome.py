@@ -2,8 +2,8 @@
 
 The singular values of the Jacobian (in the logarithms) over the noise are the reciprocal standard deviations
 of independent combinations `prod name^exponent`. A parameter or combination counts as determined
-if its standard deviation does not exceed its limit. The limit is MAX_DEVIATION, or a tenth of the interval of
-the parameter if that is smaller (both in logarithms).
+if its standard deviation does not exceed its limit. The limit is MAX_RELATIVE_DEVIATION, or a tenth of the
+interval of the parameter if that is smaller (both in logarithms).
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -40,9 +40,9 @@ MIN_SINGULAR_VALUE_RATIO = 1e-5
 class Combination:
     """Combination prod name^exponent of parameters, statistically independent of the other combinations.
 
-    exponents  : {name: exponent}, the largest is 1
-    deviation  : relative standard deviation [1]; infinite if the data contain no information about it
-    determined : whether the standard deviation is within the limit
+    exponents          : {name: exponent}, the largest is 1
+    relative_deviation : relative standard deviation [1]; infinite if the data contain no information about it
+    is_determined      : whether the standard deviation is within the limit
     """
 
     exponents: Mapping[str, float]
@@ -111,14 +111,14 @@ MAX_RESIDUAL_RATIO = 0.95
 
 @dataclass(frozen=True, slots=True)
 class Picture:
-    """Plot of data, fitted curve and misfit over one abscissa, in the units of the labels.
+    """Contents of a plot: data, fitted curve and misfit over one abscissa, in the units of the axis labels.
 
-    x, y   : data (n)
-    misfit : data minus law (n)
-    line   : x (m) and y (m) of the fitted law
-    labels : axis labels of x, y and misfit
-    highlighted : mask (n) of the points to be highlighted
-    also   : {name: (x, y)} of other laws for comparison
+    data_x, data_y     : data (n)
+    misfit             : data minus law (n)
+    law_curve          : x (m) and y (m) of the fitted law
+    axis_labels        : axis labels of x, y and misfit
+    highlighted_points : mask (n) of the points to be highlighted
+    other_laws         : {name: (x, y)} of the curves of other laws, for comparison
     """
 
     x: Array
@@ -131,17 +131,17 @@ class Picture:
 
 
 Facts = dict[str, tuple[float, str, str]]
-"""{name: (value, unit, meaning)}."""
+"""Results {name: (value, unit, meaning)} that are no parameters."""
 
 
 @dataclass(frozen=True, slots=True)
 class FitResult:
     """Result of a fit: fitted parameter file, solution, facts, plots, notes.
 
-    facts    : {name: (value, unit, meaning)} of results that are no parameters
-    pictures : plots, drawn side by side
-    notes    : messages for the user, one line each
-    intervals : {name: ends of the 95 % confidence interval}, if they are known
+    facts                : {name: (value, unit, meaning)} of results that are no parameters
+    pictures             : plots, drawn side by side
+    notes                : messages for the user, one line each
+    confidence_intervals : {name: ends of the 95 % confidence interval}, if they are known
     """
 
     parameters: ParameterFile
@@ -271,14 +271,14 @@ def format_deviation(deviation: float) -> str:
 
 
 def _finite_or_none(value: float) -> float | None:
-    """The value, or None (JSON null) if it is not finite."""
+    """Return the value, or None (JSON null) if it is not finite."""
     return float(value) if np.isfinite(value) else None
 
 
 def unknowns(
     start: ParameterFile, names: Sequence[str], bounds: Mapping[str, tuple[float, float]]
 ) -> list[Unknown]:
-    """Unknowns of a fit: the named parameters, with the values of `start` and their declared intervals.
+    """Make the unknowns of a fit: named parameters, with values of `start_file` and declared intervals.
 
     bounds : {name: (low, high)} that narrow the declared intervals
 
@@ -300,9 +300,9 @@ def unknowns(
 def predictor(
     start: ParameterFile, predict: Callable[[Any], Array]
 ) -> Callable[[Mapping[str, float]], Array]:
-    """Function {name: value} of the unknowns -> predictions; all other parameters as in `start`.
+    """Make the function {name: value} of the unknowns -> predictions; other parameters as in `start_file`.
 
-    predict : function of the parameter set
+    predict_values : function of the parameter set
     """
     return lambda values: predict(start.with_values(values, "calibration", "fit").values)
 
@@ -312,8 +312,8 @@ def fitted_parameters(
 ) -> ParameterFile:
     """Copy of a parameter file with fitted values; their source states data, range and date.
 
-    data, span : data file and range of the data, as text
-    origin     : kind of the source
+    data_name, range_text : data file and range of the data, as text
+    origin                : kind of the source
 
     The date is today, or SOURCE_DATE_EPOCH if that environment variable is set (reproducible files).
 

@@ -17,16 +17,17 @@ if TYPE_CHECKING:
 class Procedure:
     """Procedure that fits parameters of a joint to data.
 
-    name    : name of the procedure, with hyphens
-    text    : description: which parameters, which joint
-    file    : whether the data are a measurement file
+    name                : name of the procedure, with hyphens
+    description         : which parameters, which joint
+    takes_file          : whether the data are a measurement file
     takes_several_files : whether `run` takes a list of paths instead of one path
-    column  : a column that all files of this procedure have; files of procedures with the same name for other
-        joints do not have it
-    options : further options of the command
-    run     : function ([path or paths,] parameter file with the start values or None, names of the parameters
-        to be fitted or None, **options) -> FitResult; it loads the module of the joint only when called.
-        Raises ValueError for bad input, RuntimeError if the fit does not converge.
+    identifying_column  : a column that all files of this procedure have; files of procedures with the same
+                          name for other joints do not have it
+    options             : further options of the command
+    run                 : function ([path or paths,] parameter file with the start values or None, names of
+                          the parameters to be fitted or None, **options) -> FitResult; it loads the module of
+                          the joint only when called. Raises ValueError for bad input, RuntimeError if the fit
+                          does not converge.
     """
 
     name: str

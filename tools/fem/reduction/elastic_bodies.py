@@ -50,7 +50,7 @@ def reduce_bodies(
 ) -> ElasticBodies:
     """Modes of the bodies at the points, patches and bolts of a joint, for a preload [N] per bolt.
 
-    linear           : linear finite-element model of the joint
+    linear_joint     : linear finite-element model of the joint
     spring           : the reduced joint
     normal_stiffness : (q) [Pa/m] of the preloaded interface at the quadrature points
 
@@ -124,7 +124,7 @@ def _normalise_modes(displacements: dict[str, Array]) -> tuple[Array, dict[str, 
     The sign makes the first largest displacement positive: otherwise the last bits of a processor would
     choose between a mode and its opposite.
 
-    displacements : {name: rows (n, k) of all modes}
+    modal_displacements : {name: rows (n, k) of all modes}
 
     Returns the largest displacement (k) of each mode, and the normalised rows as flat tuples.
     """
@@ -142,13 +142,13 @@ def _to_tuple(values: Array) -> tuple[float, ...]:
 
 
 def _energy_modes(linear: LinearJoint, states: Array, motions: Array) -> Array:
-    """Modes (n, k), orthonormal in the energy norm.
+    """Compute modes (n, k) of the bodies that are orthonormal in the energy norm.
 
     The first modes span the response of the linear joint to unit motions; the others come from the proper
     orthogonal decomposition of the remaining deformation.
 
-    states  : (n, s) [m] deformation of the bodies
-    motions : (s, 6) [m, rad] of side 2 in these states
+    state_deformations : (n, s) [m] deformation of the bodies
+    motions            : (s, 6) [m, rad] of side 2 in these states
     """
     linear_modes = _decompose(
         _scale_to_unit_energy(linear.displacement - linear.rigid_displacement, linear), linear
@@ -187,14 +187,14 @@ def _rigid_opening(position: Array) -> Array:
 def _match_stiffness(
     means: Array, rigid: Array, mean_stiffness: Array, all_rigid: Array, trace: Array, spring_stiffness: Array
 ) -> Array:
-    """Correct the modal displacements (n, k) of few springs until they are as stiff as all springs.
+    """Correct the modal displacements (n, k) of a reduced set of springs until it is as stiff as all springs.
 
-    means          : (n, k) mean displacement of each of the few springs by the modes
-    rigid          : (n, 3) displacement of the few springs by rigid-body motions
-    mean_stiffness : (n) [N/m] of the few springs
-    all_rigid      : (q, 3) displacement of all springs by rigid-body motions
-    trace          : (q, k) displacement of all springs by the modes
-    spring_stiffness : (q) [N/m] of all springs
+    reduced_displacement : (n, k) mean displacement of each spring of the reduced set by the modes
+    reduced_rigid_displacement : (n, 3) displacement of the reduced set by rigid-body motions
+    reduced_stiffness : (n) [N/m] of the reduced set
+    full_rigid_displacement : (q, 3) displacement of all springs by rigid-body motions
+    full_displacement : (q, k) displacement of all springs by the modes
+    full_stiffness : (q) [N/m] of all springs
     """
     few_rigid_part = np.linalg.solve(
         rigid.T @ (mean_stiffness[:, None] * rigid), rigid.T @ (mean_stiffness[:, None] * means)

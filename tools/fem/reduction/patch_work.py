@@ -21,7 +21,7 @@ from jointfmu.mechanics.sliders import Foundation
 from jointfmu.quantity import Array
 
 PAIR_WEIGHT = np.sqrt(0.5)
-"""Weight of each of two motions that are combined [1]."""
+"""Weight of each of two states that are combined [1]."""
 REGULARISATION_WEIGHT = 0.1
 """Weight of the change of the patch displacements (regularisation) over the weight of the forces [1]."""
 MAX_STEPS = 10
@@ -45,7 +45,7 @@ def shear_combinations(motion: Array) -> Array:
     The combinations are the states along x, along y and about z alone (the same number for each axis), then
     sums and differences of two of these axes.
 
-    motion : (s, 6) [m, rad] of the states
+    state_motions : (s, 6) [m, rad] of the states
     """
     single = np.flatnonzero(~np.any(motion[:, 2:5], axis=1))
     single = single[np.count_nonzero(motion[single], axis=1) == 1]
@@ -57,7 +57,7 @@ def shear_combinations(motion: Array) -> Array:
 
 @dataclass(frozen=True)
 class ShearStates:
-    """States of the joint in shear.
+    """States of the joint in shear: motion of side 2, and modal coordinates of the bodies.
 
     motion            : (s, 3) [m, rad] of side 2 along x, along y and about z
     modal_coordinates : (s, k) [m]
@@ -71,7 +71,7 @@ class ShearStates:
 class FrictionPoints:
     """Points (n) with friction: quadrature points of the contact, or sliders of the patches.
 
-    area               : (n) [m2]
+    point_area         : (n) [m2]
     approach           : (n) [m] in the preloaded joint
     rigid_displacement : (2 n, 3) displacement along x (n), then along y (n), by rigid-body motions along x,
                          along y and about z
@@ -87,8 +87,8 @@ class FrictionWork:
     """Friction forces and loss in s states in shear.
 
     forces       : generalised friction forces (s, 3 + k) [N, N.m] on three motions and k modes
-    stick_forces : the same (s, 3 + k) if no point slipped
-    loss         : (s) [J] per cycle with this amplitude
+    stick_forces : generalised friction forces (s, 3 + k) [N, N.m] if no point slipped
+    cycle_loss   : (s) [J] energy loss per cycle with this amplitude
     """
 
     forces: Array
@@ -118,13 +118,13 @@ def _force_scale(forces: Array) -> Array:
 class MonotonicFriction:
     """Friction law in monotonic loading at s states and n points; all arrays (s, n).
 
-    u, v              : tangential displacement along x and y [m]
-    magnitude         : of the tangential displacement [m]
-    secant_stiffness  : traction over displacement [Pa/m]
+    displacement_x, displacement_y : tangential displacement along x and y [m]
+    displacement_magnitude : magnitude of the tangential displacement [m]
+    secant_stiffness : traction over displacement [Pa/m]
     tangent_stiffness : derivative of the traction [Pa/m]
-    stick_stiffness   : stiffness without slip [Pa/m]
-    loss              : per cycle with this amplitude [J/m2]
-    loss_derivative   : with respect to the magnitude [Pa]
+    stick_stiffness : stiffness without slip [Pa/m]
+    cycle_loss : energy loss per cycle with this amplitude [J/m2]
+    cycle_loss_derivative : derivative of cycle_loss with respect to the magnitude [Pa]
     """
 
     u: Array
@@ -174,12 +174,13 @@ class LinearContact:
 class PatchFit:
     """Least-squares problem: friction of m patches that equals the friction of all quadrature points.
 
-    law            : friction law of the interface
-    states         : states in shear in which the friction is compared
-    sliders        : c sliders of each patch: the first of all patches, then the second of all patches, ...
+    friction_law          : friction law of the interface
+    shear_states          : states in shear in which the friction is compared
+    sliders               : c sliders of each patch: the first of all patches, then the second of all patches,
+                            ...
     rotation_displacement : (2 c m, k) [1] displacement of the sliders by the modal rotation of the patches
-    target_work    : friction at all quadrature points
-    linear_contact : stick stiffness of the complete contact, which the patches keep
+    target_work           : friction at all quadrature points
+    linear_contact        : stick stiffness of the complete contact, which the patches keep
     """
 
     law: Foundation
@@ -302,7 +303,7 @@ class PatchFit:
             return np.einsum("scm,cmh->shm", *factors)
 
         def patch_sums(slider_values: Array) -> Array:
-            """Sum (s, m) over the sliders of each patch."""
+            """Sum of slider values (s, m) over the sliders of each patch."""
             return slider_values.reshape(n_states, -1, count).sum(axis=1)
 
         forces, loss = np.zeros((2, n_states, 3 + modes, 2, count)), np.zeros((n_states, 2, count))
@@ -341,9 +342,9 @@ def patch_rotations(
     The rotation is a mean over the cell of each patch, weighted by the averaging matrix and the squared
     distance from the centre.
 
-    position : (q, 2) [m] of the quadrature points
-    means    : averaging matrix (m, q) [1]
-    traces   : displacement (q, k) [1] of the quadrature points along x and y by the modes
+    quadrature_position : (q, 2) [m] of the quadrature points
+    averaging_matrix : averaging matrix (m, q) [1]
+    tangential_displacements : displacement (q, k) [1] of the quadrature points along x and y by the modes
     """
     cell = cKDTree(patches.position).query(position)[1]
     x, y = (position - (means @ position)[cell]).T
@@ -358,9 +359,9 @@ def place_sliders(
 ) -> tuple[FrictionPoints, Array]:
     """Sliders of the patches: c = 1 at the centre, or c on a circle around it if patches have a radius.
 
-    area      : nominal contact area [m2]
-    approach  : (m) [m] of the patches in the preloaded joint
-    rotations : (m, k) [1/m] of the patches by the modes
+    contact_area    : nominal contact area [m2]
+    patch_approach  : (m) [m] of the patches in the preloaded joint
+    modal_rotations : (m, k) [1/m] of the patches by the modes
 
     Returns the sliders (c m), and their displacement (2 c m, k) [1] by the rotation of the patches.
     """
@@ -393,7 +394,7 @@ def evaluate_friction(
 def assemble_friction_work(friction: MonotonicFriction, area: Array, displacement: Array) -> FrictionWork:
     """Generalised forces and loss of the friction of n points.
 
-    area         : (n) [m2]
+    point_area   : (n) [m2]
     displacement : (2 n, 3 + k) of the points by motions and modes
     """
     forces, stick_forces = (

@@ -37,11 +37,11 @@ REFINEMENT_STEPS = 3
 def compute_states(
     linear: LinearJoint, spring: BoltedJointSpring, normal_stiffness: Array, preload: float
 ) -> tuple[Array, Array]:
-    """Compute the states of a joint under motions of side 2, from the preloaded joint on.
+    """Compute the states of a joint under motions of side 2, which start from the preloaded joint.
 
     Returns the motions (s, 6) [m, rad] and the negative deformation (n, s) [m] of the bodies.
 
-    linear           : linear finite-element model of the joint
+    linear_joint     : linear finite-element model of the joint
     spring           : the reduced joint
     normal_stiffness : (q) [Pa/m] of the preloaded interface at the quadrature points
     preload          : [N] per bolt
@@ -65,12 +65,12 @@ def compute_states(
 class CellLoads:
     """Displacement of the bodies under unit loads on the n cells of the contact and on the b bolts.
 
-    joint            : finite-element model of the joint
-    spring           : the reduced joint; its points are the centres of the cells
-    normal_stiffness : (q) [Pa/m] of the preloaded interface at the quadrature points
-    loads            : (3 n + b, unknowns) [1] averaging operators: mean displacement of each cell along z, x
-                       and y, then elongation of each bolt; the transpose distributes unit loads
-    displacement     : (unknowns, 3 n + b) [m/N] under unit loads
+    joint                  : finite-element model of the joint
+    spring                 : the reduced joint; its points are the centres of the cells
+    normal_stiffness       : (q) [Pa/m] of the preloaded interface at the quadrature points
+    averaging_operators    : (3 n + b, unknowns) [1] averaging operators: mean displacement of each cell along
+                             z, x and y, then elongation of each bolt; the transpose distributes unit loads
+    unit_load_displacement : (unknowns, 3 n + b) [m/N] under unit loads
     """
 
     joint: JointFiniteElements
@@ -115,7 +115,7 @@ def averaging_matrix(joint: JointFiniteElements, centres: Array, normal_stiffnes
     A quadrature point belongs to the cell with the nearest centre. A cell without quadrature points takes the
     value at the nearest one.
 
-    centres : (n, 2) [m] of the cells
+    cell_centres : (n, 2) [m] of the cells
     """
     interface = joint.interface
     position = interface.centred_position
@@ -162,9 +162,9 @@ class CellJoint:
         return cls(spring, 0.5 * (compliance + compliance.T), rigid, start, preload)
 
     def cell_forces(self, g: Array) -> tuple[Array, sp.csr_matrix]:
-        """Forces (3 n + b) [N] at displacements g (3 n + b) [m] of cells and bolts, and symmetric tangent.
+        """Forces (3 n + b) [N] at displacements (3 n + b) [m] of cells and bolts, and symmetric tangent.
 
-        Forces are changes from the preloaded joint. The order of g is: opening (n), displacement along x (n),
+        Forces are changes from the preloaded joint. The order is: opening (n), displacement along x (n),
         displacement along y (n), elongation of the bolts (b).
         """
         spring, n = self.spring, self.preload_approach.size
@@ -226,7 +226,7 @@ class CellJoint:
         return force
 
     def motions(self) -> Iterator[Array]:
-        """Motions (6) [m, rad] of side 2 into slip and opening: along and about each axis, then along all."""
+        """Generate motions (6) [m, rad] of side 2 into slip and opening: along each axis, then along all."""
         joint, K = self.spring.joint, np.diag(self.stiffness())
         radius = np.sqrt(self.spring.shape.share @ np.sum(self.spring.shape.position**2, axis=1))
         clamping = joint.n_bolts * float(working_preload(joint, self.preload))
@@ -254,9 +254,9 @@ def refine_equilibrium(
 ) -> Array:
     """Refine the negative deformation (n, s) [m] towards equilibrium with the law at all quadrature points.
 
-    normal_stiffness : (q) [Pa/m] of the preloaded interface at the quadrature points
-    motions          : (s, 6) [m, rad] of side 2
-    deformation      : negative deformation (n, s) [m] in equilibrium with the law in the cells
+    normal_stiffness     : (q) [Pa/m] of the preloaded interface at the quadrature points
+    motions              : (s, 6) [m, rad] of side 2
+    negative_deformation : negative deformation (n, s) [m] in equilibrium with the law in the cells
 
     Each iteration uses the stiffness of the preloaded joint. Slip only lowers the stiffness, so the iteration
     converges. A state whose step grows (its contact closes) is not changed.

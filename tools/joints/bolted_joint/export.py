@@ -137,7 +137,7 @@ def _distribute_to_nodes(
 ) -> Springs:
     """Distribute stiffness and damping to the nodes, in proportion to area share times k(p).
 
-    totals : {name in TOTAL_OUTPUTS: total}; None: the totals of `spring`
+    total_outputs : {name in TOTAL_OUTPUTS: total}; None: the totals of `spring`
 
     Raises ValueError if nothing is in contact or a pressure is outside the law.
     """
@@ -202,7 +202,7 @@ def tabulate_normal_force(
     bolts = float(spring.joint.n_bolts * spring.joint.bolt_stiffness)
 
     def missing(separation: Array) -> tuple[Array, Array]:
-        """Compression [N] and stiffness [N/m] that bolts would have if they pushed."""
+        """Correction for bolts, which only pull: force [N] and stiffness [N/m] of bolts that push."""
         elongation = separation[:, None] + np.zeros(len(held_bolts))
         gap = springs.gap(held_bolts, elongation)
         lost = springs.stiffness - springs.tangent(held_bolts, elongation)

@@ -28,9 +28,9 @@ class PlaneLayout:
     """Geometry of a bolted joint in the contact plane, relative to the centroid of the contact [m].
 
     bolt_positions : (b, 2); empty if the file has none
-    outline        : rectangles (lower corner, upper corner) of the contact, the outer one first; empty for a
-                     pressure field without bodies
-    extent         : (2, 2) lower and upper corner of the bounding box
+    contact_outline : rectangles (lower corner, upper corner) of the contact, the outer one first; empty for a
+        pressure field without bodies
+    bounding_box : (2, 2) lower and upper corner of the bounding box
     hole_diameter, head_diameter : 0 if the file has none
     """
 
@@ -42,7 +42,7 @@ class PlaneLayout:
 
     @classmethod
     def from_joint(cls, joint: Bolted) -> "PlaneLayout":
-        """Layout from the parameters of a joint."""
+        """Bolt layout and outline of the contact, from the parameters of a joint."""
         pattern = joint.pattern
         bodies = joint.bodies if isinstance(joint.bodies, ElasticBodies) else None
         head = bodies.head_diameter if bodies else 0.0

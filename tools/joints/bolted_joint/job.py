@@ -114,7 +114,7 @@ RINGING = Body(
 _PRESSURE_RANGE = (0.3e6, 8e6)
 """Range [Pa] of the measured curves: the mean pressures of the load ramp."""
 _CURVE_POINTS = 41
-"""Points of a measured curve."""
+"""Number of points of a measured curve."""
 
 
 def _bolt_marks(joint: Any) -> tuple[Sequence[Sequence[float]], str]:

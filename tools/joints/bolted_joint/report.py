@@ -87,7 +87,7 @@ def friction_figures(load_history: LoadHistory) -> list[Figure]:
 
 
 class FrictionResult(NamedTuple):
-    """Effect of one friction coefficient.
+    """Gross-slip force and loss factor for one friction coefficient.
 
     mu          : friction coefficient [1]
     slip_force  : shear force [N] of gross slip
@@ -226,4 +226,4 @@ def _bolt_force_panel(spring: BoltedJointSpring, preload: float, moment: float, 
 
 FIGURES = {"BoltedJoint": joint_figures}
 BESIDE: dict[str, Callable[[Model, ParameterFile], list[ComparisonRow]]] = {}
-"""Empty: there are no catalogue values of bolted joints to compare with."""
+"""Comparisons with catalogue values: none, because there are no catalogues of bolted joints."""

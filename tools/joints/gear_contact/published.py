@@ -59,7 +59,7 @@ def _replace_parameters(contact: GearContact, **new_values: Any) -> GearContact:
 
 
 def _state_at_real_area(law: Yu2022, fraction: float) -> dict[str, float]:
-    """State of the law at a real contact area of `fraction` times A_0, with the largest spot by Eq. 54."""
+    """State of the law at a real contact area of `area_fraction` times A_0; largest spot by Eq. 54."""
     spots = law.spots()
     largest = fraction * law.A_0 * (1.0 - spots.m) / (spots.m * spots.weight)
     state: dict[str, Any] = law.state(np.log(largest / spots.reference))

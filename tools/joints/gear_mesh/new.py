@@ -29,9 +29,9 @@ DAMPING_RATIO = 0.06
 class InvoluteGearPair:
     """Two external involute gear wheels without profile shift, with an addendum of one module.
 
-    module         : [m] normal module
+    normal_module  : [m] normal module
     tooth_counts   : number of teeth of both wheels
-    width          : [m] common face width
+    face_width     : [m] common face width
     pressure_angle : [rad] normal pressure angle
     helix_angle    : [rad] at the reference circle
     """
@@ -110,9 +110,9 @@ class InvoluteGearPair:
     def damping(self, stiffness: float, density: tuple[float, float]) -> float:
         """Damping [N.s/m] along the line of action: 2 DAMPING_RATIO sqrt(stiffness mass).
 
-        stiffness : [N/m] of the mesh
-        density   : [kg/m3] of both wheels; mass is that of both wheels in series, as solid discs, reduced to
-                    the line of action
+        mesh_stiffness : [N/m] of the mesh
+        density        : [kg/m3] of both wheels; mass is that of both wheels in series, as solid discs,
+                         reduced to the line of action
         """
         masses = [
             0.5 * np.pi * rho * self.width * r**4 / b**2

@@ -2,7 +2,7 @@
 
 The evaluation gives stiffness K and force f over the angle phi1 of wheel 1. Wheel 2 is fixed where the flanks
 touch at phi1 = 0, so that s_rel = r_b1 phi1 and no angle lies within the backlash. The curve of a tooth pair
-is the one of `spring.pair_curve`, at the nodes of `batch.approach`.
+is that of `spring.tabulate_pair`, at the nodes of `batch.approach`.
 """
 
 from collections.abc import Mapping

@@ -30,7 +30,7 @@ STIFFNESS_COLUMNS = (
 )
 """Columns of the torsional stiffness."""
 STIFFNESS_NAMES = tuple(column.name for column in STIFFNESS_COLUMNS)
-"""Names of these columns."""
+"""Names of the columns of the torsional stiffness."""
 COLUMNS = (
     CatalogueColumn("ratio", "1", "speed ratio", "1"),
     *STIFFNESS_COLUMNS,
@@ -104,7 +104,7 @@ def list_drives() -> tuple[CatalogueEntry, ...]:
 
 
 def _drives_of_row(row: Mapping[str, str], torques: TorqueTable) -> Iterator[CatalogueEntry]:
-    """Drives for which a row of stiffness holds."""
+    """Yield the drives for which a row of the table of stiffnesses holds."""
     group = row["series"].removeprefix("HD ")
     ratios = [row["ratio"]]
     if row["ratio"].endswith("+"):
@@ -210,7 +210,7 @@ def _hysteresis_limits(series: str, size: str, ratio: float) -> dict[str, Source
 
 
 def _single_drive(row: Mapping[str, str], similar_drive: CatalogueEntry) -> CatalogueEntry:
-    """Drive with published friction.
+    """Catalogue entry of a drive with published friction.
 
     similar_drive : drive of the same size, ratio and stiffness, which may be the drive itself; it supplies
                     the values that are not published

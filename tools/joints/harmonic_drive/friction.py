@@ -30,7 +30,7 @@ from ...catalogue import CatalogueEntry, SourcedNumber
 from ...command_line.common import option_flag
 
 CONFIDENCE_LEVEL = 0.95
-"""Probability of the intervals [1]."""
+"""Probability that a single drive lies inside its prediction interval [1]."""
 REFERENCE_SIZE, REFERENCE_RATIO = 20.0, 100.0
 """Reference size and reference ratio of the scaling laws [1]."""
 SIZE_EXPONENT = 3.0
@@ -41,7 +41,7 @@ SIZE_EXPONENT = 3.0
 class PublishedFriction:
     """Published friction of a drive; None: not published.
 
-    size, ratio       : [1]
+    drive_size, ratio : [1]
     starting_torque   : [N.m] at the wave generator
     running_torque    : [N.m] at the wave generator, at 2000 rev/min
     load_loss         : friction over transmitted torque [1], if the motor drives
@@ -66,7 +66,7 @@ class ScaledNumber(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class ScaledFriction:
-    """Scaled friction of one drive.
+    """Friction of one drive, scaled from drives with published friction.
 
     starting_torque : [N.m]
     viscous_torque  : [N.m] increase of the torque from start to 2000 rev/min
@@ -113,8 +113,8 @@ def scale_friction(
 def _scale_torque(design: Array, logarithms: Array, design_row: Array, factor: float) -> ScaledNumber:
     """Torque [N.m] from a linear regression of its logarithm, times a factor.
 
-    design, logarithms : (n, k), (n) data of the regression
-    design_row         : (k) of the drive
+    design_matrix, logarithms : (n, k), (n) data of the regression
+    design_row : (k) of the drive
     """
     value, half = _predict(design, logarithms, design_row)
     return ScaledNumber(*(factor * float(np.exp(x)) for x in (value, value - half, value + half)))
@@ -130,8 +130,8 @@ def _mean_loss(values: Sequence[float | None]) -> ScaledNumber:
 def _predict(design: Array, values: Array, design_row: Array) -> tuple[float, float]:
     """Predict a value by linear regression; value, and half width of its prediction interval.
 
-    design, values : (n, k), (n) data of the regression
-    design_row     : (k) of the predicted value
+    design_matrix, values : (n, k), (n) data of the regression
+    design_row            : (k) of the predicted value
     """
     from scipy.special import stdtrit
 
@@ -171,7 +171,7 @@ def friction_parameters(
     stated_names : of FRICTION_COLUMNS; contradictions of these numbers are errors
 
     friction_coulomb = starting torque
-    friction_viscous = (running torque - starting torque)/QUOTED_SPEED
+    friction_viscous = (running torque - starting torque)/CATALOGUE_SPEED
     load_loss        = 1/efficiency - 1 - running torque ratio/rated torque, at least 0
     load_loss_back   = 1 - ratio starting torque/back-driving torque, at least 0
 
@@ -256,7 +256,7 @@ def describe_interval(interval: tuple[float, float]) -> str:
 
 
 def rated_efficiency(drive: Drive, temperature: float = REFERENCE_TEMPERATURE) -> float:
-    """Efficiency [1] of a drive at rated torque and QUOTED_SPEED, without hysteresis.
+    """Efficiency [1] of a drive at rated torque and CATALOGUE_SPEED, without hysteresis.
 
     temperature : [K] of the lubricant
     """

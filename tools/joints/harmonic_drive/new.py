@@ -76,7 +76,7 @@ def _make_joint(options: DrawingOptions) -> NewJoint:
 def _set_temperature(joint: NewJoint, text: str) -> NewJoint:
     """Set the start temperature of the lubricant, and compute the friction facts at this temperature.
 
-    text : temperature as the user states it
+    temperature_text : temperature as the user states it
     """
     kelvin, drive = parse_temperature("temperature", text), joint.file.values
     file = replace(

@@ -30,7 +30,7 @@ MOTOR_SPEEDS = (500, 2000, 3500)
 LUBRICANT_TEMPERATURES = (263.15, REFERENCE_TEMPERATURE, 333.15)
 """Temperatures of the lubricant [K]: lower limit of catalogues, reference temperature, and a warm drive."""
 _CURVE_POINTS = 41
-"""Points of a curve."""
+"""Number of points of a plotted curve."""
 _BACK_DRIVING_LIMIT_RATIO = 10.0
 """End of the search for the back-driving torque over the rated torque [1]."""
 

@@ -154,9 +154,9 @@ def fit(
 class PreloadCurve:
     """Measured stiffness or frequency as a function of the preload.
 
-    quantity : "stiffness" [N/m] or "frequency" [Hz]
-    preload  : (n) [N] of each bolt, ascending
-    value    : (n) measured values
+    quantity_name   : "stiffness" [N/m] or "frequency" [Hz]
+    preload         : (n) [N] of each bolt, ascending
+    measured_values : (n) measured values
     """
 
     quantity: str
@@ -171,7 +171,7 @@ class PreloadCurve:
 
 
 def _read_curve(path: Path) -> PreloadCurve:
-    """Read and check the file."""
+    """Read and check a measured curve: stiffness or frequency over preload."""
     table = columns.read_columns(path, COLUMN_UNITS, MIN_POINTS)
     preload = table.require_column("preload", COLUMN_UNITS)
     quantities = [name for name in ("stiffness", "frequency") if name in table.columns]

@@ -32,13 +32,13 @@ if TYPE_CHECKING:
 class BoltedPlates:
     """Two plates with their bolts.
 
-    plate            : contact plane with the bolt positions
-    layers           : thickness and modulus of side 1 and side 2
-    bearing_diameter : [m] of the surface under head and nut
-    density          : [kg/m3] of side 1 and side 2
-    preload          : [N] of each bolt at tightening
-    tension          : [N] preload that remains after embedding
-    thread_depth     : [m] depth of the thread in side 2; 0: through bolt with nut
+    plate             : contact plane with the bolt positions
+    clamped_parts     : thickness and modulus of side 1 and side 2
+    bearing_diameter  : [m] of the surface under head and nut
+    density           : [kg/m3] of side 1 and side 2
+    preload           : [N] of each bolt at tightening
+    remaining_preload : [N] preload that remains after embedding
+    thread_depth      : [m] depth of the thread in side 2; 0: through bolt with nut
     """
 
     plate: BoltedPlate
@@ -122,10 +122,10 @@ def compute_joint_of_assembly(
 ) -> ComputedJoint:
     """Compute the complete joint by finite elements and reduce its bodies to modes.
 
-    make_assembly : builds the bodies
-    preload       : [N] of each bolt at tightening
-    attached      : surfaces that move rigidly with the connected bodies, a key of ATTACHMENTS
-    shape         : pressure at all nodes of a computed field; None: the pressure shape of the file
+    make_assembly  : builds the bodies
+    preload        : [N] of each bolt at tightening
+    attachment     : surfaces that move rigidly with the connected bodies, a key of ATTACHMENTS
+    pressure_shape : pressure at all nodes of a computed field; None: the pressure shape of the file
 
     Raises ValueError for bolt heads that overlap or extend beyond the plate, and if a package is missing.
     """
@@ -181,7 +181,7 @@ def _interface_stiffness(
     Each point takes the stiffness of the nearest node of the pressure shape. One factor then makes the total
     equal to the stiffness of the joint.
 
-    shape : as in `compute_joint_of_assembly`
+    pressure_shape : as in `compute_joint_of_assembly`
     """
     from scipy.spatial import cKDTree
 
@@ -196,7 +196,7 @@ def _interface_stiffness(
 
 
 Facts = dict[str, tuple[float, str, str]]
-"""{name: (value, unit, explanation)}."""
+"""Results of a joint: {name: (value, unit, explanation)}."""
 
 
 def compute_facts(
@@ -212,7 +212,7 @@ def compute_facts(
     sides               : "rigid" or "elastic" as the user states it; None: elastic if the packages are
                           installed
     interface_only_text : warning that the FMU contains the interface only
-    shape               : as in `compute_joint_of_assembly`
+    pressure_shape      : as in `compute_joint_of_assembly`
 
     Raises ValueError if the user asked for elastic sides and they cannot be computed.
     """

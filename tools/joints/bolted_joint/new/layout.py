@@ -34,7 +34,7 @@ def parse_bolts(text: str) -> tuple[int, Thread]:
 def bolt_positions(options: DrawingOptions, count: int) -> Array:
     """Positions (count, 2) [m] of the bolts relative to the middle of the plate.
 
-    Raises ValueError with a one-line message if the options do not give `count` positions.
+    Raises ValueError with a one-line message if the options do not give `bolt_count` positions.
     """
     texts, circle = options["at"], options["circle"]
     if texts and circle:

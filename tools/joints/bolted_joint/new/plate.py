@@ -34,7 +34,7 @@ class ClampedBolt:
     """One bolt with the parts that it clamps, by VDI 2230.
 
     grip             : [m] clamped length between head and nut, or between head and tapped thread
-    layers           : clamped parts, thickness and modulus
+    clamped_parts    : clamped parts, thickness and modulus
     hole_diameter    : [m]
     bearing_diameter : [m] of the surface under head or nut
     outer_diameter   : [m] D_A of the clamped parts
@@ -135,10 +135,10 @@ def clamp_bolt(
 ) -> ClampedBolt:
     """Compute one bolt with its clamped parts by VDI 2230.
 
-    size      : length and width of the plate [m]
-    positions : (b, 2) [m] of the bolts
-    hole      : diameter [m]
-    moduli    : Young's moduli [Pa] of side 1 and side 2
+    plate_size    : length and width of the plate [m]
+    positions     : (b, 2) [m] of the bolts
+    hole_diameter : [m] of the clearance hole
+    moduli        : Young's moduli [Pa] of side 1 and side 2
 
     Raises ValueError for thicknesses or diameters that contradict each other.
     """

@@ -29,11 +29,12 @@ from .drive import CatalogueRow, angle_picture, stiffness, stiffness_picture
 FITTED_PARAMETERS = ("K_FTS0", "drive_scale", "zero_torque_pressure")
 """Parameters of the law `hu2023` that are fitted."""
 EXTRA_PARAMETER = "torque_smoothing"
-"""Parameter that is fitted too if the others alone do not meet the angles."""
+"""Parameter that is fitted too if FITTED_PARAMETERS alone do not meet the wind-up angles."""
 MAX_ANGLE_ERROR = 0.009
 """Largest relative error [1] of the angle at T1, T2 and the rated torque: 1 % with a margin."""
 FITTED_DEVIATIONS = (2e-2, 1e-2, 5e-3, 2e-3, 1e-3, 5e-4)
-"""Relative standard deviations [1] of the angle at these torques, tried in turn until the angles are met."""
+"""Relative standard deviations [1] of the angle at T1, T2 and the rated torque. They are tried in turn until
+the fitted angles are within MAX_ANGLE_ERROR."""
 OTHER_DEVIATION = 0.2
 """Relative standard deviation [1] of the angle at other torques: real drives have no corners."""
 MAX_TORQUE_RATIO = 4.0
@@ -141,7 +142,7 @@ def _solve_weighted(
 ) -> tuple[Solution, float]:
     """Fit with increasing weight at T1, T2 and the rated torque, until the angles there are met.
 
-    choices : sets of unknowns to try in turn
+    unknown_sets : sets of unknowns to try in turn
 
     Returns the solution and its relative standard deviation [1] of these angles. Raises RuntimeError if no
     fit meets them.

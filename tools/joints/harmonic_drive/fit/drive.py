@@ -85,7 +85,7 @@ def scale_stiffness(
 ) -> ParameterFile:
     """Scale the stiffness of the start parameters to a measured curve, angles (n) [rad] at torques (n) [N.m].
 
-    Only if all STIFFNESS_PARAMETERS of the law are among the names to fit; else `start` is returned.
+    Only if all STIFFNESS_PARAMETERS of the law are among the names to fit; else `start_file` is returned.
     """
     ratio = float(np.sum(wind_up(start.values, torque) * angle) / np.sum(angle**2))
     level = {
@@ -106,10 +106,10 @@ def with_law(
 ) -> ParameterFile:
     """Change the law of a drive.
 
-    law         : parameter class of the new law
-    name        : of the new parameter file
-    numbers     : {parameter: number with source} of the new law
-    copied_names : parameters of the law of `start` to copy, in addition to those of all drives
+    law_class    : parameter class of the new law
+    name         : of the new parameter file
+    numbers      : {parameter: number with source} of the new law
+    copied_names : parameters of the law of `start_file` to copy, in addition to those of all drives
     """
     shared = [label for label, _ in flat_fields(Drive) if label in start.values_by_name] + [*copied_names]
     values = {label: start.values_by_name[label] for label in shared} | {
@@ -207,7 +207,7 @@ class CatalogueRow:
 
 
 _CURVE_POINTS = 400
-"""Points of a plotted curve."""
+"""Number of points of a plotted curve."""
 
 
 def stiffness(drive: Drive, torque: Array) -> Array:
@@ -217,9 +217,9 @@ def stiffness(drive: Drive, torque: Array) -> Array:
 
 
 def angle_picture(row: CatalogueRow, law: Drive, other_laws: Mapping[str, Drive], torque: Array) -> Picture:
-    """Picture of the wind-up at torques (n) [N.m], with the errors of a law.
+    """Plot of the wind-up at torques (n) [N.m]: catalogue, fitted law, and errors of the law.
 
-    other_laws : {name: further law to plot}
+    other_drives : {name: further law to plot}
     """
     grid, target = np.linspace(0.0, torque[-1], _CURVE_POINTS), row.wind_up(torque)
     return Picture(
@@ -238,9 +238,9 @@ def angle_picture(row: CatalogueRow, law: Drive, other_laws: Mapping[str, Drive]
 def stiffness_picture(
     row: CatalogueRow, law: Drive, other_laws: Mapping[str, Drive], max_torque: float
 ) -> Picture:
-    """Picture of the stiffness of a law and of the catalogue up to `max_torque` [N.m], without the corners.
+    """Plot of the stiffness up to `max_torque` [N.m], without the corners: catalogue, fitted law, and errors.
 
-    other_laws : {name: further law to plot}
+    other_drives : {name: further law to plot}
     """
     grid = np.linspace(0.0, max_torque, _CURVE_POINTS)
     torque = grid[1::2][~np.isin(grid[1::2], (row.T1, row.T2))]

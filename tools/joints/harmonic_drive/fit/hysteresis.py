@@ -32,7 +32,7 @@ from .drive import COLUMN_NAMES, RAD_PER_ARCMIN
 from .log_reading import Samples
 
 HYSTERESIS_LOSS, HYSTERESIS_STIFFNESS = FITTED_PARAMETERS = ("hysteresis_loss", "hysteresis_stiffness")
-"""Parameters to fit."""
+"""Parameters of the hysteresis, which are fitted if the user names none."""
 DEFAULT_START_VALUES = {HYSTERESIS_LOSS: RAD_PER_ARCMIN, HYSTERESIS_STIFFNESS: 1.0}
 """Start values if the file has no hysteresis: loss [rad], and stiffness over K_WTS at zero torque [1]."""
 LOSS_START_VALUES = tuple(RAD_PER_ARCMIN * np.geomspace(0.03, 10.0, 7))
@@ -136,7 +136,7 @@ STIFFNESS_NAMES = ("K1", "K2", "K3")
 LOG_PARAMETERS = (*STIFFNESS_NAMES, HYSTERESIS_LOSS)
 """Parameters that `fit_log` can fit."""
 ROTOR_INERTIA = "motor_inertia"
-"""Further unknown if the user does not state it."""
+"""Name of the unknown inertia of the rotor, which is fitted if the user does not state it."""
 DEFAULT_LOSS = 0.3 * RAD_PER_ARCMIN
 """Start value of hysteresis_loss [rad] if the file has no hysteresis."""
 LOWER_BOUND_RATIO = 1e-2
@@ -271,7 +271,7 @@ def _insert_turning_points(path: Array) -> tuple[Array, NDArray[np.int_]]:
     step_before, step_after = before[turns], after[turns]
     offset = 0.5 * (step_before + step_after) / (step_before - step_after)  # in steps after the sample
     vertex = path[turns + 1] + 0.25 * (step_before + step_after) * offset
-    # the vertex lies on the side of the sample to which `late` points
+    # the vertex lies after the sample if `offset` is positive
     positions = turns + 1 + (offset > 0.0)
     sampled = np.arange(path.size) + np.searchsorted(positions, np.arange(path.size), side="right")
     return np.insert(path, positions, vertex), sampled

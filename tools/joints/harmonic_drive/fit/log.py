@@ -236,7 +236,7 @@ def _confidence_intervals(solution: Solution) -> dict[str, tuple[float, float]]:
 
 
 def _describe_ranges(samples: Samples) -> str:
-    """Text with the ranges of speed and temperature."""
+    """Describe the ranges of speed and temperature in logs, as text."""
     speed = np.abs(samples.dq)
     text = f"speeds of the joint {speed.min():.3g} to {speed.max():.3g} rad/s"
     known = samples.temperature[np.isfinite(samples.temperature)]
@@ -339,7 +339,7 @@ def _speed_picture(samples: Samples, fitted_log: FittedLog, misfit: Array) -> Pi
 
 
 def _friction_picture(x: Array, y: Array, misfit: Array, line: tuple[Array, Array], label: str) -> Picture:
-    """Picture of friction torques y (n) [N.m] over x (n), with errors (n) [N.m] and a curve of the law."""
+    """Plot of friction torques (n) [N.m] over an abscissa (n): log, law, and errors (n) [N.m] of the law."""
     return Picture(
         x,
         MILLI_PER_UNIT * y,

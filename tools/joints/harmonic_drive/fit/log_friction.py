@@ -28,9 +28,9 @@ from .log_reading import Samples
 class LinearTerms:
     """Terms of the motor torque that are linear in their unknowns: inertia, offset, gravity.
 
-    matrix           : (n, k) motor torque at the samples per unit of each unknown
+    design_matrix    : (n, k) motor torque at the samples per unit of each unknown
     measured_gravity : (n) [N.m] motor torque for the measured gravity; 0 if it is not measured
-    names            : (k) of the unknowns
+    unknown_names    : names (k) of the unknowns
     """
 
     matrix: Array
@@ -39,7 +39,7 @@ class LinearTerms:
 
     @classmethod
     def at_samples(cls, samples: Samples, ratio: float) -> "LinearTerms":
-        """Terms at samples of logs, for a speed ratio > 0."""
+        """Evaluate the linear terms at samples of logs, for a speed ratio > 0."""
         columns: dict[str, Array] = {}
         dynamic = samples.is_dynamic.astype(float)
         measured = np.isfinite(samples.gravity)
@@ -333,7 +333,7 @@ def _propagate_deviations(solution: Solution, function: Callable[[Mapping[str, f
 def _start_values(file: ParameterFile, samples: Samples, linear: Array) -> dict[str, float]:
     """Start values {name: value}: dry and viscous friction from the linear fit, others from the file.
 
-    linear : result of `_fit_linear_model`
+    linear_fit : result of `_fit_linear_model`
     """
     size = float(np.median(np.abs(samples.torque))) or 1.0
     fastest = abs(file.values.ratio) * float(np.max(np.abs(samples.dq)))

@@ -38,18 +38,18 @@ MIN_SPEED_RATIO = 1.2
 class Samples:
     """Samples of logs; arrays (n) in SI units, NaN for columns that a log does not have.
 
-    time          : [s]
-    q, dq, ddq    : angle [rad], speed [rad/s] and acceleration [rad/s2] of the joint
-    speeds        : (n, FILTER_NODES) [rad/s] of the joint, within the window of the filter
-    weights       : (n, FILTER_NODES) [1] of the filter at these speeds
-    torque        : [N.m] of the motor
-    gravity       : [N.m] torque at the joint that balances gravity
-    temperature   : [K]
-    motor_angle   : [rad]
-    sensor_torque : [N.m] of a sensor at the joint
-    is_held_out   : sample for validation
-    is_dynamic    : sample of a log with the column time
-    is_developed  : friction is fully developed
+    time           : [s]
+    q, dq, ddq     : angle [rad], speed [rad/s] and acceleration [rad/s2] of the joint
+    window_speeds  : (n, FILTER_NODES) [rad/s] of the joint, within the window of the filter
+    window_weights : (n, FILTER_NODES) [1] of the filter at these speeds
+    motor_torque   : [N.m] of the motor
+    gravity_torque : [N.m] torque at the joint that balances gravity
+    temperature    : [K]
+    motor_angle    : [rad]
+    sensor_torque  : [N.m] of a sensor at the joint
+    is_held_out    : sample for validation
+    is_dynamic     : sample of a log with the column time
+    is_developed   : friction is fully developed
     """
 
     time: Array
@@ -68,7 +68,7 @@ class Samples:
     is_developed: NDArray[np.bool_]
 
     def select(self, rows: NDArray[np.bool_] | SampleIndices) -> "Samples":
-        """Select rows, by a mask or by indices."""
+        """Select samples, by a mask or by indices."""
         return Samples(*(getattr(self, field.name)[rows] for field in fields(self)))
 
 
@@ -152,8 +152,8 @@ def _filter_nodes(width: int) -> tuple[SampleIndices, Array]:
 def _is_friction_developed(dq: Array, step: float, width: int, drive: Drive) -> NDArray[np.bool_]:
     """Mask (n) of samples with fully developed friction.
 
-    The motor has rotated by ROTATION_RATIO times `presliding` since its last reversal, and no reversal lies
-    within the window of the filter (`width` samples).
+    The motor has rotated by DEVELOPED_ROTATION_RATIO times `presliding` since its last reversal, and no
+    reversal lies within the window of the filter (`window_width` samples).
     """
     sign = np.sign(dq)
     run = np.concatenate([[0], np.cumsum(np.diff(sign) != 0.0)])
@@ -230,7 +230,7 @@ def read_log(
 ) -> Samples:
     """Read the samples of a log.
 
-    names           : {column: (heading, unit or None)} for other headings
+    renamed_columns : {column: (heading, unit or None)} for other headings
     torque_constant : motor torque over motor current [N.m/A]
     drive           : for plausibility checks of speed and torque
 

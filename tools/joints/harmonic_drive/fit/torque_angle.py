@@ -119,17 +119,17 @@ def read_curve(path: str | Path, start: ParameterFile | None, rated_torque: floa
 
 
 def describe_range(line: loop.Backbone) -> str:
-    """Text with the range of torques."""
+    """Describe the range of torques of a measured curve, as text."""
     return f"torque {line.torque[0]:.4g} to {line.torque[-1]:.4g} N.m"
 
 
 def make_result(
     record: MeasuredCurve, result: ParameterFile, solution: Solution, offset: float, noise: float
 ) -> FitResult:
-    """Result of a fit with facts, picture and notes.
+    """Make the result of a fit: parameter file, facts, plot and notes.
 
-    offset : [rad] angle at zero torque
-    noise  : [rad] standard deviation of one sample
+    angle_offset : [rad] angle at zero torque
+    angle_noise  : [rad] standard deviation of one sample
     """
     line = record.midline
     residuals = line.angle - drive.wind_up(result.values, line.torque) - offset
@@ -151,7 +151,7 @@ def _resize_start(
 ) -> ParameterFile:
     """Start parameters for a drive of the stated rated torque [N.m].
 
-    Raises Refusal if the measured torque (n) [N.m] exceeds max_torque of the law.
+    Raises InputRefusal if the measured torque (n) [N.m] exceeds max_torque of the law.
     """
     drive_, reach = start.values, float(np.max(np.abs(torque)))
     if rated_torque is not None:
@@ -169,7 +169,8 @@ def _resize_start(
 def _check_size(line: loop.Backbone, start: ParameterFile, table: columns.Columns) -> None:
     """Check wind-up and loop energy before the fit.
 
-    Raises Refusal for a wind-up that is implausible for this size, ValueError for a loop that creates energy.
+    Raises InputRefusal for a wind-up that is implausible for this size, ValueError for a loop that creates
+    energy.
     """
     angle_range, torque_range = float(np.ptp(line.angle)), float(np.ptp(line.torque))
     rated = start.values.rated_torque
