@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 from jointfmu.contact.interface import at_pressure
 from jointfmu.contact.laws import mindlin
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.bolted_joint.law import BoltedJoint, preload_pressure
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.mechanics.curve import MAX_ERROR
 from jointfmu.mechanics.footprint.bolts import PressureDistribution
 from jointfmu.parameters import load_default
@@ -84,7 +84,7 @@ def test_outputs_are_named_as_promised(spring):
 
 def test_uniform_pressure_is_the_law(even):
     """Sum over nodes = the law of the whole area at the mean pressure (MAX_ERROR of the table)."""
-    out = even.motion(9e3, 0.0, STILL, STILL)
+    out = even.evaluate(9e3, 0.0, STILL, STILL)
     law = {name: float(value) for name, value in at_pressure(JOINT, total(9e3) / JOINT.A_0).items()}
     assert out["K_zz"] == pytest.approx(law["K_N"], rel=MAX_ERROR)
     assert out["K_xx"] == out["K_yy"] == pytest.approx(law["K_T"], rel=MAX_ERROR)
@@ -304,7 +304,7 @@ def test_loss_factor_while_closing(even):
     """Below the end of the closing eta_n keeps its value there."""
     curve = even.curve
     edge = float(curve.load[np.searchsorted(curve.displacement, 0.0)])
-    at_edge, below = (even.motion(part * edge * JOINT.A_0 / 8, 0.0, STILL, STILL) for part in (1.0, 0.1))
+    at_edge, below = (even.evaluate(part * edge * JOINT.A_0 / 8, 0.0, STILL, STILL) for part in (1.0, 0.1))
     assert below["eta_n"] == pytest.approx(at_edge["eta_n"], rel=1e-12)  # round-off
     law = at_pressure(JOINT, edge)
     assert at_edge["eta_n"] == pytest.approx(float(law["eta_n"]), rel=1e-10)  # 1e-12 of the load, steep
@@ -329,7 +329,7 @@ def test_rotational_stiffness_about_the_centroid(spring, preload, moment):
 
 
 def test_rotation_of_three_nodes(even):
-    out = even.motion(9e3, 0.0, STILL, STILL)
+    out = even.evaluate(9e3, 0.0, STILL, STILL)
     # 0.4 * 0.02^2 + 0.4 * 0.1^2 + 0.2 * 0.2^2 and 0.4 * 0.1^2 + 0.4 * 0.05^2 + 0.2 * 0.025^2, in m2
     assert out["K_rx"] == pytest.approx(0.01216 * out["K_zz"], rel=1e-13)  # round-off
     assert out["K_ry"] == pytest.approx(0.005125 * out["K_zz"], rel=1e-13)
@@ -392,8 +392,8 @@ def test_the_sign_of_a_moment_does_not_matter_to_a_symmetric_frame(spring):
 
 def test_beyond_the_table_the_tangent_continues(even):
     """Pressed to more than the hardness: linear from there."""
-    end = even.curve.end[0] - float(even.tightened(9e3, 0.0)[0])
-    one, two, three = (even.motion(9e3, 0.0, (0.0, 0.0, -end - d), STILL) for d in (1e-6, 2e-6, 3e-6))
+    end = even.curve.end[0] - float(even.preloaded_approach(9e3, 0.0)[0])
+    one, two, three = (even.evaluate(9e3, 0.0, (0.0, 0.0, -end - d), STILL) for d in (1e-6, 2e-6, 3e-6))
     rise = two["f_z"] - one["f_z"]
     assert three["f_z"] - two["f_z"] == pytest.approx(rise, rel=1e-9)  # differences of 1e8 N
     assert one["K_zz"] == pytest.approx(three["K_zz"], rel=1e-12)  # round-off
