@@ -276,12 +276,19 @@ def solve_equilibrium(step: LoadStep) -> TrialState:
 
 
 def predict_by_tangent(step: LoadStep) -> ModalPredictor:
-    """Predictor with the tangent stiffness at the start of a load step."""
+    """Predictor with the tangent stiffness at the start of a load step.
+
+    Raises ValueError if this tangent is singular.
+    """
     assembly, a = step.assembly, step.modal_coordinates
     normal = assembly.evaluate_normal(step.preload, step.start, a)
     bolt_tangent = assembly.bolts.tangent(step.bolt_force, assembly.elongation(step.start, a))
     H = assembly.tangent_stiffness(normal.stiffness, step.friction_tangent, bolt_tangent)
-    change = np.linalg.solve(H[6:, 6:], H[6:, :6] @ (step.end - step.start))
+    try:
+        change = np.linalg.solve(H[6:, 6:], H[6:, :6] @ (step.end - step.start))
+    except np.linalg.LinAlgError:
+        reason = f"{step.input_summary}: the sides find no equilibrium beyond 0 of the way"
+        raise ValueError(f"{reason}, their tangent stiffness is singular there") from None
     return ModalPredictor(np.asarray(a - change), H[6:, 6:])
 
 
@@ -300,10 +307,12 @@ def solve_newton(step: LoadStep, load_factor: float, a: Array, J: Array) -> tupl
     tolerance_factor = 1.0 if load_factor == 1.0 else INTERMEDIATE_TOLERANCE_FACTOR
     state, last_norm, tangent_is_current = step.evaluate_trial(q, a), np.inf, False
     corrections: list[Array] = []  # since J was computed
-    for _ in range(MAX_ITERATIONS):
+    for iteration in range(MAX_ITERATIONS + 1):
         norm = state.residual_norm
         if norm <= tolerance_factor * state.tolerance:
             return state, True
+        if iteration == MAX_ITERATIONS:
+            break
         if not norm < TANGENT_REUSE_RATIO * last_norm:
             J, corrections, tangent_is_current = step.modal_tangent(state), [], True
         try:
@@ -323,7 +332,8 @@ def search_line(
     """State after a correction (k) [m] of the modal coordinates, and whether it is the full correction.
 
     If the energy slope r . correction [J] at the end exceeds MAX_ENERGY_SLOPE_RATIO, the correction is
-    shortened by regula falsi, or dropped if the tangent is that of an earlier state.
+    shortened by regula falsi, or dropped if the tangent is that of an earlier state. If the initial slope is
+    positive, too, regula falsi has no zero: the correction is shortened to MIN_LENGTH_RATIO.
     """
     length, energy_slope_0 = 1.0, float(state.residual @ correction)
     for shortenings in range(MAX_LINE_SEARCH):
@@ -333,7 +343,9 @@ def search_line(
             return trial, shortenings == 0
         if not tangent_is_current:
             return state, False
-        length *= max(energy_slope_0 / (energy_slope_0 - energy_slope_1), MIN_LENGTH_RATIO)
+        has_zero = energy_slope_0 < 0.0 < energy_slope_1
+        zero = energy_slope_0 / (energy_slope_0 - energy_slope_1) if has_zero else 0.0
+        length *= max(zero, MIN_LENGTH_RATIO)
     return trial, False
 
 
