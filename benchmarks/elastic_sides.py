@@ -33,9 +33,8 @@ from patch_reduction import gross_slip, poles_inside
 from whole_joint import EXAMPLE
 
 from jointfmu.joints import MODELS
-from jointfmu.joints.bolted_joint.contact import RelativeDisplacement
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring, JointInputs
 from jointfmu.joints.bolted_joint.law import preload_pressure
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.mechanics.footprint.bolts import pressure_distribution
 from jointfmu.mechanics.footprint.patches import reduce_points
 from jointfmu.mechanics.footprint.shape import PressureDistribution
@@ -134,7 +133,7 @@ def along(
     """Forces and moments, or other outputs, on the way through motions (6) from rest."""
     memory, rows = spring.initial_history(), []
     for six in motions:
-        out, memory = spring.advance(preload, 0.0, RelativeDisplacement(six), (0.0,) * 6, memory)
+        out, memory = spring.advance(JointInputs(preload, 0.0, six), memory)
         rows.append(np.array([float(out[name]) for name in names]))
     return rows
 

@@ -16,7 +16,7 @@ from scipy.integrate import solve_ivp
 from scipy.interpolate import BPoly
 from validity_tables import heading, row
 
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.harmonic_drive.drive import kinematic_error
 from jointfmu.joints.harmonic_drive.friction import LIMIT_SHARES, friction_limits, viscous_torque
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring, transmitted_torque, wind_up

@@ -12,8 +12,8 @@ from friction_sliders import at_levels, levels
 from numpy.typing import NDArray
 from scipy.stats import qmc
 
-from jointfmu.joints.bolted_joint.contact import patch_displacement
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
+from jointfmu.joints.bolted_joint.kinematics import tangential_displacement
 from jointfmu.mechanics.curve import Curve
 from jointfmu.mechanics.footprint.bolts import pressure_distribution
 from jointfmu.mechanics.footprint.friction import reduce_patches
@@ -235,10 +235,9 @@ def friction(
     gyration = np.sqrt(shape.share @ np.sum(shape.position**2, axis=1) + shape.share @ patches.radius**2)
     start = tightened(spring.curve, shape, (mean_pressure(spring), motion.moment))
     approach = start - motion.tilt * largest * shape.position[:, 0] / gyration
-    along = patch_displacement(
-        patches, np.array([0.0, np.sqrt(1.0 - motion.turn**2), motion.turn / gyration])
-    )
-    sliders = spring.on_nodes(shape).foundation(start)
+    q = np.array([0.0, np.sqrt(1.0 - motion.turn**2), 0.0, 0.0, 0.0, motion.turn / gyration])
+    along = tangential_displacement(patches, q)
+    sliders = spring.on_nodes(shape).friction.foundation(start)
     if fine:
         sliders = at_levels(spring.curve, ratio, spring.joint.mu, FINE)
     gross = spring.joint.mu / ratio * largest * along

@@ -19,7 +19,7 @@ from jointfmu_tools.fem.bolted_contact import BoltedContact
 from jointfmu_tools.fem.geometry import Assembly, BoltList, Plate, TappedPlate
 from jointfmu_tools.fields.joint_parameters import pressure_shape
 
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.mechanics.curve import tabulate_approach
 from jointfmu.mechanics.footprint import plate
 from jointfmu.mechanics.footprint.shape import PressureDistribution

@@ -17,8 +17,8 @@ from jointfmu_tools.joints.bolted_joint.new import NEW
 from lap_beam_reduction import patches
 from numpy.typing import NDArray
 
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.bolted_joint.law import RoughBoltedJoint
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.mechanics.curve import Curve
 from jointfmu.mechanics.footprint.shape import NodalField
 
@@ -175,7 +175,7 @@ class Lap:
         plate, beta = self.assembly.side1, reach / self.assembly.side1.length
         shear = 0.5 * beta**2 * plate.E * plate.thickness
         spring = BoltedJointSpring.of(self.values)
-        normal = shear / spring.foundation().stiffness_ratio
+        normal = shear / spring.friction.foundation().stiffness_ratio
         spring = replace(spring, curve=linear_curve(normal, PRESS / self.values.A_0 / normal))
         springs = np.tile([shear, shear, normal], (self.bodies.interface.area.size, 1))
         return shear, spring, self.bodies.linearize(springs, 0.0)
@@ -191,7 +191,7 @@ class Lap:
         """[m/N] along x by the modes of the reduced joint, by finite elements and by shear lag."""
         shear, spring, linear = self.linear(reach)
         plate, beta = self.assembly.side1, reach / self.assembly.side1.length
-        whole = self.reduced(spring, linear, shear / spring.foundation().stiffness_ratio)
+        whole = self.reduced(spring, linear, shear / spring.friction.foundation().stiffness_ratio)
         out = whole.evaluate(PRESS, 0.0, (0.0,) * 3, (0.0,) * 3)
         per = plate.E * plate.thickness * plate.width
         form = (1.0 / (beta * np.tanh(0.5 * reach)) + 0.5 * plate.length) / per

@@ -30,8 +30,8 @@ from lap_beam_reduction import AT_ONCE, Reduced
 from numpy.typing import NDArray
 from scipy import sparse as sp
 
-from jointfmu.joints.bolted_joint import bodies, memory, spring
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.joints.bolted_joint import friction, joint, law
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 
 Array = NDArray[np.float64]
 
@@ -172,18 +172,18 @@ def along_motion(
 @contextmanager
 def finer(modes: int, count: int):
     """The reduction with so many modes and patches."""
-    modules = bodies, memory, reduction, spring
-    kept = [(module, "MODES", module.MODES) for module in modules]
-    kept.append((spring, "PATCHES", spring.MAX_PATCHES))
+    modules = law, friction, reduction, joint
+    kept = [(module, "MAX_MODES", module.MAX_MODES) for module in modules]
+    kept.append((joint, "MAX_PATCHES", joint.MAX_PATCHES))
     try:
         for module, name, _ in kept:
-            setattr(module, name, count if name == "PATCHES" else modes)
-        spring.friction_patches_of.cache_clear()
+            setattr(module, name, count if name == "MAX_PATCHES" else modes)
+        joint.friction_patches_of.cache_clear()
         yield
     finally:
         for module, name, value in kept:
             setattr(module, name, value)
-        spring.friction_patches_of.cache_clear()
+        joint.friction_patches_of.cache_clear()
 
 
 def way(amplitude: float) -> Array:

@@ -276,7 +276,7 @@ def solved_once(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     from jointfmu_tools.fields import joint_parameters
     from jointfmu_tools.joints.bolted_joint.new import computed
 
-    from jointfmu.joints.bolted_joint import spring
+    from jointfmu.joints.bolted_joint import joint
 
     def once(what: str, real: Callable[..., Any]) -> Callable[..., Any]:
         @wraps(real)
@@ -314,7 +314,7 @@ def solved_once(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(computed, "compute_joint", whole)
-        for module in (spring, joint_parameters):
+        for module in (joint, joint_parameters):
             patch.setattr(module, "reduce_patches", once("patches", module.reduce_patches))
         yield
 

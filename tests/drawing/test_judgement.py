@@ -15,7 +15,7 @@ from jointfmu_tools.pressure import judge_file, nominal_pressure
 from jointfmu.contact.interface import at_pressure, find_validity_violations
 from jointfmu.contact.roughness import GAMMA, predicted_stiffness
 from jointfmu.joints import KINDS
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.parameters import format_parameter_file, load_default, load_parameter_file
 
 BOLTED = load_default("bolted_joint")

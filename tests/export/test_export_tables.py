@@ -13,7 +13,7 @@ from scipy.interpolate import PchipInterpolator
 
 import jointfmu
 from jointfmu.contact.interface import at_pressure
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.gear_contact.spring import GearContactSpring
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import load_default

@@ -17,7 +17,7 @@ from jointfmu_tools.fem.convergence import (
     relative_changes,
 )
 
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.parameters import load_default, load_parameter_file
 
 pytestmark = pytest.mark.slow

@@ -14,7 +14,7 @@ from jointfmu_tools.fem.reduction.patch_work import (
     stick_stiffness_matrix,
 )
 
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.parameters import load_default
 
 RADIUS, COUNT, PATCHES = 0.02, 24, 10
@@ -24,7 +24,7 @@ LEVELS = np.array([0.05, 0.2, 0.4, 0.6, 0.8, 1.0, 1.3])
 @pytest.fixture(scope="module")
 def disc():
     """An evenly pressed disc of many points, whose middle lags behind by two modes, and patches of it."""
-    law = BoltedJointSpring.of(load_default("bolted_joint").values).foundation()
+    law = BoltedJointSpring.of(load_default("bolted_joint").values).friction.foundation()
     line = RADIUS * (np.arange(COUNT) + 0.5) / COUNT * 2.0 - RADIUS
     place = np.stack([each.ravel() for each in np.meshgrid(line, line)], axis=1)
     place = place[np.hypot(*place.T) < RADIUS]

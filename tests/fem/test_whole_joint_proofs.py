@@ -15,7 +15,8 @@ from lap_beam_reduction import patches
 from whole_joint_forms import PRESS, Lap, by_hand
 from whole_joint_nodes import JOINTS, STEPS, Elements, along_motion, way
 
-from jointfmu.joints.bolted_joint.contact import RelativeDisplacement
+from jointfmu.joints.bolted_joint.joint import JointInputs
+from jointfmu.joints.bolted_joint.kinematics import rigid_opening
 from jointfmu.mechanics.curve import tabulate_approach
 from jointfmu.mechanics.sliders import Foundation
 
@@ -130,9 +131,9 @@ def test_a_bracket_slips_under_a_lever_as_its_elements_do(monkeypatch):
     angles = np.linspace(0.0, 2.0 * np.pi, 25)
     memory, start = spring.initial_history(), spring.preloaded_approach(joint.preload, 0.0)
     for six in np.outer(np.sin(angles), there) + np.outer(1.0 - np.cos(angles), back):
-        place = RelativeDisplacement(six)
-        memory = spring.advance(joint.preload, 0.0, place, (0.0,) * 6, memory)[1]
+        memory = spring.advance(JointInputs(joint.preload, 0.0, six), memory)[1]
         after = spring.history_layout.split(memory)
-        opened = place.opening(spring.shape) + spring.modes.opening @ after["amplitude"]
+        modal_coordinates = after["modal_coordinates"][: len(spring.modes.stiffness)]
+        opened = rigid_opening(spring.shape.position, six) + spring.modes.opening @ modal_coordinates
         points, few = (spring.curve.derivatives(x, 0)[0] for x in (start - opened, after["approach"]))
         assert spring.patches.share @ few == pytest.approx(spring.shape.share @ points, rel=2e-4)

@@ -15,7 +15,7 @@ from jointfmu_tools.joints.bolted_joint.fit import preload
 from jointfmu_tools.joints.harmonic_drive.fit import torque_angle
 from jointfmu_tools.joints.harmonic_drive.fit.drive import wind_up
 
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.parameters import format_parameter_file, load_default, load_parameter_file
 
 pytestmark = pytest.mark.slow

@@ -17,7 +17,7 @@ from jointfmu_tools.fitting.outcome import FitResult, Picture
 from jointfmu_tools.joints.bolted_joint.fit import loop
 from jointfmu_tools.joints.harmonic_drive.fit.hysteresis import COLUMN_NAMES as DRIVE_HEADS
 
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.parameters import load_default, load_parameter_file
 from jointfmu.quantity.units import unit_sizes
 

@@ -6,7 +6,7 @@ import numpy as np
 import patch_reduction
 import pytest
 
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.mechanics.footprint.bolts import pressure_distribution
 from jointfmu.mechanics.footprint.elimination import solve_linear
 from jointfmu.mechanics.footprint.friction import reduce_patches

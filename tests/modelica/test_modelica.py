@@ -25,8 +25,8 @@ from numpy.typing import NDArray
 from read_modelica import Read, read, solution
 
 from jointfmu.joints import MODELS
-from jointfmu.joints.bolted_joint.contact import RelativeDisplacement, elastic_shear
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.joints.bolted_joint.contact import elastic_shear
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring, JointInputs
 from jointfmu.joints.gear_contact.spring import GearContactSpring
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import format_parameter_file, load_default
@@ -465,8 +465,8 @@ def test_bolted_component_slips_as_the_package(rumoca: Any, bolted: BoltedJointS
     memory, preload, rows = bolted.initial_history(), 9e3, []  # of the component's own record
     limit = bolted.joint.mu * preload * bolted.joint.n_bolts
     for x, y, z in zip(*(found[f"joint.s_rel[{i}]"][first] for i in (1, 2, 3)), strict=True):
-        place = RelativeDisplacement(np.array([x, y, z, 0.0, 0.0, 0.0]))
-        out, memory = bolted.advance(preload, 0.0, place, (0.0,) * 6, memory)
+        inputs = JointInputs(preload, 0.0, np.array([x, y, z, 0.0, 0.0, 0.0]))
+        out, memory = bolted.advance(inputs, memory)
         rows.append([out["f_x"], out["f_y"], out["f_z"], out["E_loss"]])
     exact = np.array(rows).T
     for i in (1, 2):

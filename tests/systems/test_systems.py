@@ -54,8 +54,8 @@ from scipy.interpolate import CubicSpline
 from test_modelica import simulate, top
 
 from jointfmu.joints import MODELS
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.bolted_joint.law import preload_pressure
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import format_parameter_file, load_default
 from jointfmu.quantity import flatten_parameters, replace_values
@@ -641,7 +641,7 @@ def column_sliders(spring: BoltedJointSpring, preload: float) -> tuple[Array, Ar
     """Stiffness and friction of the sliders that touch at a preload, of all patches."""
     joint, patches = spring.joint, spring.patches
     approach = spring.curve.inverse(preload_pressure(joint, patches, preload, 0.0))
-    carried = spring.foundation(approach).slider_properties(approach)
+    carried = spring.friction.foundation(approach).slider_properties(approach)
     area = joint.A_0 * patches.share[:, None]
     stiffness, limit = ((area * each).ravel() for each in (carried.stiffness, carried.limit))
     some = stiffness > 0.0

@@ -10,16 +10,12 @@ from typing import Any
 
 import numpy as np
 
-from jointfmu.joints.bolted_joint import spring
-from jointfmu.joints.bolted_joint.bodies import DIGITS, MODES, ElasticBodies, Modes, RigidBodies
+from jointfmu.joints.bolted_joint.bodies import MODE_DECIMALS, Modes
 from jointfmu.joints.bolted_joint.bolts import bolt_positions, moment_lever
-from jointfmu.joints.bolted_joint.contact import (
-    MAX_PATCHES_PER_POINT,
-    TRANSFER_DECIMALS,
-    cycle_sums,
-    force_transfer,
-)
-from jointfmu.joints.bolted_joint.law import Bolted
+from jointfmu.joints.bolted_joint.contact import MAX_PATCHES_PER_POINT, TRANSFER_DECIMALS, force_transfer
+from jointfmu.joints.bolted_joint.joint import MAX_POINTS, contact_points, friction_patches_of
+from jointfmu.joints.bolted_joint.law import MAX_MODES, Bolted, ElasticBodies
+from jointfmu.joints.bolted_joint.outputs import cycle_sums
 from jointfmu.mechanics.footprint.shape import BOLT_MEAN_NAMES, MAX_PATCHES, PressureDistribution
 from jointfmu.mechanics.sliders import FOUNDATION_SLIDERS, height_offsets, torsion_directions
 from jointfmu.quantity import Array, flatten_parameters
@@ -54,9 +50,9 @@ def _one_mode(bolts: int) -> dict[str, object]:
 
 
 def _tables(joint: Bolted) -> Mapping[str, DataTable]:
-    patches = spring.friction_patches_of(joint.pattern)
+    patches = friction_patches_of(joint.pattern)
     return {
-        "nodes": DataTable(_rows(spring.contact_points(joint.pattern)), spring.MAX_POINTS),
+        "nodes": DataTable(_rows(contact_points(joint.pattern)), MAX_POINTS),
         "patches": DataTable(np.column_stack([_rows(patches), patches.radius]), MAX_PATCHES),
         "turning": DataTable(torsion_directions(FOUNDATION_SLIDERS), 2),
         "offsets": DataTable(height_offsets(patches.preload_shape)[:, None], MAX_PATCHES),
@@ -69,15 +65,16 @@ def _bodies(joint: Bolted) -> Mapping[str, DataTable]:
 
     A joint with rigid sides has room for one row, and for BOLTS bolts.
     """
-    modes, most = Modes.of(RigidBodies(), 0, np.zeros((0, 2))), (1, 1, 1, 1)
+    modes, most = Modes.for_rigid_bodies(0, 0, 0), (1, 1, 1, 1)
     bolts = bolt_positions(joint)
     pressing, pairs = np.zeros((0, 4)), 1
     if joint.elastic:
-        points, patches = spring.contact_points(joint.pattern), spring.friction_patches_of(joint.pattern)
+        assert isinstance(joint.bodies, ElasticBodies)
+        points, patches = contact_points(joint.pattern), friction_patches_of(joint.pattern)
         modes = Modes.of(joint.bodies, len(points.share), patches.position)
         pressing = _pressure_transfer_table(force_transfer(points, patches))
-        pairs = MAX_PATCHES_PER_POINT * spring.MAX_POINTS + MAX_PATCHES
-        most = MODES, spring.MAX_POINTS, MAX_PATCHES, len(modes.bolts)
+        pairs = MAX_PATCHES_PER_POINT * MAX_POINTS + MAX_PATCHES
+        most = MAX_MODES, MAX_POINTS, MAX_PATCHES, len(bolts)
     patch = dict(zip(("patch_x", "patch_y", "patch_around"), modes.patch_displacement, strict=True))
     moved = {"opening": modes.opening, **patch, "stretch": modes.bolt_elongation}
     room = dict(zip(moved, (most[1], *(most[2],) * 3, most[3]), strict=True))
@@ -100,8 +97,8 @@ def _pressure_transfer_table(transfer: Any) -> Any:
 
 
 def _padded(rows: Any) -> Any:
-    """Of all MODES, in units of the last digit."""
-    return np.pad(np.round(rows * 10.0**DIGITS), ((0, 0), (0, MODES - rows.shape[1])))
+    """Of MAX_MODES modes, in units of the last digit."""
+    return np.pad(np.round(rows * 10.0**MODE_DECIMALS), ((0, 0), (0, MAX_MODES - rows.shape[1])))
 
 
 def _rows(shape: PressureDistribution) -> Any:
@@ -121,7 +118,7 @@ def _loops(spring: Any, end: float) -> list[chart.Panel]:
     left = spring.joint.embedding
     preload = left + LOOP_PRELOAD_RATIO * (end - left)
     approach = spring.preloaded_approach(preload, 0.0)
-    foundation, share = spring.foundation(), spring.shape.share
+    foundation, share = spring.friction.foundation(), spring.shape.share
     mean = share @ np.maximum(approach - spring.curve.displacement[0], 0.0)
     slips = foundation.friction_coefficient / foundation.stiffness_ratio * float(mean)
 

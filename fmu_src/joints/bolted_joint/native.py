@@ -2,10 +2,11 @@
 
 import casadi as ca
 
-from jointfmu.joints.bolted_joint import bodies, bolts, contact, law, memory, outputs, trials, whole
+from jointfmu.joints.bolted_joint import bodies, bolts, contact, equilibrium, friction, law, outputs
 from jointfmu.joints.model import Model
 from jointfmu.mechanics import jenkins, sliders
 from jointfmu.mechanics.footprint.shape import MAX_PATCHES
+from jointfmu.mechanics.memory import HistoryLayout
 
 from ...joint_parts.graph import Graph, add_closing, law_functions, symbols
 from ...joint_parts.native import APPROACH, Definitions, NativePart
@@ -104,28 +105,44 @@ def _definitions(g: Graph, model: Model) -> Definitions:
     numbers = {name: float(getattr(sliders, name)) for name in names}
     numbers["SLIDER_AT_LIMIT"] = jenkins.AT_LIMIT_TOLERANCE
     counts |= {"N_BELOW": sliders.HEIGHTS_BELOW, "N_ABOVE": sliders.HEIGHTS_ABOVE}
-    counts |= {name: getattr(memory, name) for name in ("UNKNOWN", "FULL_STICK", "SLIP_1D", "SLIP_2D")}
+    counts |= {name: getattr(friction, name) for name in ("UNKNOWN", "FULL_STICK", "SLIP_1D", "SLIP_2D")}
     counts |= {
-        "MODES": bodies.MODES,
+        "MODES": law.MAX_MODES,
         "ELASTIC": int(g.joint.elastic),
-        "MAX_ITERATIONS": whole.MAX_ITERATIONS,
-        "MAX_LINE_SEARCH": whole.MAX_LINE_SEARCH,
+        "MAX_ITERATIONS": equilibrium.MAX_ITERATIONS,
+        "MAX_LINE_SEARCH": equilibrium.MAX_LINE_SEARCH,
     }
     counts["N_INTERFACE_OUTPUTS"] = len([o for o in model.outputs if not o.name.startswith("F_bolt")])
-    numbers["MODE_DIGITS"], numbers["TRANSFER_SCALE"] = 10.0**bodies.DIGITS, 10.0**contact.TRANSFER_DECIMALS
+    numbers["MODE_DIGITS"], numbers["TRANSFER_SCALE"] = (
+        10.0**bodies.MODE_DECIMALS,
+        10.0**contact.TRANSFER_DECIMALS,
+    )
     numbers |= {
-        name: getattr(whole, name)
+        name: getattr(equilibrium, name)
         for name in (
             "RELATIVE_TOLERANCE",
             "CANCELLATION_RATIO",
             "INTERMEDIATE_TOLERANCE_FACTOR",
             "MIN_LOAD_STEP",
             "TANGENT_REUSE_RATIO",
+            "DIFFERENCE_STEP",
         )
     }
-    numbers["DIFFERENCE_STEP"] = trials.DIFFERENCE_STEP
     numbers |= {"BOLT_LIFT_OFF_RATIO": bolts.LIFT_OFF_RATIO, "BOLT_AT_LIFT_OFF": bolts.AT_LIFT_OFF}
     return Definitions(counts, numbers)
 
 
-PART = NativePart(_functions, (*APPROACH, *SLIDERS), _definitions, memory.history_layout(MAX_PATCHES))
+_C_NAMES = {
+    "tangential": "rigid", "onset_approach": "reference", "min_approach": "lowest",
+    "normal": "apart", "modal_coordinates": "amplitude",
+}  # fmt: skip
+"""{history variable: its name in C}, where they differ."""
+
+
+def _history_layout() -> HistoryLayout:
+    """Layout of the history variables with the names of C."""
+    shapes = friction.history_layout(MAX_PATCHES).shapes
+    return HistoryLayout({_C_NAMES.get(name, name): shape for name, shape in shapes.items()})
+
+
+PART = NativePart(_functions, (*APPROACH, *SLIDERS), _definitions, _history_layout())

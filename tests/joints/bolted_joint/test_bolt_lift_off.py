@@ -15,8 +15,7 @@ from natives import jacobian
 
 from jointfmu.joints.bolted_joint import bolts as bolt_law
 from jointfmu.joints.bolted_joint.bolts import BoltSprings
-from jointfmu.joints.bolted_joint.contact import RelativeDisplacement
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring, JointInputs
 from jointfmu.mechanics.footprint.plate import BoltedPlate
 from jointfmu.mechanics.footprint.shape import NodalField, position_means
 from jointfmu.parameters import load_default, load_parameter_file
@@ -71,7 +70,7 @@ def spring_of_sides(file):
 
 def at(spring, *six, memory=None, preload=PRELOAD, moment=0.0):
     start = spring.initial_history() if memory is None else memory
-    return spring.advance(preload, moment, RelativeDisplacement(np.array(six)), STILL, start)
+    return spring.advance(JointInputs(preload, moment, np.array(six)), start)
 
 
 def forces_of_bolts(spring, out, six, preload=PRELOAD, moment=0.0):

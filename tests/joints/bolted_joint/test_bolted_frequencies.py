@@ -22,8 +22,7 @@ from numpy.typing import NDArray
 from scipy.linalg import eigh
 from scipy.optimize import brentq
 
-from jointfmu.joints.bolted_joint.contact import RelativeDisplacement
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring, JointInputs
 from jointfmu.parameters import load_default
 from jointfmu.quantity import flatten_parameters
 
@@ -107,11 +106,11 @@ def test_frames_that_are_turned_about_the_normal(degrees: float) -> None:
     c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
     turned = np.array([[c, -s], [s, c]])
     spring = BoltedJointSpring.of(JOINT)
-    rates, rest = (0.0,) * 6, spring.initial_history()
+    rest = spring.initial_history()
 
     def shear(u: Array) -> Array:
-        place = RelativeDisplacement(np.array([*u[:2], -1e-7, 0.0, 0.0, 0.0]))
-        found, _ = spring.advance(PRELOAD, 0.0, place, rates, rest)
+        q = np.array([*u[:2], -1e-7, 0.0, 0.0, 0.0])
+        found, _ = spring.advance(JointInputs(PRELOAD, 0.0, q), rest)
         return np.array([found["f_x"], found["f_y"]], dtype=float)
 
     push = np.array([1e-6, 0.0])
@@ -251,7 +250,7 @@ def swings(first: float, least: float) -> Array:
     force there is q - 2 B(s).
     """
     nodes = BoltedJointSpring.of_nodes(JOINT)
-    approach, law = nodes.preloaded_approach(PRELOAD, 0.0), nodes.foundation()
+    approach, law = nodes.preloaded_approach(PRELOAD, 0.0), nodes.friction.foundation()
     share, limit = nodes.shape.share, JOINT.mu * PRELOAD * JOINT.n_bolts / JOINT.A_0
 
     def force(u: float) -> float:

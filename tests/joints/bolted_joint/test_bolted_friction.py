@@ -9,8 +9,8 @@ from scipy.optimize import brentq
 
 from jointfmu.joints import MODELS
 from jointfmu.joints.bolted_joint.contact import force_transfer
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.bolted_joint.law import preload_pressure
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.parameters import load_default
 
 JOINT = load_default("bolted_joint").values
@@ -188,7 +188,7 @@ def test_noise_while_it_is_tightened_leaves_no_trace(spring, part):
         place = 1e-12 * (preload > 1e3) * rng.normal(size=6) * np.array([1.0, 1.0, 0.0, 0.0, 0.0, 1.0])
         _, memory = MODEL.advance(spring, at(place, preload=preload), memory)
     approach = spring.curve.inverse(preload_pressure(JOINT, spring.patches, 3e4, 0.0))
-    law = spring.foundation()
+    law = spring.friction.foundation()
     compression = float(spring.patches.share @ (approach - spring.curve.displacement[0]))
     gross = law.friction_coefficient / law.stiffness_ratio * compression
     amplitude, losses = part * gross, []
@@ -232,8 +232,8 @@ def test_no_closed_path_creates_energy(spring):
 def stored(spring, memory):
     """Elastic energy of the sliders [J]."""
     it = spring.history_layout.split(memory)
-    sliders = spring.foundation(it["reference"], it["lowest"])
-    stiff = sliders.carried(it["approach"]).stiffness[:, None, :]
+    sliders = spring.friction.foundation(it["onset_approach"], it["min_approach"])
+    stiff = sliders.slider_properties(it["approach"]).stiffness[:, None, :]
     each = np.divide(it["force"] ** 2, 2.0 * stiff, out=np.zeros_like(it["force"]), where=stiff > 0.0)
     return JOINT.A_0 * float(spring.patches.share @ np.sum(each, axis=(1, 2)))
 

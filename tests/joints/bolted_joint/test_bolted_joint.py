@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 from jointfmu.contact.interface import at_pressure
 from jointfmu.contact.laws import mindlin
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.bolted_joint.law import BoltedJoint, preload_pressure
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.mechanics.curve import MAX_ERROR
 from jointfmu.mechanics.footprint.bolts import PressureDistribution
 from jointfmu.parameters import load_default

@@ -27,8 +27,8 @@ from webassembly import Instance
 
 from jointfmu.contact.interface import stiffness_curve
 from jointfmu.joints import MODELS
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring, contact_points
 from jointfmu.joints.bolted_joint.law import preload_pressure
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring, contact_points
 from jointfmu.mechanics.footprint.plate import BoltedPlate
 from jointfmu.mechanics.footprint.shape import NodalField, field_entries
 from jointfmu.parameters import load_default, load_parameter_file

@@ -19,7 +19,7 @@ from jointfmu_tools.shown import list_entries
 from jointfmu_tools.uncertainty.problem import state_problem
 
 from jointfmu.contact.roughness import GAMMA, RQ_OVER_RA
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.parameters import load_parameter_file
 
 PLATE = ["--plate", "200x100", "--bolts", "4xM12", "--at", "160x60", "--grip", "40"]

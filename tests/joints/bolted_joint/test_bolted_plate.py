@@ -21,8 +21,8 @@ from jointfmu_tools.joints.bolted_joint.new import computed
 from jointfmu.contact.surface import Elastic
 from jointfmu.joints import MODELS
 from jointfmu.joints.bolted_joint.compliances import DIRECTIONS, Compliances
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring, contact_points
 from jointfmu.joints.bolted_joint.law import RoughBoltedJoint, contradictions, preload_pressure
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring, contact_points
 from jointfmu.mechanics.footprint.plate import BoltedPlate, equivalent_rows, plate_cells, pressure_decay
 from jointfmu.parameters import format_parameter_file, load_default, load_parameter_file
 

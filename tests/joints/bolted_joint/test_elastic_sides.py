@@ -29,10 +29,9 @@ from jointfmu_tools.uncertainty import propagate
 from jointfmu_tools.uncertainty.problem import state_problem
 
 from jointfmu.joints import KINDS
-from jointfmu.joints.bolted_joint import whole as equilibrium
-from jointfmu.joints.bolted_joint.contact import RelativeDisplacement
+from jointfmu.joints.bolted_joint import equilibrium
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring, JointInputs
 from jointfmu.joints.bolted_joint.law import interface_alone
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.parameters import format_parameter_file, load_parameter_file
 
 pytestmark = [pytest.mark.slow, needs("gmsh")]
@@ -83,7 +82,7 @@ def embedded(joint, path):
 
 def at(spring, *six, memory=None, preload=PRELOAD, moment=0.0):
     start = spring.initial_history() if memory is None else memory
-    return spring.advance(preload, moment, RelativeDisplacement(np.array(six)), STILL, start)
+    return spring.advance(JointInputs(preload, moment, np.array(six)), start)
 
 
 def stiffness(spring):
@@ -268,7 +267,7 @@ def test_bands_are_those_of_the_whole(made):
 def test_a_moment_changes_the_bolts_by_their_rows(made):
     spring = made(*FOUR, preload=15e3).spring
     forces = [at(spring, *STILL, preload=15e3, moment=100.0)[0][f"F_bolt[{j}]"] for j in (1, 2, 3, 4)]
-    expected = 15e3 + 100.0 * np.sign(spring.modes.bolts[:, 1]) / (2.0 * 0.05)
+    expected = 15e3 + 100.0 * np.sign(spring.bolts.position[:, 1]) / (2.0 * 0.05)
     np.testing.assert_allclose(forces, expected, rtol=1e-9)
 
 
@@ -459,26 +458,20 @@ def test_a_path_far_into_slip_and_opening_is_found_with_few_parts(made, monkeypa
     """By the derivative of the residual, which is that of its differences: one step of 15 goes in parts."""
     spring, rng = made(*FOUR, preload=15e3).spring, np.random.default_rng(2)
     unit = np.array([1.2e-5, 1.2e-5, 4e-6, 8e-5, 8e-5, 2e-4])
-    newton, found, apart = equilibrium.JointAssembly._solve_newton, [], []
+    newton, found, errors = equilibrium.solve_newton, [], []
 
-    def watched(self, way, part, tight, amplitude, derivative):
-        place = way.place(part)
-
-        def residual(further):
-            return self.residual(way.at(place, amplitude + further), tight, place, amplitude + further)[0]
-
+    def watched(step, load_factor, a, J):
+        q = step.displacement(load_factor)
         if len(found) % 4 == 3:
-            motions = 1e-11 * np.eye(amplitude.size)
-            rises = np.stack([(residual(d) - residual(-d)) / 2e-11 for d in motions], axis=1)
-            there = way.at(place, amplitude)
-            bolts = self.bolts.tangent(tight.bolt_force, self.stretch(place, amplitude))
-            slopes = way.slopes(place, amplitude)
-            exact = self._jacobian(there.stiffness, way.apart(there), slopes, bolts)
-            apart.append(np.max(np.abs(exact - rises)) / np.max(np.abs(rises - rises.T)))
-        found.append(newton(self, way, part, tight, amplitude, derivative))
+            motions = 1e-11 * np.eye(a.size)
+            r = [[step.evaluate_trial(q, a + s * d).residual for s in (1.0, -1.0)] for d in motions]
+            rises = np.stack([(rise - fall) / 2e-11 for rise, fall in r], axis=1)
+            tangent = step.modal_tangent(step.evaluate_trial(q, a))
+            errors.append(np.max(np.abs(tangent - rises)) / np.max(np.abs(rises - rises.T)))
+        found.append(newton(step, load_factor, a, J))
         return found[-1]
 
-    monkeypatch.setattr(equilibrium.JointAssembly, "_solve_newton", watched)
+    monkeypatch.setattr(equilibrium, "solve_newton", watched)
     for _ in range(24):
         a, b = rng.uniform(-1.0, 1.0, (2, 6)) * unit
     memory = spring.initial_history()
@@ -486,7 +479,7 @@ def test_a_path_far_into_slip_and_opening_is_found_with_few_parts(made, monkeypa
         six = a * np.sin(angle) + b * (1.0 - np.cos(angle))
         memory = at(spring, *six, memory=memory, preload=15e3)[1]
     assert len(found) == 17
-    assert max(apart) < 0.01
+    assert max(errors) < 0.01
 
 
 def test_long_steps_back_from_gross_slip_are_found(made):
@@ -513,7 +506,7 @@ def test_a_motion_without_equilibrium_is_told_and_the_next_goes_on(made, monkeyp
 def test_a_singular_derivative_is_told_as_no_equilibrium(made, monkeypatch):
     spring = made(*FOUR, preload=15e3).spring
     nothing = np.zeros([len(spring.joint.bodies.stiffness)] * 2)
-    monkeypatch.setattr(equilibrium.JointAssembly, "_jacobian", lambda *given: nothing)
+    monkeypatch.setattr(equilibrium.LoadStep, "modal_tangent", lambda *given: nothing)
     told = (
         r"preload = 15000, s_rel_x = 0.0001: the sides find no equilibrium beyond 0\.00061 of the way, .* N"
     )

@@ -20,8 +20,8 @@ from jointfmu_tools.joints.bolted_joint.export import (
     springs_under_pressure,
 )
 
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.bolted_joint.law import preload_pressure
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.parameters import load_default
 
 MM = UNITS["mm-N-MPa-t"]

@@ -19,8 +19,8 @@ from jointfmu_tools.ramps import ramp
 
 from jointfmu.joints import KINDS
 from jointfmu.joints.bolted_joint import KIND
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.bolted_joint.law import bolt_pattern, preload_pressure
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.mechanics.footprint import bolts
 from jointfmu.mechanics.footprint.reproducible import round_distribution
 from jointfmu.mechanics.footprint.shape import NodalField

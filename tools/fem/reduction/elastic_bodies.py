@@ -13,8 +13,9 @@ from typing import Any
 import numpy as np
 import scipy.linalg as la
 
-from jointfmu.joints.bolted_joint.bodies import DIGITS, MODES, ElasticBodies
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.joints.bolted_joint.bodies import MODE_DECIMALS
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
+from jointfmu.joints.bolted_joint.law import MAX_MODES, ElasticBodies
 from jointfmu.quantity import Array
 
 from ..whole_joint import AXES, LinearJoint
@@ -64,8 +65,11 @@ def reduce_bodies(
     stretch = joint.elongation_matrix.T @ fields
     patches = spring.patches
     start = spring.preloaded_approach(preload, 0.0)
-    point_stiffness, patch_approach = spring.curve.derivatives(start, 1)[1], spring.patch_approach(start)
-    ratio = spring.foundation().stiffness_ratio
+    point_stiffness, patch_approach = (
+        spring.curve.derivatives(start, 1)[1],
+        spring.contact.patch_approach(start),
+    )
+    ratio = spring.friction.foundation().stiffness_ratio
     patch_shear = ratio * spring.curve.derivatives(patch_approach, 1)[1]
     x, y = patches.position.T
     traces = [joint.relative_displacement_matrix(axis) @ fields for axis in AXES]
@@ -83,7 +87,7 @@ def reduce_bodies(
     shears = ShearStates(
         (combinations @ motions)[:, (0, 1, 5)], (fields.T @ (linear.body_matrix @ deformation)).T
     )
-    law, approach = spring.foundation(), approach_at_stiffness(spring, normal_stiffness)
+    law, approach = spring.friction.foundation(), approach_at_stiffness(spring, normal_stiffness)
     surface = FrictionPoints(interface.area, approach, rigid_displacement_matrix(interface.centred_position))
     tangential = np.concatenate(traces[:2])
     target_work = compute_friction_work(law, shears, surface, tangential)
@@ -129,7 +133,7 @@ def _normalise_modes(displacements: dict[str, Array]) -> tuple[Array, dict[str, 
     Returns the largest displacement (k) of each mode, and the normalised rows as flat tuples.
     """
     largest = np.max(np.abs(np.concatenate(list(displacements.values()))), axis=0)
-    rounded = {name: np.round(rows / largest, DIGITS) for name, rows in displacements.items()}
+    rounded = {name: np.round(rows / largest, MODE_DECIMALS) for name, rows in displacements.items()}
     all_rows = np.concatenate(list(rounded.values()))
     first = np.argmax(np.abs(all_rows), axis=0)
     sign = np.sign(all_rows[first, np.arange(len(first))])
@@ -157,7 +161,7 @@ def _energy_modes(linear: LinearJoint, states: Array, motions: Array) -> Array:
     for _ in range(2):  # repeated Gram-Schmidt: two passes are enough
         states = states - linear_modes @ (linear_modes.T @ (linear.body_matrix @ states))
     weight = np.where(np.any(motions[:, 2:5], axis=1), OPENING_STATE_WEIGHT, 1.0)
-    other_modes = _decompose(weight * states, linear)[:, : MODES - linear_modes.shape[1]]
+    other_modes = _decompose(weight * states, linear)[:, : MAX_MODES - linear_modes.shape[1]]
     return np.concatenate([linear_modes, other_modes], axis=1)
 
 

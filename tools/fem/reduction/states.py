@@ -14,8 +14,8 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.spatial import cKDTree
 
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.bolted_joint.law import working_preload
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.quantity import Array
 
 from ..elasticity import Cholesky, ElasticBody, Index
@@ -169,7 +169,7 @@ class CellJoint:
         """
         spring, n = self.spring, self.preload_approach.size
         joint, area = spring.joint, spring.joint.A_0 * spring.shape.share
-        foundation = spring.foundation()
+        foundation = spring.friction.foundation()
         ratio, slip_ratio = (
             foundation.stiffness_ratio,
             foundation.friction_coefficient / foundation.stiffness_ratio,
@@ -261,7 +261,11 @@ def refine_equilibrium(
     Each iteration uses the stiffness of the preloaded joint. Slip only lowers the stiffness, so the iteration
     converges. A state whose step grows (its contact closes) is not changed.
     """
-    joint, law, preloaded = linear.joint, spring.foundation(), approach_at_stiffness(spring, normal_stiffness)
+    joint, law, preloaded = (
+        linear.joint,
+        spring.friction.foundation(),
+        approach_at_stiffness(spring, normal_stiffness),
+    )
     interface, curve = joint.interface, spring.curve
     relative, stretch = (
         [joint.relative_displacement_matrix(axis) for axis in AXES],

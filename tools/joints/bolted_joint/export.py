@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointfmu.joints.bolted_joint import KIND
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.bolted_joint.law import Bolted, preload_pressure
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.joints.model import Variable
 from jointfmu.mechanics.footprint.shape import PressureDistribution
 from jointfmu.quantity import Array, quantity_field

@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from jointfmu.joints.bolted_joint.bodies import ElasticBodies
-from jointfmu.joints.bolted_joint.law import Bolted, bolt_pressures, preload_pressure
+from jointfmu.joints.bolted_joint.law import Bolted, ElasticBodies, bolt_pressures, preload_pressure
 from jointfmu.mechanics.footprint.bolts import BoltedFrame, pressure_distribution
 from jointfmu.mechanics.footprint.plate import BoltedPlate
 from jointfmu.mechanics.footprint.shape import MergedDistribution, NodalField, PressureDistribution

@@ -5,8 +5,7 @@ from html import escape
 
 import numpy as np
 
-from jointfmu.joints.bolted_joint.bodies import ElasticBodies
-from jointfmu.joints.bolted_joint.law import Bolted, preload_pressure, working_preload
+from jointfmu.joints.bolted_joint.law import Bolted, ElasticBodies, preload_pressure, working_preload
 from jointfmu.mechanics.footprint.bolts import pressure_distribution
 from jointfmu.mechanics.footprint.plate import BoltedPlate
 from jointfmu.mechanics.footprint.shape import NodalField

@@ -18,11 +18,11 @@ from scipy.interpolate import CubicSpline
 from jointfmu.contact.laws import mindlin
 from jointfmu.joints.bolted_joint import KIND
 from jointfmu.joints.bolted_joint.bodies import Modes
-from jointfmu.joints.bolted_joint.bolts import AT_LIFT_OFF, BoltSprings
+from jointfmu.joints.bolted_joint.bolts import AT_LIFT_OFF
 from jointfmu.joints.bolted_joint.contact import pressure_transfer
-from jointfmu.joints.bolted_joint.law import Bolted, interface_alone, node_pressure, slip_force
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring, contact_points, friction_patches_of
-from jointfmu.joints.bolted_joint.whole import JointAssembly
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring, contact_points, friction_patches_of
+from jointfmu.joints.bolted_joint.kinematics import tangential_jacobian
+from jointfmu.joints.bolted_joint.law import Bolted, ElasticBodies, interface_alone, node_pressure, slip_force
 from jointfmu.joints.model import Variable
 from jointfmu.mechanics.footprint.bolts import PressureSource, pressure_distribution
 from jointfmu.quantity import Array, flatten_parameters
@@ -210,9 +210,10 @@ class Sides(NamedTuple):
     def of(cls, joint: Bolted, pattern: PressureSource) -> "Sides":
         """Raises ValueError for bodies that were computed for another contact."""
         shape, few = contact_points(pattern), friction_patches_of(pattern)
+        assert isinstance(joint.bodies, ElasticBodies)
         modes = Modes.of(joint.bodies, shape.share.size, few.position)
-        bolts = BoltSprings(modes.bolts, count=1.0, stiffness=1.0, lift_off=0.0)
-        whole = JointAssembly.of(modes, shape, few, area=1.0, bolts=bolts, closure_pressure=0.0)
+        bolts = len(modes.bolt_elongation)
+        along_x = tangential_jacobian(few)[:, :, :1]
 
         def products(weight: Array, *motions: tuple[Array, Array]) -> Array:
             rows = [np.column_stack(motion) for motion in motions]
@@ -222,13 +223,9 @@ class Sides(NamedTuple):
 
         return cls(
             (shape.preload_shape, pressure_transfer(shape, few) @ shape.preload_shape),
-            products(whole.point_area, (whole.point_opening[:, :1], modes.opening)),
-            products(
-                whole.patch_area, *zip(whole.patch_motion[:, :, :1], modes.patch_displacement, strict=True)
-            ),
-            products(
-                np.ones(len(whole.bolt_elongation)), (whole.bolt_elongation[:, :1], modes.bolt_elongation)
-            ).sum(axis=0),
+            products(shape.share, (np.ones(len(shape.share)), modes.opening)),
+            products(few.share, *zip(along_x, modes.patch_displacement, strict=True)),
+            products(np.ones(bolts), (np.ones(bolts), modes.bolt_elongation)).sum(axis=0),
             modes.stiffness,
         )
 
@@ -333,7 +330,7 @@ def exact(joint: Bolted, loads: Array) -> dict[str, Array]:
     pressure = node_pressure(
         alone, spring.shape.preload_shape, spring.shape.moment_shape, loads[:, None], 0.0
     )
-    slip = alone.A_0 * spring.foundation().friction_coefficient * (pressure @ spring.shape.share)
+    slip = alone.A_0 * spring.friction.foundation().friction_coefficient * (pressure @ spring.shape.share)
     lost = [loss_factor(spring, each, shear_at(alone, each)) if each > 0.0 else 0.0 for each in loads]
     found = {"approach": approach(spring, loads), "slip_force": slip, "loss_factor": np.array(lost)}
     return curves | found

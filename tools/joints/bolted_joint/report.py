@@ -7,16 +7,16 @@ from typing import NamedTuple
 import numpy as np
 from jointfmu_fmu_src.joint_parts.chart import Panel, Series
 
-from jointfmu.joints.bolted_joint.bodies import ElasticBodies
 from jointfmu.joints.bolted_joint.compliances import Compliances
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.bolted_joint.law import (
+    ElasticBodies,
     interface_alone,
     shaped_pressure,
     slip_force,
     working_preload,
 )
 from jointfmu.joints.bolted_joint.outputs import bolt_force_name
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.joints.model import Model
 from jointfmu.mechanics.footprint.shape import NodalField
 from jointfmu.parameters import ParameterFile
@@ -123,7 +123,7 @@ def loss_factor(spring: BoltedJointSpring, remaining_preload: float, shear: floa
     shear             : amplitude [N] of the shear force
     """
     joint, shape = spring.joint, spring.patches
-    law, mean = spring.foundation(), remaining_preload * joint.n_bolts / joint.A_0
+    law, mean = spring.friction.foundation(), remaining_preload * joint.n_bolts / joint.A_0
     approach = spring.curve.inverse(shaped_pressure(shape.preload_shape, shape.moment_shape, mean, 0.0))
     low, size = (
         0.0,

@@ -15,8 +15,7 @@ import numpy as np
 
 from ...mechanics.footprint.shape import NodalField
 from ...quantity import Array
-from .bodies import ElasticBodies
-from .law import Bolted, working_preload
+from .law import Bolted, ElasticBodies, working_preload
 
 LIFT_OFF_RATIO = 1e-9
 """Force over the load at which the contact closes [1] up to which a bolt stands at lift-off: its stiffness is
@@ -56,12 +55,6 @@ class BoltSprings:
     def lever(self) -> Array:
         """(b) [1/m] force that a moment adds to each bolt over the moment, see `moment_lever`."""
         return moment_lever(self.position) / self.count
-
-    @cached_property
-    def elongation(self) -> Array:
-        """(b, 3) elongation of the bolts by s_z, theta_x, theta_y of rigid sides."""
-        x, y = self.position.T
-        return np.stack([np.ones_like(x), y, -x], axis=-1)
 
     def preload_force(self, joint: Bolted, preload: float, moment: float) -> Array:
         """Force (b) [N] of each bolt at tightening: working preload and share of the moment, at least 0."""

@@ -1,14 +1,11 @@
-"""Who gives way in a tightened bolted joint: interface, members and bolts under small loads of the whole."""
+"""Shares of interface, members and bolts in the compliance of a tightened joint."""
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from ...quantity import Array
-
-if TYPE_CHECKING:
-    from .spring import BoltedJointSpring
-
+from .equilibrium import JointAssembly, condense_stiffness
 
 DIRECTIONS = {"x": "N/m", "y": "N/m", "z": "N/m", "rx": "N.m/rad", "ry": "N.m/rad", "rz": "N.m/rad"}
 """{force along or moment about an axis: unit of its stiffness}."""
@@ -37,20 +34,21 @@ class Compliances(NamedTuple):
     bolt_force: Array
 
     @classmethod
-    def of(cls, spring: "BoltedJointSpring", preload: float, moment: float = 0.0) -> "Compliances":
-        """Of a joint with elastic sides, tightened by the force of each bolt [N] and a moment [N.m]."""
-        whole, modes = spring.assembly, spring.modes
-        bolt_force = spring.bolts.preload_force(spring.joint, preload, moment)
-        bolt = spring.bolts.tangent(bolt_force, np.zeros_like(bolt_force))[:, None]
-        H = spring.tangent_stiffness(preload, moment)
-        K, follow = whole.condense(H), -np.linalg.solve(H[6:, 6:], H[6:, :6])
-        stretch = modes.bolt_elongation @ follow
-        stretch[:, 2:5] += whole.bolt_elongation
-        members, bolts = modes.stiffness @ follow**2, np.sum(bolt * stretch**2, axis=0)
-        held, shanks = np.diag(K), np.zeros(6)
-        shanks[2:5] = np.sum(bolt * whole.bolt_elongation**2, axis=0)
+    def of(cls, assembly: JointAssembly, H: Array, bolt_tangent: Array) -> "Compliances":
+        """Compliances of a tightened joint.
+
+        H            : tangent stiffness (6 + k, 6 + k) of the assembly, see `JointAssembly.tangent_stiffness`
+        bolt_tangent : (b) [N/m] of the bolts, part of H
+        """
+        K, follow = condense_stiffness(H), -np.linalg.solve(H[6:, 6:], H[6:, :6])
+        rigid, bolt = assembly.elongation_jacobian[:, :6], bolt_tangent[:, None]
+        elongation = rigid + assembly.modes.bolt_elongation @ follow
+        members = assembly.modes.stiffness @ follow**2
+        bolts, rigid_bolts = (np.sum(bolt * each**2, axis=0) for each in (elongation, rigid))
+        held = np.diag(K)
         parts = np.stack([held - members - bolts, members, bolts]) / held**2
-        return cls(parts, 1.0 / (np.diag(H)[:6] - shanks), shanks, bolt * stretch @ np.linalg.inv(K))
+        interface = 1.0 / (np.diag(H)[:6] - rigid_bolts)
+        return cls(parts, interface, rigid_bolts, bolt * elongation @ np.linalg.inv(K))
 
     @property
     def total(self) -> Array:

@@ -23,13 +23,78 @@ from ...quantity import (
     group_field,
     quantity_field,
     select,
+    series_field,
 )
-from .bodies import ElasticBodies, RigidBodies
 
+MAX_MODES = 16
+"""Largest number of modes of the members [1]."""
+MODAL_SERIES = ("opening", "patch_x", "patch_y", "patch_around", "stretch")
+"""Entries of [bodies] with the displacements by the modes."""
 ELASTIC_NEEDS = {
     "memory": "elastic sides go with friction that remembers",
     "damping": "the dashpots stand between rigid sides",
 }
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RigidBodies:
+    """Rigid members: the joint is the interface alone."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ElasticBodies:
+    """Modes of the members, computed for the points, patches and bolts of one contact.
+
+    Raises ValueError if the lengths of the lists contradict each other.
+    """
+
+    stiffness: tuple[float, ...] = series_field("N/m", "stiffness of each mode", gt=0.0)
+    opening: tuple[float, ...] = series_field(
+        "1", "how far the points of the contact come apart, of each all modes", ge=-1.0, le=1.0
+    )
+    patch_x: tuple[float, ...] = series_field(
+        "1", "how far the sides of the patches shift along x, of each all modes", ge=-1.0, le=1.0
+    )
+    patch_y: tuple[float, ...] = series_field("1", "the same along y", ge=-1.0, le=1.0)
+    patch_around: tuple[float, ...] = series_field(
+        "1", "the same of their sliders around the centre of each, on its circle", ge=-1.0, le=1.0
+    )
+    stretch: tuple[float, ...] = series_field(
+        "1", "how far the seats of the bolts come apart, of each all modes", ge=-1.0, le=1.0
+    )
+    x: tuple[float, ...] = series_field("m", "places of the patches along the rows, from the centroid")
+    y: tuple[float, ...] = series_field("m", "places of the patches across the rows, from the centroid")
+    bolt_x: tuple[float, ...] = series_field("m", "places of the bolts along the rows, from the centroid")
+    bolt_y: tuple[float, ...] = series_field("m", "places of the bolts across the rows, from the centroid")
+    attached: str = choice_field(
+        "unstated", "faces", "edge", "heads", doc="what of the bodies moves with what the joint connects"
+    )
+    thickness: tuple[float, ...] = series_field(
+        "m", "thickness of side 1 and 2 at the bolts, for pictures", gt=0.0, optional=True
+    )
+    outline: tuple[float, ...] = series_field(
+        "m", "lowest x and y, highest x and y of the contact, from its centroid, for pictures", optional=True
+    )
+    hole_diameter: float = quantity_field("m", "clearance hole, for pictures", ge=0.0, default=0.0)
+    head_diameter: float = quantity_field(
+        "m", "outer diameter of what lies under heads and nuts, for pictures", ge=0.0, default=0.0
+    )
+    thread_depth: float = quantity_field(
+        "m", "depth of the threads in side 2, for pictures; 0: bolts go through", ge=0.0, default=0.0
+    )
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+        modes, patches, bolts = len(self.stiffness), len(self.x), len(self.bolt_x)
+        if modes > MAX_MODES:
+            raise ValueError(f"bodies.stiffness has {modes} numbers, expected at most {MAX_MODES}")
+        counts = {"y": patches, "bolt_y": bolts, "stretch": bolts * modes}
+        counts |= {name: patches * modes for name in MODAL_SERIES if name.startswith("patch_")}
+        counts["opening"] = modes * max(len(self.opening) // modes, 1)
+        counts |= {name: n for name, n in (("thickness", 2), ("outline", 4)) if getattr(self, name)}
+        for name, count in counts.items():
+            if (given := len(getattr(self, name))) != count:
+                raise ValueError(f"bodies.{name} has {given} numbers, expected {count} with {modes} modes")
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,12 +1,17 @@
-"""What the bolted joint exports, from sums over its contact."""
+"""Outputs of the bolted joint, from sums over points, patches and bolts."""
 
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from ...contact.laws import mindlin
+from ...mechanics.footprint.shape import FrictionPatches, PressureDistribution
+from ...mechanics.sliders import Foundation
 from ...mechanics.steps import STABLE_STEP_OUTPUTS, largest_stable_steps
-from ...quantity import Number, select
+from ...quantity import Array, Number, select
+from .bolts import BoltSprings
+from .equilibrium import JointAssembly, TrialState, condense_stiffness
+from .friction import directional_stiffness, unit_displacements
 from .law import Bolted
 
 SUMS = (
@@ -37,7 +42,113 @@ stretch                    : [m] elongation of all bolts by the modes of elastic
 normal_stiffness and normal_about_* lack what bolts that lifted off have between rigid sides. With elastic
 sides they and tangent_* are those of the whole joint, less what all bolts have between rigid sides.
 """
-STRETCHES = SUMS[-3:]
+_TRACTIONS, _TANGENTS = ("traction_x", "traction_y", "torsion"), ("tangent_x", "tangent_y", "tangent_z")
+_STRETCHES = SUMS[-3:]
+
+
+def first_moments(points: PressureDistribution, name: str, value: Array) -> dict[str, Number]:
+    """Sums of values (n) times share, and times x and y."""
+    each = points.share * value
+    return {
+        name: np.sum(each),
+        f"{name}_x": each @ points.position[:, 0],
+        f"{name}_y": each @ points.position[:, 1],
+    }
+
+
+def second_moments(points: PressureDistribution, prefix: str, value: Array) -> dict[str, Number]:
+    """Sums of values (n) times share, times y^2 and x^2."""
+    each = points.share * value
+    x, y = points.position.T
+    return {f"{prefix}about_x": each @ y**2, f"{prefix}about_y": each @ x**2}
+
+
+def normal_sums(
+    points: PressureDistribution,
+    pressure: Array,
+    stiffness: Array,
+    added_pressure: Number = 0.0,
+    added_stiffness: Number = 0.0,
+) -> dict[str, Number]:
+    """Sums of pressure (n) [Pa] and stiffness (n) [Pa/m], and of what shear adds to both."""
+    p, k = pressure, stiffness
+    x, y = points.position.T
+    return {
+        **first_moments(points, "normal", p + added_pressure),
+        "normal_stiffness": points.share @ (k + added_stiffness),
+        **second_moments(points, "normal_", k + added_stiffness),
+        "pressure": points.share @ p,
+        **first_moments(points, "stiffness", k),
+        **second_moments(points, "", k),
+        "about_xy": (points.share * k) @ (x * y),
+    }
+
+
+def friction_sums(
+    patches: FrictionPatches, traction: Array, tangent: Sequence[Number], loss: Number
+) -> dict[str, Number]:
+    """Sums of the traction (m, 3) [Pa]; tangent (3) [Pa/m] and loss [J/m2] are sums already."""
+    sums = [patches.share @ np.sum(traction * unit, axis=1) for unit in unit_displacements(patches)]
+    named = [*zip(_TRACTIONS, sums, strict=True), *zip(_TANGENTS, tangent, strict=True)]
+    return {**dict(named), "loss": loss}
+
+
+def tangent_sums(patches: FrictionPatches, tangent: Array) -> list[Number]:
+    """Stiffness per area [Pa/m] by tangents (m, 6) [Pa/m] against s_x, s_y and theta_z [Pa.m]."""
+    return [patches.share @ directional_stiffness(tangent, unit) for unit in unit_displacements(patches)]
+
+
+def cycle_sums(foundation: Foundation, share: Array, approach: Array, amplitude: Array) -> dict[str, Number]:
+    """Sums of `Foundation.cycle_energies` of patches at approaches (m) [m], with amplitudes (m) [m]."""
+    loss, stored = foundation.cycle_energies(approach, amplitude)
+    return {"loop_work": share @ loss, "loop_energy": share @ stored}
+
+
+def bolt_gap_sums(
+    bolts: BoltSprings, area: float, elongation: Array, bolt_force: Array, sums: Mapping[str, Number]
+) -> dict[str, Number]:
+    """Sums of rigid members that the gaps under the heads of the bolts change.
+
+    elongation : (b) [m] since tightening
+    bolt_force : (b) [N] at tightening
+    """
+    gap = bolts.count * bolts.gap(bolt_force, elongation)
+    missing = bolts.count * (bolts.stiffness - bolts.tangent(bolt_force, elongation))
+    x, y = bolts.position.T
+    return {
+        **dict(zip(_STRETCHES, [np.sum(gap), gap @ x, gap @ y], strict=True)),
+        "normal_stiffness": sums["normal_stiffness"] - np.sum(missing) / area,
+        "normal_about_x": sums["normal_about_x"] - (missing @ y**2) / area,
+        "normal_about_y": sums["normal_about_y"] - (missing @ x**2) / area,
+    }
+
+
+def assembly_sums(
+    joint: Bolted, assembly: JointAssembly, state: TrialState, bolt_force: Array, loop_energy: Number
+) -> dict[str, Number]:
+    """Sums that elastic members change: stiffness of the whole joint, elongation by the modes, energy.
+
+    bolt_force  : (b) [N] at tightening
+    loop_energy : [J/m2] of the friction patches
+    """
+    area, modes, bolts, elongation = joint.A_0, assembly.modes, assembly.bolts, state.elongation
+    bolt_stiffness, (_, _, x2, y2, _) = joint.n_bolts * joint.bolt_stiffness, joint.pattern.bolt_means
+    gap, bolt_tangent = bolts.gap(bolt_force, elongation), bolts.tangent(bolt_force, elongation)
+    H = assembly.tangent_stiffness(state.normal.stiffness, state.friction.slider_update.tangent, bolt_tangent)
+    K = np.maximum(np.diag(condense_stiffness(H)), 0.0)
+    stretch = modes.bolt_elongation @ state.modal_coordinates + gap
+    elastic = joint.bolt_stiffness * (elongation @ elongation) - joint.bolt_stiffness * (gap @ gap)
+    energy = 0.5 * (modes.stiffness @ state.modal_coordinates**2 + elastic)
+    return {
+        **dict(zip(_STRETCHES, [np.sum(stretch), *(stretch @ bolts.position)], strict=True)),
+        "tangent_x": K[0] / area,
+        "tangent_y": K[1] / area,
+        "normal_stiffness": (K[2] - bolt_stiffness) / area,
+        "normal_about_x": (K[3] - bolt_stiffness * y2) / area,
+        "normal_about_y": (K[4] - bolt_stiffness * x2) / area,
+        "tangent_z": K[5] / area,
+        "loop_energy": loop_energy + energy / area,
+    }
 
 
 def bolt_force_name(bolt: int) -> str:
@@ -68,7 +179,7 @@ def joint_outputs(
     C_t = mindlin.equivalent_damping(eta_t, joint.mass, rho * K_n)
     viscous = [select(joint.damping, part, 0.0 * part) for part in _viscous(area, sums, C_t, C_n, rates)]
     tension = _tension(bolts, joint.pattern.bolt_means, displacement[2], rotation)
-    pulled = [joint.bolt_stiffness * sums[name] for name in STRETCHES]
+    pulled = [joint.bolt_stiffness * sums[name] for name in _STRETCHES]
     f_x, f_y, m_z = (-area * sums[name] for name in ("traction_x", "traction_y", "torsion"))
     eta_loop = _ratio(sums["loop_work"], 2.0 * np.pi * sums["loop_energy"])
     K_zz = np.maximum(area * sums["normal_stiffness"] + bolts, 0.0)  # not below by round-off

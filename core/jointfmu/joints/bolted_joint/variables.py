@@ -10,10 +10,9 @@ import numpy as np
 from ...mechanics.steps import STABLE_STEP_OUTPUTS
 from ...quantity import Number, select
 from ..model import EXTRAPOLATION_WARNING, LoadCycle, LoadRamp, Model, ValidityLimit, Values, Variable
-from .contact import RelativeDisplacement
+from .joint import BoltedJointSpring, JointInputs
 from .law import Bolted, BoltedJoint, working_preload
 from .outputs import bolt_force_name
-from .spring import BoltedJointSpring
 
 LINEAR = 0.5**0.5
 """Friction force used [1] without memory, where the linear shear force would be the limit."""
@@ -30,10 +29,10 @@ def _three(v: Values, name: str) -> tuple[float, float, float]:
     return v[f"{name}_x"], v[f"{name}_y"], v[f"{name}_z"]
 
 
-def _evolve(spring: BoltedJointSpring, v: Values, memory: Any) -> tuple[Mapping[str, float], Any]:
-    place = RelativeDisplacement(np.array([*_three(v, "s_rel"), *_three(v, "theta")]))
+def _advance(spring: BoltedJointSpring, v: Values, history: Any) -> tuple[Mapping[str, float], Any]:
+    q = np.array([*_three(v, "s_rel"), *_three(v, "theta")])
     rates = (*_three(v, "v_rel"), *_three(v, "omega"))
-    return spring.advance(v["preload"], v["moment"], place, rates, memory)
+    return spring.advance(JointInputs(v["preload"], v["moment"], q, rates), history)
 
 
 def _reach(spring: BoltedJointSpring, v: Values) -> tuple[float, float]:
@@ -150,9 +149,9 @@ MODELS = (
                 for name, doc in STABLE_STEP_OUTPUTS
             ),
         ),
-        evaluate=lambda s, v: _evolve(s, v, s.initial_history())[0],
+        evaluate=lambda s, v: _advance(s, v, s.initial_history())[0],
         initial_history=BoltedJointSpring.initial_history,
-        advance=_evolve,
+        advance=_advance,
         validity_limits=(
             ValidityLimit(
                 "moment",

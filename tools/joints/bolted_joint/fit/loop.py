@@ -21,9 +21,8 @@ from pathlib import Path
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline, CubicSpline
 
-from jointfmu.joints.bolted_joint.contact import RelativeDisplacement
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring, JointInputs
 from jointfmu.joints.bolted_joint.law import Bolted, preload_pressure
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.mechanics.curve import Curve, tabulate_approach
 from jointfmu.parameters import ParameterFile, load_default
 from jointfmu.progress import set_step
@@ -137,8 +136,8 @@ def _follow_path(
     """Force (n) [N] and K_xx (n) [N/m] along displacements x (n) [m], and history variables at the end."""
     outputs = np.empty((2, displacement.size))
     for i, x in enumerate(displacement.tolist()):
-        position = RelativeDisplacement(np.array([x, 0.0, 0.0, 0.0, 0.0, 0.0]))
-        out, history = spring.advance(preload, 0.0, position, (0.0,) * 6, history)
+        inputs = JointInputs(preload, 0.0, np.array([x, 0.0, 0.0, 0.0, 0.0, 0.0]))
+        out, history = spring.advance(inputs, history)
         outputs[:, i] = -out["f_x"], out["K_xx"]
     return outputs[0], outputs[1], history
 

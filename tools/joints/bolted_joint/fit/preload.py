@@ -22,8 +22,9 @@ import numpy as np
 
 from jointfmu.contact.interface import stiffness_curve
 from jointfmu.joints.bolted_joint.bolts import AT_LIFT_OFF
+from jointfmu.joints.bolted_joint.equilibrium import condense_stiffness
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.bolted_joint.law import Bolted, preload_pressure, working_preload
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.mechanics.curve import tabulate_approach
 from jointfmu.mechanics.footprint.bolts import PressureSource, pressure_distribution
 from jointfmu.mechanics.footprint.shape import MergedDistribution
@@ -65,7 +66,7 @@ def joint_stiffness(joint: Bolted, preload: Array, direction: str = "normal") ->
     if joint.elastic:
         spring, axis = BoltedJointSpring.of(joint), 2 if direction == "normal" else 0
         return np.array(
-            [spring.assembly.condense(spring.tangent_stiffness(P))[axis, axis] for P in preload.tolist()]
+            [condense_stiffness(spring.tangent_stiffness(P))[axis, axis] for P in preload.tolist()]
         )
     shape = merged_pressure_shape(joint.pattern)
     p = preload_pressure(joint, shape, preload, 0.0)

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.mechanics.curve import Curve
 from jointfmu.mechanics.footprint.reproducible import ZERO_RATIO
 from jointfmu.mechanics.sliders import UNIFORM_DEVIATION, Foundation

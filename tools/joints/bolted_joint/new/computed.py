@@ -6,10 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from jointfmu.joints.bolted_joint.bodies import ElasticBodies
 from jointfmu.joints.bolted_joint.compliances import COMPONENTS, Compliances
-from jointfmu.joints.bolted_joint.law import preload_pressure, working_preload
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
+from jointfmu.joints.bolted_joint.law import ElasticBodies, preload_pressure, working_preload
 from jointfmu.mechanics.curve import tabulate_approach
 from jointfmu.mechanics.footprint.bolts import pressure_distribution
 from jointfmu.mechanics.footprint.plate import BoltedPlate

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointfmu.joints.bolted_joint import KIND
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.mechanics.footprint.plate import BoltedPlate
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
