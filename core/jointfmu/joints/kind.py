@@ -13,7 +13,7 @@ from .model import Model, Variable
 class RoughSurface:
     """Fractal parameters `PREFIX.D` and `PREFIX.G` that can be determined from a measured surface.
 
-    areal     : True: D_s and G_s of the surface; False: D and G of a profile
+    is_areal  : True: D_s and G_s of the surface; False: D and G of a profile
     direction : direction of the profile on a textured surface, "x" or "y"; None: the one with less scatter
     """
 

@@ -57,7 +57,7 @@ def _round_to_steps(values: Array, digits: int) -> Array:
 
 
 def clear_round_off(shape: PressureDistribution) -> PressureDistribution:
-    """Replace round-off in a pressure distribution by exact zeros, see ZERO_RATIO."""
+    """Replace round-off in a pressure distribution by exact zeros, see ROUND_OFF_RATIO."""
 
     def zeros(values: Array) -> Array:
         return np.where(np.abs(values) > ZERO_RATIO * np.max(np.abs(values)), values, 0.0)
