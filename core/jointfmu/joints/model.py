@@ -142,7 +142,7 @@ class Model:
         the model has no history
     advance  : function (tabulated joint, inputs, history variables) -> outputs and new history variables
         after a straight path to the inputs; the history variables passed in are not modified
-    loop     : load cycle that shows the hysteresis
+    load_cycle : load cycle that shows the hysteresis
     make_variant : function (model, parameter set) -> model with additional outputs for this parameter set
     alias    : name that the user gave to the FMU; "": `name`
 

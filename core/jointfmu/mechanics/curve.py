@@ -206,7 +206,7 @@ def refine_curve(tabulate: Callable[[int], Curve], steps: int) -> Curve:
     tabulate      : function, number of steps -> table
     initial_steps : initial number of steps, doubled up to MAX_REFINEMENT times as many
 
-    Raises RuntimeError if the table then is still inaccurate, or has more than MAX_NODES nodes.
+    Raises RuntimeError if the table then is still inaccurate, or has more than MAX_TABLE_NODES nodes.
     """
     factor = 1
     while factor <= MAX_REFINEMENT:

@@ -579,9 +579,9 @@ def varying_stiffness_loss(
     force, new_force : at the start and at the end of the increment
     tangential_displacement : displacement increment
     stiffness        : [Pa/m] at both ends
-    slip             : slip of the return mapping, see `ReturnMapping`
-    contact_changes  : whether the contact state changes. Then the work is computed by Simpson's rule with the
-        force in the middle of the increment (middle_force), else by Hermite's rule from both ends.
+    slip             : slip force of the return mapping, see `ReturnMapping`
+    has_contact_change : whether the contact state changes. Then the work is computed by Simpson's rule with
+        the force in the middle of the increment (middle_force), else by Hermite's rule from both ends.
     """
     stiffness_start, stiffness_end = stiffness
     ends = (force[0] + new_force[0]) * tangential_displacement[0] + (
