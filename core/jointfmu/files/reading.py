@@ -21,7 +21,7 @@ def check_regular(path: str | Path, expected: str) -> None:
 
 
 def read_bytes(path: str | Path, expected: str) -> bytes:
-    """Read a file.
+    """Read the bytes of a regular file.
 
     expected_content : what the file should be, for the error
 

@@ -83,7 +83,7 @@ class JointKind:
 
     @property
     def variables(self) -> dict[str, Variable]:
-        """{name: input or output} of all models."""
+        """Inputs and outputs of all models of the joint, {name: variable}."""
         return {v.name: v for model in self.models for v in (*model.inputs, *model.outputs)}
 
     @property

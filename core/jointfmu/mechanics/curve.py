@@ -80,7 +80,7 @@ class Curve:
 
     @property
     def closing_end_load(self) -> float:
-        """Load at zero displacement, which is the end of the closing of the contact."""
+        """Load at the end of the closing of the contact, where the displacement is zero."""
         return float(self.load[np.searchsorted(self.displacement, 0.0)])
 
     @property

@@ -100,7 +100,7 @@ def _content(file: Path) -> bytes:
 
 @contextmanager
 def _interrupt_after() -> Iterator[None]:
-    """Defer Ctrl-C to the end of the body, which takes a second or two: CasADi ignores the interrupt."""
+    """Context that defers Ctrl-C to its end, a second or two: CasADi ignores the interrupt."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return

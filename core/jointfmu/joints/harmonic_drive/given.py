@@ -73,7 +73,7 @@ class PrescribedDrive(Drive):
 
     @property
     def law(self) -> None:
-        """None: the midline has no interface law."""
+        """Interface law of the contact pair: None, a prescribed midline has none."""
         return
 
     @property

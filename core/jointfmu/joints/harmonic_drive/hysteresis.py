@@ -64,7 +64,7 @@ def stiffness_exponent(drive: Drive) -> Number:
 def slider_shares(
     m: Number, remaining_shares: Sequence[float] = REMAINING_SHARES
 ) -> tuple[list[Number], list[Number]]:
-    """Shares of the sliders in K_h and in M_f [1], each with the sum 1.
+    """Share of each slider in the stiffness K_h and in the friction limit M_f [1]; the sum of each is 1.
 
     exponent         : exponent m of K_N ~ P^m
     remaining_shares : values of s [1], decreasing from 1 to 0, that separate the sliders
