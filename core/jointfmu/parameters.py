@@ -211,7 +211,7 @@ def _height_source(prefix: str, heights: Iterable[str], sources: Mapping[str, st
 def _law_height(
     declared: Mapping[str, object], values: Mapping[str, Any], heights: Mapping[str, float]
 ) -> dict[str, float]:
-    """Height h [m] of the law, {name: h}, from the heights of the surfaces; empty if the file states h itself.
+    """Height h [m] of the law, {name: h}, from the heights of the surfaces; empty if the file states h.
 
     Empty also for a law without the parameter h. Raises ValueError if the file states both and they differ
     by more than RELATIVE_HEIGHT_TOLERANCE.
