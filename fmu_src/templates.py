@@ -65,5 +65,5 @@ def _number(value: float | str) -> str:
 
 
 def law_terms(parameters: ParameterFile) -> dict[str, object]:
-    """Template variables of the contact law: its name, whether it is `roughness`, its least spot count."""
+    """Template variables of the contact law: its name, whether it is `roughness`, and FEW_SPOTS_FACTOR."""
     return {"law": parameters.law, "rough": parameters.law == ROUGHNESS_LAW, "few_spots": FEW_SPOTS_FACTOR}

@@ -42,12 +42,12 @@ an engineering estimate, fitted to calibration points, or set by the user."""
 _NUMBERS_PER_LINE = 5
 """Numbers of a list per line of the file [1]."""
 _INPUTS_PREFIX = "inputs."
-"""Prefix of the names of start values."""
+"""Prefix of the structured names of the start values of inputs."""
 HEIGHT_TOLERANCE = 0.01
-"""Largest relative difference [1] between h of a law and the h computed from the section [roughness]: such
-heights are printed with two digits."""
+"""Largest relative difference [1] between h of a law and the h computed from the section [roughness]: heights
+are printed with two digits."""
 _ACTIVE, _COMPARISON = "roughness.", "comparison."
-"""Sections of the surface heights, as prefixes: of a law with the parameter h, and of a law without it."""
+"""Prefixes of the names of surface heights: for a law with the parameter h, and for a law without it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,7 +100,7 @@ class ParameterFile:
         return self.inputs.get(name, variable.start if variable else 0.0)
 
     def with_values(self, changes: Mapping[str, object], origin: str, source: str) -> "ParameterFile":
-        """Copy with some values replaced; names and intervals are checked.
+        """Copy of the file with new values, {structured name: value}; names and intervals are checked.
 
         A new height h of the law removes the heights of the surfaces from which h was computed.
         """
@@ -116,7 +116,7 @@ class ParameterFile:
         )
 
     def with_roughness(self, heights: Mapping[str, float], origin: str, source: str) -> "ParameterFile":
-        """Copy with new heights [m] of the surfaces, {name: height}.
+        """Copy of the file with new heights [m] of the surfaces, {name: height}.
 
         Earlier heights of the same side are removed. A law with the parameter h gets h computed from all
         heights. Raises ValueError as `roughness.check_heights` does.
@@ -211,10 +211,10 @@ def _height_source(prefix: str, heights: Iterable[str], sources: Mapping[str, st
 def _law_height(
     declared: Mapping[str, object], values: Mapping[str, Any], heights: Mapping[str, float]
 ) -> dict[str, float]:
-    """{name: h [m]} of the law, computed from the heights of the surfaces; empty if the file states h itself.
+    """Height h [m] of the law, {name: h}, from the heights of the surfaces; empty if the file states h.
 
     Empty also for a law without the parameter h. Raises ValueError if the file states both and they differ
-    by more than HEIGHT_TOLERANCE.
+    by more than RELATIVE_HEIGHT_TOLERANCE.
     """
     stated = roughness.combined_height(heights)
     name = next((name for name in declared if is_height(name)), None)
@@ -232,7 +232,9 @@ def _law_height(
 
 
 def read_document(path: Path, expected: str) -> dict[str, Any]:
-    """Read a TOML document with the schema of this package; `expected` says in errors what it should be.
+    """Read a TOML document with the schema of this package.
+
+    expected_content : what the file should be, for the error
 
     Raises ValueError with one line if the file cannot be read, is no TOML or of another schema, or if a key
     or a text is too long or has control characters.
@@ -260,9 +262,9 @@ def read_entries(
 ) -> tuple[dict[str, Any], dict[str, str], dict[str, str]]:
     """Values, origins and sources of the entries, each by structured name.
 
-    declared : {structured name: field}; the unit of each entry is checked against its field
-    sections : nested sections and entries of the document
-    keys     : keys that an entry may have
+    declared_fields : {structured name: field}; the unit of each entry is checked against its field
+    sections        : nested sections and entries of the document
+    allowed_keys    : keys that an entry may have
 
     Raises ValueError, one line, for an entry that is no table, or has an unknown key, a wrong unit, an
     unknown kind or no source. Unknown names and the values themselves are not checked here.
@@ -335,7 +337,7 @@ def _input_fields(joint: str) -> dict[str, Field[Any]]:
 
 
 def _heights_prefix(cls: type) -> str:
-    """Prefix of the names of the surface heights for a parameter set class, see `_ACTIVE`."""
+    """Prefix of the names of the surface heights for a parameter set class, see `_ROUGHNESS_PREFIX`."""
     return _ACTIVE if any(is_height(name) for name, _ in flat_fields(cls)) else _COMPARISON
 
 

@@ -16,7 +16,7 @@ from typing import Any, TypeVar
 J = TypeVar("J")
 T = TypeVar("T")
 MAX_ATTEMPTS = 4
-"""Attempts for a job [1] whose process dies."""
+"""Largest number of attempts [1] for a job whose process dies."""
 STATUS_DELAY = 2.0
 """Time [s] after which a command prints a status line."""
 _status: dict[str, Any] = {"step": "", "bars": 0}
@@ -119,7 +119,7 @@ class _Pool(ProcessPoolExecutor):
 
 @contextmanager
 def worker_processes(count: int | None = None) -> Iterator[Executor]:
-    """Context with a pool of worker processes; `count` None: one per core.
+    """Context with a pool of worker processes; `process_count` None: one per core.
 
     Functions and arguments must be picklable. The workers print no errors and ignore Ctrl-C; this process
     handles Ctrl-C and ends them. They also end if this process is killed. The program that starts them needs
@@ -140,11 +140,11 @@ def worker_processes(count: int | None = None) -> Iterator[Executor]:
 def run_jobs(
     function: Callable[[J], T], jobs: Iterable[J], count: int | None = None
 ) -> Generator[tuple[J, T | None]]:
-    """Run a function for all jobs in `count` processes; yield (job, result) in the order of completion.
+    """Run a function for all jobs in several processes; yield (job, result) in the order of completion.
 
     Each process does one job at a time, so the job of a process that died is known. This job is repeated; its
     result is None after MAX_ATTEMPTS. Exceptions of the function are raised here. Close the iterator if you
-    stop before its end: this ends the processes. `count` None: one process per core.
+    stop before its end: this ends the processes. `process_count` None: one process per core.
     """
     waiting = iter(jobs)
     with ExitStack() as entered:

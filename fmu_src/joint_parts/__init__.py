@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from .native import NativePart
 
 Drawing = Callable[..., Sequence[chart.Panel]]
-"""(tabulated joint, end of the load ramp) -> panels side by side."""
+"""Function (tabulated joint, end of the load ramp) -> panels of a chart, side by side."""
 
 
 class RampPanel(NamedTuple):

@@ -22,8 +22,9 @@ Symbols = Sequence[Number]
 
 @dataclass(frozen=True, slots=True)
 class Function:
-    """C function `y = name(x, c)`; c are the constants, `doc` names x and y.
+    """C function name(x, c) -> y: arguments x, constants c, results y; `doc` names x and y.
 
+    argument_symbols, result_expressions : x, and y as expressions of x and c
     called_in_loops : whether the C calls it inside loops: then it is inlined whatever its length
     """
 
@@ -38,11 +39,11 @@ class Function:
 class Graph:
     """C functions of an FMU as expression graphs, and the parameters on which they depend.
 
-    theta     : {name: symbol} of the parameters: FMU variables in their order, then data values
-    joint     : parameter set of the joint, with symbols as values
-    limits    : intervals of parameters that depend on other parameters
-    constants : expressions of theta extracted from the functions
-    symbols   : symbols of these constants in the functions
+    parameter_symbols : {name: symbol} of the parameters: FMU variables in their order, then data values
+    joint             : parameter set of the joint, with symbols as values
+    limits            : intervals of parameters that depend on other parameters
+    constants         : expressions of the parameters, extracted from the functions
+    constant_symbols  : symbols of these constants in the functions
     """
 
     theta: dict[str, ca.SX]
@@ -53,23 +54,23 @@ class Graph:
     symbols: list[ca.SX] = field(default_factory=list)
 
     def add(self, name: str, doc: str, x: Sequence[ca.SX], y: Symbols, looped: bool = False) -> None:
-        """Add a function."""
+        """Add a C function to the graph."""
         self.functions.append(Function(name, doc, x, [ca.SX(value) for value in y], looped))
 
     def add_with_seed(
         self, name: str, doc: str, x: Sequence[ca.SX], y: Symbols, constant_count: int = 0
     ) -> None:
-        """Add a function, and as `name_seed` its derivative along a seed.
+        """Add a C function, and its directional derivative along a seed as `name_seed`.
 
-        constant_count : number of first x that are constant in the derivative
+        constant_count : number of leading arguments that are constant in the derivative
         """
         self.add(name, doc, x, y)
         self.add_seed(name, "x", x, y, constant_count)
 
     def add_seed(self, name: str, doc: str, x: Sequence[ca.SX], y: Symbols, constant_count: int) -> None:
-        """Add the derivative of y along a seed as `name_seed`.
+        """Add the directional derivative of a C function along a seed, as `name_seed`.
 
-        constant_count : number of first x that are constant in the derivative
+        constant_count : number of leading arguments that are constant in the derivative
         """
         variables = ca.vertcat(*x[constant_count:])
         seed = symbols("seed", len(x) - constant_count)
@@ -226,7 +227,10 @@ def law_functions(g: Graph, law: Any, table: Sequence[str], state: Any) -> None:
 
 
 def _bend_of_load(spots: SpotDistribution, u: Number) -> Number:
-    """F'' - m F' of the load F(u), u log-area: follows from the largest spot, without a sum over spots."""
+    """Second derivative of the load less m times the first, F'' - m F', with respect to the log-area u.
+
+    It follows from the largest spot alone, without a sum over spots.
+    """
     largest = sum(term.spot_value(u) for term in spots.terms["load"])
     return spots.m * spots.weight * ca.jacobian(largest, u)
 

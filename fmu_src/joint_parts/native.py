@@ -43,7 +43,7 @@ class Definitions:
 
 
 def column(name: str, size: str, values: Any) -> Definitions:
-    """Define a C array `name[size]` of double and its size."""
+    """Define a C array of double, and its size as a constant."""
     return Definitions({size: len(values)}, {}, {f"{name}[{size}]": [number(x) for x in values]})
 
 

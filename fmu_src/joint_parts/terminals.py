@@ -9,10 +9,10 @@ TRANSLATIONAL = "Modelica.Mechanics.Translational.Interfaces.Flange_"
 class Terminal(NamedTuple):
     """Flange of an FMU.
 
-    kind    : class of the Modelica connector without its last letter
-    side    : this letter: "a" is left, "b" is right
-    members : {Modelica member: (FMU variable, variableKind of FMI)}
-    y       : vertical position at the edge of the icon, from -100 to 100
+    connector_class : class of the Modelica connector without its last letter
+    side            : this letter: "a" is left, "b" is right
+    members         : {Modelica member: (FMU variable, variableKind of FMI)}
+    icon_y          : vertical position at the edge of the icon, from -100 to 100
     """
 
     name: str

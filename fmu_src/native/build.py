@@ -33,7 +33,7 @@ def build(
 
     Equal content gives equal files.
 
-    version     : of FMI, "2" or "3"
+    fmi_version : of FMI, "2" or "3"
     variability : of all parameters, one of VARIABILITIES
     alias       : name of the FMU instead of `name`; empty: `name`
 

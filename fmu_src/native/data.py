@@ -100,7 +100,7 @@ def block(
 ) -> Data:
     """Make the data block of an FMU.
 
-    start        : start values of all variables, by value reference
+    start_values : start values of all variables, by value reference
     fixed_values : real numbers that are not FMU variables
     """
     counts = {"N_FIXED": len(fixed_values)}

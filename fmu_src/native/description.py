@@ -76,9 +76,9 @@ def fmi2_xml(
 ) -> bytes:
     """Content of modelDescription.xml of FMI 2.0.
 
-    token       : GUID
-    sources     : names of the C files to compile, in `sources/`
-    variability : of all parameters, one of VARIABILITIES
+    token        : GUID
+    source_names : names of the C files to compile, in `sources/`
+    variability  : of all parameters, one of VARIABILITIES
     """
     variables = list_variables(model, parameters)
     root = _root(model, "2.0", "guid", token)

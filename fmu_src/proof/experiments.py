@@ -33,7 +33,7 @@ CYCLES = 1
 FRACTION = 0.25
 """Sampling interval of a time-dependent model over the interval of its ramp [1]."""
 SAMPLES = 6
-"""Number of experiments with varied parameters [1]."""
+"""Number of experiments in which all parameters are varied [1]."""
 _REFUSALS = (ValueError, RuntimeError, ArithmeticError)
 UNCERTAINTY_HALF_WIDTH = 0.01
 """Half width of the parameter variation [1]: a test plan, no statement on the uncertainty of parameters."""
@@ -123,7 +123,7 @@ def study(model: Model, parameters: ParameterFile) -> dict[str, str]:
 
 
 def _uncertain(model: Model, parameters: ParameterFile) -> list[str]:
-    """Names of the real, nonzero parameters."""
+    """Names of the parameters that are varied: real numbers other than zero."""
     return [
         name
         for name, item in model.parameter_fields().items()

@@ -48,9 +48,9 @@ class Stimulus:
 def results(model: Model, values: object, start: Mapping[str, float], drive: Stimulus) -> TimeSeries:
     """Compute the outputs of a model at the sampling instants, starting from rest.
 
-    values   : parameter set
-    start    : {input: start value}
-    stimulus : levels of the driven input
+    parameter_set : parameter set
+    start_values  : {input: start value}
+    stimulus      : levels of the driven input
 
     Raises ValueError or RuntimeError as the joint does, and RuntimeError for an output that is not finite.
     """

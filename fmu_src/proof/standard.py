@@ -3,6 +3,7 @@
 NAME = "org.fmi-standard.fmi-ls-ref"
 """Name of the layered standard."""
 VERSION = "1.0.0-alpha.1"
+"""Version of the layered standard."""
 DESCRIPTION = "Layered Standard providing information on related files included in an FMU."
 FOLDER = f"extra/{NAME}"
 MANIFEST = f"{FOLDER}/fmi-ls-manifest.xml"

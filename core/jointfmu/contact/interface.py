@@ -11,7 +11,7 @@ from .powerlaw import SpotDistribution
 LOAD_TOLERANCE = 1e-13
 """Relative residual of the load at which the inversion stops [1]."""
 RATIOS = ("eta_n", "eta_t", "elastic_fraction")
-"""Quantities that are ratios, not sums over the nominal area."""
+"""Names of the contact quantities that are ratios [1]; all others are sums over the nominal area."""
 MIN_LOG_AREA, MAX_LOG_AREA = -600.0, 300.0
 """Range of log-areas u [1] in which laws are evaluated: 260 decades below the reference area, 130 above."""
 MIN_PRESSURE = 1e-200
@@ -23,7 +23,7 @@ NEWTON_TOLERANCE = 1e-8
 MAX_ITERATIONS = 200
 """Largest number of iterations of an inversion [1], far above the usual number."""
 ONE_SIDED_OFFSET = 1e-9
-"""Distance in log-area [1] from the end of a regime at which its one-sided derivative is evaluated."""
+"""Distance in log-area [1] from the end of a regime, at which the one-sided derivative is evaluated."""
 _NOT_REPRESENTABLE_TEXT = (
     "the parameters give a reference area of {} m2 or a load that is not representable; "
     "is D close to the end of its interval, or G, h or another one extreme?"
@@ -43,7 +43,7 @@ class InterfaceLaw(Protocol):
         """Hardness of the softer body [Pa]."""
 
     def spots(self) -> SpotDistribution:
-        """Regimes of a single spot, with the size distribution of the spots."""
+        """Load, stiffness and area of a spot in each regime, and the size distribution of the spots."""
 
     def state(self, u: Number) -> dict[str, Number]:
         """Contact quantities, {symbol: value}, for a largest spot of log-area u."""
@@ -54,7 +54,7 @@ class ValidatedLaw(Protocol):
     """Interface law with a range of pressures in which it was validated."""
 
     def find_range_violations(self, lowest: float, highest: float) -> list[str]:
-        """Messages, one line each, if pressures from `lowest` to `highest` [Pa] leave the validated range."""
+        """Messages, one line each, if an interval of pressures [Pa] leaves the validated range."""
 
 
 def newton_step(
@@ -115,12 +115,15 @@ def solve_largest_spot(law: InterfaceLaw, pressure: ArrayLike) -> Array:
 
 
 def find_checked_spots(law: InterfaceLaw) -> SpotDistribution:
-    """Spots of a law. Raises ValueError if their reference area or load over- or underflows (D near 1)."""
+    """Size distribution of a law.
+
+    Raises ValueError if its reference area or its load over- or underflows (D near 1).
+    """
     return _check_spots(law)[0]
 
 
 def _check_spots(law: InterfaceLaw) -> tuple[SpotDistribution, list[Number]]:
-    """Spots as from `find_checked_spots`, and their loads [N] at MIN_LOG_AREA, 0 and MAX_LOG_AREA."""
+    """Size distribution of a law, and its loads [N] at the log-areas MIN_LOG_AREA, 0 and MAX_LOG_AREA."""
     ends = (MIN_LOG_AREA, 0.0, MAX_LOG_AREA)
     with np.errstate(all="ignore"):
         try:
@@ -201,7 +204,7 @@ def at_largest_spot(law: InterfaceLaw, area: ArrayLike) -> dict[str, Number]:
 def stiffness_curve(law: InterfaceLaw, pressure: ArrayLike, name: str = "normal") -> tuple[Array, Array]:
     """Stiffness per nominal area k (...) [N/m3] and dk/dp (...) [1/m] at pressures (...) [Pa] > 0.
 
-    name : stiffness, "normal" or "tangential"
+    direction : stiffness, "normal" or "tangential"
 
     The derivative is exact: (dK/du)/(dF/du) from the same integrals.
     """
@@ -212,10 +215,10 @@ def stiffness_curve(law: InterfaceLaw, pressure: ArrayLike, name: str = "normal"
 
 
 def find_validity_violations(law: InterfaceLaw, pressure: float, lowest: float | None = None) -> list[str]:
-    """Messages, one line each, if a law is outside its validity at a nominal pressure [Pa]; usually none.
+    """Warnings, one line each, if a law is outside its validity at a nominal pressure [Pa]; usually none.
 
-    lowest : [Pa] smallest pressure of interest, for laws that are validated from a smallest load on; None:
-        the same pressure
+    lowest_pressure : [Pa] smallest pressure of interest, for laws that are validated from a smallest load on;
+        None: the same pressure
 
     Above the hardness of the softer body the contact yields as a whole. A real area above the nominal one
     means that spots overlap. Results beyond these limits are extrapolations.

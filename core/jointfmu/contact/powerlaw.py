@@ -67,15 +67,18 @@ class RegimeTerm(Protocol):
     def upper(self) -> Number: ...
 
     def spot_value(self, t: Number) -> Number:
-        """Quantity of a single spot of log-area t; zero outside the regime."""
+        """Quantity of a single spot at its log-area t; zero outside the regime."""
 
     def integral(self, m: Number, u: Number) -> Number:
-        """Integral of the quantity of a spot times exp(-m t) over the regime, for t <= u."""
+        """Integral of the quantity of a spot times exp(-m t) over the regime, for log-areas t <= u.
+
+        size_exponent, largest_log_area : m and u
+        """
 
 
 @dataclass(frozen=True, slots=True)
 class PowerTerm:
-    """Power law `c exp(p t)` for `lower < t <= upper`; an end None is infinite."""
+    """Power law coefficient exp(exponent t) for log-areas `lower < t <= upper`; an end None is infinite."""
 
     c: Number
     p: Number
@@ -113,9 +116,10 @@ class SmoothTerm:
 
 @dataclass(frozen=True, slots=True)
 class SlipTerm:
-    """Tangential stiffness in partial slip, `c exp(p t) (1 - h exp(-q t))^(1/3)`; 0 in full slip.
+    """Tangential stiffness of a spot in partial slip, as a function of its log-area t; 0 in full slip.
 
-    Full slip is where the bracket is negative.
+    coefficient exp(exponent t) (1 - slip_coefficient exp(-slip_exponent t))^(1/3); in full slip the bracket
+    is negative.
 
     The substitution `t = t_slip + r^3` removes the cube root at the end of slip, so Gauss-Legendre converges.
     """
@@ -162,12 +166,12 @@ def regime_indicator(t: Number, lower: Number, upper: Number) -> Number:
 
 @dataclass(frozen=True, slots=True)
 class SpotDistribution:
-    """Spot law with the size distribution of the spots.
+    """Quantities of a spot (load, stiffness, area) in each regime, with the size distribution of the spots.
 
-    reference : [m2] area at t = 0
-    m         : [1]  exponent of the size distribution
-    weight    : [1]  prefactor w of the size distribution
-    terms     : {quantity: regimes}; always contains `load` [N]
+    reference_area : [m2] area a_ref of a spot with the log-area 0
+    size_exponent  : [1]  exponent m of the size distribution
+    size_prefactor : [1]  prefactor w of the size distribution
+    regime_terms   : {quantity: regimes}; always contains `load` [N]
     onset_log_area : [1] log-area at which the stiffness begins, for a law without plastic spots; else None
     has_spot_area : whether u is the log-area of the largest spot; else it only measures the load
     """
@@ -180,7 +184,7 @@ class SpotDistribution:
     has_spot_area: bool = True
 
     def total(self, name: str, u: Number) -> Number:
-        """Sum Q(u) of a quantity over all spots, if the largest spot has the log-area u."""
+        """Sum Q(u) of a quantity over all spots; u is the log-area of the largest spot."""
         return self.m * self.weight * np.exp(self.m * u) * self._integral(name, u)
 
     def total_derivative(self, name: str, u: Number) -> Number:

@@ -22,9 +22,12 @@ MAX_SIZE = 1 << 30
 MAX_TEXT_SIZE = 1 << 26
 """Largest unpacked size [byte] of a member that is read as a whole, for example XML."""
 MAX_RATIO = 100
-"""Largest ratio [1] of the unpacked size of all members to the size of the archive, above SMALL_SIZE."""
+"""Largest ratio [1] of the unpacked size of all members to the size of the archive.
+
+It applies to unpacked sizes above MIN_SUSPICIOUS_SIZE.
+"""
 SMALL_SIZE = 1 << 26
-"""Unpacked size [byte] up to which MAX_RATIO does not apply."""
+"""Unpacked size [byte] up to which MAX_COMPRESSION_RATIO does not apply."""
 _COMPRESSION_METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
 """Compression methods that FMI allows. Python ignores the declared size when it unpacks other methods."""
 _ARCHIVE_ERRORS = (

@@ -97,8 +97,8 @@ def check_output(path: str | Path, kind: FileKind, force: bool = False) -> None:
     """Raise ValueError, which names the path, if a file of this kind may not or cannot be written there.
 
     Errors are a folder, the ending of another kind of file, a write-protected file, a location that cannot be
-    written, and, without `force`, a file with content that the program did not write (Refusal). A device or
-    pipe only has to be writable. Call it before long work; it leaves no file behind.
+    written, and, without `force`, a file with content that the program did not write (InputRefusal). A device
+    or pipe only has to be writable. Call it before long work; it leaves no file behind.
     """
     path = Path(path)
     if kind is FOLDER:

@@ -8,7 +8,7 @@ from pathlib import Path
 def check_regular(path: str | Path, expected: str) -> None:
     """Raise ValueError if a path leads to a pipe, a device or a socket; a missing file is no error here.
 
-    expected : what the file should be, for the error
+    expected_content : what the file should be, for the error
     """
     try:
         mode = os.stat(path).st_mode
@@ -21,9 +21,9 @@ def check_regular(path: str | Path, expected: str) -> None:
 
 
 def read_bytes(path: str | Path, expected: str) -> bytes:
-    """Read a file.
+    """Read the bytes of a regular file.
 
-    expected : what the file should be, for the error
+    expected_content : what the file should be, for the error
 
     Raises ValueError, one line, if the file does not exist, cannot be read or is no regular file.
     """

@@ -23,7 +23,7 @@ class TabulatedLaw(Protocol):
 
     @property
     def end(self) -> tuple[float, float]:
-        """Largest displacement and load of the table."""
+        """Displacement and load at the end of the table."""
 
 
 class TabulatedJoint(Protocol):
@@ -66,13 +66,14 @@ class Variable:
 
 @dataclass(frozen=True, slots=True)
 class LoadRamp:
-    """Load ramp of one input, the default experiment: the input grows by `step` every `interval` [s].
+    """Load ramp of one input, the default experiment: the input grows in steps.
 
-    end, step  : largest value and increment of the input for the default parameters
-    settings   : {parameter: value} for experiments that show a change over time
-    find_range : function (tabulated joint, start values) -> `onset` and `end` suited to its parameters;
-        None: `onset` and `end` hold for all parameters
-    onset      : value of the input at which the load starts to act
+    end_value, value_step : largest value and increment of the input for the default parameters
+    step_duration : [s] time between two steps
+    settings    : {parameter: value} for experiments that show a change over time
+    find_range  : function (tabulated joint, start values) -> onset and end value suited to its parameters;
+        None: `onset_value` and `end_value` hold for all parameters
+    onset_value : value of the input at which the load starts to act
     """
 
     input: str
@@ -84,7 +85,7 @@ class LoadRamp:
     onset: float = 0.0
 
     def sample_inputs(self, count: int) -> NDArray[np.float64]:
-        """Values (count) of the input: 0, then from `onset` to `end`, dense near `onset`."""
+        """Values of the input: 0, then from the onset to the end of the ramp, dense near the onset."""
         points = self.onset + (self.end - self.onset) * np.linspace(0.0, 1.0, count) ** 2
         points[0] = 0.0
         return points
@@ -106,10 +107,10 @@ class LoadCycle:
 class ValidityLimit:
     """Validity limit: a warning if a variable leaves an interval, for example the end of the table.
 
-    variable : name of the input or output
-    interval : function (parameter set, (displacement, load) at the end of the table, inputs) -> lower and
-        upper end of the interval; numbers or symbols
-    doc      : text of the warning: what happens outside
+    variable_name : name of the input or output
+    find_interval : function (parameter set, (displacement, load) at the end of the table, inputs) -> lower
+        and upper end of the interval; numbers or symbols
+    doc           : text of the warning: what happens outside
     """
 
     variable: str
@@ -141,7 +142,7 @@ class Model:
         the model has no history
     advance  : function (tabulated joint, inputs, history variables) -> outputs and new history variables
         after a straight path to the inputs; the history variables passed in are not modified
-    loop     : load cycle that shows the hysteresis
+    load_cycle : load cycle that shows the hysteresis
     make_variant : function (model, parameter set) -> model with additional outputs for this parameter set
     alias    : name that the user gave to the FMU; "": `name`
 
@@ -172,9 +173,9 @@ class Model:
 
     def __post_init__(self) -> None:
         if (self.initial_history is None) != (self.advance is None):
-            raise ValueError(f"{self.name}: one of rest, evolve is given, expected both or none")
+            raise ValueError(f"{self.name}: one of initial_history, advance is given, expected both or none")
         if self.loop and self.advance is None:
-            raise ValueError(f"{self.name}: a loop is given without a memory, expected one with evolve")
+            raise ValueError(f"{self.name}: a load cycle needs history, expected initial_history and advance")
 
     @property
     def title(self) -> str:

@@ -53,8 +53,10 @@ class Curve:
     """Tabulated monotone load over displacement; linear extrapolation with the end tangents.
 
     displacement, load, stiffness : (n) values at the nodes, in any consistent units
-    slope_start, slope_end : (n - 1) derivative of the stiffness at the start and end of each segment
-    error : [1] largest relative interpolation error of load and stiffness, measured when the table was built
+    stiffness_slope_start, stiffness_slope_end : (n - 1) derivative of the stiffness at the start and at the
+        end of each segment
+    interpolation_error : [1] largest relative interpolation error of load and stiffness, measured when the
+        table was built
     """
 
     displacement: Array
@@ -78,7 +80,7 @@ class Curve:
 
     @property
     def closing_end_load(self) -> float:
-        """Load at zero displacement, which is the end of the closing of the contact."""
+        """Load at the end of the closing of the contact, where the displacement is zero."""
         return float(self.load[np.searchsorted(self.displacement, 0.0)])
 
     @property
@@ -87,7 +89,7 @@ class Curve:
         return float(self.displacement[-1]), float(self.load[-1])
 
     def derivatives(self, x: ArrayLike, order: int = 1) -> list[Array]:
-        """Load and its derivatives up to `order` at displacements x (...): order + 1 arrays (...)."""
+        """Load and its derivatives up to `order` at displacements (...): order + 1 arrays (...)."""
         x = np.asarray(x, dtype=np.float64)
         nodes = self.displacement
         i = _find_segment(nodes, x)
@@ -110,7 +112,7 @@ class Curve:
         return out[:2] + [np.where(is_outside, 0.0, value) for value in out[2:]]
 
     def energy(self, x: ArrayLike) -> Array:
-        """Integral (...) of the load from the first node to displacements x (...)."""
+        """Integral (...) of the load from the first node to displacements (...)."""
         x = np.asarray(x, dtype=np.float64)
         nodes = self.displacement
         i = _find_segment(nodes, x)
@@ -172,16 +174,16 @@ class Curve:
 
 
 def _find_segment(nodes: Array, x: Array) -> NDArray[np.intp]:
-    """Index (...) of the segment of the nodes (n) that contains x (...), or of the nearest segment."""
+    """Index (...) of the segment of nodes (n) that contains an abscissa (...), or of the nearest segment."""
     return np.minimum(np.maximum(np.searchsorted(nodes, x, side="right") - 1, 0), nodes.size - 2)
 
 
 def assemble_curve(pieces: list[tuple[Array, Array, Array, Array]], error: float = 0.0) -> Curve:
     """Join pieces of a curve; estimate the interpolation error.
 
-    pieces : (displacement, load, stiffness, derivative of the stiffness), arrays of an odd number of nodes.
-        The last node of a piece is the first of the next. The derivative may jump from piece to piece.
-    error  : [1] relative error of the data themselves
+    pieces     : (displacement, load, stiffness, derivative of the stiffness), arrays of an odd number of
+        nodes. The last node of a piece is the first of the next. The derivative may jump from piece to piece.
+    data_error : [1] relative error of the data themselves
 
     The error is half the largest relative deviation from the curve through every second node: the order of
     convergence is at least one, also at a kink. It is measured at the quarter points of the segments, because
@@ -201,10 +203,10 @@ def assemble_curve(pieces: list[tuple[Array, Array, Array, Array]], error: float
 def refine_curve(tabulate: Callable[[int], Curve], steps: int) -> Curve:
     """Refine a table until its error is at most MAX_ERROR.
 
-    tabulate : function, number of steps -> table
-    steps    : initial number of steps, doubled up to MAX_REFINEMENT times as many
+    tabulate      : function, number of steps -> table
+    initial_steps : initial number of steps, doubled up to MAX_REFINEMENT times as many
 
-    Raises RuntimeError if the table then is still inaccurate, or has more than MAX_NODES nodes.
+    Raises RuntimeError if the table then is still inaccurate, or has more than MAX_TABLE_NODES nodes.
     """
     factor = 1
     while factor <= MAX_REFINEMENT:
@@ -235,16 +237,16 @@ CLOSING_RATIO = 20.0
 
 
 def closing_pressure(p: Number, k: Number, d2p: Number, z: Number) -> tuple[Number, Number, Number, Number]:
-    """Closing of the contact: pressure from first contact (p = 0, k = 0) up to a point (p, k, dk/d delta).
+    """Pressure over approach while the contact closes: from first contact (p = 0, k = 0) to a point (p, k).
 
-    p, k, d2p : pressure [Pa], stiffness [N/m3] and its derivative [N/m4] at the end of the closing
-    z         : (...) [1] displacement from first contact over the length of the closing, 0 to 1
+    p, k, d2p        : pressure [Pa], stiffness [N/m3] and its derivative [N/m4] at the end of the closing
+    closing_fraction : z (...) [1] displacement from first contact over the length of the closing, 0 to 1
 
     Returns displacement from the end of the closing [m], pressure, stiffness and its derivative at z.
 
     Interface laws have zero stiffness while all spots are plastic, at a finite pressure. The approach, the
     integral of dp/k, would start at minus infinity. So the law is used only above the point where the largest
-    spot is CLOSING_RATIO times the largest plastic spot. Below, the pressure is `p z^3 (a + b z + c z^2)`
+    spot is CLOSING_AREA_RATIO times the largest plastic spot. Below, the pressure is p z^3 (a + b z + c z^2)
     over a length n p/k, twice continuously differentiable at both ends. n is 4. If k grows with a power of p
     below 0.75, this length would make the pressure negative; n is then the largest value that does not.
     """
@@ -293,7 +295,10 @@ def tabulate_approach(law: InterfaceLaw) -> Curve:
 def _tabulate_log_areas(
     spots: SpotDistribution, area: float, first: float, end_log_area: float, steps: int
 ) -> Curve:
-    """Table with the closing, and `steps` per unit of log-area from `first` to `end_log_area`."""
+    """Table of the pressure over the approach: the closing, then the law between two log-areas.
+
+    steps_per_log_area : number of steps per unit of log-area
+    """
     ends = [first, *(b for b in spots.sorted_regime_ends if first < b < end_log_area), end_log_area]
     pieces, offset = [], 0.0
     for start, end in pairwise(ends):

@@ -49,7 +49,7 @@ def yield_function(force: Vector, limit: Number) -> Number:
 
 
 def limit_function(force: Vector, limit: Number) -> Number:
-    """Positive if the force is at its limit or above; a further motion in its direction causes slip.
+    """Function of a force, positive at the friction limit: further motion in its direction causes slip.
 
     |q| - limit along one direction; |q|^2 - limit^2 in a plane, with the limit reduced by AT_LIMIT_TOLERANCE.
     """
@@ -67,11 +67,11 @@ _MappingResult = tuple[Vector, Vector, Number, Number]
 class ReturnMapping:
     """Update of one slider, or many, for a displacement increment.
 
-    force   : friction force, one or two components
-    tangent : tangent stiffness for a further increment. One direction: along and across it. Plane: components
-              xx, xy, yy of K (1 - n n) for a slider at its limit, n the direction of its force; else K.
-    loss    : energy dissipated in the increment
-    slip    : excess of the elastic predictor over the limit; 0 if the slider sticks
+    force             : friction force, one or two components
+    tangent           : tangent stiffness for a further increment. One direction: along and across it. Plane:
+        components xx, xy, yy of K (1 - n n) for a slider at its limit, n the direction of its force; else K.
+    dissipated_energy : energy dissipated in the increment
+    slip_force        : force of the elastic predictor above the friction limit; 0 if the slider sticks
     """
 
     force: Vector
@@ -196,10 +196,10 @@ def _return_map_2d(
 class SliderUpdate:
     """Update of parallel sliders for a displacement increment, in any consistent units (also per area).
 
-    force   : (..., n) friction force of each slider along one direction, (..., 2, n) in a plane
-    loss    : (...) energy dissipated in the increment
-    tangent : (...) tangent stiffness of their sum, see `ReturnMapping`; for a foundation (..., 6): xx, xy,
-              yy, xt, yt, tt, with t the displacement around the centre of the patch
+    force             : (..., n) friction force of each slider along one direction, (..., 2, n) in a plane
+    dissipated_energy : (...) energy dissipated in the increment
+    tangent           : (...) tangent stiffness of their sum, see `ReturnMapping`; for a foundation (..., 6):
+        xx, xy, yy, xt, yt, tt, with t the displacement around the centre of the patch
     """
 
     force: Array
@@ -247,7 +247,7 @@ class Sliders:
     def follow_increments(self, increments: Array, limit: Array) -> Array:
         """Total force (m) after each of m displacement increments along one direction, from the virgin state.
 
-        limit : (n) constant friction limits
+        friction_limit : (n) constant friction limits
         """
         force, totals = np.zeros_like(limit), np.empty(increments.size)
         for n, increment in enumerate(increments):

@@ -46,7 +46,7 @@ the end of the curve [1]."""
 
 
 def height_offsets(load: Array) -> Array:
-    """Offsets (n) [1] of the slider heights of n parallel foundations, for which their errors cancel.
+    """Offsets (n) [1] of the slider heights of n parallel foundations, chosen so that their errors cancel.
 
     load : (n) loads of the foundations, any unit. The offsets are multiples of the golden ratio modulo 1, in
         descending order of the loads; equal loads keep their order.
@@ -60,10 +60,10 @@ def slider_heights(curve: Curve, reference: ArrayLike, offset: ArrayLike) -> Arr
     They are dense just below the reference approach, where the first springs slip, and near the first
     contact, where the last springs slip.
 
-    curve     : pressure over approach
-    reference : (...) [m] reference approach; another one is used if its load is too small or too large
-    offset    : (...) in (0, 1) [1] moves the heights. Parallel foundations with different offsets slip at
-                different displacements, so the errors of their stepwise slip cancel in the sum.
+    curve         : pressure over approach
+    reference     : (...) [m] reference approach; another one is used if its load is too small or too large
+    height_offset : (...) in (0, 1) [1] moves the heights. Parallel foundations with different offsets slip at
+                    different displacements, so the errors of their stepwise slip cancel in the sum.
     """
     reference_approach, offset_column = (
         np.asarray(reference, dtype=np.float64),
@@ -111,8 +111,8 @@ def torsion_directions(sliders: int) -> Array:
 
     A rotation theta [rad] of a patch with the circle radius r [m] displaces a slider by r theta times this
     vector. The two sliders of a range are on opposite sides of the circle: while both stick, a rotation
-    causes no force, and a translation no torque. The angle between adjacent ranges is GOLDEN times 180
-    degrees.
+    causes no force, and a translation no torque. The angle between adjacent ranges is GOLDEN_RATIO_CONJUGATE
+    times 180 degrees.
     """
     angle = np.pi * (GOLDEN * np.arange(sliders // 2) % 1.0)
     unit = round_to_digits(np.stack([-np.sin(angle), np.cos(angle)]))
@@ -136,9 +136,9 @@ FULL_STICK_RATIO = 1e-3
 class SliderProperties:
     """Properties (..., n) of sliders at an approach, per area.
 
-    stiffness : [Pa/m] tangential; 0 without contact
-    limit     : [Pa] friction limit
-    slope     : [Pa/m2] derivative of the stiffness with respect to the approach
+    stiffness       : [Pa/m] tangential; 0 without contact
+    friction_limit  : [Pa] friction limit
+    stiffness_slope : [Pa/m2] derivative of the stiffness with respect to the approach
     """
 
     stiffness: Number
@@ -185,8 +185,8 @@ class Foundation:
     ) -> tuple[Array, Array]:
         """Update in full stick: traction (..., 3) [Pa] after an increment, and whether (...) it holds.
 
-        force      : (..., 3) [Pa] traction at the start, see `resultant`
-        start, end : (...) [m] approaches
+        force : (..., 3) [Pa] traction at the start, see `sum_slider_forces`
+        start_approach, end_approach : (...) [m] approaches at the start and at the end
         tangential_displacement : (..., 3) [m] of the other side along x, y and around the centre
         """
         stiffness_start, stiffness_end = self.stick_stiffness(start), self.stick_stiffness(end)
@@ -239,9 +239,9 @@ class Foundation:
         return load, slipped_load, self.curve.energy(upper) - self.curve.energy(lower)
 
     def cycle_energies(self, approach: ArrayLike, amplitude: ArrayLike) -> tuple[Array, Array]:
-        """Loss (...) [J/m2] of a cycle with amplitudes (...) [m], elastic energy (...) [J/m2] at its ends.
+        """Energy loss of cycles with amplitudes (...) [m], and elastic energy at their ends (...) [J/m2].
 
-        At constant approaches (...) [m]. The relative accuracy is full also for amplitudes near zero.
+        The approaches (...) [m] are constant. The relative accuracy is full also for amplitudes near zero.
         """
         upper_approach, a = np.asarray(approach, dtype=np.float64), np.asarray(amplitude, dtype=np.float64)
         law = self.friction_coefficient, self.stiffness_ratio, a
@@ -259,7 +259,7 @@ class Foundation:
 
     @cached_property
     def _height_loads(self) -> list[Array]:
-        """Pressure [Pa] and stiffness [Pa/m] of the curve at the heights."""
+        """Pressure [Pa] and stiffness [Pa/m] of the curve at the slider heights, cached."""
         return self.curve.derivatives(self.heights, 1)
 
     def slider_properties(self, approach: ArrayLike) -> SliderProperties:
@@ -295,7 +295,7 @@ class Foundation:
         """Return-map all sliders for one increment, see `return_map`.
 
         force      : (..., 2, n) [Pa] slider forces at the start
-        start, end : (...) [m] approaches
+        start_approach, end_approach : (...) [m] approaches
         tangential_displacement : (..., 2) [m] of the other side along x and y, or (..., 3): also around the
                      centre of the patch
 
@@ -382,8 +382,8 @@ class Foundation:
 class _Increment:
     """Increment of the relative displacement.
 
-    start, end              : (..., 1) [m] approaches at its ends
-    tangential_displacement : (..., 2, 1) or (..., 2, n) [m]
+    start_approach, end_approach : (..., 1) [m] approaches at its ends
+    tangential_displacement      : (..., 2, 1) or (..., 2, n) [m]
     """
 
     start: Array
@@ -406,7 +406,7 @@ class _Increment:
         return _components(self.tangential_displacement)
 
     def scale(self, load_factor: float) -> "_Increment":
-        """First part of the increment; load_factor [1] from 0 to 1."""
+        """Part of the increment from its start up to a load factor [1], from 0 to 1."""
         return _Increment(
             self.start,
             self.start + load_factor * self.approach_change,
@@ -422,10 +422,10 @@ def _components(vector: Array) -> tuple[Array, Array]:
 def _cycle_energies(
     friction_coefficient: Number, stiffness_ratio: Number, amplitude: Number, fall: Number, excess: Number
 ) -> tuple[Number, Number]:
-    """Loss and elastic energy [J/m2] of a cycle, see `cycle_energies`.
+    """Energy loss and elastic energy [J/m2] of a cycle, see `cycle_energies`.
 
-    fall   : [Pa] difference of the pressures at the approach and at the lowest slipped height
-    excess : [J/m2] trapezoidal rule minus exact integral of the pressure between both
+    pressure_drop : [Pa] difference of the pressures at the approach and at the lowest slipped height
+    energy_excess : [J/m2] trapezoidal rule minus exact integral of the pressure between both
     """
     return 8.0 * friction_coefficient**2 / stiffness_ratio * np.maximum(
         excess, 0.0
@@ -440,7 +440,7 @@ def cycle_energies(
     slipped_load: Number,
     energy: Number,
 ) -> tuple[Number, Number]:
-    """Loss [J/m2] of a cycle at constant approach, and elastic energy [J/m2] at its ends.
+    """Energy loss [J/m2] of a cycle at constant approach, and elastic energy [J/m2] at its ends.
 
     With the virgin curve B(a), a the amplitude, and its integral I they are 8 (I - B a/2) and B a/2 (Masing).
     Differences cancel for small amplitudes: then use `small_cycle_energies`.
@@ -461,9 +461,12 @@ def cycle_energies(
 def small_cycle_energies(
     friction_coefficient: Number, stiffness_ratio: Number, amplitude: Number, upper: Vector, lower: Vector
 ) -> tuple[Number, Number]:
-    """Energies of `cycle_energies` for small amplitudes, exact within one segment of the curve.
+    """Energy loss and elastic energy [J/m2] of a cycle of small amplitude, exact in one segment of the curve.
 
-    upper, lower : first three derivatives of the pressure at delta and at delta - kappa a/mu
+    The same energies as `cycle_energies`.
+
+    upper_derivatives, lower_derivatives : first three derivatives of the pressure, at delta and at
+        delta - kappa a/mu
     """
     reach, (upper_stiffness, upper_d2p, upper_d3p), (lower_stiffness, lower_d2p, lower_d3p) = (
         amplitude * (stiffness_ratio / friction_coefficient),
@@ -540,7 +543,7 @@ def retention_and_stiffness(
     springs lift off and lose their force: it decreases in proportion to the stiffness.
 
     start, end : (stiffness [Pa/m], its derivative with respect to the approach [Pa/m2]) at both ends
-    change     : [m] change of the approach
+    approach_change     : [m] change of the approach
     stiffness_integral : [Pa] integral of the stiffness over the approach: ratio/mu times the mean change of
         the friction limits
     is_small   : whether to compute the mean stiffness from `start` and `end` (fourth order), because
@@ -571,14 +574,14 @@ def varying_stiffness_loss(
     contact_changes: Number,
     middle: Vector,
 ) -> Number:
-    """Loss [J/m2] of a slider whose stiffness changes in the increment: work minus change of elastic energy.
+    """Energy loss [J/m2] of a slider with changing stiffness: work minus increase of elastic energy.
 
     force, new_force : at the start and at the end of the increment
     tangential_displacement : displacement increment
     stiffness        : [Pa/m] at both ends
-    slip             : slip of the return mapping, see `ReturnMapping`
-    contact_changes  : whether the contact state changes. Then the work is computed by Simpson's rule with the
-        force `middle` in the middle of the increment, else by Hermite's rule from both ends.
+    slip             : slip force of the return mapping, see `ReturnMapping`
+    has_contact_change : whether the contact state changes. Then the work is computed by Simpson's rule with
+        the force in the middle of the increment (middle_force), else by Hermite's rule from both ends.
     """
     stiffness_start, stiffness_end = stiffness
     ends = (force[0] + new_force[0]) * tangential_displacement[0] + (

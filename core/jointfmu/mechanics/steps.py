@@ -10,7 +10,7 @@ import numpy as np
 from ..quantity import Number, select
 
 MAX_STEP = 1e3
-"""Largest step [s]: reported if any step is stable, without stiffness or for fixed bodies."""
+"""Largest reported stable step [s]: used if every step is stable (no stiffness, or fixed bodies)."""
 STABLE_STEP_OUTPUTS = (
     ("step_at_once", "largest stable step if the master passes the new force on before the body steps"),
     (
@@ -20,7 +20,7 @@ STABLE_STEP_OUTPUTS = (
 )
 """Names and meanings of the outputs of a joint with the largest stable steps."""
 _DAMPED_STEP = 0.39
-"""Largest stable step times d/J [1] with a damper alone and a force one step late; fit to eigenvalues."""
+"""Largest stable step times d/J [1], damper without spring, force one step late; fit to eigenvalues."""
 
 
 def mobility(inertia: Number, lever: Number = 1.0) -> Number:
@@ -39,7 +39,7 @@ def largest_stable_steps(stiffness: Number, damping: Number, mobility: Number) -
 
         2/((omega^2 + e^2)^(1/2) + e),    (e/(omega^4 + (e/b)^3 e))^(1/3)
 
-    with b = _DAMPED_STEP. The first is exact. The second is within 5 % of the eigenvalue analysis up to
+    with b = _DAMPER_STEP_RATIO. The first is exact. The second is within 5 % of the eigenvalue analysis up to
     zeta = 4. For small damping they are 2/omega and (2 zeta)^(1/3)/omega. With a late force and no damping no
     step is stable: the second is 0.
     """

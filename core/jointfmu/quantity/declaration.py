@@ -25,7 +25,7 @@ def quantity_field(
     calibration : the value was fitted to published points
     is_integer  : the value is a whole number
     default     : value of a parameter set that does not state one; None: the value is required
-    ends        : gt, ge, lt, le, see `Interval.of`
+    bounds      : gt, ge, lt, le, see `Interval.from_bounds`
     """
     meta = {"unit": unit, "doc": doc, "interval": Interval.from_bounds(**ends)}
     meta |= {"calibration": calibration, "whole": is_integer}
@@ -102,7 +102,7 @@ def find_problem(name: str, value: object, item: Field[object]) -> str | None:
 def find_problems(
     values: Mapping[str, object], declared: Mapping[str, Field[Any]], missing: Collection[str] = ()
 ) -> list[str]:
-    """Error messages for {name: value}: unknown names, missing names, and those of `find_problem`."""
+    """Error messages for {name: value}: unknown and missing names, and values outside their intervals."""
     texts = [f"unknown name {name!r}" for name in values if name not in declared]
     if texts:
         texts.append(f"allowed are {', '.join(declared)}")
@@ -135,7 +135,7 @@ def _shorten_repr(value: object) -> str:
 
 
 def check_fields(obj: Any) -> None:
-    """Raise ValueError that names every field of `obj` outside its interval; NaN and infinity are outside."""
+    """Raise ValueError that names every field outside its interval; NaN and infinity are outside."""
     declared = {file_name(item): item for item in fields(obj) if "group" not in item.metadata}
     if texts := find_problems({name: getattr(obj, item.name) for name, item in declared.items()}, declared):
         raise ValueError("; ".join(texts))

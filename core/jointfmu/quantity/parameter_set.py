@@ -22,7 +22,7 @@ def _type_hints(cls: object) -> dict[str, object]:
 
 @dataclass(frozen=True, slots=True)
 class ParameterLimit:
-    """Allowed interval of one parameter that depends on other parameters; `doc` is the reason."""
+    """Allowed interval of one parameter, which depends on other parameters; `doc` is the reason."""
 
     name: str
     interval: Interval
@@ -39,7 +39,7 @@ class ParameterLimit:
 
 
 def check_limits(obj: object, limits: Iterable[ParameterLimit]) -> None:
-    """Raise ValueError for the first parameter of `obj` that lies outside one of the limits."""
+    """Raise ValueError for the first parameter of a set that lies outside one of the limits."""
     units = {name: item.metadata["unit"] for name, item in flat_fields(type(obj)) if "unit" in item.metadata}
     values = flatten_parameters(obj)
     for limit in limits:
@@ -52,7 +52,7 @@ def flat_fields(
 ) -> Iterator[tuple[str, Field[Any]]]:
     """Structured names and fields of all numbers and choices of a parameter set class, groups included.
 
-    names : parameter names that select one alternative of each group; None: all alternatives
+    parameter_names : parameter names that select one alternative of each group; None: all alternatives
     """
     if names is None:
         yield from ((prefix + name, item) for name, item in _all_fields(cls))  # type: ignore[arg-type]
@@ -111,7 +111,7 @@ def build_parameter_set(cls: type[T], values: Mapping[str, object]) -> T:
 def replace_values(obj: T, new_values: Mapping[str, object]) -> T:
     """Copy of a parameter set with some values replaced, by structured name.
 
-    Raises ValueError as `build_parameter_set` does, and for names of an alternative that `obj` does not have.
+    Raises ValueError as `build_parameter_set` does, and for names of a missing alternative.
     """
     values = flatten_parameters(obj)
     all_names = {name for name, _ in flat_fields(type(obj))}
@@ -132,7 +132,7 @@ def assemble_parameter_set(
 ) -> T:
     """Build the parameter set `cls` from {structured name: value} without checks.
 
-    make : (class, {field name: value}) -> instance
+    make_instance : (class, {field name: value}) -> instance
     """
     hints = _type_hints(cls)  # type: ignore[arg-type]
     arguments: dict[str, Any] = {}

@@ -66,9 +66,9 @@ _SPELLINGS = (
 class Unit(NamedTuple):
     """An SI unit.
 
-    quantity : name of the quantity, that of the Modelica Standard Library if it has one
-    base     : exponents of the SI base units
-    display  : {display unit: factor}, displayed value = SI value * factor
+    quantity        : name of the quantity, that of the Modelica Standard Library if it has one
+    base_exponents  : exponents of the SI base units
+    display_factors : {display unit: factor}, displayed value = SI value * factor
     """
 
     quantity: str
@@ -159,8 +159,8 @@ def _make_unit(name: str, quantity: str, *display: str) -> Unit:
 
 
 UNITS: Mapping[str, Unit] = {
-    name: _make_unit(name, *told)
-    for name, told in {
+    name: _make_unit(name, *quantity_and_display)
+    for name, quantity_and_display in {
         "1": ("Ratio",),
         "s": ("Time",),
         "Hz": ("Frequency",),

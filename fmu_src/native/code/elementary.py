@@ -1,4 +1,4 @@
-"""Tables for the elementary functions of `law/elementary.c`, computed with 60 decimal digits."""
+"""C tables for the elementary functions of `law/elementary.c`, computed with 60 decimal digits."""
 
 from collections.abc import Iterator, Sequence
 from decimal import Decimal, localcontext
@@ -82,7 +82,7 @@ def _split_number(value: Decimal) -> Iterator[float]:
 
 
 def _logs() -> Iterator[list[float]]:
-    """Rows 1/c, high and low part of log(c) for each interval of the logarithm.
+    """Rows of the table of the logarithm: 1/c, high and low part of log(c) for each interval.
 
     c is near the middle of the interval, and 1/c has few bits. In the interval of 1, c is exactly 1.
     """
@@ -101,7 +101,7 @@ def _double(bits: int) -> float:
 
 
 def _erf() -> Iterator[list[float]]:
-    """Coefficients of the Taylor series of erf about each node: Hermite polynomials times a Gaussian."""
+    """Taylor coefficients of erf about each node of its table: Hermite polynomials times a Gaussian."""
     for node in range(_ERF_PER_PLACE * _ERF_END + 1):
         x = Decimal(node) / _ERF_PER_PLACE
         gaussian = 2 / _PI.sqrt() * (-x * x).exp()

@@ -80,7 +80,9 @@ def native_part(model: Model) -> NativePart:
         raise ValueError(f"{model.name}: the joint {model.joint!r} has no part `native`; expected its C")
     native = load()
     if (model.initial_history is None) != (native.memory.size == 0):
-        raise ValueError(f"{model.name}: one of `rest` and the memory in C is given, expected both or none")
+        raise ValueError(
+            f"{model.name}: one of `initial_history` and the history in C is given, expected both or none"
+        )
     return native
 
 

@@ -19,7 +19,7 @@ from .kept import compiled_model, pack_model, shipped_name
 def compile_ahead(names: Sequence[str], out: Path) -> list[Path]:
     """Write the compiled models of FMUs into a folder and return the files; other files there are deleted.
 
-    names : of FMUs; empty: all
+    fmu_names : of FMUs; empty: all
 
     Raises as `compiled_models.get_compiled_model`, and ValueError for an unknown name.
     """

@@ -49,7 +49,7 @@ def libraries(
     """Compile C sources to {platform: shared library}; the libraries export the FMI functions.
 
     sources        : {file name: text} of all C files and headers; the FMI headers come from fmpy
-    units          : names of the .c files to compile
+    source_names   : names of the .c files to compile
     stem           : file name of the libraries without extension; empty: `name`
     linker_options : compiler options for a further library
 
@@ -83,7 +83,7 @@ def exported(files: Iterable[str], version: str) -> list[str]:
 
 
 def webassembly(name: str, sources: Mapping[str, str], units: Sequence[str]) -> bytes:
-    """Compile the .c files `units` to a WebAssembly reactor module; errors as `compile_libraries`."""
+    """Compile C files to a WebAssembly reactor module; errors as `compile_libraries`."""
     import_module("ziglang")
     folder = _folder({**_headers(), **sources})
     with tempfile.TemporaryDirectory() as out:
@@ -110,7 +110,7 @@ def universal(slices: Sequence[bytes]) -> bytes:
 
 
 def _options(platform: str, name: str) -> tuple[str, ...]:
-    """Compiler options for a platform; `name` is the file name of the library without extension."""
+    """Compiler options for a platform and the file name of a library without extension."""
     import ziglang
 
     # Instruction scheduling for processors with AVX2; the code still runs on every x86_64.

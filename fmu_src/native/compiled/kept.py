@@ -73,11 +73,11 @@ def compiled_model(model: Model, parameters: ParameterFile, split: Split) -> Com
 
 
 def cached_result(dependency: str, model: Model, make: Callable[[], bytes]) -> bytes:
-    """Bytes that `make` computes from a model, read from the cache if the sources are unchanged.
+    """Bytes that `compute_result` computes from a model, read from the cache if the sources are unchanged.
 
     dependency : text of everything else on which the result depends
 
-    Raises ValueError if other users may write to the cache, and what `make` raises.
+    Raises ValueError if other users may write to the cache, and what `compute_result` raises.
     """
     name = sha256(f"{dependency} {_sources_of(model)}".encode()).hexdigest()[:32]
     file = _places(f"{model.name}-{name}{_RESULT_SUFFIX}")[-1]
@@ -100,7 +100,7 @@ def _content(file: Path) -> bytes:
 
 @contextmanager
 def _interrupt_after() -> Iterator[None]:
-    """Defer Ctrl-C to the end of the body, which takes a second or two: CasADi ignores the interrupt."""
+    """Context that defers Ctrl-C to its end, a second or two: CasADi ignores the interrupt."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return

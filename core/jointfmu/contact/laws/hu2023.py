@@ -105,7 +105,9 @@ def elastic_pressure(law: Hu2023) -> Number:
 
 
 def printed_spots(law: Hu2023) -> SpotDistribution:
-    r"""Spots of the law as printed, all of them elastic. With the area s_l of the largest spot
+    r"""Load, stiffness and area of the spots by the law as printed: all spots are elastic.
+
+    With the area s_l of the largest spot
 
         P = F_r/S_r = \frac{4 E (3 - D)}{3 pi^{3/2} R (4 - D)} s_l^{1/2}    (Eqs. 9, 18, 23, 28)
 
@@ -143,7 +145,7 @@ def _smallest_spot_load(law: Hu2023) -> Number:
 
 
 def corrected_spots(law: Hu2023) -> SpotDistribution:
-    """Spots of the corrected law: size distribution (Eq. 17) and four regimes.
+    """Load, stiffness and area of the spots by the corrected law: size distribution (Eq. 17), four regimes.
 
     Load and area are sums over all spots (Eqs. 18-27). The stiffness is the sum over the spots above s_min;
     without this limit its integrals diverge or are undefined (Eqs. 30, 41, corrected).
@@ -159,7 +161,10 @@ def corrected_spots(law: Hu2023) -> SpotDistribution:
     stages = [eliminate_deformation(FIRST_STAGE), eliminate_deformation(SECOND_STAGE)]
 
     def regime(c: Number, p: float, i: int, smallest: Number = None) -> PowerTerm:
-        """Power law `c (s/s_ec)^p` of regime i, relative to s_min; the first regime begins at `smallest`."""
+        """Power law coefficient (s/s_ec)^exponent of a regime, as a function of s/s_min.
+
+        first_bound : log-area at which regime 0 begins
+        """
         lower = bounds[i] if i else smallest
         upper = bounds[i + 1] if i < 3 else None
         return PowerTerm(c * np.exp(-p * edge), p, lower, upper)
@@ -182,6 +187,9 @@ def corrected_spots(law: Hu2023) -> SpotDistribution:
 
 def _tangential_terms(law: Hu2023, load: list[PowerTerm], bounds: list[Number]) -> tuple[RegimeTerm, ...]:
     """Tangential stiffness k_t = 8 G' r (1 - t/(mu f))^(1/3) of the three regimes that are not fully plastic.
+
+    load_terms    : load of a spot in each of these regimes
+    regime_bounds : log-areas of the ends of the regimes
 
     Eqs. 39, 41-43. The shear force t of a spot depends on the choice `traction`:
 

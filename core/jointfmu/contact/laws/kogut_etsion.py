@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 
 class PlasticStage(NamedTuple):
-    """One stage of the fit: area factor m and exponent n, load factor c and exponent d [1]."""
+    """One stage of the fit: factor m and exponent n of the area, factor c and exponent d of the load [1]."""
 
     m: float
     n: float
@@ -26,7 +26,11 @@ PLASTIC_ONSET = 110.0
 
 @dataclass(frozen=True, slots=True)
 class AreaPowers:
-    """One stage over the spot area a: `load = f_c A (a/a_c)^p`, `stiffness = (f_c/w_c) B (a/a_c)^q`."""
+    """Load and stiffness of one stage as powers of the spot area a.
+
+    load = f_c load_factor (a/a_c)^load_exponent,
+    stiffness = (f_c/w_c) stiffness_factor (a/a_c)^stiffness_exponent
+    """
 
     A: float
     p: float
@@ -35,7 +39,7 @@ class AreaPowers:
 
 
 def eliminate_deformation(stage: PlasticStage) -> AreaPowers:
-    """Convert a stage to powers of the area: p = d/n, q = (d - 1)/n [1], from area/a_c = m (w/w_c)^n."""
+    """Load and stiffness of a stage as powers of the area, with exponents d/n and (d - 1)/n [1]."""
     p, q = stage.d / stage.n, (stage.d - 1.0) / stage.n
     return AreaPowers(stage.c * stage.m**-p, p, stage.c * stage.d * stage.m**-q, q)
 

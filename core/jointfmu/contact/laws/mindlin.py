@@ -1,4 +1,6 @@
-"""Partial slip of a single contact spot under a shear force (Mindlin and Deresiewicz). `x = T/(mu P)` [1].
+"""Partial slip of a single contact spot under a shear force (Mindlin and Deresiewicz).
+
+Formulas write x for the traction ratio T/(mu P) [1].
 
 The loop energies of Zhao 2018 are differences of powers of v = (1 - x)^(1/3) that cancel for small x. In the
 form factored by `(1 - v)` used here they keep full precision down to x = 0 (derivation in docs/errata.md).

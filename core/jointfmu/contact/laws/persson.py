@@ -12,17 +12,17 @@ import numpy as np
 from ...quantity import Number, erf, select
 
 _MAX_IMAGE_VARIANCE = 0.2
-"""Variance over squared hardness [1] up to which the series of images converges faster than that of modes."""
+"""Variance of the pressure over squared hardness [1] up to which the series of images converges faster."""
 
 
 def contact_shares(pressure: Number, hardness: Number, deviation: Number) -> tuple[Number, Number]:
     """Shares [1] of the nominal area in elastic and in plastic contact at pressures (...) [Pa].
 
-    hardness  : [Pa], above the pressure
-    deviation : E* slope/2 [Pa], standard deviation of the local pressure over all wavelengths
+    hardness                    : [Pa], above the pressure
+    pressure_standard_deviation : E* slope/2 [Pa], of the local pressure with all wavelengths
 
-    Without plastic contact the elastic share is erf(p/(sqrt(2) deviation)). The plastic share carries the
-    load that the elastic one does not.
+    Without plastic contact the elastic share is erf(p/(sqrt(2) standard deviation)). The plastic share
+    carries the load that the elastic one does not.
     """
     x = np.minimum(pressure / hardness, 1.0)
     t = (deviation / hardness) ** 2
@@ -37,10 +37,10 @@ def contact_shares(pressure: Number, hardness: Number, deviation: Number) -> tup
 
 
 def _mode_series(x: Number, t: Number) -> tuple[Number, Number]:
-    """Elastic share and its load over the hardness [1]: series of diffusion modes between both boundaries.
+    """Area share in elastic contact, and its load over the hardness [1]: series of diffusion modes.
 
-    x : pressure over hardness [1]
-    t : variance over squared hardness [1]
+    pressure_ratio : pressure over hardness [1]
+    variance_ratio : variance over squared hardness [1]
     """
     share: Number = 0.0
     load: Number = 0.0
@@ -52,7 +52,7 @@ def _mode_series(x: Number, t: Number) -> tuple[Number, Number]:
 
 
 def _image_series(x: Number, t: Number) -> tuple[Number, Number]:
-    """Elastic share and its load over the hardness [1]: series of images, see `_mode_series`."""
+    """Area share in elastic contact, and its load over the hardness [1]: series of images."""
     spread = np.sqrt(2.0 * t)
     share: Number = 0.0
     load: Number = 0.0
@@ -70,7 +70,7 @@ def _image_series(x: Number, t: Number) -> tuple[Number, Number]:
 def bearing_curve(share: Number) -> Number:
     """Derivative [1] of ln(share) with respect to the approach over the rms height, for a Gaussian surface.
 
-    share : [1] part of the surface above a cutting plane (bearing curve, Abbott and Firestone 1933). The
+    area_share : [1] part of the surface above a cutting plane (bearing curve, Abbott and Firestone 1933). The
         derivative is phi(z)/Phi(-z). The contact area of a perfectly plastic surface follows this curve.
     """
     inside = np.minimum(np.maximum(share, 1e-300), 1.0 - 1e-12)

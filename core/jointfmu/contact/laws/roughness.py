@@ -18,7 +18,7 @@ from ..surface import Elastic, contact_modulus, contact_shear_modulus
 from .persson import bearing_curve, contact_shares
 
 FEW_SPOTS_FACTOR = 0.3
-"""Factor C [1] of the stiffness at small load, see `Roughness.spots`; fitted to boundary elements
+"""Factor C [1] of the stiffness at small load, see `RoughnessLaw.spots`; fitted to boundary elements
 (benchmarks/roughness_law.py)."""
 ONSET_LOAD_RATIO = 1e-6
 """Load over E* h longest_wave [1] at which the stiffness begins: far below the load of a single hill."""
@@ -100,7 +100,7 @@ class RoughnessLaw(RoughSurfaces, CheckedParameters):
         return self.A_0 * (elastic + plastic), elastic / (elastic + plastic)
 
     def find_range_violations(self, lowest: float, highest: float) -> list[str]:
-        """Messages if pressures from `lowest` to `highest` [Pa] leave the validated range, one line each."""
+        """Messages, one line each, if an interval of pressures [Pa] leaves the validated range."""
         scale = contact_modulus(self.side1, self.side2) * self.h
         min_pressure, max_pressure = (
             MIN_LOAD_RATIO * scale * self.longest_wave / self.A_0,
@@ -163,22 +163,22 @@ class RoughnessLaw(RoughSurfaces, CheckedParameters):
 
 
 def onset_pressure(law: RoughnessLaw) -> Number:
-    """Pressure p_1 [Pa] at u = 0: ONSET_LOAD_RATIO E* h longest_wave/A_0."""
+    """Pressure p_1 [Pa] at which the stiffness begins, u = 0: ONSET_LOAD_RATIO E* h longest_wave/A_0."""
     return ONSET_LOAD_RATIO * contact_modulus(law.side1, law.side2) * law.h * law.longest_wave / law.A_0
 
 
 def _sum_term(c: Number, power: Number) -> PowerTerm:
-    """Term of a spot law whose sum over all spots is c exp(power u)."""
+    """Power law of a spot whose sum over all spots is coefficient exp(exponent u)."""
     return PowerTerm(c * (power - _SIZE_EXPONENT), power)
 
 
 def loss_factor(x: Number) -> Number:
     """Loss factor eta_t [1] of a shear cycle with the force amplitude T = x mu F: W/(2 pi U), U = T s/2.
 
-    W is the loss of a cycle and U the energy at its ends. With p ~ exp(approach/(gamma h)) the spots slip one
-    after the other: T = mu F (1 - exp(-s/s_0)). By Masing's rule W = -4 mu F s_0 ((2 - x) ln(1 - x) + 2x), so
-    eta_t = (4/pi) (2/x - 1 + 2/ln(1 - x)). Below x = 0.01, where this form cancels, its power series
-    2x/(3 pi) + ... is used.
+    x is the traction ratio, W the loss of a cycle and U the energy at its ends. With
+    p ~ exp(approach/(gamma h)) the spots slip one after the other: T = mu F (1 - exp(-s/s_0)). By Masing's
+    rule W = -4 mu F s_0 ((2 - x) ln(1 - x) + 2x), so eta_t = (4/pi) (2/x - 1 + 2/ln(1 - x)). Below x = 0.01,
+    where this form cancels, its power series 2x/(3 pi) + ... is used.
     """
     series = x * (1.0 / 6.0 + x * (1.0 / 12.0 + x * (19.0 / 360.0 + x * (3.0 / 80.0 + x * 863.0 / 30240.0))))
     small = x < 0.01
@@ -188,7 +188,7 @@ def loss_factor(x: Number) -> Number:
 
 
 def approach(law: RoughnessLaw, p: Number) -> Number:
-    """Approach [m] of the two bodies from zero pressure to p [Pa]: integral of dp/k."""
+    """Approach [m] of the two bodies from zero pressure to a pressure p [Pa]: integral of dp/k."""
     x = p * law.A_0 / (contact_modulus(law.side1, law.side2) * law.h * law.longest_wave)
     bend = law.hurst / (1.0 + law.hurst)
     return law.gamma * law.h / bend * np.log1p(x**bend / (law.gamma * FEW_SPOTS_FACTOR))

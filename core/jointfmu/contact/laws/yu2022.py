@@ -68,7 +68,7 @@ class Yu2022(CheckedParameters):
 
     @cached_property
     def _spots(self) -> SpotDistribution:
-        """Size distribution (lambda times Eq. 44) and four regimes of a spot, cached.
+        """Size distribution (lambda times Eq. 44) and the four regimes of a spot, cached.
 
         Quantities: load [N], Eqs. 38, 36, 34, 64; normal [N/m], Eqs. 72-75; area, elastic_area [m2].
         """
@@ -84,7 +84,7 @@ class Yu2022(CheckedParameters):
         hertz = 2.0 * f2 * E * np.sqrt(a / (np.pi * f1))
 
         def sharpness(t: Number) -> Number:
-            """Sum of curvatures 1/R_x + 1/R_y over its value at a_nec [1], at the log-area t."""
+            """Sum of curvatures 1/R_x + 1/R_y over its value at a_nec [1]; log-area relative to a_nec."""
             return (c1 * np.exp(-p1 * t) + c2 * np.exp(-p2 * t)) / (c1 + c2)
 
         def stage_load(stage: PlasticStage, lower: Number, upper: Number) -> SmoothTerm:
@@ -156,7 +156,7 @@ def effective_modulus(law: Yu2022) -> Number:
 
 
 def shape_factors(e: Number) -> tuple[Number, Number]:
-    """Factors f1, f2 [1] of an elliptical elastic contact, Eqs. 22-23; both are 1 at e = 0."""
+    """Factors f1, f2 [1] of an elliptical elastic contact, Eqs. 22-23; both are 1 for a circle (e = 0)."""
     K, E = complete_elliptic(e)
     slender = np.sqrt((1.0 - e) * (1.0 + e))
     f1 = E / (K * slender)
@@ -193,7 +193,9 @@ def yield_scale(law: Yu2022) -> Number:
 
 
 def critical_log_area(law: Yu2022, onset_ratio: float) -> Number:
-    """Log-area ln a [ln m2] of the spot with a (1/R_x + 1/R_y)^2 = onset_ratio yield_scale, Eqs. 28, 31, 32.
+    """Log-area ln a [ln m2] of the spot with a given value of a (1/R_x + 1/R_y)^2, Eqs. 28, 31, 32.
+
+    yield_onset_ratio : this value over that at the onset of yield [1], see `yield_onset_parameter`
 
     Newton's method in ln a. The function is convex and decreases with a slope between 1 - max(D) and
     1 - min(D), so twelve steps reach round-off.

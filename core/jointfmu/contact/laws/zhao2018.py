@@ -178,7 +178,7 @@ def tangential_stiffness(law: Zhao2018, a: Number) -> Number:
 def shear_energies(law: Zhao2018, F: Number, A_r: Number, loop_area: Number) -> tuple[Number, Number]:
     """Dissipated energy W_d and 2 pi times stored energy W [J] of a shear cycle, Eqs. 24 and 26.
 
-    loop_area : [m3] sum of a'^(3/2) over elastic spots; Eq. 24 has the factor 9 sqrt(2 pi)/40
+    spot_area_power_sum : [m3] sum of a'^(3/2) over elastic spots; Eq. 24 has the factor 9 sqrt(2 pi)/40
     """
     traction = law.mu * F / A_r
     common = traction**2 * np.sqrt(np.pi / 8.0) / contact_shear_modulus(law.side1, law.side2) * loop_area

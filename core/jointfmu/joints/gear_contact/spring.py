@@ -73,7 +73,7 @@ def contact_outputs(
 
     approach  : [m] from first contact
     stiffness : [N/m3] per nominal area, of the curve
-    area      : [m2] real contact area of the law
+    real_area : [m2] real contact area of the law
     elastic_fraction : [1] elastic fraction of the real area
     """
     return {

@@ -7,7 +7,7 @@ from .spring import GearMesh, GearMeshSpring, RoughGearMesh
 
 _ANGLES = ("phi1", "phi2")
 _RAMP_DEFLECTION_RATIO = 0.3
-"""Deflection at the end of the load ramp over that at the end of the table [1]: gears are loaded less."""
+"""Deflection at the end of the load ramp over deflection at the end of the table [1]."""
 
 
 def _ramp_range(spring: GearMeshSpring, v: Values) -> tuple[float, float]:

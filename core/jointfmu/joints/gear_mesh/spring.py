@@ -15,7 +15,7 @@ from ...mechanics.steps import largest_stable_steps, mobility
 from ...quantity import Array, Number, quantity_field, smooth_step, smooth_step_integral, smooth_step_slopes
 
 CLOSING_STEPS = 96
-"""Steps of a tooth pair's table over the closing of the contact [1]; doubled until the table is accurate."""
+"""Steps [1] of a tooth pair's table while the contact closes; doubled until the table is accurate."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -112,7 +112,7 @@ def tabulate_pair(mesh: MeshParameters) -> tuple[Curve, float]:
     contact. The nodes are those of the flanks' curve, where load, stiffness and its derivative are exact; the
     steps of the closing shrink towards first contact.
 
-    Raises ValueError and RuntimeError as `curve.approach_curve` and `curve.refine_curve` do.
+    Raises ValueError and RuntimeError as `curve.tabulate_approach` and `curve.refine_curve` do.
     """
     flanks = tabulate_approach(mesh)
     length = -flanks.displacement[0]
@@ -235,7 +235,7 @@ def pairs_in_contact(
 
 
 def _section_pairs(contact_ratio: Number, engagement: Number, phase: Number) -> tuple[Number, Number, Number]:
-    """Number N of tooth pairs in a transverse section [1], dN/d(phase), integral of N - contact_ratio.
+    """Number N of tooth pairs in a transverse section [1], dN/d(phase), and integral of N - contact_ratio.
 
     floor(contact_ratio) pairs are always in contact. One more pair is in contact during the fractional part
     of the cycle, centred at integer phases. It engages and disengages by `smooth_step`, over `engagement`

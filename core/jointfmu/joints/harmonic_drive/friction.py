@@ -39,7 +39,7 @@ HISTORY_LAYOUT = HistoryLayout({"brake": (FRICTION_SLIDERS,), "angle": (), "limi
 _REMAINING_SHARES = (*(np.linspace(1.0, 0.0, FRICTION_SLIDERS, endpoint=False) ** 2).tolist(), 0.0)
 _SLIDER_SHARES = slider_shares(1.0, _REMAINING_SHARES)
 STIFFNESS_SHARES, LIMIT_SHARES = np.array(_SLIDER_SHARES[0]), np.array(_SLIDER_SHARES[1])
-"""Shares [1] of the sliders in the total spring stiffness M/presliding and in the total limit M."""
+"""Shares [1] of each slider in the total spring stiffness M/presliding and in the total limit M."""
 REFERENCE_TEMPERATURE = 293.15
 """Temperature [K] at which the friction parameters hold: 20 degrees C, as in the catalogues."""
 PRIOR_ROTATION_TIME = 0.1
@@ -47,7 +47,7 @@ PRIOR_ROTATION_TIME = 0.1
 
 
 def dry_friction_factor(drive: Drive, temperature: Number) -> Number:
-    """Factor (...) [1] on the limit of dry friction at temperatures (...) [K]."""
+    """Factor (...) [1] by which temperatures (...) [K] change the limit of dry friction."""
     return drive.temperature_factor * _temperature_factor(drive.dry_temperature_coefficient, temperature)
 
 
@@ -109,10 +109,10 @@ class FrictionSliders(Sliders):
     ) -> SliderUpdate:
         """Advance the sliders on a straight path to phi1.
 
-        history : (..., n) history variables at the start of the path, see HISTORY_LAYOUT
-        phi1    : (...) [rad] angle of the wave generator at the end
-        w1      : (...) [rad/s] speed there, used only in the first step
-        limits  : limits of positive and of negative friction (...) [N.m] there, see `friction_limits`
+        history    : (..., n) history variables at the start of the path, see HISTORY_LAYOUT
+        phi1       : (...) [rad] angle of the wave generator at the end
+        w1         : (...) [rad/s] speed there, used only in the first step
+        end_limits : limits of positive and of negative friction (...) [N.m] there, see `friction_limits`
 
         The sign of the elastic predictor of a slider selects the limit that holds for it. The first step
         initializes the sliders: they advance by PRIOR_ROTATION_TIME w1, whatever phi1 is, without loss.

@@ -73,7 +73,7 @@ class PrescribedDrive(Drive):
 
     @property
     def law(self) -> None:
-        """None: the midline has no interface law."""
+        """Interface law of the contact pair: None, a prescribed midline has none."""
         return
 
     @property
@@ -94,7 +94,7 @@ class CatalogueDrive(PrescribedDrive):
     corner at the wind-up theta_i, within theta_i (1 +- corner), the stiffness changes from one line to the
     next by the smooth step 3 t^2 - 2 t^3. Outside this range torque and angle are exactly those of the lines.
     The torque is twice continuously differentiable everywhere. With corner = 0 the angles are those of the
-    lines, and the stiffness jumps at T1 and T2 (within MIN_CORNER): a kink without an event.
+    lines, and the stiffness jumps at T1 and T2 (within MIN_CORNER_RATIO): a kink without an event.
     """
 
     K1: float = quantity_field("N.m/rad", "stiffness below T1", gt=0.0, le=MAX_STIFFNESS)
@@ -114,7 +114,7 @@ class CatalogueDrive(PrescribedDrive):
     )
 
     def find_limits(self) -> list[ParameterLimit]:
-        """Intervals that other parameters decide."""
+        """Intervals of parameters that depend on other parameters."""
         first, second = self.corners
         return [
             *super().find_limits(),
@@ -147,7 +147,7 @@ class CatalogueDrive(PrescribedDrive):
 
     @property
     def half_width(self) -> Number:
-        """Half-width of the corners over their wind-up [1], at least MIN_CORNER."""
+        """Half-width of a smoothed corner over its wind-up [1], at least MIN_CORNER_RATIO."""
         return np.maximum(self.corner, MIN_CORNER)
 
     @property
@@ -202,7 +202,7 @@ class CatalogueDrive(PrescribedDrive):
 class MeasuredMidline:
     """Points of a measured midline without the point at zero load; torque and angle increase.
 
-    Raises ValueError if both columns do not have the same number of points, 2 to MAX_POINTS, or do not
+    Raises ValueError if both columns do not have the same number of points, 2 to MAX_TABLE_POINTS, or do not
     increase.
     """
 
@@ -230,7 +230,7 @@ class MeasuredDrive(PrescribedDrive):
     """Harmonic drive with a measured midline, which already contains the lost motion."""
 
     def find_limits(self) -> list[ParameterLimit]:
-        """Intervals that other parameters decide."""
+        """Intervals of parameters that depend on other parameters."""
         no_play = ParameterLimit(
             "lost_motion", Interval.from_bounds(ge=0.0, le=0.0), "a measured midline has it already"
         )
@@ -289,7 +289,7 @@ class TableDrive(MeasuredDrive):
 
 
 def _node_stiffness(h: Array, secants: Array) -> Array:
-    """Stiffness (n + 1) at the points, from widths h (n) and secant stiffnesses d (n); the curve is odd."""
+    """Stiffness (n + 1) at the points of an odd curve, from widths (n) and secant stiffnesses (n)."""
     weight_left, weight_right = 2.0 * h[1:] + h[:-1], h[1:] + 2.0 * h[:-1]
     inner = (weight_left + weight_right) / (weight_left / secants[:-1] + weight_right / secants[1:])
     end_stiffness = ((2.0 * h[-1] + h[-2]) * secants[-1] - h[-1] * secants[-2]) / (h[-1] + h[-2])
@@ -313,9 +313,9 @@ def _sample_stiffness(
 ) -> Array:
     """Stiffness (m, n) at m sample points inside each of n quintic segments.
 
-    h, torque_steps           : (n) widths and torque increments of the segments
-    s                         : (n + 1) stiffness at the nodes
-    slope_after, slope_before : (n) derivative of the stiffness at the start and at the end of each segment
+    segment_widths, torque_steps : (n) widths and torque increments of the segments
+    node_stiffness               : (n + 1) stiffness at the nodes
+    slope_after, slope_before    : (n) derivative of the stiffness at the start and at the end of each segment
     """
     t = _SAMPLE_POINTS[:, None]
     first, last = s[:-1], s[1:]

@@ -9,8 +9,8 @@ curve over the wind-up phi is
 with the limit torque M_f, the initial stiffness K_h and the share s of friction that is not yet mobilised.
 After a reversal it follows Masing's rule. Jenkins sliders in parallel, with spring K_i and limit M_i,
 reproduce this for any path. Each slider here has the summed stiffness and limit of all sliders whose s lies
-between two values of REMAINING_SHARES. So torque and stiffness of the virgin curve are exact at these values
-and at full slip.
+between two values of REMAINING_FRICTION_SHARES. So torque and stiffness of the virgin curve are exact at
+these values and at full slip.
 """
 
 from collections.abc import Sequence
@@ -32,7 +32,7 @@ from .law import ContactPairDrive, pair_argument
 HYSTERESIS_SLIDERS = 44
 """Number of sliders: virgin curve within 0.2 % of M_f, loop area within 1 % for amplitudes above 0.1 M_f."""
 _GRADING, _GRADING_POWER = 3.5, 2.5
-"""Grading of REMAINING_SHARES [1]: fine where the first sliders slip, coarse where the last ones do."""
+"""Grading of REMAINING_FRICTION_SHARES [1]: fine where the first sliders slip, coarse where the last do."""
 _USED_SHARES = np.expm1(_GRADING * np.arange(HYSTERESIS_SLIDERS) / HYSTERESIS_SLIDERS) / np.expm1(_GRADING)
 HISTORY_LAYOUT = HistoryLayout({"force": (HYSTERESIS_SLIDERS,), "wind_up": (), "loss": ()})
 """History variables of the hysteresis: slider torques [N.m], wind-up [rad], loss [J]."""
@@ -64,9 +64,9 @@ def stiffness_exponent(drive: Drive) -> Number:
 def slider_shares(
     m: Number, remaining_shares: Sequence[float] = REMAINING_SHARES
 ) -> tuple[list[Number], list[Number]]:
-    """Shares of the sliders in K_h and in M_f [1], each with the sum 1.
+    """Share of each slider in the stiffness K_h and in the friction limit M_f [1]; the sum of each is 1.
 
-    m                : exponent of K_N ~ P^m
+    exponent         : exponent m of K_N ~ P^m
     remaining_shares : values of s [1], decreasing from 1 to 0, that separate the sliders
     """
     rate = [remaining**m if remaining else 0.0 for remaining in remaining_shares]
@@ -87,8 +87,8 @@ def _relative_wind_up(remaining_share: float, m: Number) -> Number:
 class HysteresisSliders(Sliders):
     """Sliders of the hysteresis of a drive.
 
-    stiffness : (n) [N.m/rad] of the springs
-    limit     : (n) [N.m] of the friction torques; all zero without hysteresis
+    stiffness      : (n) [N.m/rad] of the springs
+    friction_limit : (n) [N.m] of the friction torques; all zero without hysteresis
     """
 
     limit: Array
@@ -125,10 +125,12 @@ class HysteresisSliders(Sliders):
         return float(np.sum(self.limit) / np.sum(self.stiffness))
 
     def unloading_friction(self, curve: Curve, torque: float, half_opening: float) -> float:
-        """Negative friction torque [N.m] on unloading from a torque [N.m], at the wind-up half_opening [rad].
+        """Negative friction torque [N.m] on unloading from a torque to the wind-up half_opening_angle.
 
-        By Masing's rule. If it equals the torque of the midline at half_opening, the total torque is zero
-        there: the branches of the loop are then 2 half_opening apart at zero torque.
+        torque, half_opening_angle : [N.m], [rad]
+
+        By Masing's rule. If the friction equals the torque of the midline at half_opening_angle, the total
+        torque is zero there: the branches of the loop are then 2 half_opening_angle apart at zero torque.
         """
         turn_wind_up = float(self.solve_wind_up(curve, HISTORY_LAYOUT.virgin_history(), torque))
         friction_back, friction_at_turn = self.advance(
@@ -171,7 +173,10 @@ class HysteresisSliders(Sliders):
 
 
 def _initial_stiffness(drive: Drive, curve: Curve, half_loop_torque: float) -> float:
-    """K_h [N.m/rad]; half_loop_torque [N.m] is the midline's torque at half of hysteresis_loss."""
+    """Initial stiffness K_h [N.m/rad] of the hysteresis.
+
+    half_loop_torque : [N.m] torque of the midline at half of hysteresis_loss
+    """
     if drive.hysteresis_stiffness > 0.0:
         return drive.hysteresis_stiffness
     back = float(curve.inverse(drive.rated_torque - half_loop_torque)) - 0.5 * drive.hysteresis_loss
@@ -181,7 +186,9 @@ def _initial_stiffness(drive: Drive, curve: Curve, half_loop_torque: float) -> f
 def _find_limit_torque(
     drive: Drive, curve: Curve, unit_sliders: HysteresisSliders, half_loop_torque: float
 ) -> float:
-    """M_f [N.m] for which the loop through rated torque opens by hysteresis_loss, by fixed-point iteration.
+    """Friction limit M_f [N.m] for which the loop through rated torque opens by hysteresis_loss.
+
+    Found by fixed-point iteration.
 
     unit_sliders     : sliders with the sum of limits 1 N.m
     half_loop_torque : [N.m] midline torque at half of hysteresis_loss. At zero total torque the friction

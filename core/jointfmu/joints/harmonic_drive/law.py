@@ -58,7 +58,7 @@ class ContactPairDrive(Drive):
     @property
     @abstractmethod
     def pair_law(self) -> Hu2023 | RoughnessLaw:
-        """Interface law of the contact pair, whose load is a power of exp(u)."""
+        """Interface law of the contact pair; its load is a power of the area of the largest spot."""
 
     @property
     @abstractmethod
@@ -244,7 +244,7 @@ def peak_pressure(drive: ContactPairDrive, torque: Number) -> tuple[Number, Numb
 
 
 def pair_argument(drive: ContactPairDrive, torque: Number) -> Number:
-    """Argument u (...) [1] of the pair's law at the mean pressure under torques (...) [N.m]."""
+    """Log-area u (...) [1] of the largest spot, at the mean pressure of the pair at torques (...) [N.m]."""
     law = drive.pair_law
     start, power = law.spots().log_total("load", 0.0)
     return (np.log(drive.mean_over_peak * peak_pressure(drive, torque)[0] * law.A_0) - start) / power

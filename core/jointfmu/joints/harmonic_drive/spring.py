@@ -40,11 +40,11 @@ def torque_curve(drive: Drive) -> Curve:
     if isinstance(drive, PrescribedDrive):
         x, y, s, slope_before, slope_after = np.array(drive.make_nodes(), dtype=np.float64).T
         return Curve(x, y, s, slope_after[:-1], slope_before[1:])
-    raise TypeError(f"{type(drive).__name__} is no PairDrive and not Given")
+    raise TypeError(f"{type(drive).__name__} is no ContactPairDrive and no PrescribedDrive")
 
 
 def _tabulate_midline(drive: ContactPairDrive, steps: int) -> Curve:
-    """Table of the midline with `steps` steps, see `torque_curve`."""
+    """Table of the midline with a number of steps, see `torque_curve`."""
     smoothing = drive.torque_smoothing
     xi = np.linspace(0.0, np.arcsinh(drive.max_torque / smoothing), steps + 1)
     T, half = smoothing * np.sinh(xi), 0.5 * xi[1]
@@ -81,7 +81,7 @@ class HarmonicDriveSpring:
     def tabulate(cls, drive: Drive) -> "HarmonicDriveSpring":
         """Tabulate a parameter set.
 
-        Raises ValueError as `torque_curve` and `Hysteresis.for_drive` do.
+        Raises ValueError as `torque_curve` and `HysteresisSliders.for_drive` do.
         """
         curve = torque_curve(drive)
         return cls(drive, curve, HysteresisSliders.for_drive(drive, curve), FrictionSliders.for_drive(drive))
@@ -94,13 +94,14 @@ class HarmonicDriveSpring:
         w2: ArrayLike,
         temperature: ArrayLike = REFERENCE_TEMPERATURE,
     ) -> dict[str, Array]:
-        """Outputs at flange angles [rad], speeds [rad/s] and temperatures [K] (...), after a straight path
-        from the virgin state.
+        """Outputs after a straight path from the virgin state to a motion and temperatures (...) [K].
+
+        phi1, w1, phi2, w2 : (...) [rad], [rad/s] angles and speeds of the flanges
         """
         return self.advance_motion((phi1, w1, phi2, w2), self.initial_history(), temperature)[0]
 
     def evaluate_torque(self, tau: ArrayLike) -> dict[str, Array]:
-        """Outputs at torques (...) [N.m] after a path from the virgin state, wave generator locked."""
+        """Outputs after a path from the virgin state to torques (...) [N.m], wave generator locked."""
         return self.advance_torque(tau, self.initial_history())[0]
 
     def initial_history(self) -> Array:
@@ -141,7 +142,7 @@ class HarmonicDriveSpring:
         )
 
     def advance_torque(self, tau: ArrayLike, history: Array) -> tuple[dict[str, Array], Array]:
-        """Outputs and new history variables after a path to torques tau (...) [N.m], phi1 locked."""
+        """Outputs and new history variables after a path to torques (...) [N.m], wave generator locked."""
         hysteresis_history, friction_history = _split_history(history)
         if self.hysteresis.is_active:
             phi = self.hysteresis.solve_wind_up(self.curve, hysteresis_history, tau)
@@ -157,7 +158,7 @@ class HarmonicDriveSpring:
 
 
 def _split_history(history: Array) -> tuple[Array, Array]:
-    """History variables (..., n) of the hysteresis and of the friction."""
+    """Split history variables (..., n) into those of the hysteresis and those of the friction."""
     return history[..., : hysteresis.HISTORY_LAYOUT.size], history[..., hysteresis.HISTORY_LAYOUT.size :]
 
 
@@ -165,12 +166,12 @@ def _split_history(history: Array) -> tuple[Array, Array]:
 class SpringState:
     """State of the spring at a motion: numbers, arrays or symbols.
 
-    phi_rel   : [rad] wind-up
-    load      : [N.m] torque of the midline
-    stiffness : [N.m/rad] of the midline
-    friction  : [N.m] torque of the hysteresis
-    error     : [rad] kinematic error
-    slope     : [1] derivative of the kinematic error with respect to phi1
+    phi_rel           : [rad] wind-up
+    midline_torque    : [N.m] torque of the midline
+    midline_stiffness : [N.m/rad] of the midline
+    hysteresis_torque : [N.m] torque of the hysteresis
+    phi_error         : [rad] kinematic error
+    phi_error_slope   : [1] derivative of the kinematic error with respect to phi1
     """
 
     phi_rel: Number
@@ -192,9 +193,9 @@ def motion_outputs(
 ) -> dict[str, Number]:
     """Outputs of the spring except E_loss, at a motion (phi1, w1, phi2, w2).
 
-    temperature  : [K] of the lubricant
-    state        : state of the spring at this motion
-    dry_friction : [N.m] at the wave generator
+    temperature         : [K] of the lubricant
+    spring_state        : state of the spring at this motion
+    dry_friction_torque : [N.m] at the wave generator
     """
     tau, friction = (
         transmitted_torque(drive, motion, state),
@@ -222,7 +223,7 @@ def transmitted_torque(drive: Drive, motion: Sequence[Number], state: SpringStat
 
 
 def stiffness_outputs(drive: Drive, load: Number, stiffness: Number) -> dict[str, Number]:
-    """Outputs K_WTS, K_TS, K_FTS, K_TS_pair [N.m/rad] and p_max [Pa] at a torque `load` of the midline.
+    """Outputs K_WTS, K_TS, K_FTS, K_TS_pair [N.m/rad] and p_max [Pa] at a torque [N.m] of the midline.
 
     K_TS includes the lost motion; K_TS_pair is K_TS on the scale of Fig. 11 of Hu 2023.
     """

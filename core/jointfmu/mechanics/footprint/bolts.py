@@ -45,7 +45,7 @@ class BoltedFrame:
 
     @property
     def area(self) -> float:
-        """Area [m2] of the frame without its holes."""
+        """Area [m2] of the contact: the frame without its holes."""
         frame = 2.0 * self.flange_width * (self.column_spacing + self.row_spacing)
         return frame - 0.25 * np.pi * len(self.bolts) * self.hole_diameter**2
 
@@ -56,7 +56,7 @@ class BoltedFrame:
 
     @property
     def bolt_means(self) -> PositionMeans:
-        """Means of x, y [m], x^2, y^2, x y [m2] of the bolts, from the centroid of the contact."""
+        """Means of x, y [m], x^2, y^2, x y [m2] of the bolt positions, from the centroid of the contact."""
         return position_means(self.bolt_positions)
 
     @property

@@ -78,7 +78,7 @@ def solve_linear(matrix: Array, right_side: Array) -> Array:
 
 
 def weight_changes(weights: Array, functions: Array, residual: Array) -> Array:
-    """Changes (n) of weights (n) that change the weighted sums of functions (m, n) by `residual` (m).
+    """Changes (n) of weights (n) that change the weighted sums of functions (m, n) by amounts `residual` (m).
 
     The sum of change^2/|weight| is minimal. Functions that depend linearly on others are ignored.
     """
@@ -102,9 +102,9 @@ def _invert_triangle(triangle: Array) -> Array:
 def _find_leaving_node(share: Array, basis_weights: Array, weight: float) -> tuple[int | None, float]:
     """Ratio test: index of the node that leaves the basis, and weight transferred from the new node.
 
-    share         : change of the basis weights per unit of transferred weight [1]
-    basis_weights : weights of the basis nodes
-    weight        : weight of the new node
+    weight_change_rates : change of the basis weights per unit of transferred weight [1]
+    basis_weights       : weights of the basis nodes
+    new_node_weight     : weight of the new node
 
     The index is None if the basis can take the whole weight. A negative transfer moves weight from the basis
     to the new node.

@@ -45,10 +45,10 @@ UNTILTED_SHARE = 0.4
 MAX_OPENING, MAX_TILT = 0.1, 0.2
 """Largest normal displacement, and largest opening by tilt at the edge, over the largest approach [1]."""
 MAX_MOMENT_RATIO = 2.5
-"""Largest moment over that of `largest_moment` [1]."""
+"""Largest moment over that of `largest_moment_factor` [1]."""
 MIN_DISTANCE, MAX_DISTANCE = 0.05, 3.0
 """Shortest and longest motion [1], over the motion at which a node at the radius of gyration has mobilised
-all but STUCK_SHARE of its friction."""
+all but UNMOBILISED_FRICTION_SHARE of its friction."""
 STUCK_SHARE = 2.0**-13
 """Share of the friction that is not yet mobilised [1], for the scale of motions."""
 MAX_ITERATIONS = 50
@@ -85,7 +85,7 @@ ADDED_PRESSURE, DIVISION_ITERATIONS = 0.1, 5
 number of iterations of the division [1]."""
 SMALLEST_FLOAT = float(np.finfo(float).tiny)
 _SEQUENCE_STEPS = successive_powers(1.0 / 1.0969815577985598, 7)
-"""Increments of a low-discrepancy sequence in seven dimensions [1]: powers of the root of x^8 = x + 1."""
+"""Increments of a low-discrepancy sequence in seven dimensions [1]: powers of 1/x with x^8 = x + 1."""
 CIRCLE_POINTS = round_to_digits(
     np.exp(2j * np.pi * (np.arange(CIRCLE_POINT_COUNT) + 0.25) / CIRCLE_POINT_COUNT).view(float)
 ).reshape(-1, 2)
@@ -95,14 +95,14 @@ CIRCLE_POINTS = round_to_digits(
 def reduce_patches(
     shape: PressureDistribution, count: int, start_points: PressureDistribution | None = None
 ) -> FrictionPatches:
-    """Reduce the friction of a contact to at most `count` patches; one per node if it has no more nodes.
+    """Reduce the friction of a contact to few patches; one patch per node if it has no more nodes.
 
-    start_points : distribution from which the initial patches are selected; None: `shape`
+    start_points : distribution from which the initial patches are selected; None: `distribution`
 
     Kept to round-off: the sums and first moments of share, preload_shape and moment_shape (weighted by
     share), and the second moments of share.
 
-    Raises ValueError if count is too small to keep these sums.
+    Raises ValueError if max_patch_count is too small to keep these sums.
     """
     if shape.share.size <= count:
         return shape.as_patches()
@@ -177,12 +177,12 @@ class _SlipCases:
 
     Lengths are divided by the radius of gyration of the contact, pressures by the largest one.
 
-    power            : exponent N [1] of the law p ~ delta^N
-    moment           : factor [1] on the pressure by a moment
-    opening          : normal displacement [1], over the largest approach
-    tilt_x, tilt_y   : tilts [1] about x and y, as opening per length, over the largest approach
-    direction        : (3, m, 1) unit vector of the motion: translation along x and y, rotation [1]
-    distance         : length of the motion [1], in units of mu/kappa times the largest approach
+    law_exponent        : exponent N [1] of the law p ~ delta^N
+    moment_factor       : factor [1] on the pressure by a moment
+    normal_displacement : normal displacement [1], over the largest approach
+    tilt_x, tilt_y      : tilts [1] about x and y, as opening per length, over the largest approach
+    motion_direction    : (3, m, 1) unit vector of the motion: translation along x and y, rotation [1]
+    motion_length       : length of the motion [1], in units of mu/kappa times the largest approach
     """
 
     power: Array
@@ -197,11 +197,12 @@ class _SlipCases:
     def sample(cls, nodes: Array, largest_moment: float, extent: Array) -> "_SlipCases":
         """Sample the cases evenly (low-discrepancy sequence) for a contact with nodes (6, n).
 
-        Of the SLIP_CASES a quarter are translations, a quarter rotations about the centre, and
-        half rotations about loaded nodes. GROSS_SLIP_CASES more are gross slip about poles near loaded nodes.
+        Of the SLIP_CASE_COUNT a quarter are translations, a quarter rotations about the centre, and
+        half rotations about loaded nodes. GROSS_SLIP_CASE_COUNT more are gross slip about poles near loaded
+        nodes.
 
-        largest_moment : [1] largest factor on the pressure by a moment
-        extent         : (2) [1] largest |x| and |y|
+        largest_moment  : [1] largest factor on the pressure by a moment
+        max_coordinates : (2) [1] largest |x| and |y|
         """
         number = np.arange(1, SLIP_CASES + GROSS_SLIP_CASES + 1)
         unit = (0.5 + number[:, None] * _SEQUENCE_STEPS) % 1.0
@@ -269,12 +270,12 @@ class _SlipCases:
 class _TargetSums:
     """Target of the fit: sums over all nodes. Points (6, n) are share, x, y, both pressure shapes, radius.
 
-    cases       : cases whose friction is fitted
-    extent      : (2) [1] largest |x| and |y|
-    scale       : (m) [1] weights of the sums of friction
-    exact_scale : (12) [1] weights of the sums that must be exact
-    exact_sums  : (12) [1] sums that must be exact
-    sums        : (m + 12) [1] all sums, weighted
+    cases             : cases whose friction is fitted
+    max_coordinates   : (2) [1] largest |x| and |y|
+    friction_weights  : (m) [1] weights of the sums of friction
+    exact_sum_weights : (12) [1] weights of the sums that must be exact
+    exact_sums        : (12) [1] sums that must be exact
+    target_sums       : (m + 12) [1] all sums, weighted
     """
 
     cases: _SlipCases
@@ -314,7 +315,7 @@ class _TargetSums:
         return cls(motions, reach, scale, hold, held, sums)
 
     def evaluate_functions(self, points: Array) -> Array:
-        """Functions (m + 12, n) [1] of points (6, n); their sums, weighted by share, are to equal `sums`."""
+        """Functions (m + 12, n) [1] of points (6, n); sums weighted by share should be `target_sums`."""
         friction = self.cases.evaluate_friction(points)[0] * self.scale[:, None]
         return np.concatenate(
             [friction, _scaled_exact_functions(points, self.extent) * self.exact_scale[:, None]]
@@ -327,7 +328,7 @@ class _TargetSums:
 
 
 def _correct_exact_sums(points: Array, extent: Array, exact_sums: Array) -> Array:
-    """Correct shares and pressure shapes of points (6, n) slightly, so that they have the exact sums (12)."""
+    """Correct shares and pressure shapes of points (6, n) slightly, so that their sums (12) are exact."""
     share, x, y, equal, tilt, radius = points
     place = _scaled_exact_functions(points, extent)[:6]
     share = share + weight_changes(share, place, exact_sums[:6] - weighted_sums(place, share))
@@ -352,7 +353,7 @@ class _LinearProblem:
     """Linearised least-squares problem: residual of the sums as a function of relative changes of the points.
 
     residual : (m) residual of the sums [1]
-    scale    : (5, n) sizes [1] to which the changes are relative
+    change_scale    : (5, n) sizes [1] to which the changes are relative
     normal_matrix : (5 n, 5 n) J^T J [1] of the Jacobian J
     gradient : (5 n) gradient [1] of half the sum of squared residuals
     """
@@ -368,7 +369,7 @@ class _LinearProblem:
     ) -> "_LinearProblem":
         """Linearise at points (6, n) with constant radii.
 
-        values, residual : result of `_TargetSums.residual` at these points
+        function_values, residual : result of `_TargetSums.find_residual` at these points
         """
         share, *_, equal, _, _ = points
         one = np.ones_like(share)

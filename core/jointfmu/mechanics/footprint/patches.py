@@ -45,19 +45,19 @@ MIN_PEAK_COUNT = 96
 MIN_SYMMETRY_GROUPS = 10
 """Smallest number of groups of mirrored points [1]; with fewer groups the symmetry is given up."""
 _SEQUENCE_STEPS = successive_powers(1.0 / 1.1673039782614187, 4)
-"""Increments of a low-discrepancy sequence in four dimensions [1]: powers of the root of x^5 = x + 1."""
+"""Increments of a low-discrepancy sequence in four dimensions [1]: powers of 1/x with x^5 = x + 1."""
 
 
 def reduce_points(shape: PressureDistribution, count: int) -> PressureDistribution:
-    """Reduce a pressure distribution to at most `count` of its nodes with other shares.
+    """Reduce a pressure distribution to at most `max_point_count` of its nodes with other shares.
 
     Returns the distribution itself if it has no more nodes.
     Kept to round-off: the sums and first moments of share, preload_shape and moment_shape (weighted by
     share), and the second moments of share.
-    Kept exactly: the largest pressure at any preload and moment, if count is at least MIN_PEAK_COUNT, and the
-    symmetry of the contact, for at least MIN_SYMMETRY_GROUPS groups.
+    Kept exactly: the largest pressure at any preload and moment, if max_point_count is at least
+    MIN_COUNT_FOR_PEAK_NODES, and the symmetry of the contact, for at least MIN_SYMMETRY_GROUPS groups.
 
-    Raises ValueError if count is too small to keep the sums.
+    Raises ValueError if max_point_count is too small to keep the sums.
     """
     if shape.share.size <= count:
         return shape
@@ -81,9 +81,9 @@ def reduce_points(shape: PressureDistribution, count: int) -> PressureDistributi
 
 
 def _select_groups(shape: PressureDistribution, group: NodeIndices, count: int) -> tuple[NodeIndices, Array]:
-    """Select groups with at most `count` nodes that keep the sums; return groups and factors of their shares.
+    """Select groups of nodes that keep the sums; return the groups and the factors on their shares.
 
-    group : (n) group of each node
+    node_groups : (n) group of each node
     """
     size, share = np.bincount(group), _group_sums(group, shape.share)
     factor = np.sqrt(share)
@@ -116,7 +116,7 @@ def _minimum_shares(shape: PressureDistribution, group: NodeIndices, share: Arra
 
 
 def _scale_shares(shape: PressureDistribution, group: NodeIndices, factor: Array) -> PressureDistribution:
-    """Multiply shares by the factor (groups) [1] of their group; remove nodes with the factor zero."""
+    """Multiply shares of nodes by the factor (groups) [1] of their group; remove nodes with factor zero."""
     nodes = np.flatnonzero(factor[group] > 0.0)
     selected = shape.select_nodes(nodes)
     return PressureDistribution(
@@ -128,7 +128,7 @@ def _scale_shares(shape: PressureDistribution, group: NodeIndices, factor: Array
 
 
 def _find_symmetry_groups(shape: PressureDistribution) -> NodeIndices:
-    """Group (n) of each node: mirror images at x = 0, y = 0 or both are in one group, if all nodes have one.
+    """Symmetry group (n) of each node: its mirror images at x = 0, y = 0 or both, if every node has an image.
 
     At y = 0 moment_shape changes its sign.
     """
@@ -188,13 +188,13 @@ def exact_functions(x: Array, y: Array, preload_shape: Array, moment_shape: Arra
 
 
 def _scaled_exact_functions(shape: PressureDistribution) -> Array:
-    """Functions (12, n) of `exact_functions` for the nodes, scaled to the order of 1."""
+    """Functions (12, n) of `exact_sum_functions` for the nodes, scaled to the order of 1."""
     steep = max(float(np.max(np.abs(shape.moment_shape))), 1.0)
     return exact_functions(*_scale_positions(shape), shape.preload_shape, shape.moment_shape / steep)
 
 
 def largest_moment(shape: PressureDistribution) -> float:
-    """Factor [1] on moment_shape at which opening removes the share MAX_LOST_FORCE of the preload force."""
+    """Factor [1] on moment_shape at which opening removes MAX_LOST_FORCE_SHARE of the preload force."""
     low, high = 0.0, 2.0 / float(np.max(np.abs(shape.share * shape.moment_shape)))
     for _ in range(50):
         middle = 0.5 * (low + high)

@@ -14,7 +14,7 @@ COARSE_CELLS = 8
 _HOLE_SUBDIVISIONS = 8
 """Subdivisions of the side of a cell [1] for the area that a hole removes."""
 _ONE_ROW_TOLERANCE = 1e-6
-"""Extent of the bolts along y over the width of the plate [1] below which they count as one row."""
+"""Extent of the bolt positions along y over the width of the plate [1], below which they are one row."""
 EDGE_FACTOR = 1.0 + 1e-9
 """Relative tolerance of comparisons with an edge: points on an edge then do not depend on round-off [1]."""
 _MAX_ITERATIONS, _MOMENT_TOLERANCE = 50, 1e-13
@@ -91,7 +91,7 @@ class BoltedPlate:
 
     @property
     def bolt_means(self) -> PositionMeans:
-        """Means of x, y [m], x^2, y^2, x y [m2] of the bolts, from the centroid of the contact."""
+        """Means of x, y [m], x^2, y^2, x y [m2] of the bolt positions, from the centroid of the contact."""
         return position_means(self.bolt_positions)
 
     @property
@@ -103,7 +103,7 @@ class BoltedPlate:
     def equivalent_rows(self) -> tuple[float, float]:
         """Bolts per row N_b [1] and distance L_a [m] of two rows that are equivalent for a moment about x.
 
-        See `equivalent_rows`. For bolts in one row N_b = 1, and N_b L_a times the force of a bolt is the
+        See `equivalent_bolt_rows`. For bolts in one row N_b = 1, and N_b L_a times the force of a bolt is the
         moment at which the contact starts to open at its edge.
         """
         if is_one_row(self):
@@ -245,7 +245,7 @@ def bolt_pressures(plate: BoltedPlate) -> tuple[Array, Array, Array]:
 
 
 def _one_row_length(plate: BoltedPlate, share: Array, position: Array, unit: Array) -> float:
-    """Length L_a [m] of bolts in one row, see `BoltedPlate.rows`."""
+    """Equivalent distance L_a [m] for bolts in one row, see `BoltedPlate.equivalent_bolt_rows`."""
     equal = unit.mean(axis=0)
     distances = position[:, 1] - share @ (equal * position[:, 1])
     reach = np.max(np.abs(distances[equal > 0.0]))

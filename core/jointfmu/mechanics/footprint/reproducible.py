@@ -57,7 +57,7 @@ def _round_to_steps(values: Array, digits: int) -> Array:
 
 
 def clear_round_off(shape: PressureDistribution) -> PressureDistribution:
-    """Replace round-off in a pressure distribution by exact zeros, see ZERO_RATIO."""
+    """Replace round-off in a pressure distribution by exact zeros, see ROUND_OFF_RATIO."""
 
     def zeros(values: Array) -> Array:
         return np.where(np.abs(values) > ZERO_RATIO * np.max(np.abs(values)), values, 0.0)
@@ -106,17 +106,17 @@ def successive_powers(base: float, count: int) -> Array:
 
 
 def binary_root(values: Array, power: Array) -> Array:
-    """Roots values^(1/power) (m, n) of values >= 0 (m, n) or (m, 1); power (m, 1) of 2, 4, 8, ... 64."""
+    """Roots values^(1/exponent) (m, n) of values >= 0 (m, n) or (m, 1); exponent (m, 1) of 2, 4, ... 64."""
     return _apply_repeatedly(np.sqrt, values, power)
 
 
 def binary_power(values: Array, power: Array) -> Array:
-    """Powers values^power (m, n) of values (m, n); power (m, 1) of 2, 4, 8, ... 64."""
+    """Powers values^exponent (m, n) of values (m, n); exponent (m, 1) of 2, 4, 8, ... 64."""
     return _apply_repeatedly(np.square, values, power)
 
 
 def _apply_repeatedly(function: np.ufunc, values: Array, power: Array) -> Array:
-    """Apply a function to values repeatedly: log2(power) times. Returns an array (m, n)."""
+    """Apply a function to values log2(exponent) times, one after the other. Returns an array (m, n)."""
     out = np.broadcast_to(values, np.broadcast_shapes(values.shape, power.shape)).copy()
     for k in range(6):
         function(out, out=out, where=power > 2.0**k)

@@ -18,7 +18,7 @@ PRESSURE_DECIMALS = 11
 class PressureDistribution:
     """Pressure distribution of a bolted contact at n nodes.
 
-    share         : (n)    [1] share of the node in the nominal area, with the sum 1
+    area_share    : (n)    [1] share of the node in the nominal area, with the sum 1
     position      : (n, 2) [m] relative to the centroid of the contact
     preload_shape : (n)    [1] pressure over mean pressure for equal bolt forces
     moment_shape  : (n)    [1] pressure by a moment about x: bolt forces +1 in the row y > 0 and -1 in the row
@@ -45,7 +45,7 @@ class PressureDistribution:
     def merge_nodes(self, with_moment: bool = True) -> "MergedDistribution":
         """Merge nodes that have the same pressure at every preload and moment.
 
-        with_moment : False: merge nodes with the same pressure at every preload, without moment
+        keeps_moment : False: merge nodes with the same pressure at every preload, without moment
         """
         tilt = self.moment_shape if with_moment else 0.0 * self.moment_shape
         keys = np.round(np.column_stack([self.preload_shape, tilt]), PRESSURE_DECIMALS)
@@ -69,8 +69,8 @@ class FrictionPatches(PressureDistribution):
 def moment_pressure(share: Array, y: Array, preload_shape: Array) -> Array:
     """Pressure (n) [1/m] by a moment of 1 N.m on an area of 1 m2, linear in the distance from the centre.
 
-    It is p (y - y_p)/sum(share p (y - y_p)^2), with p = preload_shape and y_p the centre of pressure.
-    share, y [m], preload_shape : (n) as in PressureShape
+    It is p (y - y_p)/sum(area_share p (y - y_p)^2), with p = preload_shape and y_p the centre of pressure.
+    area_share, y [m], preload_shape : (n) as in PressureDistribution
 
     Raises ValueError if all nodes in contact have the same y.
     """
@@ -96,9 +96,10 @@ def position_means(points: Array) -> PositionMeans:
 
 @dataclass(frozen=True, slots=True)
 class MergedDistribution:
-    """Nodes with different pressures, merged from a PressureShape; share and pressures (n) [1] as there.
+    """Nodes with different pressures, merged from a PressureDistribution; area_share and pressures as there.
 
-    x2, y2 : (n) [m2] mean squared distances from the centroid along and across the bolt rows
+    mean_square_x, mean_square_y : (n) [m2] mean squared distances from the centroid along and across the bolt
+        rows
     """
 
     share: Array
@@ -237,12 +238,12 @@ class NodalField:
 
     @property
     def bolt_means(self) -> PositionMeans:
-        """Means of x, y [m], x^2, y^2, x y [m2] of the bolts, from the centroid of the contact."""
+        """Means of x, y [m], x^2, y^2, x y [m2] of the bolt positions, from the centroid of the contact."""
         return self.bolt_x, self.bolt_y, self.bolt_x2, self.bolt_y2, self.bolt_xy
 
     @property
     def bolt_positions(self) -> Array:
-        """Positions (n, 2) [m] of the bolts, from the centroid of the contact; none where it has no list."""
+        """Positions (n, 2) [m] of the bolts, from the centroid of the contact; empty if none are stated."""
         return np.stack([self.each_bolt_x, self.each_bolt_y], axis=-1)
 
     def pressure_distribution(self) -> PressureDistribution:
