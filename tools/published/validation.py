@@ -179,7 +179,7 @@ def format_tolerance(point: Point) -> str:
 
 
 def _scale(point: Point) -> tuple[float, str]:
-    """Factor and unit text of errors and tolerances; the unit of a number in per cent is percentage points."""
+    """Factor and unit text of errors and tolerances; percentage points for a number in per cent."""
     if not point.absolute:
         return 100.0, " %"
     return 1.0, {"%": " points", "1": ""}.get(point.unit, f" {point.unit}")

@@ -100,8 +100,8 @@ class HysteresisLoop:
     def row(self) -> dict[str, float]:
         """Results of the loop: {name: value}.
 
-        The secant stiffness K is that between the ends of the loop. The loss factor is loss/(pi K a^2) with the
-        amplitude a of the motion.
+        The secant stiffness K is that between the ends of the loop. The loss factor is loss/(pi K a^2) with
+        the amplitude a of the motion.
         """
         motion, force = self.amplitudes
         stiffness = force / motion

@@ -94,7 +94,7 @@ def run_ramp(
 def run_path(
     fmu: str | Path, input_name: str, points: Array, settings: Mapping[str, object] | None = None
 ) -> RampResult:
-    """Run an FMU along points (n) of one input, with one step of one second for each. Raises as `run_ramp`."""
+    """Run an FMU along points (n) of one input, with one step of one second each. Raises as `run_ramp`."""
     return drive(fmu, {input_name: points}, None, settings)
 
 
