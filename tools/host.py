@@ -122,7 +122,7 @@ class Instance:
         return RealVariables(self, names)
 
     def do_step(self, time: float, step_size: float) -> None:
-        """Do one co-simulation step: from `time` [s], with step size `size` [s]."""
+        """Do one co-simulation step: from `time` [s], with a step size [s]."""
         self.fmu.doStep(currentCommunicationPoint=time, communicationStepSize=step_size)
 
     def update_discrete_states(self) -> tuple[Any, ...]:

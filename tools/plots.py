@@ -54,7 +54,7 @@ def choose_unit(unit: str, values: NDArray[np.float64]) -> tuple[str, float]:
 def open_figure(path: str | Path, size: tuple[float, float] = (7.2, 4.2)) -> Iterator["Figure"]:
     """Create a figure of a size [inch] in the common style; it is saved at the end of the `with` block.
 
-    with plots.drawing("ramp.png") as figure:
+    with plots.open_figure("ramp.png") as figure:
         axes = figure.subplots()
     """
     check_picture(path)

@@ -61,7 +61,8 @@ def judge_file(file: ParameterFile, loads: Sequence[float] | None = None) -> Pla
     """Judge the stiffness of a joint under loads.
 
     loads : values of `NominalPressure.load_variable` [SI]; None: the start value in the file, or, if it is
-            zero, the default load. At the default load only the level of the stiffness is judged
+            zero, the default load. At the default load the stiffness is only compared with the estimate from
+            roughness
     """
     kind = KINDS[file.joint]
     nominal = nominal_pressure(kind)

@@ -56,8 +56,8 @@ class Law(TableDisplay):
     def at_pressure(self, pressure: ArrayLike) -> Frame:
         """Evaluate the law at nominal pressures (n) [Pa]: F, K_N, K_T, A_r for the nominal area A_0.
 
-        The `messages` of the result warn if level or range of the law are doubtful. Arrays of parameters are
-        not judged.
+        The `messages` of the result warn if the stiffness is implausible, or if a pressure is outside the
+        range of the law. Arrays of parameters are not judged.
 
         Raises ValueError for a pressure that is negative, NaN, infinite or not representable, or arrays of
         different lengths.

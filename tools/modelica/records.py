@@ -153,7 +153,7 @@ def _segment_error(curve: Curve, i: int, j: int, min_reference: tuple[float, flo
 
 
 WorkingPoint = tuple[float, ...]
-"""Values [SI] of the inputs `Kind.working_point` of a joint; empty if the joint has no such inputs."""
+"""Values [SI] of the inputs `JointKind.working_point` of a joint; empty if the joint has no such inputs."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

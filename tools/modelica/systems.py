@@ -28,7 +28,7 @@ RecordLookup = Callable[[str, ParameterFile, tuple[float, ...]], ModelicaRecord 
 
 
 class Declaration(NamedTuple):
-    """Declaration of a component: type, name, modifications (`values`), position (x, y) on the diagram."""
+    """Declaration of a component: type, name, modifications, position (x, y) on the diagram."""
 
     type: str
     name: str
@@ -46,7 +46,7 @@ def render_system_model(
     package     : package of the model; empty: none
 
     Raises ValueError for a joint without a component in the library, and for a wrong connection as
-    `wiring.ends`.
+    `wiring.find_connections`.
     """
     connected = ends(system)
     positions = _diagram_positions(system, connected)
@@ -55,7 +55,7 @@ def render_system_model(
     lines: list[tuple[str, str, str]] = []
 
     def declare(kind: str, name: str, values: Iterable[str], neighbour: str = "") -> None:
-        """Declare a component; it is placed to the right of the component `of` to which it belongs."""
+        """Declare a component; it is placed to the right of its component `neighbour`."""
         x, y = positions[neighbour or name]
         if neighbour:
             x += _COLUMN_SPACING

@@ -153,7 +153,7 @@ class _ExchangeSimulation:
             self.instance.set_values({name: value})
 
     def _nominals(self, values: object, count: int) -> None:
-        """Write the nominal values of the states times FLOOR: sizes below which the tolerance is absolute.
+        """Write the nominal values of the states times FLOOR: below these sizes the tolerance is absolute.
 
         values, count : array of the solver, and its length
         """

@@ -1,8 +1,8 @@
-"""From published calibration points to the unpublished parameters, by scipy's least squares.
+"""Calibration: fit of parameters that a paper does not state to its published numbers, by least squares.
 
-Each fit has as many points as unknowns, so every point is met exactly; the points' role says that
-they were used. Validation points are never read here. `python -m jointfmu_tools.published.calibration JOINT`
-prints the default parameter file with its calibrated values fitted anew.
+Each fit has as many points as unknowns, so every point is met exactly. Only points with the role
+"calibration" are used. `python -m jointfmu_tools.published.calibration JOINT` prints the default parameter
+file with its calibrated values fitted again.
 """
 
 import sys
@@ -20,7 +20,7 @@ from .reference import Point, read_points
 
 
 def calibrate(start: ParameterFile) -> ParameterFile:
-    """The parameter set with its calibrated values fitted anew.
+    """Fit the calibrated parameters of a joint to the published numbers again.
 
     Raises ValueError if the joint has no calibration points, RuntimeError if a point is not met.
     """

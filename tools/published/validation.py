@@ -1,4 +1,4 @@
-"""Every published number beside the computed one: compared, counted, as text."""
+"""Comparison of all published numbers with the computed ones: errors, verdicts, counts, text."""
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
@@ -18,17 +18,19 @@ _TABLE_HEAD = (
     *("guess", "its error", "nearer", "number", "role", "verdict"),
 )
 _ROUNDING = 1e-6
-"""An error below this share of the tolerance is shown as zero [1]: calibrated points are met to rounding."""
+"""Error over tolerance [1] below which an error is displayed as zero: it is rounding."""
 
 
 @dataclass(frozen=True, slots=True)
 class ValidatedPoint:
-    """A published point, the computed value, and the verdict.
+    """Published number with the computed value and the verdict.
 
-    error : relative to the published value, or in its unit where the tolerance is absolute; 0 or 1
-        for a claim
-    guess, guess_error : the trivial guess, from calibration points alone, and its error; None where
-        there is none
+    computed    : computed value, in the unit of the published one
+    error       : relative error of the computed value, or absolute in the unit of the point if its tolerance
+        is absolute; 0 or 1 for a claim
+    passed      : whether the error is within the tolerance
+    guess       : trivial guess from calibration points; None: the point has no guess
+    guess_error : error of the trivial guess, as `error`
     """
 
     point: Point
@@ -40,13 +42,13 @@ class ValidatedPoint:
 
     @property
     def nearer(self) -> str:
-        """`law` or `guess`, which is nearer to the published value; empty without a guess."""
+        """Nearer one to the published value: `law` (computed value) or `guess`; empty without a guess."""
         if self.guess_error is None:
             return ""
         return "law" if abs(self.error) < abs(self.guess_error) else "guess"
 
     def as_dict(self) -> dict[str, Any]:
-        """JSON-ready, with the verdict as a word."""
+        """Convert to a JSON object, with the verdict as a word."""
         p = self.point
         return asdict(p) | {
             "where": dict(p.where),
@@ -61,7 +63,7 @@ class ValidatedPoint:
 
 
 def compare(point: Point, computed: float | bool, guess: float | None = None) -> ValidatedPoint:
-    """Judge one computed value, and the trivial guess beside it."""
+    """Compare a computed value, and the trivial guess if there is one, with the published number."""
     if isinstance(point.value, bool):
         error = float(computed is not point.value)
         return ValidatedPoint(point, computed, error, error == 0.0)
@@ -75,7 +77,10 @@ def _error(point: Point, value: float) -> float:
 
 
 def validate(parameter_sets: Mapping[str, ParameterFile] | None = None) -> list[ValidatedPoint]:
-    """Compute every published point with the default parameter sets, or those given by joint."""
+    """Compute all published numbers and compare them.
+
+    parameter_sets : {joint: parameter file}; joints without an entry have their default file
+    """
     given, rows = parameter_sets or {}, []
     for kind in KINDS.values():
         own = published_numbers(kind)
@@ -88,19 +93,23 @@ def validate(parameter_sets: Mapping[str, ParameterFile] | None = None) -> list[
 
 
 def missed_points(rows: Sequence[ValidatedPoint]) -> list[ValidatedPoint]:
-    """Rows that miss, but for those whose value proves nothing: calibrated and circular ones."""
+    """Points outside their tolerance, without calibration points and points met by construction."""
     return [row for row in rows if row.point.role not in UNTESTED_ROLES and not row.passed]
 
 
 @dataclass(frozen=True, slots=True)
 class Counts:
-    """What a comparison consists of; the command, the README, the report and the pages say these numbers.
+    """Counts of a comparison, which the command, the README, the report and the pages state.
 
-    numbers, printed, derived : numbers; those that the papers print, those computed from printed ones
-    roles, met : points and points met of every role; claims are no numbers
-    guessed, nearer : points of every role with a trivial guess, and those that the law is nearer to
-    contradictions : ids of claims whose text contradicts its own equations
-    missed : ids of the points that miss, calibrated and circular ones left out
+    numbers        : number of published numbers, without claims
+    printed        : how many of them the papers print
+    derived        : how many of them are computed from printed numbers
+    roles          : {role: number of points}, with claims
+    met            : {role: number of points within their tolerance}
+    guessed        : {role: number of points with a trivial guess}
+    nearer         : {role: number of points to which the law is nearer than the guess}
+    contradictions : ids of claims that the equations of the same paper contradict
+    missed         : ids of `missed_points`
     """
 
     numbers: int
@@ -115,7 +124,7 @@ class Counts:
 
 
 def counts(rows: Sequence[ValidatedPoint]) -> Counts:
-    """Count a comparison."""
+    """Count the points of a comparison."""
     numbers = [row.point for row in rows if row.point.role != "claim"]
     printed = sum(point.printed for point in numbers)
     guessed = [row for row in rows if row.nearer]
@@ -138,7 +147,7 @@ def counts(rows: Sequence[ValidatedPoint]) -> Counts:
 
 
 def table(rows: Sequence[ValidatedPoint]) -> str:
-    """The comparison as text."""
+    """Format the comparison as a table in text."""
     return "\n".join(align_columns([_TABLE_HEAD, *map(_cells, rows)]))
 
 
@@ -157,33 +166,33 @@ def _cells(row: ValidatedPoint) -> tuple[str, ...]:
 
 
 def format_error(point: Point, error: float) -> str:
-    """An error as text: in per cent, or in the point's unit where that is how it is judged."""
+    """Format an error: in per cent, or in the unit of the point if its tolerance is absolute."""
     scale, unit = _scale(point)
     small = abs(error) <= _ROUNDING * point.tolerance
     return ("0" if small else f"{scale * error:+.3g}") + unit
 
 
 def format_tolerance(point: Point) -> str:
-    """A tolerance as text, as `shown_error`."""
+    """Format a tolerance, in the unit of `format_error`."""
     scale, unit = _scale(point)
     return f"{scale * point.tolerance:.3g}{unit}"
 
 
 def _scale(point: Point) -> tuple[float, str]:
-    """Factor and unit of errors; a change given in per cent is off by percentage points."""
+    """Factor and unit text of errors and tolerances; percentage points for a number in per cent."""
     if not point.absolute:
         return 100.0, " %"
     return 1.0, {"%": " points", "1": ""}.get(point.unit, f" {point.unit}")
 
 
 def format_claim(row: ValidatedPoint) -> str:
-    """A claim as text, with the text's own where its equations give the opposite."""
+    """Format the truth of a claim; if the paper's equations contradict its text, also that of the text."""
     p = row.point
     return str(p.value).lower() + ("" if p.text is None else f" (text: {str(p.text).lower()})")
 
 
 def summary(rows: Sequence[ValidatedPoint]) -> str:
-    """One line: what was compared, by role; how often the law beats a trivial guess; what missed."""
+    """Summary in one line: counts by role, how often the law is nearer than the guess, missed points."""
     found = counts(rows)
     roles = ", ".join(
         f"{n} {role}" + ("" if found.met[role] == n else f" ({found.met[role]} met)")

@@ -1,4 +1,4 @@
-"""Loops: any of the FMUs driven to and fro through fmpy, what it loses and how stiff it is."""
+"""Load cycles: run an FMU along cycles of one input in fmpy; energy loss and stiffness of the loops."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -18,26 +18,27 @@ if TYPE_CHECKING:
     from fmpy.model_description import ModelDescription
 
 SHAPES = ("triangle", "sine")
+"""Waveforms of load cycles."""
 DEFAULT_POINTS, DEFAULT_CYCLES = 200, 2
 MIN_POINTS, MAX_POINTS = 8, 1_000_000
 MAX_CYCLES = 1000
 RELATIVE_ROUNDING = 1e-12
-"""Work over that of the loop's box [1] that is round-off."""
+"""Work over the area of the loop's bounding box [1] below which the work is round-off."""
 ENERGY_UNIT = units.base_exponents("J")
 FORCE_UNITS = (units.base_exponents("N"), units.base_exponents("N.m"))
-"""What counts as a force or torque; the other of two conjugate variables is the motion."""
+"""Units of a force and of a torque; the other of two conjugate variables is the motion."""
 COLUMN_NAMES = {"m": ("displacement", "force"), "rad": ("angle", "torque")}
-"""{unit of the motion: names of motion and force in the file}, those that `fit loop` reads."""
+"""{unit of the motion: names of the columns of motion and force}, as `jointfmu fit loop` reads them."""
 
 
 @dataclass(frozen=True, slots=True)
 class CyclicPath:
-    """How an input is driven.
+    """Path of an input in load cycles: first loading to an amplitude, then cycles about a centre.
 
-    about  : where it starts and about which it swings
-    shape  : one of SHAPES
-    points : of a cycle, a multiple of four
-    cycles : after the first loading; the last one counts
+    centre : value of the input at the start and in the middle of the cycles
+    shape  : waveform, one of SHAPES
+    points : number of points of a cycle, a multiple of four
+    cycles : number of cycles after the first loading; the last cycle is evaluated
     """
 
     centre: float = 0.0
@@ -56,7 +57,7 @@ class CyclicPath:
             raise ValueError(f"cycles = {self.cycles} is outside [1, {MAX_CYCLES}]")
 
     def path(self, amplitude: float) -> Array:
-        """The points: first loading to the amplitude, then whole cycles from there."""
+        """Values of the input: first loading to an amplitude, then full cycles from there."""
         if not 0.0 < amplitude < np.inf:
             raise ValueError(f"loop = {amplitude:g} is outside (0, inf): the amplitude of the input")
         phase = np.arange(self.points // 4 + self.cycles * self.points + 1) / self.points
@@ -67,11 +68,11 @@ class CyclicPath:
 
 @dataclass(frozen=True, slots=True)
 class HysteresisLoop:
-    """One amplitude.
+    """Hysteresis loop of one amplitude: first loading and cycles.
 
-    motion, force : (n) of first loading and cycles; the force on the joint, positive with the motion
-    closed : first point of the last cycle, which ends with the last one
-    result : every output
+    motion, force : (n) motion, and force on the joint, positive in the direction of the motion
+    cycle_start   : index of the first point of the last cycle, which ends at the last point
+    result        : all outputs along the path
     """
 
     motion: Array
@@ -85,19 +86,23 @@ class HysteresisLoop:
 
     @property
     def amplitudes(self) -> tuple[float, float]:
-        """Half the range of motion and of force in the last cycle."""
+        """Amplitudes of motion and force: half of their ranges in the last cycle."""
         motion, force = self._cycle
         return 0.5 * float(np.ptp(motion)), 0.5 * float(np.ptp(force))
 
     @property
     def loss(self) -> float:
-        """Work [J] that goes in over the last cycle, by trapezoids; none where it is round-off."""
+        """Energy loss [J] of the last cycle, by the trapezoidal rule; 0 if it is round-off."""
         motion, force = self._cycle
         work = float(np.sum(0.5 * (force[1:] + force[:-1]) * np.diff(motion)))
         return work if abs(work) > RELATIVE_ROUNDING * float(np.ptp(motion) * np.ptp(force)) else 0.0
 
     def row(self) -> dict[str, float]:
-        """What the loop gives; secant stiffness through its ends, loss factor loss/(pi K a^2)."""
+        """Results of the loop: {name: value}.
+
+        The secant stiffness K is that between the ends of the loop. The loss factor is loss/(pi K a^2) with
+        the amplitude a of the motion.
+        """
         motion, force = self.amplitudes
         stiffness = force / motion
         found = {
@@ -114,11 +119,12 @@ class HysteresisLoop:
 
 @dataclass(frozen=True, slots=True)
 class HysteresisLoops:
-    """Loops of one FMU.
+    """Hysteresis loops of one FMU.
 
-    motion, force : names of the variables; units : of both
-    sign  : of the force, +1 or -1, over the variable
-    loops : by amplitude, in the order asked for
+    motion, force : names of the variables
+    units         : units of motion and force
+    sign          : force on the joint over the variable `force`: +1 or -1
+    loops         : one loop for each amplitude, in the requested order
     """
 
     motion: str
@@ -129,7 +135,7 @@ class HysteresisLoops:
 
     @property
     def column_names(self) -> tuple[str, str]:
-        """Names of motion and force in files: those that `fit loop` reads."""
+        """Names of the columns of motion and force in files, as `jointfmu fit loop` reads them."""
         return COLUMN_NAMES[self.units[0]]
 
     @property
@@ -138,7 +144,7 @@ class HysteresisLoops:
 
     @property
     def row_units(self) -> dict[str, str]:
-        """Of what a row gives with a unit."""
+        """Units of the results of a loop: {name: unit}, without dimensionless results."""
         stiffness = "N/m" if self.units[0] == "m" else "N.m/rad"
         return {"motion": self.units[0], "force": self.units[1], "secant_stiffness": stiffness, "loss": "J"}
 
@@ -146,7 +152,7 @@ class HysteresisLoops:
         return [loop.row() for loop in self.loops]
 
     def table(self) -> str:
-        """The rows as CSV text, six digits."""
+        """Format the results of the loops as CSV text with six digits, one row for each loop."""
         rows = self.rows()
         own = dict(zip(("motion", "force"), self.column_names, strict=True))
         given = {"E_loss": "J", "loss_factor": "1"} | self.row_units
@@ -157,7 +163,10 @@ class HysteresisLoops:
         )
 
     def csv(self) -> str:
-        """Every point of every loop as CSV text that `fit loop` reads: runs, motion, force, the outputs."""
+        """Format all points of all loops as CSV text that `jointfmu fit loop` reads.
+
+        Columns: number of the loop, motion, force, outputs.
+        """
         first = self.loops[0].result
         others = [name for name in first.columns if name not in (self.motion, self.force)]
         names = [*self.column_names, *others]
@@ -189,11 +198,15 @@ def run_loops(
     output: str | None = None,
     settings: Mapping[str, object] | None = None,
 ) -> HysteresisLoops:
-    """Drive one input to and fro, each amplitude from rest in an instance of its own; all else stays.
+    """Run an FMU along load cycles of one input, one instance for each amplitude, from rest.
 
-    output : conjugate to the input; None: that of its suffix, `f_x` to `s_rel_x`, `tau2` to `phi2`
+    All other inputs are constant.
 
-    Raises ValueError as `ramp.run`, for a swing that is none, or where no output is conjugate to the input.
+    output : output that is energy-conjugate to the input; None: the conjugate output with the same suffix,
+        `f_x` for `s_rel_x`, `tau2` for `phi2`
+
+    Raises ValueError as `ramp.run_ramp`, for an amplitude that is not positive, or if no output is conjugate
+    to the input.
     """
     points = [cyclic_path.path(amplitude) for amplitude in amplitudes]
     with unpack_fmu(fmu) as (_, description):
@@ -206,7 +219,10 @@ def run_loops(
 def loops_from_results(
     results: Sequence[ramp.RampResult], input_name: str, output: str, cyclic_path: CyclicPath
 ) -> HysteresisLoops:
-    """The loops of an input that swung, one for each amplitude, with an output that is conjugate to it."""
+    """Hysteresis loops from results along load cycles of an input, one for each amplitude.
+
+    output : output that is energy-conjugate to the input
+    """
     first = max(results, key=lambda result: float(np.ptp(result.columns[input_name])))
     driven = units.base_exponents(first.units[input_name]) in FORCE_UNITS
     motion, force = (output, input_name) if driven else (input_name, output)
@@ -229,9 +245,15 @@ def input_and_output_units(description: "ModelDescription") -> tuple[dict[str, s
 def find_conjugate(
     inputs: Mapping[str, str], outputs: Mapping[str, str], input_name: str, output: str | None, source: str
 ) -> str:
-    """The output whose product with the input is an energy, of the same suffix where there are several.
+    """Find the output that is energy-conjugate to an input: the product of their units is an energy.
 
-    Raises ValueError if there is none, or if `output` is none of them.
+    If several outputs are conjugate, the one with the suffix of the input is chosen.
+
+    inputs, outputs : {name: unit}
+    output          : output that the user states; None: find it
+    source          : name of the FMU, for messages
+
+    Raises ValueError if no output is conjugate, or if the stated output is not.
     """
     if input_name not in inputs:
         raise ValueError(f"{source}: unknown input {input_name!r}, allowed are {', '.join(inputs)}")
@@ -254,13 +276,13 @@ def find_conjugate(
 
 
 def suffix(name: str) -> str:
-    """The axis or flange of a name: `_x` of `f_x`, `2` of `tau2`."""
+    """Suffix of a variable name for the axis or the flange: `_x` of `f_x`, `2` of `tau2`; else empty."""
     match = re.search(r"(_[xyz]|\d+)$", name)
     return match[0] if match else ""
 
 
 def _is_energy(first: str, second: str) -> bool:
-    """Whether the product of two units is an energy; the radian counts as none."""
+    """Whether the product of two units is an energy; the radian is ignored."""
     try:
         parts = units.base_exponents(first), units.base_exponents(second)
     except ValueError:

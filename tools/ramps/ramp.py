@@ -1,4 +1,4 @@
-"""Load ramps: any of the FMUs driven through fmpy from zero, every output read at every point."""
+"""Load ramps: run an FMU in fmpy along a ramp of one input from zero; all outputs at all points."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -19,26 +19,32 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class RampResult:
-    """Result of a ramp: `columns` (n) by name, the driven input first; messages the FMU logged."""
+    """Result of a run along a ramp or path.
+
+    columns  : {variable: values (n)}, the varied inputs first, then all outputs
+    units    : {variable: unit}
+    messages : log messages of the FMU
+    """
 
     columns: dict[str, Array]
     units: dict[str, str]
     messages: tuple[str, ...]
 
     def csv(self) -> str:
-        """The ramp as CSV text, header `name [unit]`, numbers exact."""
+        """Format the columns as CSV text with headings `name [unit]`; numbers are exact."""
         heads = [(name, self.units[name]) for name in self.columns]
         return columns.format_table(heads, list(self.columns.values()))
 
 
 MAX_END = 1e12
-"""Largest end of a ramp [SI]: a meganewton a million times over."""
+"""Largest absolute end of a ramp [SI]."""
 
 
 def ramp_points(to: float, step: float) -> Array:
-    """Points 0, step, 2 step ... to; the last step may be shorter.
+    """Points of a ramp: 0, step, 2 step, ... to; the last step may be shorter.
 
-    Raises ValueError if a value is not finite, `to` beyond LARGEST, the step zero, or leads away from `to`.
+    Raises ValueError if a value is not finite, if |to| is above MAX_END, or if the step is zero or has the
+    other sign than `to`.
     """
     for name, value in (("to", to), ("step", step)):
         if not np.isfinite(value):
@@ -65,19 +71,21 @@ def run_ramp(
     step: float,
     settings: Mapping[str, object] | None = None,
 ) -> RampResult:
-    """Drive one input from zero along a ramp, one step of one second each; all else stays.
+    """Run an FMU along a ramp of one input from zero, with one step of one second for each point.
+
+    All other inputs are constant.
 
     Parameters
     ----------
     fmu        : path of a co-simulation FMU, FMI 2.0 or 3.0
-    input_name : the input that is driven
+    input_name : name of the varied input
     to, step   : [unit of the input] end and step of the ramp
     settings   : start values of parameters and other inputs
 
     Raises
     ------
-    ValueError   : the path is no FMU that can be driven (`unpacked`, `opened` of `host`), a name is unknown,
-        a value is impossible, or the FMU refuses a value (the message is the FMU's own)
+    ValueError   : the FMU cannot run here (see `host.unpack_fmu`, `host.open_instance`), a name is unknown, a
+        value is impossible, or the FMU rejects a value (with the message of the FMU)
     RuntimeError : the FMU does not instantiate
     """
     return run_path(fmu, input_name, ramp_points(to, step), settings)
@@ -86,7 +94,7 @@ def run_ramp(
 def run_path(
     fmu: str | Path, input_name: str, points: Array, settings: Mapping[str, object] | None = None
 ) -> RampResult:
-    """Drive one input along points (n), one step of one second each; all else stays. Raises as `run`."""
+    """Run an FMU along points (n) of one input, with one step of one second each. Raises as `run_ramp`."""
     return drive(fmu, {input_name: points}, None, settings)
 
 
@@ -96,9 +104,13 @@ def drive(
     time: Array | None = None,
     settings: Mapping[str, object] | None = None,
 ) -> RampResult:
-    """Drive inputs along points, each (n) or (1), over time (n) [s] from zero: whole seconds by default.
+    """Run an FMU along points of several inputs.
 
-    Raises as `run`, and ValueError for inputs of different lengths or a time that does not rise from 0.
+    inputs : {input: values (n) or (1)}
+    time   : (n) [s] increasing from zero; None: one second for each point
+
+    Raises as `run_ramp`, and ValueError for inputs of different lengths, or a time that does not increase
+    from 0.
     """
     rows, count = broadcast({**inputs} if time is None else {**inputs, "time": time}, str(fmu))
     clock = rows.pop("time", np.arange(float(count)))
@@ -109,7 +121,10 @@ def drive(
 
 
 def broadcast(columns: Mapping[str, Array], source: str) -> tuple[dict[str, Array], int]:
-    """Columns, each (n) or (1), all of them as (n), and n. Raises ValueError for different lengths."""
+    """Broadcast columns (n) or (1) to the same length n; returns the columns and n.
+
+    Raises ValueError for different lengths.
+    """
     sizes = {name: column.size for name, column in columns.items() if column.size != 1}
     if len(set(sizes.values())) > 1:
         told = ", ".join(f"{name} {size}" for name, size in sizes.items())
@@ -119,7 +134,7 @@ def broadcast(columns: Mapping[str, Array], source: str) -> tuple[dict[str, Arra
 
 
 def variable_units(fmu: str | Path) -> dict[str, str]:
-    """{variable: its unit} of an FMU; ValueError as `host.unpacked`."""
+    """Units of all variables of an FMU: {variable: unit}. Raises ValueError as `host.unpack_fmu`."""
     with unpack_fmu(fmu) as (_, description):
         return {v.name: v.unit or "1" for v in description.modelVariables}
 

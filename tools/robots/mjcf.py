@@ -2,7 +2,7 @@
 
 The length of each tendon is the wind-up, link - motor/ratio. One tendon has the elastic torque (linear and
 cubic stiffness) and the damping. Parallel yielding springs (Jenkins elements) give the hysteresis. The dry
-friction of the motor is that of `lugre_friction`; its viscous friction is the damping of its hinge.
+friction of the motor is that of `bristles`; its viscous friction is the damping of its hinge.
 """
 
 from collections.abc import Iterator

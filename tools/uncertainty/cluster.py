@@ -27,7 +27,8 @@ def run_on_cluster(
     """Run the ramps on a dask cluster, and yield the journal entry of each run when it ends.
 
     scheduler : address of the dask scheduler
-    runs, todo : settings of all runs, and the indices of those to be run
+    runs      : settings of all runs
+    pending   : indices of the runs to be executed
 
     At most RUNS_PER_WORKER runs for each worker thread are submitted at the same time.
 

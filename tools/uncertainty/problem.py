@@ -79,7 +79,7 @@ class Problem:
     values     : {name: value} of the parameter file, with the settings that are plain values
     uncertain  : parameters with a distribution; the load is the last one if it has a distribution
     loads      : load ramp (m), ascending; one point if the load itself was set
-    relative   : whether the distribution of the load is a factor on the ramp; None if it has none
+    load_is_relative : whether the distribution of the load is a factor on the ramp; None if it has none
     """
 
     joint: str

@@ -98,8 +98,8 @@ class Bands:
     mean, sd  : mean and standard deviation, {output: (m)}
     nominal   : outputs for the values of the parameter file, {output: (m)}
     samples   : number of samples drawn
-    refused   : the samples that the law refuses
-    error     : largest relative difference [1] between reduced curves and exported spring model, at
+    refusals  : the samples that the law refuses
+    reduction_error : largest relative difference [1] between reduced curves and exported spring model, at
         CHECKED_SAMPLES samples
     units     : {output: unit}
     """

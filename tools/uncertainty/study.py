@@ -76,7 +76,7 @@ def parse_distribution(name: str, text: str, base: float | None) -> UncertainPar
 
 
 def _parse_distribution(text: str, base: float | None) -> Any:
-    """Parse a distribution of scipy.stats; None if the text is a plain value or word. See `parse`."""
+    """Parse a distribution of scipy.stats; None if the text is a plain value or word."""
     if ".." in text:
         return _uniform(*_parse_numbers(text.split(".."), 2))
     if "+-" in text:

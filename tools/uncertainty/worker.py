@@ -22,7 +22,7 @@ KILLED_MESSAGE = "the process of the run died"
 class LoadRamp:
     """Load ramp of all runs of a sweep: name of the driven input, end and step [unit of the input].
 
-    See `ramp.run`.
+    See `ramp.run_ramp`.
     """
 
     input: str
