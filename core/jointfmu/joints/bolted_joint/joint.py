@@ -85,14 +85,14 @@ class BoltedJointSpring:
     parallel with the interface and only pull, see `BoltSprings`: they carry the joint when it is open.
 
     curve   : contact pressure [Pa] over approach [m]
-    shape   : points that carry the normal force
+    points  : points that carry the normal force
     patches : patches that carry the friction
     modes   : of the members between their attachments; none if the members are rigid
     """
 
     joint: Bolted
     curve: Curve
-    shape: PressureDistribution
+    points: PressureDistribution
     patches: FrictionPatches
     modes: Modes
 
@@ -113,20 +113,20 @@ class BoltedJointSpring:
     @classmethod
     def of_nodes(cls, joint: Bolted, nodes: PressureDistribution | None = None) -> "BoltedJointSpring":
         """Interface alone, with a point and a patch at each node; None: the nodes of its pattern."""
-        shape = pressure_distribution(joint.pattern) if nodes is None else nodes
-        joint, patches = interface_alone(joint), shape.as_patches()
-        return cls(joint, tabulate_approach(joint), shape, patches, _no_modes(joint, shape, patches))
+        points = pressure_distribution(joint.pattern) if nodes is None else nodes
+        joint, patches = interface_alone(joint), points.as_patches()
+        return cls(joint, tabulate_approach(joint), points, patches, _no_modes(joint, points, patches))
 
     def on_nodes(self, nodes: PressureDistribution) -> "BoltedJointSpring":
         """The same interface alone at other nodes."""
         joint, patches = interface_alone(self.joint), nodes.as_patches()
         modes = _no_modes(joint, nodes, patches)
-        return replace(self, joint=joint, shape=nodes, patches=patches, modes=modes)
+        return replace(self, joint=joint, points=nodes, patches=patches, modes=modes)
 
     @cached_property
     def contact(self) -> Contact:
         """Contact of points and patches."""
-        return Contact(self.curve, self.shape, self.patches, self.joint.elastic)
+        return Contact(self.curve, self.points, self.patches, self.joint.elastic)
 
     @cached_property
     def friction(self) -> FrictionLaw:
@@ -208,7 +208,7 @@ class BoltedJointSpring:
 
         Raises ValueError if elastic members find no equilibrium.
         """
-        joint, assembly, points, q = self.joint, self.assembly, self.shape, inputs.displacement
+        joint, assembly, points, q = self.joint, self.assembly, self.points, inputs.displacement
         before = self.history_layout.split(history)
         preload = self._preload_state(float(inputs.preload), float(inputs.moment))
         bolt_force = self.bolts.preload_force(joint, inputs.preload, inputs.moment)
