@@ -18,7 +18,7 @@ from ...quantity import Array, Number
 from .bodies import Modes
 from .bolts import BoltSprings, bolt_positions
 from .compliances import Compliances
-from .contact import Contact, PreloadState, elastic_shear
+from .contact import Contact, NormalState, PreloadState, elastic_shear
 from .equilibrium import JointAssembly, LoadStep, solve_equilibrium
 from .friction import UNKNOWN, FrictionLaw, FrictionUpdate, History, consistent_tangent, history_layout
 from .kinematics import NORMAL, TANGENTIAL, point_displacement, tangential_displacement
@@ -222,28 +222,20 @@ class BoltedJointSpring:
                 increment = tangential_displacement(self.patches, q - _displacement(before))
                 friction = self.friction.update_friction(before, normal.patch_approach, increment)
 
-        added_pressure, added_stiffness, after = 0.0, 0.0, history
         if friction is not None:
             loss = float(before["loss"]) + joint.A_0 * float(self.patches.share @ friction.slider_update.loss)
             tangent = consistent_tangent(self.patches, friction)
             shear = friction_sums(self.patches, friction.traction, tangent, loss / joint.A_0)
-            after = self._join_history(q, a, friction, loss)
+            added, history = (0.0, 0.0), self._join_history(q, a, friction, loss)
         else:
-            derivatives = self.curve.derivatives(normal.approach, 3)
-            limit, u = joint.mu * preload.pressure, point_displacement(points, q)
-            t_x, t_y, xx, xy, yy, added_pressure, added_stiffness = elastic_shear(
-                limit, joint.shear_ratio(), derivatives, *u.T
-            )
-            none, nodes = np.zeros_like(limit), points.as_patches()
-            tangent = tangent_sums(nodes, np.stack([xx, xy, yy, none, none, none], axis=-1))
-            shear = friction_sums(nodes, np.stack([t_x, t_y, none], axis=-1), tangent, 0.0)
+            shear, added = self._elastic_shear_sums(preload, normal, q)
 
         plastic, elastic = self.first_loading_work(normal.pressure)
         amplitude = np.sqrt(np.sum(assembly.tangential_displacement(q, a) ** 2, axis=1))
         foundation = self.friction.foundation()
         sums: dict[str, Number] = {
             **first_moments(points, "tightened", preload.pressure),
-            **normal_sums(points, normal.pressure, normal.stiffness, added_pressure, added_stiffness),
+            **normal_sums(points, normal.pressure, normal.stiffness, *added),
             "plastic": points.share @ plastic,
             "elastic": points.share @ elastic,
             **shear,
@@ -259,7 +251,7 @@ class BoltedJointSpring:
         if joint.elastic:
             forces = self.bolts.force(bolt_force, elongation)
             outputs |= {bolt_force_name(j): force for j, force in enumerate(forces)}
-        return outputs, after
+        return outputs, history
 
     def _load_step(
         self, inputs: JointInputs, preload: PreloadState, bolt_force: Array, before: History
@@ -280,6 +272,20 @@ class BoltedJointSpring:
             update_friction=partial(self.friction.update_friction, before),
             input_summary=inputs.summary,
         )
+
+    def _elastic_shear_sums(
+        self, preload: PreloadState, normal: NormalState, q: Array
+    ) -> tuple[dict[str, Number], tuple[Number, Number]]:
+        """Sums of `elastic_shear`, and its terms (n) [Pa] in the pressure and (n) [Pa/m] in the stiffness."""
+        limit, derivatives = self.joint.mu * preload.pressure, self.curve.derivatives(normal.approach, 3)
+        u_x, u_y = point_displacement(self.points, q).T
+        t_x, t_y, xx, xy, yy, added_pressure, added_stiffness = elastic_shear(
+            limit, self.joint.shear_ratio(), derivatives, u_x, u_y
+        )
+        none, nodes = np.zeros_like(limit), self.points.as_patches()
+        tangent = tangent_sums(nodes, np.stack([xx, xy, yy, none, none, none], axis=-1))
+        sums = friction_sums(nodes, np.stack([t_x, t_y, none], axis=-1), tangent, 0.0)
+        return sums, (added_pressure, added_stiffness)
 
     def _join_history(self, q: Array, a: Array, friction: FrictionUpdate, loss: float) -> Array:
         """History variables at relative displacement q (6) and modal coordinates a (k) [m].
