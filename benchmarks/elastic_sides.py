@@ -122,7 +122,7 @@ class Joint:
         """Forces and moments (6) at which all slips, or the clamping force is lost."""
         values, spring = self.file.values, self.spring
         clamping = values.n_bolts * self.preload
-        radius = float(np.sqrt(spring.shape.share @ np.sum(spring.shape.position**2, axis=1)))
+        radius = float(np.sqrt(spring.points.share @ np.sum(spring.points.position**2, axis=1)))
         mu = values.mu
         return clamping * np.array([mu, mu, 1.0, radius, radius, mu * radius])
 

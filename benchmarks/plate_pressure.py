@@ -100,9 +100,9 @@ def main() -> None:
         print(name)
         with tempfile.TemporaryDirectory() as folder:
             file = made(options, Path(folder))
-        cones = file.values.pattern.shape()
+        cones = file.values.pattern.pressure_distribution()
         plate.MIN_CELLS_PER_RADIUS = FINE
-        fine = file.values.pattern.shape()
+        fine = file.values.pattern.pressure_distribution()
         plate.MIN_CELLS_PER_RADIUS = usual
         elastic = computed(file, options)
         for what, shape, finer in (("cones", cones, fine), ("computed", elastic, elastic)):

@@ -134,6 +134,6 @@ def test_a_bracket_slips_under_a_lever_as_its_elements_do(monkeypatch):
         memory = spring.advance(JointInputs(joint.preload, 0.0, six), memory)[1]
         after = spring.history_layout.split(memory)
         modal_coordinates = after["modal_coordinates"][: len(spring.modes.stiffness)]
-        opened = rigid_opening(spring.shape.position, six) + spring.modes.opening @ modal_coordinates
+        opened = rigid_opening(spring.points.position, six) + spring.modes.opening @ modal_coordinates
         points, few = (spring.curve.derivatives(x, 0)[0] for x in (start - opened, after["approach"]))
-        assert spring.patches.share @ few == pytest.approx(spring.shape.share @ points, rel=2e-4)
+        assert spring.patches.share @ few == pytest.approx(spring.points.share @ points, rel=2e-4)

@@ -80,7 +80,7 @@ def stiffness(spring, place, step, **inputs):
 def test_points_press_on_the_patches_around_them_with_all_their_force(spring):
     """To the decimals that are kept; each patch has its own force within 2 % of the mean one, as points and
     patches that do not touch have their parts, too."""
-    points, patches = spring.shape, spring.patches
+    points, patches = spring.points, spring.patches
     part = force_transfer(points, patches)
     np.testing.assert_allclose(part.sum(axis=0), 1.0, rtol=1e-3)
     assert np.all(part.max(axis=1) > 0.0)
@@ -397,7 +397,7 @@ def test_a_turned_frame_gives_turned_forces(degrees, memory):
     def turn(shape):
         return replace(shape, position=shape.position @ R[:2, :2].T)
 
-    turned = replace(spring, shape=turn(spring.shape), patches=turn(spring.patches))
+    turned = replace(spring, points=turn(spring.points), patches=turn(spring.patches))
     path = polygon(np.random.default_rng(43), corners=3, steps=3)
     loads = {"preload": 9e3, "moment": 1000.0}
     for one, other in zip(walk(spring, path, **loads), walk(turned, path @ both.T, **loads), strict=True):

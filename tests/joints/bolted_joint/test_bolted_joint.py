@@ -71,7 +71,7 @@ def test_no_force_when_tightened(spring, preload, moment):
     out = spring.evaluate(preload, moment, STILL, STILL)
     assert (out["f_x"], out["f_y"]) == (0.0, 0.0)
     assert out["f_z"] == pytest.approx(0.0, abs=1e2 * EPS * total(preload))  # round-off of a thousand nodes
-    p = preload_pressure(JOINT, spring.shape, preload, moment)
+    p = preload_pressure(JOINT, spring.points, preload, moment)
     # the inverse of the table is exact to round-off; where p is small the approach's own counts
     assert out["p_mean"] == pytest.approx(total(preload) / JOINT.A_0, rel=1e-12)
     assert out["p_max"] == pytest.approx(np.max(p), rel=1e-12)
@@ -98,14 +98,14 @@ def test_uniform_pressure_is_the_law(even):
 @each_load
 def test_stiffness_is_the_sum_of_the_nodes_own_laws(spring, preload, moment):
     """The law at every node's pressure for the whole area A_0, scaled by the node's share."""
-    p = preload_pressure(JOINT, spring.shape, preload, moment)
+    p = preload_pressure(JOINT, spring.points, preload, moment)
     assert (
         np.min(p) > spring.curve.load[np.searchsorted(spring.curve.displacement, 0.0)]
     )  # outside the closing
     law = at_pressure(JOINT, p)
     out = spring.evaluate(preload, moment, STILL, STILL)
-    assert out["K_zz"] == pytest.approx(spring.shape.share @ law["K_N"], rel=MAX_ERROR)
-    assert out["K_xx"] == pytest.approx(spring.shape.share @ law["K_T"], rel=MAX_ERROR)
+    assert out["K_zz"] == pytest.approx(spring.points.share @ law["K_N"], rel=MAX_ERROR)
+    assert out["K_xx"] == pytest.approx(spring.points.share @ law["K_T"], rel=MAX_ERROR)
 
 
 def test_uneven_pressure_is_softer_than_even(spring, even):
@@ -135,7 +135,7 @@ def forces(spring, load, s):
 
 def potential(spring, load, s):
     """U(s) of the class: V is the exact integral of the table, piece by piece."""
-    curve, area, rho = spring.curve, JOINT.A_0 * spring.shape.share, JOINT.shear_ratio()
+    curve, area, rho = spring.curve, JOINT.A_0 * spring.points.share, JOINT.shear_ratio()
     start = spring.preloaded_approach(*load)
     a, h = curve._coefficients, np.diff(curve.displacement)
     whole = np.concatenate([[0.0], np.cumsum(h * (a / np.arange(1.0, 7.0)[:, None]).sum(axis=0))])
@@ -267,8 +267,8 @@ def test_loss_factors_and_damping(plastic, preload, moment):
     """eta_n: plastic over elastic work of all nodes; eta_t: of the traction ratio; C = eta sqrt(M K)."""
     spring = plastic
     out = spring.evaluate(preload, moment, STILL, STILL)
-    law = at_pressure(JOINT, preload_pressure(JOINT, spring.shape, preload, moment))
-    plastic, elastic = (spring.shape.share @ law[name] for name in ("W_NP", "W_NE"))
+    law = at_pressure(JOINT, preload_pressure(JOINT, spring.points, preload, moment))
+    plastic, elastic = (spring.points.share @ law[name] for name in ("W_NP", "W_NE"))
     assert out["eta_n"] == pytest.approx(plastic / elastic, rel=MAX_ERROR)
     ratio = 12.0 * mindlin.dissipation_function(0.1) / (5.0 * np.pi * mindlin.storage_function(0.1))
     assert out["eta_t"] == pytest.approx(ratio / (1.0 - ratio), rel=1e-13)  # round-off
@@ -317,9 +317,9 @@ def test_loss_factor_while_closing(even):
 def test_rotational_stiffness_about_the_centroid(spring, preload, moment):
     """sum A k y^2, sum A k x^2, and rho sum A k (x^2 + y^2), written out."""
     out = spring.evaluate(preload, moment, STILL, STILL)
-    law = at_pressure(JOINT, preload_pressure(JOINT, spring.shape, preload, moment))
-    x, y = spring.shape.position.T
-    share = spring.shape.share
+    law = at_pressure(JOINT, preload_pressure(JOINT, spring.points, preload, moment))
+    x, y = spring.points.position.T
+    share = spring.points.share
     assert share @ x == pytest.approx(0.0, abs=1e-15)  # m, the origin is the centroid
     assert share @ y == pytest.approx(0.0, abs=1e-15)
     assert out["K_rx"] == pytest.approx(share @ (law["K_N"] * y**2), rel=MAX_ERROR)
@@ -369,10 +369,10 @@ def test_an_open_row(spring, moment):
     """A moment that asks for more than the preload: no pull in any node, and no force when tightened."""
     preload = 9e3
     assert abs(moment) / (JOINT.row_distance * JOINT.row_bolts) > preload
-    p = preload_pressure(JOINT, spring.shape, preload, moment)
+    p = preload_pressure(JOINT, spring.points, preload, moment)
     assert np.min(p) == 0.0
-    assert np.max(p) > np.max(preload_pressure(JOINT, spring.shape, preload, 0.0))
-    open_side = np.sign(spring.shape.position[p == 0.0, 1])
+    assert np.max(p) > np.max(preload_pressure(JOINT, spring.points, preload, 0.0))
+    open_side = np.sign(spring.points.position[p == 0.0, 1])
     assert np.all(open_side == -np.sign(moment))
     out = spring.evaluate(preload, moment, STILL, STILL)
     assert all(np.isfinite(value) for value in out.values())

@@ -41,9 +41,9 @@ def test_bolted_joint_at_rest_follows_the_law_without_a_table(fmu: Host) -> None
     spring = BoltedJointSpring.of(joint)
     for preload, moment in ((5e3, 0.0), (9e3, 600.0), (2e4, -1500.0)):
         found = instance.at({"preload": preload, "moment": moment})
-        node = preload_pressure(joint, spring.shape, preload, moment)
+        node = preload_pressure(joint, spring.points, preload, moment)
         k = stiffness_curve(joint, node)[0]
-        K_zz = joint.A_0 * float(spring.shape.share @ k)
+        K_zz = joint.A_0 * float(spring.points.share @ k)
         expected = {"K_zz": K_zz, "p_max": float(node.max())}
         assert {n: found[n] for n in expected} == pytest.approx(expected, rel=TABLE)
         assert found["K_xx"] == pytest.approx(joint.shear_ratio() * K_zz, rel=5e-3)  # by the patches

@@ -103,7 +103,7 @@ def test_the_tightened_joint_is_as_stiff_as_by_finite_elements(made, words, prel
     joint = made(*words, preload=preload)
     out, _ = at(joint.spring, *STILL, preload=preload)
     found = [out[name] for name in AXES]
-    np.testing.assert_allclose(found, 1.0 / joint.fe.whole, rtol=0.03)
+    np.testing.assert_allclose(found, 1.0 / joint.fe.total, rtol=0.03)
 
 
 def test_gross_slip_about_poles_inside_has_the_force_of_all_nodes(made):
@@ -122,10 +122,10 @@ def test_the_report_states_the_whole_beside_its_parts(made):
     joint = made(*FOUR, preload=15e3)
     found = joint.spring.compliances(15e3)
     out, _ = at(joint.spring, *STILL, preload=15e3)
-    np.testing.assert_allclose(1.0 / found.whole, [out[name] for name in AXES], rtol=1e-6)  # the same motions
+    np.testing.assert_allclose(1.0 / found.total, [out[name] for name in AXES], rtol=1e-6)  # the same motions
     fe = joint.fe
     np.testing.assert_allclose(found.shares, fe.shares, atol=0.02)
-    np.testing.assert_allclose(found.interface_stiffness, fe.rigid, rtol=0.03)
+    np.testing.assert_allclose(found.interface_compliance, fe.interface_compliance, rtol=0.03)
     np.testing.assert_allclose(found.bolt_force[:, 2], fe.bolt_force[:, 2], rtol=0.05)
 
     model = KINDS[joint.file.joint].models[0]
@@ -134,7 +134,7 @@ def test_the_report_states_the_whole_beside_its_parts(made):
     assert "the load enters at the outer faces" in picture.pictures[1]
     assert [row[0] for row in friction.table[1:]] == ["0.1", "0.15", "0.3"]
     assert [row[0] for row in figure.table[1:]] == list(AXES)
-    assert f"{1e-6 / found.whole[2]:.4g} N/µm" in figure.table[3]
+    assert f"{1e-6 / found.total[2]:.4g} N/µm" in figure.table[3]
     (panel,) = figure.panels
     for series in panel.series:  # from its preload, slowly, then with all of the load
         assert series.y[0] == pytest.approx(15.0)
@@ -181,10 +181,10 @@ def test_a_tapped_joint_is_near_vdi_2230(made, capsys):
     words = [*M16, "--tapped", "--thickness", "40", "60", "--attached", "heads"]
     joint = made(*words)
     k, found = joint.file.values.bolt_stiffness, joint.spring.compliances(PRELOAD)
-    members = 1.0 / (1.0 / 4.403e9 + found.interface_stiffness[2])
-    assert 1.0 / found.whole[2] == pytest.approx(members + k, rel=0.15)
+    members = 1.0 / (1.0 / 4.403e9 + found.interface_compliance[2])
+    assert 1.0 / found.total[2] == pytest.approx(members + k, rel=0.15)
     assert found.load_factor == pytest.approx(k / (k + 4.403e9), rel=0.15)
-    np.testing.assert_allclose(found.whole, joint.fe.whole, rtol=0.03)
+    np.testing.assert_allclose(found.total, joint.fe.total, rtol=0.03)
     # the same by the forces: a pull at the heads, and all of it once open
     out, _ = at(joint.spring, 0, 0, 200e-6, 0, 0, 0)
     assert out["F_bolt[1]"] == pytest.approx(-out["f_z"], rel=1e-6)
@@ -497,7 +497,7 @@ def test_a_motion_without_equilibrium_is_told_and_the_next_goes_on(made, monkeyp
     spring = made(*FOUR, preload=15e3).spring
     with monkeypatch.context() as patch:
         patch.setattr(equilibrium, "MAX_ITERATIONS", 0)
-        told = r"preload = 15000, s_rel_x = 1e-07: the sides find no equilibrium beyond 0 .* residual is .* N"
+        told = r"preload = 15000, s_rel_x = 1e-07: the sides find no equilibrium beyond .* residual is .* N"
         with pytest.raises(ValueError, match=told):
             at(spring, 1e-7, 0, 0, 0, 0, 0, preload=15e3)
     assert at(spring, 1e-7, 0, 0, 0, 0, 0, preload=15e3)[0]["f_x"] < 0.0

@@ -83,7 +83,7 @@ def test_stiffness_of_a_pair_is_the_law_at_its_pressure(joint, found):
 def test_open_pairs_are_left_out(joint):
     moment = 0.9 * 15e3 * 3 * joint.joint.row_distance * 1.5  # one row gives way
     springs = springs_of_joint(joint, 15e3, moment)
-    p = preload_pressure(joint.joint, joint.shape, 15e3, moment)
+    p = preload_pressure(joint.joint, joint.points, 15e3, moment)
     assert springs.open_pairs == np.sum(p == 0.0) > 0
     assert len(springs.nodes) == np.sum(p > 0.0)
     assert springs.K_n.sum() == pytest.approx(joint.evaluate(15e3, moment, REST, REST)["K_zz"], rel=1e-12)
@@ -99,8 +99,8 @@ def test_state_outside_the_law_is_refused(joint, state):
 
 
 def test_the_joints_own_nodes_as_a_mesh_give_the_same(joint, found):
-    area = joint.shape.share * joint.joint.A_0
-    mesh = NodePairs("own.csv", found.nodes, joint.shape.position, area, None)
+    area = joint.points.share * joint.joint.A_0
+    mesh = NodePairs("own.csv", found.nodes, joint.points.position, area, None)
     same = springs_on_mesh(joint, mesh, 15e3, 4500.0)
     np.testing.assert_allclose(same.K_n, found.K_n, rtol=1e-9)  # the triangulation's round-off
     assert same.correction == pytest.approx(1.0, rel=1e-9)
@@ -147,8 +147,8 @@ def test_meshes_that_do_not_fit_are_refused(joint):
         springs_on_mesh(joint, NodePairs("m.csv", labels, place, 2.0 * area, None), 9e3, 0.0)
     with pytest.raises(ValueError, match=r"m.csv: node \d+ is .* m off the joint"):
         springs_on_mesh(joint, NodePairs("m.csv", labels, 1.5 * place, area, None), 9e3, 0.0)
-    peaks = np.argsort(joint.shape.preload_shape)[-3:]  # beside bolts only
-    coarse = NodePairs("m.csv", labels[:3], joint.shape.position[peaks], np.full(3, 0.0382 / 3), None)
+    peaks = np.argsort(joint.points.preload_shape)[-3:]  # beside bolts only
+    coarse = NodePairs("m.csv", labels[:3], joint.points.position[peaks], np.full(3, 0.0382 / 3), None)
     with pytest.raises(
         ValueError, match=r"m.csv: the pressures at its nodes carry .* times the joint's force"
     ):

@@ -75,9 +75,9 @@ def reduce_bodies(
     traces = [joint.relative_displacement_matrix(axis) @ fields for axis in AXES]
     springs, area = interface.area * normal_stiffness, spring.joint.A_0
     opening = _match_stiffness(
-        averaging_matrix(joint, spring.shape.position, normal_stiffness) @ traces[2],
-        _rigid_opening(spring.shape.position),
-        area * spring.shape.share * point_stiffness,
+        averaging_matrix(joint, spring.points.position, normal_stiffness) @ traces[2],
+        _rigid_opening(spring.points.position),
+        area * spring.points.share * point_stiffness,
         _rigid_opening(interface.centred_position),
         traces[2],
         springs,

@@ -84,7 +84,7 @@ class CellLoads:
         cls, joint: JointFiniteElements, spring: BoltedJointSpring, normal_stiffness: Array
     ) -> "CellLoads":
         """Compute the displacement under all unit loads. Raises RuntimeError if a body can move freely."""
-        means = averaging_matrix(joint, spring.shape.position, normal_stiffness)
+        means = averaging_matrix(joint, spring.points.position, normal_stiffness)
         stretch = sp.csr_matrix(joint.elongation_matrix.T)
         loads = sp.vstack(
             [*(means @ joint.relative_displacement_matrix(axis) for axis in (2, 0, 1)), stretch]
@@ -151,7 +151,7 @@ class CellJoint:
     def from_cells(cls, cells: CellLoads, bolts: Array, preload: float) -> "CellJoint":
         """Joint preloaded by bolts at positions (b, 2) [m], with the compliance of its cells."""
         spring, compliance = cells.spring, np.asarray(cells.loads @ cells.displacement)
-        x, y = spring.shape.position.T
+        x, y = spring.points.position.T
         n, b = x.size, len(bolts)
         rigid = np.zeros((3 * n + b, 6))
         rigid[:n, 2:5] = np.stack([np.ones(n), y, -x], axis=1)
@@ -168,7 +168,7 @@ class CellJoint:
         displacement along y (n), elongation of the bolts (b).
         """
         spring, n = self.spring, self.preload_approach.size
-        joint, area = spring.joint, spring.joint.A_0 * spring.shape.share
+        joint, area = spring.joint, spring.joint.A_0 * spring.points.share
         foundation = spring.friction.foundation()
         ratio, slip_ratio = (
             foundation.stiffness_ratio,
@@ -228,7 +228,7 @@ class CellJoint:
     def motions(self) -> Iterator[Array]:
         """Generate motions (6) [m, rad] of side 2 into slip and opening: along each axis, then along all."""
         joint, K = self.spring.joint, np.diag(self.stiffness())
-        radius = np.sqrt(self.spring.shape.share @ np.sum(self.spring.shape.position**2, axis=1))
+        radius = np.sqrt(self.spring.points.share @ np.sum(self.spring.points.position**2, axis=1))
         clamping = joint.n_bolts * float(working_preload(joint, self.preload))
         load = clamping * np.array([joint.mu, joint.mu, 1.0, radius, radius, joint.mu * radius])
         unit = load / K

@@ -48,7 +48,7 @@ def springs_of_joint(
     Every node of the pressure shape becomes a pair of coincident nodes with consecutive labels: the node of
     side 1, then that of side 2. The first label is `first_label`.
     """
-    count = spring.shape.share.size
+    count = spring.points.share.size
     labels = first_label + np.arange(2 * count, dtype=np.int64).reshape(2, count).T
     return _distribute_to_nodes(spring, labels, preload, moment, None)
 
@@ -67,7 +67,7 @@ def springs_on_mesh(spring: BoltedJointSpring, mesh: "NodePairs", preload: float
     from scipy.spatial import KDTree
 
     _check_area(spring, mesh)
-    shape, position = spring.shape, mesh.position
+    shape, position = spring.points, mesh.position
     share = mesh.area / mesh.area.sum()
     distance, nearest = KDTree(shape.position).query(position)
     allowed = _MAX_DISTANCE_RATIO * float(np.hypot(*np.ptp(shape.position, axis=0)))
@@ -141,7 +141,7 @@ def _distribute_to_nodes(
 
     Raises ValueError if nothing is in contact or a pressure is outside the law.
     """
-    joint, shape = spring.joint, spring.shape
+    joint, shape = spring.joint, spring.points
     p = preload_pressure(joint, shape, preload, moment)
     highest = spring.curve.end[1]
     if not (np.isfinite(preload + moment) and 0.0 < np.max(p) <= highest):
@@ -195,7 +195,7 @@ def tabulate_normal_force(
 
     start = spring.checked_approach(preload, moment)
     low, high = spring.curve.displacement[[0, -1]]
-    shape = spring.shape.merge_nodes(with_moment=moment != 0.0)
+    shape = spring.points.merge_nodes(with_moment=moment != 0.0)
     approach = spring.curve.inverse(preload_pressure(spring.joint, shape, preload, moment))
     weight = spring.joint.A_0 * shape.share
     springs, held_bolts = spring.bolts, spring.bolts.preload_force(spring.joint, preload, moment)

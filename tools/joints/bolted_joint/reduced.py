@@ -328,9 +328,9 @@ def exact(joint: Bolted, loads: Array) -> dict[str, Array]:
     states = [tightened.evaluate(float(load), 0.0, rest, rest) for load in loads]
     curves = {name: np.array([state[name] for state in states]) for name in _OUTPUTS}
     pressure = node_pressure(
-        alone, spring.shape.preload_shape, spring.shape.moment_shape, loads[:, None], 0.0
+        alone, spring.points.preload_shape, spring.points.moment_shape, loads[:, None], 0.0
     )
-    slip = alone.A_0 * spring.friction.foundation().friction_coefficient * (pressure @ spring.shape.share)
+    slip = alone.A_0 * spring.friction.foundation().friction_coefficient * (pressure @ spring.points.share)
     lost = [loss_factor(spring, each, shear_at(alone, each)) if each > 0.0 else 0.0 for each in loads]
     found = {"approach": approach(spring, loads), "slip_force": slip, "loss_factor": np.array(lost)}
     return curves | found
@@ -342,7 +342,7 @@ def approach(spring: BoltedJointSpring, loads: Array) -> Array:
     Three Gauss-Legendre nodes per log-spaced panel; nodes of the pressure pattern that its symmetry makes
     equal are taken together.
     """
-    joint, shape = spring.joint, spring.shape.merge_nodes(with_moment=False)
+    joint, shape = spring.joint, spring.points.merge_nodes(with_moment=False)
     lowest = 1e-9 * spring.curve.closing_end_load * joint.A_0 / joint.n_bolts
     ends = np.unique(np.concatenate([np.geomspace(lowest, np.max(loads), 60), loads[loads > lowest]]))
     places, weights = np.polynomial.legendre.leggauss(3)

@@ -200,7 +200,9 @@ def _stiffness_rows(compliances: Compliances) -> list[tuple[str, ...]]:
 def _stiffness_text(compliances: Compliances, tension: float, moment: float) -> str:
     share = compliances.shares[0]
     largest = float(np.max(share))
-    effect = "it matters for the stiffness" if compliances.matters else "it hardly affects the stiffness"
+    effect = (
+        "it matters for the stiffness" if compliances.interface_matters else "it hardly affects the stiffness"
+    )
     return (
         f"Small motions of the attachments about the tightened state, {_format_value(tension, 'N')} "
         "in each bolt"

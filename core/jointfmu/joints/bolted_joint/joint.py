@@ -18,7 +18,7 @@ from ...quantity import Array, Number
 from .bodies import Modes
 from .bolts import BoltSprings, bolt_positions
 from .compliances import Compliances
-from .contact import Contact, PreloadState, elastic_shear
+from .contact import Contact, NormalState, PreloadState, elastic_shear
 from .equilibrium import JointAssembly, LoadStep, solve_equilibrium
 from .friction import UNKNOWN, FrictionLaw, FrictionUpdate, History, consistent_tangent, history_layout
 from .kinematics import NORMAL, TANGENTIAL, point_displacement, tangential_displacement
@@ -85,14 +85,14 @@ class BoltedJointSpring:
     parallel with the interface and only pull, see `BoltSprings`: they carry the joint when it is open.
 
     curve   : contact pressure [Pa] over approach [m]
-    shape   : points that carry the normal force
+    points  : points that carry the normal force
     patches : patches that carry the friction
     modes   : of the members between their attachments; none if the members are rigid
     """
 
     joint: Bolted
     curve: Curve
-    shape: PressureDistribution
+    points: PressureDistribution
     patches: FrictionPatches
     modes: Modes
 
@@ -113,20 +113,20 @@ class BoltedJointSpring:
     @classmethod
     def of_nodes(cls, joint: Bolted, nodes: PressureDistribution | None = None) -> "BoltedJointSpring":
         """Interface alone, with a point and a patch at each node; None: the nodes of its pattern."""
-        shape = pressure_distribution(joint.pattern) if nodes is None else nodes
-        joint, patches = interface_alone(joint), shape.as_patches()
-        return cls(joint, tabulate_approach(joint), shape, patches, _no_modes(joint, shape, patches))
+        points = pressure_distribution(joint.pattern) if nodes is None else nodes
+        joint, patches = interface_alone(joint), points.as_patches()
+        return cls(joint, tabulate_approach(joint), points, patches, _no_modes(joint, points, patches))
 
     def on_nodes(self, nodes: PressureDistribution) -> "BoltedJointSpring":
         """The same interface alone at other nodes."""
         joint, patches = interface_alone(self.joint), nodes.as_patches()
         modes = _no_modes(joint, nodes, patches)
-        return replace(self, joint=joint, shape=nodes, patches=patches, modes=modes)
+        return replace(self, joint=joint, points=nodes, patches=patches, modes=modes)
 
     @cached_property
     def contact(self) -> Contact:
         """Contact of points and patches."""
-        return Contact(self.curve, self.shape, self.patches, self.joint.elastic)
+        return Contact(self.curve, self.points, self.patches, self.joint.elastic)
 
     @cached_property
     def friction(self) -> FrictionLaw:
@@ -208,7 +208,7 @@ class BoltedJointSpring:
 
         Raises ValueError if elastic members find no equilibrium.
         """
-        joint, assembly, points, q = self.joint, self.assembly, self.shape, inputs.displacement
+        joint, assembly, points, q = self.joint, self.assembly, self.points, inputs.displacement
         before = self.history_layout.split(history)
         preload = self._preload_state(float(inputs.preload), float(inputs.moment))
         bolt_force = self.bolts.preload_force(joint, inputs.preload, inputs.moment)
@@ -222,28 +222,20 @@ class BoltedJointSpring:
                 increment = tangential_displacement(self.patches, q - _displacement(before))
                 friction = self.friction.update_friction(before, normal.patch_approach, increment)
 
-        added_pressure, added_stiffness, after = 0.0, 0.0, history
         if friction is not None:
             loss = float(before["loss"]) + joint.A_0 * float(self.patches.share @ friction.slider_update.loss)
             tangent = consistent_tangent(self.patches, friction)
             shear = friction_sums(self.patches, friction.traction, tangent, loss / joint.A_0)
-            after = self._join_history(q, a, friction, loss)
+            added, history = (0.0, 0.0), self._join_history(q, a, friction, loss)
         else:
-            derivatives = self.curve.derivatives(normal.approach, 3)
-            limit, u = joint.mu * preload.pressure, point_displacement(points, q)
-            t_x, t_y, xx, xy, yy, added_pressure, added_stiffness = elastic_shear(
-                limit, joint.shear_ratio(), derivatives, *u.T
-            )
-            none, nodes = np.zeros_like(limit), points.as_patches()
-            tangent = tangent_sums(nodes, np.stack([xx, xy, yy, none, none, none], axis=-1))
-            shear = friction_sums(nodes, np.stack([t_x, t_y, none], axis=-1), tangent, 0.0)
+            shear, added = self._elastic_shear_sums(preload, normal, q)
 
         plastic, elastic = self.first_loading_work(normal.pressure)
         amplitude = np.sqrt(np.sum(assembly.tangential_displacement(q, a) ** 2, axis=1))
         foundation = self.friction.foundation()
         sums: dict[str, Number] = {
             **first_moments(points, "tightened", preload.pressure),
-            **normal_sums(points, normal.pressure, normal.stiffness, added_pressure, added_stiffness),
+            **normal_sums(points, normal.pressure, normal.stiffness, *added),
             "plastic": points.share @ plastic,
             "elastic": points.share @ elastic,
             **shear,
@@ -259,7 +251,7 @@ class BoltedJointSpring:
         if joint.elastic:
             forces = self.bolts.force(bolt_force, elongation)
             outputs |= {bolt_force_name(j): force for j, force in enumerate(forces)}
-        return outputs, after
+        return outputs, history
 
     def _load_step(
         self, inputs: JointInputs, preload: PreloadState, bolt_force: Array, before: History
@@ -280,6 +272,20 @@ class BoltedJointSpring:
             update_friction=partial(self.friction.update_friction, before),
             input_summary=inputs.summary,
         )
+
+    def _elastic_shear_sums(
+        self, preload: PreloadState, normal: NormalState, q: Array
+    ) -> tuple[dict[str, Number], tuple[Number, Number]]:
+        """Sums of `elastic_shear`, and its terms (n) [Pa] in the pressure and (n) [Pa/m] in the stiffness."""
+        limit, derivatives = self.joint.mu * preload.pressure, self.curve.derivatives(normal.approach, 3)
+        u_x, u_y = point_displacement(self.points, q).T
+        t_x, t_y, xx, xy, yy, added_pressure, added_stiffness = elastic_shear(
+            limit, self.joint.shear_ratio(), derivatives, u_x, u_y
+        )
+        none, nodes = np.zeros_like(limit), self.points.as_patches()
+        tangent = tangent_sums(nodes, np.stack([xx, xy, yy, none, none, none], axis=-1))
+        sums = friction_sums(nodes, np.stack([t_x, t_y, none], axis=-1), tangent, 0.0)
+        return sums, (added_pressure, added_stiffness)
 
     def _join_history(self, q: Array, a: Array, friction: FrictionUpdate, loss: float) -> Array:
         """History variables at relative displacement q (6) and modal coordinates a (k) [m].

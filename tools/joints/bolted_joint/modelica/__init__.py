@@ -72,7 +72,7 @@ def combine_nodes(spring: BoltedJointSpring, preload: float, moment: float) -> C
     """
     start = spring.checked_approach(preload, moment)
     low, high = spring.curve.displacement[[0, -1]]
-    area, share = spring.joint.A_0, spring.shape.share
+    area, share = spring.joint.A_0, spring.points.share
 
     def total_force(c: Array) -> list[Array]:
         approach = start + c[:, None]
@@ -118,7 +118,7 @@ def combine_nodes(spring: BoltedJointSpring, preload: float, moment: float) -> C
 def _dissipation_factor(spring: BoltedJointSpring, approach: Array) -> Array:
     """Normal dissipation factor eta_n (m) [1], at nodal approaches (m, n) [m]."""
     plastic, elastic = spring.first_loading_work(spring.curve.derivatives(approach, 0)[0])
-    return np.asarray((plastic @ spring.shape.share) / (elastic @ spring.shape.share))
+    return np.asarray((plastic @ spring.points.share) / (elastic @ spring.points.share))
 
 
 WORKING_POINTS = ((9e3, 0.0), (15e3, 0.0), (15e3, 4500.0))
