@@ -82,7 +82,7 @@ def frequencies(
     assembly: Assembly, joint: BoltedJoint, states: Sequence[tuple[float, float]], **options: Any
 ) -> Array:
     """As those of assembly_modes, with the joint's own shear."""
-    return modes.compute_frequencies(assembly, joint, float(joint.shear_ratio()), states, **options)
+    return modes.compute_frequencies(assembly, joint, float(joint.shear_stiffness_ratio()), states, **options)
 
 
 def identify(

@@ -122,7 +122,7 @@ class Joint:
         """Forces and moments (6) at which all slips, or the clamping force is lost."""
         values, spring = self.file.values, self.spring
         clamping = values.n_bolts * self.preload
-        radius = float(np.sqrt(spring.points.share @ np.sum(spring.points.position**2, axis=1)))
+        radius = float(np.sqrt(spring.points.area_share @ np.sum(spring.points.position**2, axis=1)))
         mu = values.mu
         return clamping * np.array([mu, mu, 1.0, radius, radius, mu * radius])
 
@@ -149,7 +149,10 @@ def on_cells(joint: Joint, count: int) -> CellJoint:
     fine = reduce_points(pressure_distribution(joint.rigid.values.pattern), count)
     spring = BoltedJointSpring.of(joint.rigid.values).on_nodes(fine)
     at = joint.linear.joint.interface
-    bolts = joint.linear.joint.bolts - at.area @ at.position / at.area.sum()
+    bolts = (
+        joint.linear.joint.bolt_positions
+        - at.quadrature_area @ at.quadrature_position / at.quadrature_area.sum()
+    )
     return CellJoint.from_cells(
         CellLoads.from_joint(joint.linear.joint, spring, joint.normal), bolts, joint.preload
     )
@@ -174,7 +177,7 @@ def pole_deviations(spring: BoltedJointSpring, preload: float, count: int) -> Ar
     """(2) deviation of the force in gross slip about poles from that of all nodes as tightened, over the
     friction [1]: of 95 %, largest."""
     values, shape, found = spring.joint, pressure_distribution(spring.joint.pattern), []
-    friction = values.mu * values.A_0 * shape.share * preload_pressure(values, shape, preload, 0.0)
+    friction = values.mu * values.A_0 * shape.area_share * preload_pressure(values, shape, preload, 0.0)
     poles = poles_inside(shape, count)
     for (x, y), force in zip(poles, gross_slip(shape.as_patches(), friction, poles), strict=True):
         motions = [turn * np.array([y, -x, 0.0, 0.0, 0.0, 1.0]) for turn in TURNS]
@@ -193,13 +196,13 @@ def times(joint: Joint, folder: Path) -> None:
     jobs = {"elastic": joint.file, "rigid": joint.rigid}
     made = {}
     for name, file in jobs.items():
-        files = generate.sources("BoltedJoint", file)
-        library = compiler.libraries(
-            "BoltedJoint", files, compiler.exported(list(files), "3"), ["x86_64-linux"]
+        files = generate.generate_sources("BoltedJoint", file)
+        library = compiler.compile_libraries(
+            "BoltedJoint", files, compiler.select_units(list(files), "3"), ["x86_64-linux"]
         )
         (folder / f"{name}.so").write_bytes(library["x86_64-linux"])
         model = MODELS["BoltedJoint"].with_parameters(file.joint, file.values)
-        made[name] = folder / f"{name}.so", generate.token(files), len(model.outputs)
+        made[name] = folder / f"{name}.so", generate.read_token(files), len(model.outputs)
         native_fmus.RANGES[name] = ranges
     for _ in range(native_fmus.ROUNDS):
         for name, rest in made.items():

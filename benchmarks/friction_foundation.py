@@ -55,7 +55,9 @@ class Theorem:
         """Tightened."""
         shape = pressure_distribution(spring.joint.pattern)
         return cls(
-            spring, shape.share, spring.curve.inverse(preload_pressure(spring.joint, shape, preload, moment))
+            spring,
+            shape.area_share,
+            spring.curve.inverse(preload_pressure(spring.joint, shape, preload, moment)),
         )
 
     def force(self, along: float) -> float:
@@ -99,8 +101,8 @@ def deviations(
         force, loss = law.virgin_forces(approach.size), 0.0
         for way in ways:
             moved = law.advance(force, approach, approach, np.tile([way, 0.0], (approach.size, 1)))
-            force, loss = moved.force, float(patches.share @ moved.loss)
-        return float(patches.share @ moved.traction[:, 0]), loss
+            force, loss = moved.force, float(patches.area_share @ moved.dissipated_energy)
+        return float(patches.area_share @ moved.traction[:, 0]), loss
 
     ways, limit = np.linspace(0.0, theorem.gross, ALONG + 1)[1:], theorem.force(theorem.gross)
     worst = max(abs(along(u)[0] - theorem.force(u)) for u in ways.tolist()) / limit
@@ -153,7 +155,9 @@ def main() -> None:
             areas = np.max([a for _, a in found], axis=0)
             cells = [f"{max(f for f, _ in found):.2%}", *(f"{a:.1%}" for a in areas)]
             print("| " + " | ".join([name, f"{first:g}", *cells]) + " |", flush=True)
-    print(f"{spring.patches.share.size} patches, {spring.friction.foundation().slider_count} sliders each\n")
+    print(
+        f"{spring.patches.area_share.size} patches, {spring.friction.foundation().slider_count} sliders each\n"
+    )
     print_counts()
     print_swings()
 
@@ -161,7 +165,7 @@ def main() -> None:
 def print_swings() -> None:
     """Shear of the default joint at a shift that stays, while the normal force swings: over the first one."""
     spring = BoltedJointSpring.of(load_default("bolted_joint").values)
-    share, whole = spring.patches.share, spring.friction.foundation()
+    share, whole = spring.patches.area_share, spring.friction.foundation()
     start = spring.curve.inverse(preload_pressure(spring.joint, spring.patches, SWUNG, 0.0))
 
     def load(apart: float) -> float:

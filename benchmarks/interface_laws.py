@@ -7,7 +7,7 @@ from band_of_waves import periodic
 from boundary_element import bonded, press, refined, slope
 from jointfmu_tools.fractal import areal_roughness
 
-from jointfmu.contact.interface import at_pressure, solve_largest_spot, stiffness_curve
+from jointfmu.contact.interface import evaluate_at_pressure, solve_largest_spot, stiffness_curve
 from jointfmu.contact.laws import yu2022
 from jointfmu.contact.surface import contact_modulus
 from jointfmu.parameters import load_default
@@ -116,7 +116,7 @@ def law_state(case, side):
     """The law on the same nominal area: k [N/m3], area and plastic share of the real area [1]."""
     law = case.on(side)
     u = solve_largest_spot(law, case.pressures)
-    s, state = law.spots(), at_pressure(law, case.pressures)
+    s, state = law.spots(), evaluate_at_pressure(law, case.pressures)
     if "elastic_fraction" in state:
         elastic = state["elastic_fraction"]
     elif "elastic_area" in s.terms:

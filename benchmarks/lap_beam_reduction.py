@@ -69,7 +69,7 @@ class Structure:
         slides = 3 * _ends(self.bodies[1])[0]
         held = (np.union1d(first, pins(self.bodies[0])), np.union1d(second, slides))
         model = ContactModel(self.bodies, self.interface, law, gap, fixed_unknowns=held)
-        area = self.interface.area.sum()
+        area = self.interface.quadrature_area.sum()
         return model.solve(loads, 0.5 * preload * len(heads) / area)
 
     def stiffness(self, springs):
@@ -77,7 +77,7 @@ class Structure:
         total = sp.block_diag([body.stiffness for body in self.bodies], format="csr") + self.bolts
         for axis in AXES:
             opening = self.relative(axis)
-            total = total + opening.T @ sp.diags(self.interface.area * springs[:, axis]) @ opening
+            total = total + opening.T @ sp.diags(self.interface.quadrature_area * springs[:, axis]) @ opening
         return total.tocsr()
 
 

@@ -47,7 +47,7 @@ class Drive:
         self.brakes, self.turns = LIMIT_SHARES.size if friction else 0, turns
         joint = self.law.joint
         self.most = LAYER * max(friction_limits(joint, 0.0, joint.rated_torque)) * LIMIT_SHARES[: self.brakes]
-        self.held, self.place = np.zeros(self.law.hysteresis.limit.size), 0.0
+        self.held, self.place = np.zeros(self.law.hysteresis.friction_limit.size), 0.0
 
     def seen(self, x):
         """Wind-up [rad], slope of the error, its rate [rad/s]."""
@@ -57,13 +57,19 @@ class Drive:
     def hysteresis(self, phi):
         """Torques of its sliders [N.m] from the last turn on."""
         found = self.law.hysteresis
-        return np.clip(self.held + found.stiffness * (phi - self.place), -found.limit, found.limit)
+        return np.clip(
+            self.held + found.stiffness * (phi - self.place), -found.friction_limit, found.friction_limit
+        )
 
     def rates(self, t, x):
         joint, found = self.law.joint, self.law.hysteresis
         phi, slope, rise = self.seen(x)
         states = x[4 + self.brakes :]
-        held = self.hysteresis(phi) if self.turns else np.clip(states, -found.limit, found.limit)
+        held = (
+            self.hysteresis(phi)
+            if self.turns
+            else np.clip(states, -found.friction_limit, found.friction_limit)
+        )
         load = math.copysign(float(self.law.curve.derivatives(np.array(abs(phi)), 0)[0]), phi)
         tau = transmitted_torque(joint, x[:4], Spring(phi, load, 0.0, held.sum(), 0.0, slope))
         positive, negative = friction_limits(joint, x[1], tau)
@@ -77,7 +83,7 @@ class Drive:
         own = [x[1], torque / MOTOR, x[3], -(tau + WEIGHT * math.sin(x[2])) / LINK]
         if self.turns:
             return np.concatenate([own, rate])
-        slipped = abs(rise) * (states - held) / (LAYER * found.limit)
+        slipped = abs(rise) * (states - held) / (LAYER * found.friction_limit)
         return np.concatenate([own, rate, found.stiffness * (rise - slipped)])
 
     def run(self, tolerance):
@@ -116,11 +122,11 @@ class Bolted:
     def __init__(self, kept):
         spring = BoltedJointSpring.of_nodes(load_default("bolted_joint").values)
         found = combine_nodes(spring, 9e3, 0.0)
-        rows, self.kept, self.tight = found.table.rows, kept, found.force
+        rows, self.kept, self.tight = found.force_table.rows, kept, found.preload_contact_force
         self.load = BPoly.from_derivatives(rows[:, 0], rows[:, 1:4])
         self.curve = [self.load, self.load.derivative(), self.load.derivative(2)]
         self.shear, self.mu, self.heights = found.shear_ratio, spring.joint.mu, found.pair_boundaries
-        self.K, self.Q = found.sliders.T
+        self.K, self.Q = found.slider_properties.T
         stiff = float(self.curve[1](0.0))
         self.reach = np.array([self.mu / self.shear, self.mu / self.shear, 1.0]) * self.tight / stiff
         self.rate = np.sqrt(stiff * np.array([self.shear, self.shear, 1.0]) / MASS)

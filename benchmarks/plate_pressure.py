@@ -85,7 +85,7 @@ def shown(file: ParameterFile, shape: PressureDistribution, fine: PressureDistri
     """Two lines: the shares inside the circles, and the joint's stiffness."""
     bolts = file.values.pattern.bolts
     apart = np.hypot(*np.moveaxis(fine.position[:, None, :] - bolts, -1, 0)).min(axis=1)
-    force, rest = fine.share * fine.preload_shape, (0.0, 0.0, 0.0)
+    force, rest = fine.area_share * fine.preload_shape, (0.0, 0.0, 0.0)
     shares = "  ".join(f"{force[apart < r].sum():.3f} in {r * 1e3:g} mm" for r in RADII)
     shares += f"  radius of gyration {1e3 * np.sqrt(force @ apart**2):.4g} mm"
     spring = BoltedJointSpring.of_nodes(file.values, shape)

@@ -84,7 +84,7 @@ def compared(refinement: float, top: float) -> tuple[Array, dict[str, Array]]:
     shear, spring, linear = lap.linear(REACH)
     normal, friction = shear / spring.friction.foundation().stiffness_ratio, lap.values.mu * PRESS
     bodies = replace(lap.bodies, interface=patches(lap.bodies.interface))
-    at = bodies.interface.area
+    at = bodies.interface.quadrature_area
     elements = Elements.of(bodies, np.full(at.size, PRESS / at.sum()), spring, friction, np.eye(6)[0])
     motion = np.eye(6)[0] * elements.motion[0]
     down = np.linspace(1.0, -1.0, STEPS + 1)[1:]

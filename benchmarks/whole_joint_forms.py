@@ -162,11 +162,19 @@ class Lap:
             held.append(np.union1d(ends, 3 * np.flatnonzero(z > z.max() - 1e-9) + 2))
         joint = replace(joint, attachment_unknowns=(held[0], held[1]))
         at = patches(joint.interface)
-        one = np.ones(at.area.size)
-        x, y = (at.position - at.area @ at.position / at.area.sum()).T
-        lists = {"share": at.area / at.area.sum(), "x": x, "y": y, "equal": one, "tilt": y / y.max()}
+        one = np.ones(at.quadrature_area.size)
+        x, y = (
+            at.quadrature_position - at.quadrature_area @ at.quadrature_position / at.quadrature_area.sum()
+        ).T
+        lists = {
+            "share": at.quadrature_area / at.quadrature_area.sum(),
+            "x": x,
+            "y": y,
+            "equal": one,
+            "tilt": y / y.max(),
+        }
         field = NodalField(**{name: tuple(each.tolist()) for name, each in lists.items()})
-        area = float(at.area.sum())
+        area = float(at.quadrature_area.sum())
         values = replace(values, pattern=field, A_0=area, n_bolts=1.0, row_bolts=1.0, bolt_stiffness=0.0)
         return cls(assembly, joint, values)
 
@@ -177,12 +185,12 @@ class Lap:
         spring = BoltedJointSpring.of(self.values)
         normal = shear / spring.friction.foundation().stiffness_ratio
         spring = replace(spring, curve=linear_curve(normal, PRESS / self.values.A_0 / normal))
-        springs = np.tile([shear, shear, normal], (self.bodies.interface.area.size, 1))
+        springs = np.tile([shear, shear, normal], (self.bodies.interface.quadrature_area.size, 1))
         return shear, spring, self.bodies.linearize(springs, 0.0)
 
     def reduced(self, spring: BoltedJointSpring, linear: LinearJoint, normal: float) -> BoltedJointSpring:
         """The joint on the modes of its bodies."""
-        stiffness = np.full(self.bodies.interface.area.size, normal)
+        stiffness = np.full(self.bodies.interface.quadrature_area.size, normal)
         bodies = reduce_bodies(linear, spring, stiffness, PRESS)
         whole = BoltedJointSpring.of(replace(self.values, sides="elastic", bodies=bodies))
         return replace(whole, curve=spring.curve)

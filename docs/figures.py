@@ -15,7 +15,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from jointfmu_fmu_src.python.build import runtime_sources
+from jointfmu_fmu_src.python.build import collect_runtime_sources
 from jointfmu_tools import cli, plots
 from jointfmu_tools.job.checks import run_default_ramp
 from jointfmu_tools.joints.harmonic_drive import job
@@ -142,7 +142,7 @@ def _layers(package: str) -> list[list[str]]:
 
 def _inside() -> set[str]:
     """Names of the modules and packages of which something runs inside a Python FMU."""
-    files = [Path(name) for kind in KINDS.values() for name in runtime_sources(kind)]
+    files = [Path(name) for kind in KINDS.values() for name in collect_runtime_sources(kind)]
     return {name for file in files for name in (*file.parent.parts, file.stem)}
 
 

@@ -21,8 +21,12 @@ import pytest
 from filelock import FileLock
 from fmpy import platform_tuple
 from hypothesis import settings
-from jointfmu_fmu_src.native.compiled.cache import COMPILER, compiler_cache, parts_folder
-from jointfmu_fmu_src.native.compiled.compiler import TARGETS, libraries
+from jointfmu_fmu_src.native.compiled.cache import (
+    COMPILER_CACHE_VARIABLE,
+    compiler_cache,
+    compiled_model_folder,
+)
+from jointfmu_fmu_src.native.compiled.compiler import TARGETS, compile_libraries
 from jointfmu_tools.host import Instance
 
 settings.register_profile("jointfmu", deadline=None, max_examples=60, derandomize=True)
@@ -36,7 +40,9 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 sys.dont_write_bytecode = False
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # of the processes of xdist, which share the cores
-os.environ.setdefault(COMPILER, str(compiler_cache()))  # tests without kept parts compile with a warm cache
+os.environ.setdefault(
+    COMPILER_CACHE_VARIABLE, str(compiler_cache())
+)  # tests without kept parts compile with a warm cache
 
 HERE = Path(__file__).parent
 RELEASED = ("-target", TARGETS[platform_tuple], "-O2", "-s")
@@ -225,14 +231,18 @@ def here_alone(versions: str = "23") -> Iterator[None]:
     from jointfmu_fmu_src.native.compiled import kept
     from jointfmu_tools.systems.fmu import build as system
 
-    places, read = kept._places, kept.unpack_model
+    places, read = kept._candidate_paths, kept.unpack_model
 
     def places_here(name: str) -> tuple[Path, ...]:
         *others, last = places(name)
-        return *others, last, parts_folder() / f"here{versions}" / last.relative_to(parts_folder())
+        return (
+            *others,
+            last,
+            compiled_model_folder() / f"here{versions}" / last.relative_to(compiled_model_folder()),
+        )
 
     def libraries_here(*files: Any, **options: Any) -> dict[str, bytes]:
-        return libraries(*files[:3], [platform_tuple], **options)
+        return compile_libraries(*files[:3], [platform_tuple], **options)
 
     def read_here(content: bytes) -> kept.CompiledModel:
         part = read(content)

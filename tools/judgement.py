@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from jointfmu.contact.interface import InterfaceLaw, find_validity_violations, stiffness_curve
-from jointfmu.contact.roughness import GAMMA, MAX_HEIGHT, combined_height, predicted_stiffness
+from jointfmu.contact.roughness import PERSSON_GAMMA, MAX_HEIGHT, combined_height, predicted_stiffness
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array, Number
@@ -45,14 +45,14 @@ class StiffnessComparison:
 
     def __str__(self) -> str:
         at = f"at {_format_range(self.pressure / 1e6)} MPa, h = {1e6 * self.h:.3g} um"
-        return f"the law's K is {_format_range(self.ratio)} times p/({GAMMA:g} h) {at}"
+        return f"the law's K is {_format_range(self.ratio)} times p/({PERSSON_GAMMA:g} h) {at}"
 
     def to_json(self) -> dict[str, Any]:
         """Convert to a JSON object."""
         columns = (self.pressure, self.stiffness, predicted_stiffness(self.pressure, self.h), self.ratio)
         names = ("pressure", "stiffness", "expected", "ratio")
         points = [dict(zip(names, map(float, row), strict=True)) for row in zip(*columns, strict=True)]
-        return {"h": self.h, "gamma": GAMMA, "points": points}
+        return {"h": self.h, "gamma": PERSSON_GAMMA, "points": points}
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,7 +119,7 @@ def assess_law(
     if comparison is not None and comparison.is_doubtful:
         warnings.append(
             f"the law's K is {_format_range(comparison.ratio)} times that of the roughness, "
-            f"K/A_0 = p/({GAMMA:g} h) with h = {1e6 * comparison.h:.3g} um: beyond a factor of "
+            f"K/A_0 = p/({PERSSON_GAMMA:g} h) with h = {1e6 * comparison.h:.3g} um: beyond a factor of "
             f"{MAX_RATIO:g} a "
             "measurement decides, and without one believe the roughness (docs/validity.md)"
         )

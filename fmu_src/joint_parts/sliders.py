@@ -5,53 +5,64 @@ import casadi as ca
 from jointfmu.mechanics.jenkins import ReturnMapping, elastic_predictor, limit_function, return_map
 from jointfmu.quantity import select
 
-from .graph import Graph, symbols
+from .graph import Graph, make_symbols
 
-SLIDERS = ("sliders", "vectors")
+SLIDER_FILES = ("sliders", "vectors")
 """Shared C files of joints with friction sliders."""
 
 
-def add_sliders(g: Graph) -> None:
+def add_slider_functions(function_graph: Graph) -> None:
     """Add the slider functions: in one direction with a constant or a changing limit, and in a plane."""
-    force, shift, before, after, stiffness, compliance = symbols("x", 6)
+    force, shift, before, after, stiffness, compliance = make_symbols("x", 6)
     tried = elastic_predictor([force], 1.0, stiffness, [shift])
     doc = "force, shift, limit, stiffness -> force if it sticks, whether that is at the limit or beyond"
-    g.add("stick_line", doc, [force, shift, after, stiffness], [*tried, limit_function(tried, after)])
+    function_graph.add_function(
+        "stick_line", doc, [force, shift, after, stiffness], [*tried, limit_function(tried, after)]
+    )
     slid = return_map([force], 1.0, stiffness, [shift], after, after, stiffness, compliance)
     results = "force, tangent along and across, loss"
     doc = (
         f"force, limit, stiffness, compliance, shift -> {results}, its derivative in the shift: the friction"
     )
-    heat = select(slid.slip > 0.0, slid.force[0], 0.0)
-    y = [*slid.force, *slid.tangent, slid.loss, heat]
-    g.add("slide_steady", doc, [force, after, stiffness, compliance, shift], y)
+    heat = select(slid.slip_force > 0.0, slid.force[0], 0.0)
+    y = [*slid.force, *slid.tangent, slid.dissipated_energy, heat]
+    function_graph.add_function("slide_steady", doc, [force, after, stiffness, compliance, shift], y)
     slid = return_map([force], 1.0, stiffness, [shift], before, after, stiffness, compliance)
     doc = f"force, limit before, stiffness, compliance, shift, limit after -> {results}"
-    x, y = [force, before, stiffness, compliance, shift, after], [*slid.force, *slid.tangent, slid.loss]
-    g.add_with_seed("slide_line", doc, x, y, constant_count=4)
-    _plane(g)
+    x, y = (
+        [force, before, stiffness, compliance, shift, after],
+        [*slid.force, *slid.tangent, slid.dissipated_energy],
+    )
+    function_graph.add_with_derivative("slide_line", doc, x, y, constant_count=4)
+    _add_plane_functions(function_graph)
 
 
-def _plane(g: Graph) -> None:
+def _add_plane_functions(function_graph: Graph) -> None:
     """Add the functions of a slider with two tangential directions."""
     x, (force, after, shift), slid = _slider_update()
     tried = elastic_predictor(force, x[2], x[3], shift)
     doc = "force, part kept, gain, shift"
     y = [*tried, limit_function(tried, after)]
-    g.add(
+    function_graph.add_function(
         "stick_plane",
         f"{doc}, limit -> force if it sticks, whether at the limit or beyond",
         [*x[:6], after],
         y,
     )
     doc = f"{doc}, limits before and after, stiffness, compliance"
-    y = [*slid.force, *slid.tangent, slid.loss, slid.slip]
-    g.add("slide_plane", f"{doc} -> force, tangent xx, xy, yy, loss, slip", x, y)
-    g.add("return_plane", f"{doc} -> force", x, slid.force)
-    g.add_seed("slide_plane", doc, x, y, constant_count=2)
+    y = [*slid.force, *slid.tangent, slid.dissipated_energy, slid.slip_force]
+    function_graph.add_function("slide_plane", f"{doc} -> force, tangent xx, xy, yy, loss, slip", x, y)
+    function_graph.add_function("return_plane", f"{doc} -> force", x, slid.force)
+    function_graph.add_derivative("slide_plane", doc, x, y, constant_count=2)
     x, (_, after, shift), slid = _slider_update()  # new symbols: a separate function
     y = list(ca.densify(ca.jacobian(ca.vertcat(*slid.force), ca.vertcat(*shift, after))).T.nz)
-    g.add("return_slopes", f"{doc} -> derivatives of the force by shift and limit after", x, y, looped=True)
+    function_graph.add_function(
+        "return_slopes",
+        f"{doc} -> derivatives of the force by shift and limit after",
+        x,
+        y,
+        called_in_loops=True,
+    )
 
 
 def _slider_update() -> tuple[list[ca.SX], tuple[list[ca.SX], ca.SX, list[ca.SX]], ReturnMapping]:
@@ -61,7 +72,7 @@ def _slider_update() -> tuple[list[ca.SX], tuple[list[ca.SX], ca.SX, list[ca.SX]
     increment, limits before and after, stiffness, compliance), among them (force, limit after, increment),
     and the result.
     """
-    force, shift, (keeps, carries) = symbols("q", 2), symbols("u", 2), symbols("k", 2)
-    before, after, stiffness, compliance = ends = symbols("x", 4)
+    force, shift, (keeps, carries) = make_symbols("q", 2), make_symbols("u", 2), make_symbols("k", 2)
+    before, after, stiffness, compliance = ends = make_symbols("x", 4)
     slid = return_map(force, keeps, carries, shift, before, after, stiffness, compliance)
     return [*force, keeps, carries, *shift, *ends], (force, after, shift), slid

@@ -431,10 +431,10 @@ def test_the_main_job_builds_checks_and_reports(job: Job) -> None:
         with (report / f"{name}.csv").open(newline="") as file:
             header, *rows = csv.reader(file)
         model = MODELS[name]
-        assert header[0].split(" [")[0] == model.ramp.input
+        assert header[0].split(" [")[0] == model.ramp.input_name
         assert [h.split(" [")[0] for h in header[1:]] == [v.name for v in model.outputs]
-        assert len(rows) == round(model.ramp.end / model.ramp.step) + 1
-        assert float(rows[-1][0]) == pytest.approx(model.ramp.end, rel=1e-12)
+        assert len(rows) == round(model.ramp.end_value / model.ramp.value_step) + 1
+        assert float(rows[-1][0]) == pytest.approx(model.ramp.end_value, rel=1e-12)
     page = (report / "index.html").read_text(encoding="utf-8")
     links = Links()
     links.feed(page)

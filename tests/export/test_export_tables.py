@@ -12,7 +12,7 @@ from jointfmu_tools.joints.bolted_joint.export import MAX_FORCE_RATIO, Tightened
 from scipy.interpolate import PchipInterpolator
 
 import jointfmu
-from jointfmu.contact.interface import at_pressure
+from jointfmu.contact.interface import evaluate_at_pressure
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.gear_contact.spring import GearContactSpring
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
@@ -52,7 +52,7 @@ def test_law_table_keeps_to_the_law(joint, error, request):
     assert table.rows[0].tolist() == [0.0, 0.0, 0.0]
     assert p[1] == pytest.approx(curve.closing_end_load, rel=1e-9)
     assert p[-1] == pytest.approx(law.hardness, rel=1e-9)
-    state = at_pressure(law, p[1:])
+    state = evaluate_at_pressure(law, p[1:])
     np.testing.assert_allclose(k[1:], state["K_N"] / law.A_0, rtol=1e-7)  # the curve is within 1e-8
     some = np.geomspace(curve.closing_end_load, 0.999 * curve.end[1], 20001)
     at = curve.inverse(some) - curve.displacement[0]

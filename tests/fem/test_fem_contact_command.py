@@ -13,7 +13,7 @@ from jointfmu_tools.fem.convergence import (
     RESULT_UNITS,
     MeshResult,
     observed_orders,
-    refinements,
+    refinement_series,
     relative_changes,
 )
 
@@ -173,7 +173,7 @@ def test_observed_orders():
     """Values that behave like 1 + h^2 have the order two; one that does not settle has none."""
     rows = [
         MeshResult(refinement, 1, 1, dict.fromkeys(RESULT_UNITS, 1.0 + 1e-4 / refinement**2))
-        for refinement in refinements(3)
+        for refinement in refinement_series(3)
     ]
     assert observed_orders(rows)["peak"] == pytest.approx(
         2.0, abs=1e-3

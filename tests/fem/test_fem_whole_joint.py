@@ -90,8 +90,8 @@ def test_a_mirrored_side_moves_as_the_mirror_image(monkeypatch):
     springs = even(joint, 1e12, 2e12)
 
     def moved():
-        cells = CellLoads.from_joint(joint, near, np.ones(joint.interface.area.size))
-        return cells.displacement, joint.linearize(springs, 1e8).displacement
+        cells = CellLoads.from_joint(joint, near, np.ones(joint.interface.quadrature_area.size))
+        return cells.unit_load_displacement, joint.linearize(springs, 1e8).unit_motion_displacement
 
     found = moved()
     soft = replace(joint, bodies=(joint.bodies[0], replace(joint.bodies[1], E=1e11)))

@@ -83,8 +83,8 @@ def test_patches_lose_and_resist_as_all_points(disc):
     fitted = fit(disc).fit(means)
     before, after = (compute_friction_work(law, shears, few, each) for each in (means, fitted))
     partial = np.arange(1, 7)  # along x
-    assert np.min(before.loss[partial] / aim.loss[partial]) < 0.97
-    np.testing.assert_allclose(after.loss[partial], aim.loss[partial], rtol=0.03)
+    assert np.min(before.cycle_loss[partial] / aim.cycle_loss[partial]) < 0.97
+    np.testing.assert_allclose(after.cycle_loss[partial], aim.cycle_loss[partial], rtol=0.03)
     size = np.linalg.norm(aim.forces[:7, :2], axis=1)
     missed = [np.max(np.linalg.norm((w.forces - aim.forces)[:7, :2], axis=1) / size) for w in (before, after)]
     assert missed[1] < max(0.5 * missed[0], 0.01)

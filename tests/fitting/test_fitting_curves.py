@@ -138,7 +138,7 @@ def test_single_open_loop_has_no_drift():
 def test_what_is_not_determined_is_said_by_name(loops):
     """drive_scale and mean_over_peak act only as a product."""
     found = torque_angle.fit(loops, fitted_names=[*torque_angle.FITTED_PARAMETERS, "mean_over_peak"])
-    rows = {row["name"]: row["determined"] for row in found.rows()}
+    rows = {row["name"]: row["determined"] for row in found.unknown_rows()}
     assert rows == {
         "K_FTS0": True,
         "drive_scale": False,
@@ -206,7 +206,7 @@ def test_area_has_no_effect(stiffness):
     """The law knows loads, no pressures: a start elsewhere stays there."""
     start = load_default("bolted_joint").with_values({"A_0": 0.05}, "user", "test")
     found = preload.fit(stiffness, start, ["surface.D", "surface.G", "A_0"])
-    rows = {row["name"]: row["determined"] for row in found.rows()}
+    rows = {row["name"]: row["determined"] for row in found.unknown_rows()}
     assert rows == {"surface.D": True, "surface.G": True, "A_0": False}
     assert found.solution.values["A_0"] == pytest.approx(0.05, rel=0.01)  # held by the ridge
 

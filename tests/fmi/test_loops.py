@@ -41,7 +41,7 @@ def test_hysteresis_appears(drive, amplitude):
     u = np.array([AMPLITUDES[amplitude]])
     assert row["loss"] == pytest.approx(float(law.loop_area(u)[0]), rel=1e-3)
     assert row["loss"] == pytest.approx(row["E_loss"], rel=1e-3)
-    force = law.friction(u) + law.elastic.force(u)
+    force = law.friction(u) + law.elastic_spring.force(u)
     assert row["secant_stiffness"] == pytest.approx(float(force[0] / u[0]), rel=1e-9)
     assert row["loss_factor"] == pytest.approx(row["loss"] / (np.pi * force[0] * u[0]), rel=1e-12)
 

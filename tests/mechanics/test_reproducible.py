@@ -76,7 +76,7 @@ def test_points_and_patches_are_those_of_inputs_a_bit_off(name, searched):
         for one, few in zip(
             before, (patches.reduce_points(other, 120), friction.reduce_patches(other, 22)), strict=True
         ):
-            np.testing.assert_allclose(few.share, one.share, rtol=AGREE)
+            np.testing.assert_allclose(few.area_share, one.share, rtol=AGREE)
             for number in NUMBERS[1:]:
                 was, now = getattr(one, number), getattr(few, number)
                 np.testing.assert_allclose(now, was, rtol=AGREE, atol=AGREE * np.max(np.abs(was)))
@@ -93,12 +93,12 @@ def test_rounded_numbers_keep_their_place():
     )
     once = round_distribution(shape)
     assert content(round_distribution(once)) == content(once)
-    assert np.max(np.abs(once.share / shape.share - 1.0)) < 2.0**-19
+    assert np.max(np.abs(once.area_share / shape.area_share - 1.0)) < 2.0**-19
     assert np.max(np.abs(once.moment_shape - shape.moment_shape)) < 2.0**-19 * np.max(
         np.abs(shape.moment_shape)
     )
     mirrored = round_distribution(
-        PressureDistribution(shape.share, -shape.position, shape.preload_shape, -shape.moment_shape)
+        PressureDistribution(shape.area_share, -shape.position, shape.preload_shape, -shape.moment_shape)
     )
     assert np.array_equal(mirrored.position, -once.position)
     assert np.array_equal(mirrored.moment_shape, -once.moment_shape)

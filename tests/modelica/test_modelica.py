@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from jointfmu_fmu_src.partners import parameters as partner_parameters
+from jointfmu_fmu_src.partners import load_partner_parameters as partner_parameters
 from jointfmu_tools.cli import main
 from jointfmu_tools.joint_parts import load_tool_module
 from jointfmu_tools.joints.bolted_joint import modelica as bolted_modelica
@@ -199,7 +199,7 @@ def test_a_thinned_curve_keeps_load_and_stiffness(kind: str, request: pytest.Fix
 
 def test_one_total_stands_for_all_nodes_of_the_bolted_joint(bolted: BoltedJointSpring):
     joint = bolted_modelica.combine_nodes(bolted, 15e3, 4500.0)
-    total = records.to_curve(joint.table)
+    total = records.to_curve(joint.force_table)
     preload = 15e3 * bolted.joint.n_bolts
     rest = bolted.evaluate(15e3, 4500.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     for s_z in (-5e-6, -1e-6, -1e-7, 0.0, 1e-7, 1e-6, 5e-6, 2e-5, 4e-5):
@@ -207,7 +207,7 @@ def test_one_total_stands_for_all_nodes_of_the_bolted_joint(bolted: BoltedJointS
         load, stiffness = (float(x) for x in total.derivatives(-s_z))
         assert load == pytest.approx(exact["f_z"], abs=EXACT * max(preload, abs(exact["f_z"])))
         assert stiffness == pytest.approx(exact["K_zz"], abs=EXACT * max(rest["K_zz"], exact["K_zz"]))
-        eta = np.interp(-s_z, *joint.damping.T)
+        eta = np.interp(-s_z, *joint.damping_table.T)
         assert eta == pytest.approx(exact["eta_n"], rel=2.0 * bolted_modelica.DAMPING_TOLERANCE)
 
 
@@ -432,13 +432,16 @@ def test_elastic_shear_of_the_bolted_component_is_that_of_the_package(rumoca: An
     wires = "\n  ".join(f"connect(joint.flange_{a}, m{a}.flange);" for a in "xyz")
     found = simulate(rumoca, top(body, wires, move("Translational", "s")), 1.0, 1e-2)
     total = bolted_modelica.combine_nodes(bolted, 9e3, 0.0)
-    limit, u = bolted.joint.mu * total.force, (found["joint.s_rel[1]"], found["joint.s_rel[2]"])
+    limit, u = (
+        bolted.joint.mu * total.preload_contact_force,
+        (found["joint.s_rel[1]"], found["joint.s_rel[2]"]),
+    )
     assert np.max(np.hypot(*u) * found["joint.K_t"]) > 2.0 * limit
     curve = [found[f"joint.{name}"] for name in ("G", "K_n", "bend")]
     x, y, *_, lifted, _ = elastic_shear(limit, total.shear_ratio, [*curve, 0.0 * u[0]], *u)
     for name, force in (("f[1]", x), ("f[2]", y)):
         np.testing.assert_allclose(found[f"joint.{name}"], -force, rtol=0.0, atol=EXACT * limit)
-    normal = found["joint.G"] - total.force + lifted
+    normal = found["joint.G"] - total.preload_contact_force + lifted
     np.testing.assert_allclose(found["joint.f[3]"], normal, rtol=0.0, atol=EXACT * limit)
 
 

@@ -22,10 +22,15 @@ import pytest
 from clients import needs
 from conftest import RELEASED
 from joint_cases import JOINTS
-from jointfmu_fmu_src.native.code.generate import RUNTIME, runtime, sources, token
+from jointfmu_fmu_src.native.code.generate import (
+    RUNTIME_FOLDER,
+    list_runtime_files,
+    generate_sources,
+    read_token,
+)
 from jointfmu_fmu_src.native.compiled.compiler import TARGETS
 from jointfmu_fmu_src.partners import PARTNERS
-from jointfmu_fmu_src.partners import parameters as partner_parameters
+from jointfmu_fmu_src.partners import load_partner_parameters as partner_parameters
 from jointfmu_tools.systems.fmu.assembly import assembly
 from jointfmu_tools.systems.fmu.build import all_sources
 from jointfmu_tools.systems.system import system
@@ -111,7 +116,7 @@ class Sources(NamedTuple):
     @property
     def arguments(self) -> tuple[str, ...]:
         """Token and layout on the command line of a host."""
-        return (token(dict(self.files)), str(self.inputs), str(self.outputs), str(self.parameters))
+        return (read_token(dict(self.files)), str(self.inputs), str(self.outputs), str(self.parameters))
 
 
 ELASTIC_FILES: list[ParameterFile] = []
@@ -124,16 +129,18 @@ def c_of(name: str) -> Sources:
     if name == ELASTIC:
         (file,) = ELASTIC_FILES
         model = MODELS["BoltedJoint"].with_parameters(file.joint, file.values)
-        files = sources(model.name, file)
+        files = generate_sources(model.name, file)
         return Sources(files, len(model.inputs), len(model.outputs), len(model.parameter_fields()))
     if model := (MODELS | PARTNERS).get(name):
-        files = sources(name, partner_parameters(name) if name in PARTNERS else load_default(model.joint))
+        files = generate_sources(
+            name, partner_parameters(name) if name in PARTNERS else load_default(model.joint)
+        )
         return Sources(files, len(model.inputs), len(model.outputs), len(model.parameter_fields()))
     if name == SYSTEM:
         parts = assembly(system(name))
         counts = len(parts.inputs), len(parts.outputs), sum(len(p.exposed) for p in parts.components)
         return Sources(all_sources(parts)[0], *counts)
-    files = {p.name: p.read_text() for p in [*runtime(), *(HOSTS / name).iterdir()]}
+    files = {p.name: p.read_text() for p in [*list_runtime_files(), *(HOSTS / name).iterdir()]}
     return Sources(files, *ALONE[name])
 
 
@@ -215,7 +222,9 @@ def ramp_points(name: str, count: int = 40) -> str:
     for i in range(1, count):
         other = 1e-7 * math.sin(i)
         row = (
-            model.ramp.end * i / count if v.name == model.ramp.input else v.start + (v.start == 0.0) * other
+            model.ramp.end_value * i / count
+            if v.name == model.ramp.input_name
+            else v.start + (v.start == 0.0) * other
             for v in model.inputs
         )
         rows.append(" ".join(repr(x) for x in row))
@@ -244,7 +253,7 @@ def test_no_warning(compiler: str, builder: Builder, name: str) -> None:
 def test_files_use_each_other_in_one_direction() -> None:
     """A .c file with its header is one; kind.h only names the joint's header, for the size of a joint."""
     uses: dict[str, set[str]] = {}
-    for path in RUNTIME.rglob("*.[ch]"):
+    for path in RUNTIME_FOLDER.rglob("*.[ch]"):
         found = set(re.findall(r'#include "(\w+)\.h"', path.read_text(encoding="utf-8")))
         uses.setdefault(path.stem, set()).update(found - {path.stem, "kind"})
     assert uses["fmi3"]

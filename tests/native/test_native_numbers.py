@@ -9,7 +9,7 @@ from types import ModuleType
 
 import pytest
 from jointfmu_fmu_src import joints
-from jointfmu_fmu_src.joint_parts.native import COUNTS, NUMBERS, Named
+from jointfmu_fmu_src.joint_parts.native import COUNT_NAMES, NUMBER_NAMES, ModuleConstants
 from jointfmu_fmu_src.joints.harmonic_drive import native as drive_native
 from jointfmu_fmu_src.native.code import generate
 
@@ -24,14 +24,14 @@ pytestmark = pytest.mark.slow
 DRIVE, BOLTED, GEAR = "HarmonicDriveSpring", "BoltedJoint", "GearContact"
 
 
-def pairs(*given: Named) -> list[tuple[ModuleType, str]]:
+def pairs(*given: ModuleConstants) -> list[tuple[ModuleType, str]]:
     """(module, name) of each number."""
     return [(module, name) for one in given for module, names in one.items() for name in names]
 
 
-TABLES = pairs(NUMBERS, COUNTS)
+TABLES = pairs(NUMBER_NAMES, COUNT_NAMES)
 EVERY = {
-    DRIVE: (*TABLES, *pairs(drive_native.NUMBERS), (hysteresis, "MAX_LIMIT_ITERATIONS")),
+    DRIVE: (*TABLES, *pairs(drive_native.NUMBER_NAMES), (hysteresis, "MAX_LIMIT_ITERATIONS")),
     GEAR: (*TABLES, (curve, "CLOSING_RATIO")),
 }
 
@@ -39,7 +39,7 @@ EVERY = {
 def c_of(name: str) -> dict[str, str]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(generate, "_laws", {})  # what is kept is of other numbers
-        return generate.sources(name, load_default(MODELS[name].joint))
+        return generate.generate_sources(name, load_default(MODELS[name].joint))
 
 
 @cache
@@ -69,7 +69,7 @@ def test_c_follows_the_numbers(monkeypatch: pytest.MonkeyPatch, name: str) -> No
 
 def test_runtime_types_none_of_them_again() -> None:
     names = {constant for pairs in EVERY.values() for _, constant in pairs} | {"CURVE_NODES"}
-    folders = [generate.RUNTIME, *(parts.folder for parts in joints.PARTS.values())]
+    folders = [generate.RUNTIME_FOLDER, *(parts.folder for parts in joints.FMU_PARTS.values())]
     for path in (path for folder in folders for path in folder.rglob("*.[ch]")):
         typed = re.findall(r"\b(\w+) = [-0-9]|#define (\w+)", path.read_text(encoding="utf-8"))
         assert names.isdisjoint(name for pair in typed for name in pair), path.name

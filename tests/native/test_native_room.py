@@ -50,7 +50,9 @@ def counted(fmu, folder):
             files[name] = f"#include <stddef.h>\n{declared}void *counted_realloc(void *, size_t);\n{text}"
     files["counted.c"] = "#undef malloc\n#undef calloc\n#undef realloc\n" + COUNTED
     units = [name for name in files if name.endswith(".c") and name not in ("windows.c", "fmi3.c")]
-    (built,) = compiler.libraries(fmu.stem, files, units, [fmpy.platform_tuple], linked=OPTIONS).values()
+    (built,) = compiler.compile_libraries(
+        fmu.stem, files, units, [fmpy.platform_tuple], linker_options=OPTIONS
+    ).values()
     (library,) = (unzipped / "binaries" / fmpy.platform).glob("*.so")
     library.write_bytes(built)
     return unzipped

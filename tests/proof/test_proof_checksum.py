@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 from conftest import refused_line
-from jointfmu_fmu_src.proof.standard import FOLDER, MANIFEST
+from jointfmu_fmu_src.proof.standard import REFERENCE_FOLDER, MANIFEST_PATH
 from jointfmu_tools.proof.checksum import ALGORITHMS
 from jointfmu_tools.proof.manifest import RelatedFiles
 
@@ -22,8 +22,8 @@ def fmu(path: Path, attributes: str) -> Path:
     related += 'role="parameter" checksum="00"/><Related source="http://a.b/c" role="other" checksum="00"/>'
     with zipfile.ZipFile(path, "w") as archive:
         archive.writestr("modelDescription.xml", "<fmiModelDescription/>")
-        archive.writestr(MANIFEST, f"<fmiReferences {HEAD}>{related}</fmiReferences>")
-        archive.writestr(f"{FOLDER}/smoke.exp", EXPERIMENTS)
+        archive.writestr(MANIFEST_PATH, f"<fmiReferences {HEAD}>{related}</fmiReferences>")
+        archive.writestr(f"{REFERENCE_FOLDER}/smoke.exp", EXPERIMENTS)
     return path
 
 

@@ -118,13 +118,15 @@ def test_size(unit):
 @pytest.mark.parametrize("unit", UNITS)
 def test_exponents(unit):
     expected = dict(zip(("kg", "m", "s", "rad", "K"), EXPONENTS[unit], strict=True))
-    assert UNITS[unit].base == base_exponents(unit) == {name: n for name, n in expected.items() if n}
+    assert (
+        UNITS[unit].base_exponents == base_exponents(unit) == {name: n for name, n in expected.items() if n}
+    )
     assert unit_size(unit) == 1.0
 
 
 @pytest.mark.parametrize("unit", UNITS)
 def test_display_units_measure_the_same(unit):
-    for shown, times in UNITS[unit].display.items():
+    for shown, times in UNITS[unit].display_factors.items():
         assert base_exponents(shown) == base_exponents(unit)
         assert times * unit_size(shown) == pytest.approx(
             1.0, rel=2e-16

@@ -17,7 +17,7 @@ from browser import Browser, browser
 from clients import needs
 from conftest import made_once
 from joint_cases import CASES, law
-from jointfmu_fmu_src.native.data import split
+from jointfmu_fmu_src.native.data import split_parameters
 from jointfmu_tools import cli
 from jointfmu_tools.laboratory.assemble import write_laboratory
 from jointfmu_tools.laboratory.describe import Module, list_modules
@@ -432,12 +432,12 @@ def test_an_opened_file_is_reset_and_saved(shown: Browser, drawings: dict[str, s
 def test_a_number_beside_the_code_enters_the_data_as_itself_alone(module: Module) -> None:
     """So the page may write it there."""
     file = module.files[0]
-    given = split(module.model, file)
-    for name in given.fixed.keys() & file.values_by_name.keys():
+    given = split_parameters(module.model, file)
+    for name in given.data_values.keys() & file.values_by_name.keys():
         value = 0.9 * file.values_by_name[name] or 1e-6
-        other = split(module.model, file.with_values({name: value}, "user", "x"))
-        assert other.fixed == given.fixed | {name: value}
-        assert other.code == given.code
+        other = split_parameters(module.model, file.with_values({name: value}, "user", "x"))
+        assert other.data_values == given.data_values | {name: value}
+        assert other.code_values == given.code_values
         assert {k: t.rows.tolist() for k, t in other.tables.items()} == {
             k: t.rows.tolist() for k, t in given.tables.items()
         }

@@ -13,7 +13,7 @@ import pytest
 from clients import needs
 from conftest import here_alone
 from jointfmu_fmu_src.native.build import build as native_build
-from jointfmu_fmu_src.partners import parameters as partner_parameters
+from jointfmu_fmu_src.partners import load_partner_parameters as partner_parameters
 from jointfmu_tools import cli
 from jointfmu_tools.fields import nodal_result
 from jointfmu_tools.fields.nodal_result import ContactField

@@ -64,7 +64,7 @@ def built_wheel(out: Path) -> Path:
         copytree(ROOT / folder, tree / folder, ignore=ignored)
     for file in ("setup.py", "pyproject.toml", "README.md", "LICENSE"):
         (tree / file).write_bytes((ROOT / file).read_bytes())
-    every = ahead.structures
+    every = ahead.list_structures
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(ahead, "structures", lambda model: islice(every(model), 1))
         ahead.compile_ahead([NAME], tree / "fmu_src" / "native" / "parts")

@@ -11,8 +11,8 @@ from contextlib import redirect_stdout
 from importlib.resources import files
 from pathlib import Path
 
-from jointfmu_fmu_src.native.code.generate import sources
-from jointfmu_fmu_src.proof.members import proof
+from jointfmu_fmu_src.native.code.generate import generate_sources
+from jointfmu_fmu_src.proof.members import make_proof_files
 from jointfmu_tools.cli import main
 
 from jointfmu.joints import KINDS, MODELS
@@ -29,8 +29,8 @@ def texts(paths: list[Path]) -> dict[str, str]:
         file = load_parameter_file(path)
         for name in (name for name, model in MODELS.items() if model.joint == file.joint):
             model = MODELS[name].with_parameters(file.joint, file.values)
-            made = {k: v for k, v in sources(name, file).items() if k in GENERATED}
-            made |= {k: v.decode() for k, v in proof(model, file).items() if k.endswith(".csv")}
+            made = {k: v for k, v in generate_sources(name, file).items() if k in GENERATED}
+            made |= {k: v.decode() for k, v in make_proof_files(model, file).items() if k.endswith(".csv")}
             found |= {f"{path.stem}/{name}/{k}": text for k, text in made.items()}
     return found
 

@@ -11,10 +11,10 @@ import fmpy
 import numpy as np
 from conftest import here_alone
 from jointfmu_fmu_src.native.compiled.binary import fill_library
-from jointfmu_fmu_src.native.compiled.compiler import file_name
-from jointfmu_fmu_src.native.compiled.kept import compiled_model
-from jointfmu_fmu_src.native.data import data_of, placeholder, split
-from jointfmu_fmu_src.native.description import fmi3_xml
+from jointfmu_fmu_src.native.compiled.compiler import library_file_name
+from jointfmu_fmu_src.native.compiled.kept import get_compiled_model
+from jointfmu_fmu_src.native.data import make_fmu_data, make_placeholder, split_parameters
+from jointfmu_fmu_src.native.description import format_fmi3_description
 from jointfmu_tools.laboratory.describe import Module
 
 from jointfmu.parameters import ParameterFile
@@ -25,15 +25,17 @@ from jointfmu.quantity import flatten_parameters
 def native_fmu(module: Module, folder: Path) -> Path:
     """An FMI 3.0 FMU of a module's first parameter file, with the binary of this machine alone."""
     name, file, here = module.model.name, module.files[0], fmpy.platform_tuple
-    given = split(module.model, file)
+    given = split_parameters(module.model, file)
     with here_alone("3"):
-        part = compiled_model(module.model, file, given)
-    data = data_of(module.model, file, given, part.sources)
-    library = fill_library(part.libraries["3"][here], placeholder(module.model, given), data, name)
+        part = get_compiled_model(module.model, file, given)
+    data = make_fmu_data(module.model, file, given, part.sources)
+    library = fill_library(part.libraries["3"][here], make_placeholder(module.model, given), data, name)
     folder.mkdir(parents=True, exist_ok=True)
     with zipfile.ZipFile(folder / f"{name}.fmu", "w") as archive:
-        archive.writestr("modelDescription.xml", fmi3_xml(module.model, file, data.token, "tunable"))
-        archive.writestr(f"binaries/{here}/{file_name(name, here)}", library)
+        archive.writestr(
+            "modelDescription.xml", format_fmi3_description(module.model, file, data.token, "tunable")
+        )
+        archive.writestr(f"binaries/{here}/{library_file_name(name, here)}", library)
     return folder / f"{name}.fmu"
 
 
@@ -48,7 +50,7 @@ class Instance:
         compiled = wasmtime.Module(self.store.engine, binary)
         self.exports = wasmtime.Instance(self.store, compiled, []).exports(self.store)
         self("_initialize")
-        fixed = np.array([*split(module.model, file or module.files[0]).fixed.values()])
+        fixed = np.array([*split_parameters(module.model, file or module.files[0]).data_values.values()])
         self.exports["memory"].write(self.store, fixed.tobytes(), self("lab_fixed"))
         self.it = self("lab_new")
         model = module.model

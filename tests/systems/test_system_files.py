@@ -344,7 +344,7 @@ def test_curves_of_the_arm_are_the_inverse_dynamics() -> None:
         given = found.components[f"{name}_load"].values
         curve = TorqueCurve(**given)
         time = ROBOT.start + ROBOT.duration * x
-        values = np.array([curve.outputs({"time": t, "tau_in": 0.0})["tau"] for t in time])
+        values = np.array([curve.evaluate_outputs({"time": t, "tau_in": 0.0})["tau"] for t in time])
         inertia = found.values[f"{name}_link.J"]
         left = inertia * acceleration[:, k] - torque[:, k]
         assert np.max(np.abs(values - left)) < 5e-4 * np.max(np.abs(torque[:, k]))

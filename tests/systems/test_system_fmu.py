@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from fmpy.validation import validate_fmu
 from jointfmu_fmu_src.proof.series import TimeSeries
-from jointfmu_fmu_src.proof.standard import FOLDER
+from jointfmu_fmu_src.proof.standard import REFERENCE_FOLDER
 from jointfmu_tools.host import open_instance, unpack_fmu
 from jointfmu_tools.proof.manifest import RelatedFiles
 from jointfmu_tools.proof.run import prove
@@ -119,7 +119,8 @@ def test_references_of_the_proof_are_those_of_model_exchange(files_of, name):
 )
 def test_scales_decide_what_counts(joint, tmp_path, scale, refused):
     old = re.search(
-        rb'name="link.phi" value="([^"]*)"', zipfile.ZipFile(joint["2"]).read(f"{FOLDER}/co-simulation.exp")
+        rb'name="link.phi" value="([^"]*)"',
+        zipfile.ZipFile(joint["2"]).read(f"{REFERENCE_FOLDER}/co-simulation.exp"),
     )
     change = replaced("co-simulation.exp", old[0], old[0].replace(old[1], scale))
     path = copy(Path(joint["2"]), tmp_path / "other.fmu", change)

@@ -27,7 +27,7 @@ from fmpy.ssp.simulation import simulate_ssp
 from fmpy.ssp.ssd import read_ssd, read_ssv
 from fmpy.validation import validate_fmu
 from jointfmu_fmu_src.building import build
-from jointfmu_fmu_src.native.terminals import terminals
+from jointfmu_fmu_src.native.terminals import find_terminals
 from jointfmu_fmu_src.partners import PARTNERS
 from jointfmu_fmu_src.partners.laws import (
     GRAVITY,
@@ -36,7 +36,7 @@ from jointfmu_fmu_src.partners.laws import (
     TorqueProfile,
     TranslationalMass,
 )
-from jointfmu_fmu_src.ssv import NUMBER
+from jointfmu_fmu_src.ssv import REAL_ELEMENT
 from jointfmu_tools import cli
 from jointfmu_tools.fitting import decay
 from jointfmu_tools.joints.harmonic_drive.job import TORQUE_RATIOS
@@ -144,7 +144,7 @@ def test_flanges_of_a_partner_fit_those_of_the_joints(built: Path, name: str) ->
         (flow,) = [m for m in members.values() if m["variableKind"] != "signal"]
         assert flow["variableKind"] == "inflow"
         joint = {"phi": "HarmonicDriveSpring", "s": "BoltedJoint"}[next(iter(members))]
-        assert any(t.members.keys() == members.keys() for t in terminals(MODELS[joint]))
+        assert any(t.members.keys() == members.keys() for t in find_terminals(MODELS[joint]))
     motion, rate, load = {"RotationalInertia": ("phi", "w", "tau")}.get(name, ("s", "v", "f"))
     expected = {f"flange_{x}": {motion: motion, rate: rate, load: f"{load}_{x}"} for x in "ab"}
     assert found == (expected if PARTNERS[name].state_count else {})
@@ -177,7 +177,7 @@ def test_a_source_follows_time_in_both_interfaces(make: Make, version: str) -> N
     parameters = TorqueProfile(**(flatten_parameters(ssp.partner_parameters("TorqueProfile").values) | given))
 
     def expected(time: float) -> float:
-        return float(parameters.outputs({"time": time, "tau_in": 0.25})["tau"])
+        return float(parameters.evaluate_outputs({"time": time, "tau_in": 0.25})["tau"])
 
     slave = make("TorqueProfile", version).start(given | {"tau_in": 0.25})
     for k in range(30):
@@ -195,7 +195,7 @@ def test_loads_have_no_corner() -> None:
         pulse_hold=0.0,
     )  # fmt: skip
     t = np.linspace(0.0, 0.5, 5001)
-    y = np.array([float(load.outputs({"time": x, "tau_in": 0.0})["tau"]) for x in t])
+    y = np.array([float(load.evaluate_outputs({"time": x, "tau_in": 0.0})["tau"]) for x in t])
     assert (y[0], y[-1]) == (0.0, 1.0)
     second = np.diff(y, 2) / (t[1] - t[0]) ** 2
     assert np.max(np.abs(np.diff(second))) < 1e-2 * np.max(np.abs(second))
@@ -323,7 +323,7 @@ def test_an_archive_is_complete_and_its_connections_fit(
         assert component.get("source") in members
         listed = {v.name: (kind, v.unit) for kind in ("input", "output") for v in getattr(model, f"{kind}s")}
         for connector in component.iterfind(".//ssd:Connector", space):
-            key, typed = connector.get("name"), connector.find(f"ssc:{NUMBER[version]}", space)
+            key, typed = connector.get("name"), connector.find(f"ssc:{REAL_ELEMENT[version]}", space)
             assert listed[key] == (connector.get("kind"), typed.get("unit"))
             units[f"{own}.{key}"] = typed.get("unit")
     ends = []
@@ -392,7 +392,7 @@ def test_a_reader_of_both_versions_opens_the_archives(
             kinds = {p["name"]: p["type_name"] for p in ssv.parameters}
             numbers = [p for p in ssv.parameters if p["type_name"] == "Real"]  # of Float64 it has none
             given = {p["name"]: float(p["type_value"].parameter["value"]) for p in numbers}
-        assert set(kinds.values()) <= {NUMBER[version], "Boolean"}
+        assert set(kinds.values()) <= {REAL_ELEMENT[version], "Boolean"}
         written = {f"{n}.{v}": x.value for n, c in found.components.items() for v, x in ssp.values(c).items()}
         assert written.keys() <= kinds.keys()
         assert given == ({n: given[n] for n in given} | written if version == "1.0" else {})
@@ -642,8 +642,8 @@ def column_sliders(spring: BoltedJointSpring, preload: float) -> tuple[Array, Ar
     joint, patches = spring.joint, spring.patches
     approach = spring.curve.inverse(preload_pressure(joint, patches, preload, 0.0))
     carried = spring.friction.foundation(approach).slider_properties(approach)
-    area = joint.A_0 * patches.share[:, None]
-    stiffness, limit = ((area * each).ravel() for each in (carried.stiffness, carried.limit))
+    area = joint.A_0 * patches.area_share[:, None]
+    stiffness, limit = ((area * each).ravel() for each in (carried.stiffness, carried.friction_limit))
     some = stiffness > 0.0
     return stiffness[some], limit[some]
 
@@ -653,19 +653,19 @@ def robot(time: float, x: Array, found: Values, load: TorqueProfile) -> list[flo
     ratio, friction = ROBOT.joint.ratio, x[4:]
     drive = DRIVE.evaluate_motion(x[0], x[1], x[2], x[3])
     drive = {"tau1": drive["tau1"] + friction.sum() / ratio, "tau2": drive["tau2"] - friction.sum()}
-    slid = sliding(friction, ROBOT.hysteresis.stiffness, ROBOT.hysteresis.limit, x[3] - x[1] / ratio)
-    tau = float(load.outputs({"time": time, "tau_in": 0.0})["tau"])
+    slid = sliding(friction, ROBOT.hysteresis.stiffness, ROBOT.hysteresis.friction_limit, x[3] - x[1] / ratio)
+    tau = float(load.evaluate_outputs({"time": time, "tau_in": 0.0})["tau"])
     motor = RotationalInertia(J=found["motor.J"], m=0.0, l=0.0, lag_a=0.0, lag_b=0.0)
     link = RotationalInertia(J=found["link.J"], m=found["link.m"], l=found["link.l"], lag_a=0.0, lag_b=0.0)
-    a1 = motor.outputs({"phi": x[0], "w": x[1], "tau_a": tau, "tau_b": float(drive["tau1"])})["a"]
-    a2 = link.outputs({"phi": x[2], "w": x[3], "tau_a": 0.0, "tau_b": float(drive["tau2"])})["a"]
+    a1 = motor.evaluate_outputs({"phi": x[0], "w": x[1], "tau_a": tau, "tau_b": float(drive["tau1"])})["a"]
+    a2 = link.evaluate_outputs({"phi": x[2], "w": x[3], "tau_a": 0.0, "tau_b": float(drive["tau2"])})["a"]
     return [x[1], float(a1), x[3], float(a2), *slid]
 
 
 def test_the_robot_joint_converges_to_the_packages_law(built: Path) -> None:
     found, stop = system("robot_joint").values, 0.4
     load = TorqueProfile(**{k.removeprefix("load."): v for k, v in found.items() if k.startswith("load.")})
-    sliders = ROBOT.hysteresis.limit.size
+    sliders = ROBOT.hysteresis.friction_limit.size
     start, small = [0.0] * (4 + sliders), [1e-12] * 4 + [1e-8] * sliders  # rad, rad/s and N.m
     exact = solve_ivp(
         robot, (0.0, stop), start, "DOP853", rtol=1e-9, atol=small, max_step=0.02, args=(found, load)
@@ -688,8 +688,8 @@ def test_the_bolted_column_converges_to_the_packages_law(built: Path) -> None:
     stiffness, limit = column_sliders(bolted(), found["joint.preload"])
 
     def rates(time: float, x: Array) -> list[float]:
-        f = float(load.outputs({"time": time, "f_in": 0.0})["f"])
-        moved = mass.outputs({"s": x[0], "v": x[1], "f_a": f, "f_b": -x[2:].sum()})
+        f = float(load.evaluate_outputs({"time": time, "f_in": 0.0})["f"])
+        moved = mass.evaluate_outputs({"s": x[0], "v": x[1], "f_a": f, "f_b": -x[2:].sum()})
         return [x[1], float(moved["a"]), *sliding(x[2:], stiffness, limit, x[1])]
 
     start, small = [0.0] * (2 + limit.size), [1e-12] * 2 + [1e-6] * limit.size  # m, m/s and N
@@ -1013,7 +1013,7 @@ def test_the_struck_column_rings_down_by_its_friction(built: Path) -> None:
     assert np.count_nonzero(seen) >= 3
     for mine, other, allowed in (
         (math.tau * struck.frequency, pulled.frequency, 5e-3),
-        (struck.damping, pulled.damping, 0.1),  # straight lines between the pulled column's windows
+        (struck.damping_ratio, pulled.damping, 0.1),  # straight lines between the pulled column's windows
     ):
         expected = np.interp(struck.amplitude, pulled.amplitude[order], other[order])
         np.testing.assert_allclose(mine[seen], expected[seen], rtol=allowed)

@@ -41,7 +41,7 @@ def _run_parameters(args: argparse.Namespace) -> CommandResult:
         values = flatten_parameters(
             build_law_parameters(name, load_law_file(args.params, name) if args.params else None, {})
         )
-        fields = dict(flat_fields(LAWS[name], names=values))
+        fields = dict(flat_fields(LAWS[name], parameter_names=values))
         if name == ROUGHNESS_LAW:
             fields |= {stated: field for stated, field in HEIGHT_FIELDS.items() if stated not in fields}
         head = {"name": name, "law": name}
@@ -52,7 +52,7 @@ def _run_parameters(args: argparse.Namespace) -> CommandResult:
             known = MODELS[name].with_parameters(file.joint, file.values).parameter_fields()
             fields = {stated: field for stated, field in known.items() if stated in values}
         else:
-            fields = dict(flat_fields(type(file.values), names=values))
+            fields = dict(flat_fields(type(file.values), parameter_names=values))
         head = {"name": name, "joint": file.joint, "law": file.law}
     rows = [_parameter_document(stated, field, values.get(stated)) for stated, field in fields.items()]
     return CommandResult(

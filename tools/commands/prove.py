@@ -59,7 +59,7 @@ def _compute_expected(fmu: Path, path: Path) -> ExpectedContents:
 
     Raises ValueError if the FMU does not have the inputs and outputs of an FMU of the file's joint.
     """
-    from jointfmu_fmu_src.proof.members import proof
+    from jointfmu_fmu_src.proof.members import make_proof_files
 
     from ..host import unpack_fmu
 
@@ -71,7 +71,7 @@ def _compute_expected(fmu: Path, path: Path) -> ExpectedContents:
             described = model.with_parameters(file.joint, file.values)
             starts = {name: file.values_by_name[name] for name in described.parameter_fields()}
             starts |= {v.name: file.start_value(v.name) for v in described.inputs}
-            return ExpectedContents(str(path), starts, proof(described, file))
+            return ExpectedContents(str(path), starts, make_proof_files(described, file))
     models = ", ".join(model.name for model in KINDS[file.joint].models)
     raise ValueError(f"{fmu}: does not have the variables of {models}, the FMUs of {path}")
 

@@ -142,7 +142,9 @@ def _add_roughness(sheet: ParameterSheet, pair: tuple[Face, Face], longest_wave:
     sheet.add(
         "h", h, "estimate" if high > low else "derived", f"sqrt(Rq1^2 + Rq2^2), Rq = 1.25 Ra; {texts}{spread}"
     )
-    sheet.add("gamma", roughness.GAMMA, "derived", "boundary elements: 0.40 to 0.48 (docs/validity.md)")
+    sheet.add(
+        "gamma", roughness.PERSSON_GAMMA, "derived", "boundary elements: 0.40 to 0.48 (docs/validity.md)"
+    )
     longest = max((face.longest_wave for face in pair), key=lambda known: known.value)
     if longest_wave is None:
         sheet.add_sourced("longest_wave", longest)

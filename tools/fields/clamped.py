@@ -72,11 +72,11 @@ class FieldAdapter:
     describe_joint : {name: (value, unit, meaning)} of the complete joint for such a file and preload
     """
 
-    pressures: PressureFunction
-    shear_ratio: Callable[[Any], Number]
+    nodal_pressures: PressureFunction
+    tangential_stiffness_ratio: Callable[[Any], Number]
     bolt_layout: Callable[[Any], BoltLayout]
-    with_elastic_bodies: Callable[[ParameterFile, Any, float, str, PressureDistribution], ParameterFile]
-    facts: Callable[[ParameterFile, float], dict[str, tuple[float, str, str]]]
+    insert_elastic_bodies: Callable[[ParameterFile, Any, float, str, PressureDistribution], ParameterFile]
+    describe_joint: Callable[[ParameterFile, float], dict[str, tuple[float, str, str]]]
 
 
 def field_adapters() -> dict[str, FieldAdapter]:

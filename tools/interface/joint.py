@@ -220,7 +220,7 @@ class Joint(TableDisplay):
             from ..report.joint import loop_figure, ramp_figure
         course = LoadHistory(self.model(fmu), self.file)
         panels = list(ramp_figure(course).panels)
-        loops = course.compute_loops() if course.model.loop else None
+        loops = course.compute_loops() if course.model.load_cycle else None
         if loops and any(loop.loss for loop in loops.loops):
             panels += loop_figure(course, loops).panels
         figure = plots.create_figure((4.4 * len(panels), 3.8))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from jointfmu.contact.interface import at_largest_spot, at_pressure
+from jointfmu.contact.interface import evaluate_at_largest_spot, evaluate_at_pressure
 from jointfmu.contact.laws import LAWS
 from jointfmu.quantity import Array, flat_fields, flatten_parameters
 
@@ -62,7 +62,7 @@ class Law(TableDisplay):
         Raises ValueError for a pressure that is negative, NaN, infinite or not representable, or arrays of
         different lengths.
         """
-        state = at_pressure(self.parameters, self._to_column("pressure", pressure))
+        state = evaluate_at_pressure(self.parameters, self._to_column("pressure", pressure))
         if many := ", ".join(self._array_parameters):
             return self._build_frame(state, (f"level and range are not judged for arrays of {many}",))
         return self._build_frame(
@@ -71,7 +71,9 @@ class Law(TableDisplay):
 
     def at_largest_spot(self, area: ArrayLike) -> Frame:
         """Evaluate the law for areas (n) [m2] of the largest contact spot."""
-        return self._build_frame(at_largest_spot(self.parameters, self._to_column("largest_spot", area)), ())
+        return self._build_frame(
+            evaluate_at_largest_spot(self.parameters, self._to_column("largest_spot", area)), ()
+        )
 
     @property
     def _array_parameters(self) -> dict[str, Array]:

@@ -204,7 +204,7 @@ class Fit(TableDisplay):
                 else format_deviation(row["relative_deviation"]),
                 "yes" if row["determined"] else "no",
             )
-            for row in self.outcome.rows()
+            for row in self.outcome.unknown_rows()
         ]
         doubt = self.outcome.rejection_reason()
         lines = [f"warning: the fit does not determine the joint: {doubt}"] if doubt else []

@@ -57,7 +57,7 @@ class Check:
 def run_default_ramp(name: str, folder: Path, factor: float = 1.0) -> ramp.RampResult:
     """Run the default load ramp of an FMU, with its step times a factor."""
     r = MODELS[name].ramp
-    return ramp.run_ramp(folder / f"{name}.fmu", r.input, r.end, r.step * factor)
+    return ramp.run_ramp(folder / f"{name}.fmu", r.input_name, r.end_value, r.value_step * factor)
 
 
 def check_ramp(name: str, folder: Path, result: ramp.RampResult) -> list[Check]:

@@ -11,13 +11,13 @@ from base64 import b64encode
 from pathlib import Path
 
 from jointfmu_fmu_src.joint_parts import chart
-from jointfmu_fmu_src.licence import webassembly_licences
-from jointfmu_fmu_src.templates import template
+from jointfmu_fmu_src.licence import read_webassembly_licences
+from jointfmu_fmu_src.templates import load_template
 
 from jointfmu import __version__
 from jointfmu.contact.roughness import RQ_OVER_RA
 from jointfmu.files.writing import write_text
-from jointfmu.parameters import HEIGHT_TOLERANCE, ORIGINS
+from jointfmu.parameters import RELATIVE_HEIGHT_TOLERANCE, ORIGINS
 from jointfmu.quantity import units
 
 from .describe import compile_modules, describe_module, list_modules
@@ -53,17 +53,17 @@ def render_page() -> str:
             describe_module(module) | {"size": n} for module, n in zip(page_modules, sizes, strict=True)
         ],
         "origins": ORIGINS,
-        "roughness": {"factor": RQ_OVER_RA, "close": HEIGHT_TOLERANCE},
+        "roughness": {"factor": RQ_OVER_RA, "close": RELATIVE_HEIGHT_TOLERANCE},
         "units": {base: units.unit_sizes(base, *others) for base, others in _FILE_UNITS.items()},
     }
     text = json.dumps(document, ensure_ascii=False, allow_nan=False, separators=(",", ":")).encode()
     content = gzip.compress(b"".join([struct.pack("<I", len(text)), text, *binaries]), 9, mtime=0)
-    return template(_FOLDER / "page.html").render(
+    return load_template(_FOLDER / "page.html").render(
         version=__version__,
-        style=chart.style() + read_web_file("style.css"),
-        script=chart.script() + "\n".join(read_web_file(f"{name}.js") for name in _SCRIPTS),
+        style=chart.read_style() + read_web_file("style.css"),
+        script=chart.read_script() + "\n".join(read_web_file(f"{name}.js") for name in _SCRIPTS),
         content=b64encode(content).decode(),
-        licences=webassembly_licences(),
+        licences=read_webassembly_licences(),
     )
 
 

@@ -8,10 +8,10 @@ from pathlib import Path
 from threading import Lock
 from typing import Any
 
-from jointfmu_fmu_src.native.compiled.compiler import webassembly
+from jointfmu_fmu_src.native.compiled.compiler import compile_webassembly
 from jointfmu_fmu_src.native.compiled.kept import cached_result
-from jointfmu_fmu_src.native.data import split
-from jointfmu_fmu_src.native.page import panels
+from jointfmu_fmu_src.native.data import split_parameters
+from jointfmu_fmu_src.native.page import find_ramp_panels
 from jointfmu_fmu_src.xml_parts import ListedVariable, list_variables
 
 from jointfmu.joints import KINDS
@@ -61,10 +61,10 @@ class Module:
     def collect_sources(self) -> dict[str, str]:
         """Collect all C sources, of the FMU and of the functions that the page calls: {file name: text}."""
         # imported here because it needs casadi, which pages of the report do not need
-        from jointfmu_fmu_src.native.code.generate import sources, token
+        from jointfmu_fmu_src.native.code.generate import generate_sources, read_token
 
-        files = sources(self.model.name, self.files[0])
-        return files | self._page_sources() | {"token.h": f'#define TOKEN "{token(files)}"\n'}
+        files = generate_sources(self.model.name, self.files[0])
+        return files | self._page_sources() | {"token.h": f'#define TOKEN "{read_token(files)}"\n'}
 
     def compile_module(self) -> bytes:
         """Compile the module to WebAssembly (a WASI reactor without imports), or read it from the cache.
@@ -90,7 +90,7 @@ class Module:
         with _CODE_GENERATION_LOCK:  # casadi is not thread-safe
             files = self.collect_sources()
         units = [name for name in files if name.endswith(".c") and not name.startswith("fmi")]
-        return webassembly(self.model.name, files, units)
+        return compile_webassembly(self.model.name, files, units)
 
 
 def list_modules() -> list[Module]:
@@ -141,7 +141,7 @@ def describe_module(module: Module) -> dict[str, object]:
     model, first = module.model, module.files[0]
     kind, bench = KINDS[model.joint], _laboratory_model(model)
     bound = set(_bound_parameters(first))
-    curves = (*panels(model), *bench.panels)  # the panels of the documentation come first
+    curves = (*find_ramp_panels(model), *bench.panels)  # the panels of the documentation come first
     rows = [
         _variable_document(v, model, bench) | {"bound": v.name in bound} for v in list_variables(model, first)
     ]
@@ -152,16 +152,16 @@ def describe_module(module: Module) -> dict[str, object]:
         "law": first.law,
         "default": first.law == next(iter(kind.laws)),
         "entries": _entry_documents(model, first),
-        "fixed": list(split(model, first).fixed),
+        "fixed": list(split_parameters(model, first).data_values),
         "height": next(filter(is_height, first.values_by_name), None),
         "doc": model.doc,
         "variables": rows,
-        "surfaces": [surface.prefix for surface in kind.surfaces],
+        "surfaces": [surface.parameter_prefix for surface in kind.surfaces],
         "sets": [_parameter_set_document(file, model) for file in module.files],
-        "ramp": {"input": model.ramp.input, "end": model.ramp.end},
-        "panels": [{"over": p.over, "quantities": list(p.quantities)} for p in curves],
+        "ramp": {"input": model.ramp.input_name, "end": model.ramp.end_value},
+        "panels": [{"over": p.abscissa, "quantities": list(p.quantities)} for p in curves],
         "pairs": conjugate_pairs(model),
-        "path": list(bench.path_inputs or (model.ramp.input,)),
+        "path": list(bench.path_inputs or (model.ramp.input_name,)),
         "points": list(_published_points(model, bench)),
         "measured": [m._asdict() for m in bench.measured_curves],
         "map": _map_document(bench, first),
@@ -180,7 +180,7 @@ def conjugate_pairs(model: Model) -> dict[str, str]:
     for i in model.inputs:
         candidates = [o.name for o in model.outputs if {i.unit, o.unit} in ({"N", "m"}, {"N.m", "rad"})]
         same = [name for name in candidates if suffix(name) == suffix(i.name)]
-        if same or (candidates and not suffix(i.name) and i.name == model.ramp.input):
+        if same or (candidates and not suffix(i.name) and i.name == model.ramp.input_name):
             conjugates[i.name] = (same or candidates)[0]
     return conjugates
 
@@ -201,7 +201,7 @@ def _variable_document(
         "causality": variable.causality,
         "doc": variable.doc,
         "start": variable.start,
-        "boolean": variable.boolean,
+        "boolean": variable.is_boolean,
     }
     typical = float(variable.attributes.get("nominal", 0.0))
     if variable.causality != "output":
@@ -223,15 +223,19 @@ def _interval_end(variable: ListedVariable, attribute: str) -> float | None:
 
 def _slider_span(variable: ListedVariable, model: Model, row: dict[str, Any]) -> tuple[float, float]:
     """Lower and upper end of a slider [SI]."""
-    if variable.boolean:
+    if variable.is_boolean:
         return 0.0, 1.0
     start = float(variable.start or 0.0)
     low = -math.inf if row["low"] is None else row["low"]
     high = math.inf if row["high"] is None else row["high"]
     if variable.causality == "input":
-        driven = {i.name: i.unit for i in model.inputs}[model.ramp.input]
+        driven = {i.name: i.unit for i in model.inputs}[model.ramp.input_name]
         unit = variable.attributes["unit"]
-        end = model.ramp.end if unit == driven else _SLIDER_END_RATIO * float(variable.attributes["nominal"])
+        end = (
+            model.ramp.end_value
+            if unit == driven
+            else _SLIDER_END_RATIO * float(variable.attributes["nominal"])
+        )
         return max(low, -end), end
     if start == 0.0:
         return 0.0, high if math.isfinite(high) else 1.0

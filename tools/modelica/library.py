@@ -8,9 +8,9 @@ from pathlib import Path
 from types import ModuleType
 
 from jinja2 import Environment
-from jointfmu_fmu_src.folders import asset
-from jointfmu_fmu_src.partners.laws import POINTS
-from jointfmu_fmu_src.templates import FRAME, law_terms, template
+from jointfmu_fmu_src.folders import find_asset
+from jointfmu_fmu_src.partners.laws import CONTROL_POINTS
+from jointfmu_fmu_src.templates import PAGE_FOLDER, law_variables, load_template
 
 from jointfmu import __version__
 from jointfmu.files.outputs import EXCHANGE_TEXT, PROGRAM_MARK, check_output
@@ -106,7 +106,7 @@ def render_library(file: ParameterFile | None = None, points: WorkingPoints | No
     packages = {
         "Examples": _render_examples(joints, shared),
         "Components": _render_components(joints)
-        | _render_plain_classes(shared, "Components", _PARTNER_COMPONENTS, points=POINTS, comb=comb),
+        | _render_plain_classes(shared, "Components", _PARTNER_COMPONENTS, points=CONTROL_POINTS, comb=comb),
         "Wrappers": {name: model.render(wrapper_terms(fmu)) for name, fmu in MODELS.items()},
         "Interfaces": {name: block.render(interface_terms(fmu)) for name, fmu in MODELS.items()},
         "Data": _render_records(joints),
@@ -254,7 +254,7 @@ def _parameter_meanings(kind: JointKind) -> dict[str, str]:
 def _render_documentation(model: Model, file: ParameterFile) -> dict[str, str]:
     """Render sections of the FMU's documentation page for a Modelica annotation: {section: text}."""
     folder = Path(__file__).parent
-    page = template(asset(model, "page.html"), folder, FRAME)
+    page = load_template(find_asset(model, "page.html"), folder, PAGE_FOLDER)
     names = ("what", "law", "trust", "paper")
-    terms = {"model": model, "fmu": False, **law_terms(file)}
+    terms = {"model": model, "fmu": False, **law_variables(file)}
     return {name: escape_string(page.render(terms, part=name).strip()) for name in names}

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
-from jointfmu_fmu_src.naming import reserved
+from jointfmu_fmu_src.naming import is_reserved
 from numpy.typing import NDArray
 
 from jointfmu.mechanics.curve import Curve
@@ -51,7 +51,7 @@ def escape_html(content: str) -> str:
 def make_identifier(name: str) -> str:
     """Make a Modelica identifier from a title."""
     words = re.sub(r"[^A-Za-z0-9]+", "_", name).strip("_")
-    plain = words[:1].isalpha() and not reserved(words) and words.lower() != "package"
+    plain = words[:1].isalpha() and not is_reserved(words) and words.lower() != "package"
     return words[0].upper() + words[1:] if plain else f"Joint_{words}"
 
 
@@ -108,7 +108,7 @@ def decimate_curve(
 
     The nodes are selected one after the other.
     """
-    kinks = np.flatnonzero(curve.slope_end[:-1] != curve.slope_start[1:]) + 1
+    kinks = np.flatnonzero(curve.stiffness_slope_end[:-1] != curve.stiffness_slope_start[1:]) + 1
     stops = {*kinks.tolist(), *fixed_nodes, curve.displacement.size - 1}
     floor = (
         (0.0, 0.0) if reference_node < 0 else (curve.load[reference_node], curve.stiffness[reference_node])
@@ -120,8 +120,8 @@ def decimate_curve(
 
     index = decimate(stops, reproduces)
     worst = max(_segment_error(curve, i, j, floor) for i, j in pairwise(index.tolist()))
-    before = np.concatenate([[curve.slope_start[0]], curve.slope_end[index[1:] - 1]])
-    after = np.concatenate([curve.slope_start[index[:-1]], [curve.slope_end[-1]]])
+    before = np.concatenate([[curve.stiffness_slope_start[0]], curve.stiffness_slope_end[index[1:] - 1]])
+    after = np.concatenate([curve.stiffness_slope_start[index[:-1]], [curve.stiffness_slope_end[-1]]])
     columns = [curve.displacement[index], curve.load[index], curve.stiffness[index], before, after]
     return InterpolationTable(np.column_stack(columns), worst)
 
@@ -136,8 +136,8 @@ def _segment_error(curve: Curve, i: int, j: int, min_reference: tuple[float, flo
         curve.displacement[ends],
         curve.load[ends],
         curve.stiffness[ends],
-        curve.slope_start[i : i + 1],
-        curve.slope_end[j - 1 : j],
+        curve.stiffness_slope_start[i : i + 1],
+        curve.stiffness_slope_end[j - 1 : j],
     )
     x = curve.displacement[i : j + 1]
     points = np.concatenate([x[1:-1], (x[:-1, None] + np.diff(x)[:, None] * _SAMPLE_FRACTIONS).ravel()])

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 from jinja2 import Environment
 from jointfmu_fmu_src.joint_parts.terminals import ROTATIONAL
-from jointfmu_fmu_src.partners.laws import POINTS
+from jointfmu_fmu_src.partners.laws import CONTROL_POINTS
 
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile
@@ -81,7 +81,9 @@ def render_system_model(
             continue
         if other_flange is None:
             support = f"{flange.replace('.', '_')}_held"
-            domain = "Rotational" if end.flange and end.flange.kind == ROTATIONAL else "Translational"
+            domain = (
+                "Rotational" if end.flange and end.flange.connector_class == ROTATIONAL else "Translational"
+            )
             declare(f"{_MECHANICS_PACKAGE}.{domain}.Components.Fixed", support, [], end.component.name)
             other_flange = f"{support}.flange"
         connect(flange, other_flange)
@@ -190,7 +192,7 @@ def _create_source_declarer(
 
     def declare_source(system_component: Part, declare: Declare, connect: Connect) -> None:
         values = system_component.values
-        points = [format_number(values[f"p{k}"]) for k in range(1, POINTS + 1) if f"p{k}" in values]
+        points = [format_number(values[f"p{k}"]) for k in range(1, CONTROL_POINTS + 1) if f"p{k}" in values]
         modifications = _format_numbers(
             {key: value for key, value in values.items() if not key[1:].isdigit()}
         )

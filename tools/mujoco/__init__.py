@@ -4,8 +4,8 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import fmpy
-from jointfmu_fmu_src.archive import workshop
-from jointfmu_fmu_src.native.compiled.compiler import file_name, libraries
+from jointfmu_fmu_src.archive import staging_folder
+from jointfmu_fmu_src.native.compiled.compiler import library_file_name, compile_libraries
 
 from jointfmu.files import archives
 
@@ -34,9 +34,11 @@ def plugin(fmu: str | Path, out: str | Path) -> Path:
     files = sources | {plugin_source.name: plugin_source.read_text(encoding="utf-8")}
     units = [path for path in files if path.endswith(".c") and path not in ("fmi2.c", "fmi3.c")]
     platform = fmpy.platform_tuple
-    (content,) = libraries(name, files, units, [platform], linked=(f"-I{include}", str(library))).values()
-    target = Path(out) / file_name(name, platform)
-    with workshop(target) as work:
+    (content,) = compile_libraries(
+        name, files, units, [platform], linker_options=(f"-I{include}", str(library))
+    ).values()
+    target = Path(out) / library_file_name(name, platform)
+    with staging_folder(target) as work:
         (work / target.name).write_bytes(content)
     return target
 

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from jointfmu_fmu_src.proof.standard import FLOOR
+from jointfmu_fmu_src.proof.standard import MIN_SCALE_RATIO
 
 from ..host import Instance, open_instance, read_description
 from .task import Rows, Task, output_reader
@@ -158,7 +158,7 @@ class _ExchangeSimulation:
         values, count : array of the solver, and its length
         """
         self.fmu.getNominalsOfContinuousStates(values, count)
-        np.ctypeslib.as_array(values, (count,))[:] *= FLOOR
+        np.ctypeslib.as_array(values, (count,))[:] *= MIN_SCALE_RATIO
 
     def _c_callback(self, name: str) -> Callable[..., None]:
         """C function of the FMU as a callback of the solver; its first failure is kept in `failure`.

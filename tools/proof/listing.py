@@ -9,12 +9,12 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from jointfmu_fmu_src.proof.series import TimeSeries, text
-from jointfmu_fmu_src.proof.standard import CO_SIMULATION, FOLDER
+from jointfmu_fmu_src.proof.series import TimeSeries, format_csv
+from jointfmu_fmu_src.proof.standard import CO_SIMULATION, REFERENCE_FOLDER
 
 from jointfmu.files import archives
 from jointfmu.files.outputs import PROGRAM_MARK, FileKind, check_outputs
-from jointfmu.files.writing import existing_folder, write_bytes
+from jointfmu.files.writing import ensure_folder, write_bytes
 
 from .. import host
 from .manifest import Experiment
@@ -49,7 +49,7 @@ def write_listing(proof: Proof, out: Path, force: bool = False) -> list[Path]:
     folders = [out.joinpath("fmus", version, "cs", p, *subfolders) for p in _platforms(proof.fmu, version)]
     check_outputs((folder / README for folder in folders), LISTING, force)
     for folder in folders:
-        with existing_folder(folder):
+        with ensure_folder(folder):
             for name, content in files.items():
                 write_bytes(folder / name, content)
     return folders
@@ -114,7 +114,7 @@ def _listing_files(proof: Proof, chosen: Outcome, description: "ModelDescription
     }
     return {
         f"{name}.fmu": proof.fmu.read_bytes(),
-        **{f"{name}_{key}.csv": text(values).encode() for key, values in series.items()},
+        **{f"{name}_{key}.csv": format_csv(values).encode() for key, values in series.items()},
         f"{name}_ref.opt": "".join(f"{key}, {value!r}\n" for key, value in options.items()).encode(),
         README: _readme(proof, chosen, description).encode(),
     }
@@ -132,7 +132,7 @@ def _readme(proof: Proof, chosen: Outcome, description: "ModelDescription") -> s
 
 {text} FMI {description.fmiVersion} for co-simulation, exported by {tool}.
 
-These are the files of the experiment "{experiment.name}" in `{FOLDER}` of the FMU.
+These are the files of the experiment "{experiment.name}" in `{REFERENCE_FOLDER}` of the FMU.
 {driven}`{name}_ref.csv` has the reference results that the FMU carries, `{name}_ref.opt` times, step
 and relative tolerance. Nothing else is set.
 

@@ -11,19 +11,19 @@ from urllib.parse import unquote, urlsplit
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element
 
-from jointfmu_fmu_src.proof.series import TimeSeries, parse
+from jointfmu_fmu_src.proof.series import TimeSeries, parse_csv
 from jointfmu_fmu_src.proof.standard import (
-    ATTRIBUTES,
-    CSV,
-    EXPERIMENTS,
+    ATTRIBUTE_NAMESPACE,
+    CSV_TYPE,
+    EXPERIMENTS_TYPE,
     INTERFACES,
-    LABELS,
-    MANIFEST,
-    NAME,
+    INTERFACE_LABELS,
+    MANIFEST_PATH,
+    STANDARD_NAME,
     PURPOSES,
-    SCALES,
-    SSV,
-    TRANSIENT,
+    SCALES_TYPE,
+    SSV_TYPE,
+    TRANSIENT_ELEMENT,
 )
 
 from jointfmu.files.archives import FmuMembers
@@ -85,8 +85,10 @@ class RelatedFiles:
         self.fmu = fmu
         self._fmu_members = FmuMembers(fmu)
         self.members: Mapping[str, bytes] = members or self._fmu_members
-        if MANIFEST not in self.members:
-            raise ValueError(f"{fmu}: has no {MANIFEST}; expected an FMU with experiments after FMI-LS-REF")
+        if MANIFEST_PATH not in self.members:
+            raise ValueError(
+                f"{fmu}: has no {MANIFEST_PATH}; expected an FMU with experiments after FMI-LS-REF"
+            )
 
     def experiments(self) -> list[Experiment]:
         """All experiments that the manifest names, in the order of the manifest."""
@@ -94,9 +96,9 @@ class RelatedFiles:
             return self._all_experiments()
 
     def _all_experiments(self) -> list[Experiment]:
-        root = self._xml(MANIFEST)
-        if (standard := root.get(f"{{{ATTRIBUTES}}}fmi-ls-name")) != NAME:
-            raise ValueError(f"{self.fmu}: {MANIFEST} is of {standard!r}, expected {NAME!r}")
+        root = self._xml(MANIFEST_PATH)
+        if (standard := root.get(f"{{{ATTRIBUTE_NAMESPACE}}}fmi-ls-name")) != STANDARD_NAME:
+            raise ValueError(f"{self.fmu}: {MANIFEST_PATH} is of {standard!r}, expected {STANDARD_NAME!r}")
         experiments = []
         for related in root.iter("Related"):
             self._check_checksum(related)
@@ -104,7 +106,7 @@ class RelatedFiles:
             if role == "experiment":
                 experiments += self._experiments(related, purpose or PURPOSES[0])
         if not experiments:
-            raise ValueError(f"{self.fmu}: {MANIFEST} names no experiment; expected one at least")
+            raise ValueError(f"{self.fmu}: {MANIFEST_PATH} names no experiment; expected one at least")
         return experiments
 
     def _check_checksum(self, related: Element) -> None:
@@ -115,7 +117,7 @@ class RelatedFiles:
         Raises ValueError if they differ.
         """
         source = related.get("source", "")
-        if urlsplit(source).scheme or (path := self._path(MANIFEST, source)) not in self.members:
+        if urlsplit(source).scheme or (path := self._path(MANIFEST_PATH, source)) not in self.members:
             return
         try:
             checksum.check(related, self.members[path])
@@ -124,16 +126,18 @@ class RelatedFiles:
 
     def _experiments(self, related: Element, purpose: str) -> list[Experiment]:
         """Experiments of a related file; if its type is not supported, one experiment with the reason."""
-        source, kind = related.get("source", ""), related.get("type", EXPERIMENTS)
-        if kind not in (EXPERIMENTS, *_OTHER_EXPERIMENT_TYPES):
+        source, kind = related.get("source", ""), related.get("type", EXPERIMENTS_TYPE)
+        if kind not in (EXPERIMENTS_TYPE, *_OTHER_EXPERIMENT_TYPES):
             return [
-                Experiment(source, purpose, unsupported_reason=f"is of type {kind}, {EXPERIMENTS} is read")
+                Experiment(
+                    source, purpose, unsupported_reason=f"is of type {kind}, {EXPERIMENTS_TYPE} is read"
+                )
             ]
         if urlsplit(source).scheme:
             return [Experiment(source, purpose, unsupported_reason="lies outside of the FMU")]
-        path = self._path(MANIFEST, source)
+        path = self._path(MANIFEST_PATH, source)
         labels = {label.get("name") for label in related.iter("Label")}
-        interfaces = [name for name, label in LABELS.items() if label in labels] or INTERFACES
+        interfaces = [name for name, label in INTERFACE_LABELS.items() if label in labels] or INTERFACES
         nodes = self._xml(path).iter("Experiment")
         return [self._experiment(path, node, purpose, interfaces) for node in nodes]
 
@@ -141,7 +145,7 @@ class RelatedFiles:
         """Experiment of an XML element in the file `path`, with the files that it names."""
         name = node.get("name", "")
         kinds = [child.tag for child in node if child.tag not in ("Annotations", *_FILE_TYPES)]
-        unfit = f"is a {kinds[0]}" if kinds and kinds[0] != TRANSIENT else ""
+        unfit = f"is a {kinds[0]}" if kinds and kinds[0] != TRANSIENT_ELEMENT else ""
         files: dict[str, str] = {}
         for tag, kind in _FILE_TYPES.items():
             children = node.findall(tag)
@@ -152,13 +156,15 @@ class RelatedFiles:
                     unfit = f"has {tag} of type {child.get('type')}, {kind} is read"
                 else:
                     files[tag] = self._path(path, child.get("source", ""))
-        times = {**node.attrib, **getattr(node.find(TRANSIENT), "attrib", {})}
+        times = {**node.attrib, **getattr(node.find(TRANSIENT_ELEMENT), "attrib", {})}
         start, stop, step, tolerance = (
             self._number(path, name, key, times.get(key))
             for key in ("startTime", "stopTime", "stepSize", "tolerance")
         )
         stimuli, references = (
-            parse(self._text(files[tag]), f"{self.fmu}: {files[tag]}") if tag in files and not unfit else None
+            parse_csv(self._text(files[tag]), f"{self.fmu}: {files[tag]}")
+            if tag in files and not unfit
+            else None
             for tag in ("Stimuli", "References")
         )
         settings = self._settings(files["Parameters"]) if "Parameters" in files and not unfit else {}
@@ -168,7 +174,7 @@ class RelatedFiles:
     def _scales(self, path: str, experiment: str, node: Element) -> dict[str, float]:
         """{output: scale} that the annotation of an experiment states; ValueError unless positive."""
         scales = {}
-        for scale in node.iterfind(f"Annotations/Annotation[@type='{SCALES}']/Scale"):
+        for scale in node.iterfind(f"Annotations/Annotation[@type='{SCALES_TYPE}']/Scale"):
             output = scale.get("name", "")
             value = self._number(path, experiment, f"scale of {output}", scale.get("value", ""))
             if value is None or not 0.0 < value < float("inf"):
@@ -224,7 +230,7 @@ class RelatedFiles:
             raise ValueError(f"{self.fmu}: {path} is no XML ({error})") from None
 
 
-_FILE_TYPES = {"Parameters": SSV, "Stimuli": CSV, "References": CSV}
+_FILE_TYPES = {"Parameters": SSV_TYPE, "Stimuli": CSV_TYPE, "References": CSV_TYPE}
 """{child element of an experiment: MIME type of the file that it names}."""
 _BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
 

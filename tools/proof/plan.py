@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from jointfmu_fmu_src.proof.standard import FLOOR, MODEL_EXCHANGE, SOLVER
+from jointfmu_fmu_src.proof.standard import MIN_SCALE_RATIO, MODEL_EXCHANGE, SOLVER_TOLERANCE_RATIO
 
 from jointfmu.quantity import Array
 
@@ -71,7 +71,11 @@ class ExperimentPlan:
                     values[key] = {n: input_values(variables[n], stimuli, times, left_limit) for n in inputs}
         except ValueError as error:
             return cls(experiment, interface, {}, {}, str(error))
-        values |= {"times": times.tolist(), "outputs": outputs, "tolerance": SOLVER * _tolerance(experiment)}
+        values |= {
+            "times": times.tolist(),
+            "outputs": outputs,
+            "tolerance": SOLVER_TOLERANCE_RATIO * _tolerance(experiment),
+        }
         if experiment.references:
             values["comparison_times"] = experiment.references.time.tolist()
         nominal = {n: abs(float(getattr(variables[n], "nominal", None) or 1.0)) for n in outputs}
@@ -102,7 +106,7 @@ class ExperimentPlan:
         points = []
         for column, (name, reference) in zip(table.T, expected.columns.items(), strict=True):
             y, y_ref = np.interp(t, times, column), reference[compared]
-            size = np.maximum(np.abs(y_ref), FLOOR * self.nominal[name])
+            size = np.maximum(np.abs(y_ref), MIN_SCALE_RATIO * self.nominal[name])
             allowed = tolerance * np.broadcast_to(self.experiment.scales.get(name, size), y_ref.shape)
             with np.errstate(invalid="ignore"):
                 error_ratio = np.where(np.isfinite(y), np.abs(y - y_ref) / allowed, np.inf)

@@ -17,12 +17,12 @@ if TYPE_CHECKING:
 
 def style_sheet() -> str:
     """Style sheet (CSS) of the reports."""
-    return chart.style() + read_web_file("style.css") + _read_asset("report.css")
+    return chart.read_style() + read_web_file("style.css") + _read_asset("report.css")
 
 
 def page_script(*names: str) -> str:
     """JavaScript of the charts, and of the named scripts of this folder."""
-    return chart.script("figures") + "".join(map(_read_asset, names))
+    return chart.read_script("figures") + "".join(map(_read_asset, names))
 
 
 def _read_asset(name: str) -> str:

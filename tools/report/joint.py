@@ -6,10 +6,10 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from jointfmu_fmu_src.folders import asset
-from jointfmu_fmu_src.joint_parts.chart import as_json
-from jointfmu_fmu_src.native.page import drawings, panels
-from jointfmu_fmu_src.templates import FRAME, law_terms, template
+from jointfmu_fmu_src.folders import find_asset
+from jointfmu_fmu_src.joint_parts.chart import encode_panels
+from jointfmu_fmu_src.native.page import draw_further_charts, find_ramp_panels
+from jointfmu_fmu_src.templates import PAGE_FOLDER, law_variables, load_template
 
 from jointfmu import __version__
 from jointfmu.files.writing import write_text
@@ -67,7 +67,7 @@ def _describe_stiffness(load_history: LoadHistory) -> str:
     units = {v.name: v.unit for v in (*load_history.model.inputs, *load_history.model.outputs)}
     curves = [
         (over, name)
-        for over, names in panels(load_history.model)
+        for over, names in find_ramp_panels(load_history.model)
         for name in names
         if units[name] in _STIFFNESS_UNITS
     ]
@@ -155,22 +155,22 @@ def _render_page(model: Model, file: ParameterFile) -> str:
     folder, rows = Path(__file__).parent, _report_rows(file)
     module = load_tool_module(KINDS[model.joint], "report")
     set_step("loops")
-    loops = course.compute_loops() if model.loop else None
+    loops = course.compute_loops() if model.load_cycle else None
     figures = [ramp_figure(course), *([loop_figure(course, loops)] if loops else [])]
     if module and model.name in module.FIGURES:
         figures += module.FIGURES[model.name](course)
     compared = module.BESIDE[model.name](model, file) if module and model.name in module.BESIDE else []
-    return template(asset(model, "page.html"), folder, FRAME).render(
+    return load_template(find_asset(model, "page.html"), folder, PAGE_FOLDER).render(
         model=course.model,
         spring=course.spring,
         fmu=True,
-        **law_terms(file),
+        **law_variables(file),
         file=file,
         version=__version__,
-        figures=[(figure, as_json(figure.panels)) for figure in figures],
+        figures=[(figure, encode_panels(figure.panels)) for figure in figures],
         opening=summarise_joint(course, loops, list_entries(file)),
         beside=_comparison_rows(compared),
-        drawings=drawings(course.model, course.spring),
+        drawings=draw_further_charts(course.model, course.spring),
         rows=rows,
         origins=[(kind, ORIGIN_MEANINGS[kind], [r.name for r in rows if r.kind == kind]) for kind in ORIGINS],
         judgement=judge_file(file),
@@ -212,7 +212,7 @@ def ramp_figure(load_history: LoadHistory) -> Figure:
     columns = load_history.compute_ramp()
     variables = {v.name: v for v in (*load_history.model.inputs, *load_history.model.outputs)}
     charts, docs = [], dict[str, str]()
-    for over, names in panels(load_history.model):
+    for over, names in find_ramp_panels(load_history.model):
         x, x_unit = _to_display_unit(columns[over], variables[over].unit)
         unit = choose_display_unit(variables[names[0]].unit, float(np.max(np.abs(columns[names[0]]))))
         scale = conversion_factor(variables[names[0]].unit, unit)
@@ -220,8 +220,8 @@ def ramp_figure(load_history: LoadHistory) -> Figure:
         title = f"{', '.join(names)} over {over}"
         charts.append(Panel(title, f"{over} [{x_unit}]", f"{', '.join(names)} [{unit}]", series))
         docs |= {name: variables[name].doc for name in (over, *names)}
-    ramped = variables[load_history.model.ramp.input]
-    end, unit = _to_display_unit(load_history.model.ramp.end, ramped.unit)
+    ramped = variables[load_history.model.ramp.input_name]
+    end, unit = _to_display_unit(load_history.model.ramp.end_value, ramped.unit)
     meaning = "; ".join(f"{name}: {doc}" for name, doc in docs.items() if name != ramped.name)
     text = (
         f"{ramped.name} ({ramped.doc}) from 0 to {float(end):.4g} {unit}; all other inputs have their start "
@@ -293,7 +293,7 @@ def _comparison_rows(rows: list[ComparisonRow]) -> list[dict[str, str]]:
 
 def _describe_range(load_history: LoadHistory) -> str:
     """Describe the load range in which the law is valid."""
-    ramped = next(v for v in load_history.model.inputs if v.name == load_history.model.ramp.input)
+    ramped = next(v for v in load_history.model.inputs if v.name == load_history.model.ramp.input_name)
     if load_history.limit is None:
         return f"The law is valid for {ramped.name} far beyond the load ramp."
     value, unit = _to_display_unit(load_history.limit[0], ramped.unit)

@@ -4,8 +4,8 @@ import platform
 from pathlib import Path
 from typing import Any
 
-from jointfmu_fmu_src.joint_parts.chart import as_json
-from jointfmu_fmu_src.templates import template
+from jointfmu_fmu_src.joint_parts.chart import encode_panels
+from jointfmu_fmu_src.templates import load_template
 
 from jointfmu import __version__
 from jointfmu.files.timestamp import build_time
@@ -34,7 +34,7 @@ def write_report(path: Path, outcome: Any) -> None:
 
     outcome : result of `python build_fmus.py`, with the figures of `build_figures`
     """
-    page = template(Path(__file__).with_name("page.html")).render(
+    page = load_template(Path(__file__).with_name("page.html")).render(
         version=__version__,
         python=platform.python_version(),
         when=build_time().strftime("%Y-%m-%d %H:%M UTC"),
@@ -60,7 +60,7 @@ def _tab_terms(kind: JointKind, outcome: Any) -> dict[str, Any]:
     return {
         "name": kind.name,
         "title": kind.title,
-        "figures": [(figure, as_json(figure.panels)) for figure in outcome.figures[kind.name]],
+        "figures": [(figure, encode_panels(figure.panels)) for figure in outcome.figures[kind.name]],
         "rows": [row for row in outcome.rows if row.point.joint == kind.name],
         "checks": [check for check in outcome.checks if check.fmu in names],
         "proofs": [proof for proof in outcome.proofs if proof.fmu.stem in names],

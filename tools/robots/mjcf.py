@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
-from jointfmu_fmu_src.xml_parts import comment
+from jointfmu_fmu_src.xml_parts import format_xml_comment
 
 from jointfmu import __version__
 from jointfmu.quantity import Array
@@ -177,4 +177,4 @@ def text(drive: Transmission, torque: float) -> tuple[str, Miss, list[str]]:
         "it cannot carry:" if drive.lacks else "nothing of the drive is left out",
         *(f"  {line}" for line in drive.lacks),
     ]
-    return f"{comment(about)}{_model(drive, fitted, motor, link)}", miss, [*drive.lacks]
+    return f"{format_xml_comment(about)}{_model(drive, fitted, motor, link)}", miss, [*drive.lacks]

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Mapping
 
-from jointfmu_fmu_src.naming import reserved
+from jointfmu_fmu_src.naming import is_reserved
 
 from jointfmu.parameters import ParameterFile, format_parameter_file
 
@@ -11,7 +11,7 @@ from jointfmu.parameters import ParameterFile, format_parameter_file
 def identifier(name: str) -> str:
     """Convert a name to a valid identifier of letters, digits and _ that is no keyword or device name."""
     return re.sub(
-        r"\W", "_", f"_{name}" if not name[:1].isalpha() or reserved(name) else name, flags=re.ASCII
+        r"\W", "_", f"_{name}" if not name[:1].isalpha() or is_reserved(name) else name, flags=re.ASCII
     )
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from xml.sax.saxutils import quoteattr
 
-from jointfmu_fmu_src.xml_parts import comment
+from jointfmu_fmu_src.xml_parts import format_xml_comment
 
 from jointfmu import __version__
 
@@ -39,7 +39,7 @@ def text(drive: Transmission, torque: float) -> tuple[str, None, list[str]]:
         *(f"  {line}" for line in lacks),
         "limits: largest torque of the drive; speed at 2000 rpm of the motor; inertias stand for yours",
     ]
-    return f'<?xml version="1.0"?>\n{comment(about)}{_robot(drive)}', None, lacks
+    return f'<?xml version="1.0"?>\n{format_xml_comment(about)}{_robot(drive)}', None, lacks
 
 
 def _friction(drive: Transmission) -> Iterator[str]:

@@ -26,7 +26,10 @@ def fractal_parameters(
     for surface in KINDS[joint].surfaces:
         result = identification.select_best(_profile_direction(identification, surface), method)
         D, G = _dimension_and_roughness(result, surface)
-        values |= {f"{surface.prefix}.D": (D.value, result), f"{surface.prefix}.G": (G.value, result)}
+        values |= {
+            f"{surface.parameter_prefix}.D": (D.value, result),
+            f"{surface.parameter_prefix}.G": (G.value, result),
+        }
     return values
 
 
@@ -46,14 +49,14 @@ def _profile_direction(identification: Identification, surface: RoughSurface) ->
 
 def _dimension_and_roughness(result: FractalResult, surface: RoughSurface) -> tuple[Estimate, Estimate]:
     """D and G that the joint needs: of the surface or of the profile."""
-    if surface.areal:
+    if surface.is_areal:
         return result.areal.D_s, result.areal.G_s
     return result.profile.D, result.profile.G
 
 
 def dimension_meaning(joint: str) -> str:
     """Meaning of D of the first rough surface of a joint, as text."""
-    return "D_s of the surface" if KINDS[joint].surfaces[0].areal else "D of the profile"
+    return "D_s of the surface" if KINDS[joint].surfaces[0].is_areal else "D of the profile"
 
 
 def with_surface(
@@ -96,7 +99,7 @@ def _with_fractal_parameters(
     file: ParameterFile, identification: Identification, method: str | None
 ) -> ParameterFile:
     """Set D and G of the rough surfaces of the joint; ValueError if one is not finite."""
-    surfaces = {surface.prefix: surface for surface in KINDS[file.joint].surfaces}
+    surfaces = {surface.parameter_prefix: surface for surface in KINDS[file.joint].surfaces}
     for name, (value, result) in fractal_parameters(identification, file.joint, method).items():
         if not math.isfinite(value):
             D, G = result.profile.D.value, result.profile.G
@@ -140,7 +143,7 @@ def _describe_source(
     """Text for the source of D or G: files, method, direction and confidence interval."""
     D, G = _dimension_and_roughness(result, surface)
     estimate = D if symbol == "D" else G
-    if surface.areal:
+    if surface.is_areal:
         extent = "of the surface"
     else:
         extent = "of the profile" if result.direction in ("profile", "areal") else f"along {result.direction}"

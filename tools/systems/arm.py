@@ -241,7 +241,7 @@ def _axis(arm: Arm, name: str, drive: Mapping[str, object], ratio: float) -> Sec
     phase = np.linspace(0.0, 1.0, 201)
     q, speed, acceleration = arm.motion(arm.start + arm.duration * phase)
     load = inertia * acceleration[:, k] - arm.torques(q, speed, acceleration)[:, k]
-    points = TorqueCurve.fitted(phase, load)  # digits beyond 1e-8 N.m depend on the processor
+    points = TorqueCurve.fit_points(phase, load)  # digits beyond 1e-8 N.m depend on the processor
     times = {"start": (arm.start, "s"), "duration": (arm.duration, "s")}
     return {
         f"{name}_motor": _section("AngleProfile", times | {"height": (ratio * link.travel, "rad")}),

@@ -129,11 +129,11 @@ def _decay_at(
     points = decay.analyse_decay(time, signal, f"load = {load:g}: ")
     is_resolved = points.amplitude > MIN_AMPLITUDE_RATIO * first
     amplitude = points.amplitude[is_resolved]
-    loop_amplitudes = amplitude * np.exp(MAX_LOGARITHM_RATIO * points.damping[is_resolved])
+    loop_amplitudes = amplitude * np.exp(MAX_LOGARITHM_RATIO * points.damping_ratio[is_resolved])
     settled = rest._replace(position=rest.position + float(np.mean(signal[-SETTLED * PER_PERIOD :])))
     expected, stated, law = _of_loops(path, settings, body, settled, mass, amplitude, loop_amplitudes)
     frequency = 2.0 * np.pi * points.frequency[is_resolved]
-    damping = points.damping[is_resolved]
+    damping = points.damping_ratio[is_resolved]
     return Decay(load, amplitude, frequency, damping, expected, stated, law, time, signal, messages)
 
 
@@ -172,4 +172,4 @@ def of_loop(loop: loops.HysteresisLoop, viscous: float) -> HysteresisLaw:
     deflection = 0.5 * (motion[0] - motion[falling])
     friction = 0.25 * (force[0] - force[falling] + force[rising] - force[half])
     curve = CubicSpline(deflection, friction)
-    return HysteresisLaw(curve, curve.antiderivative(), viscous=viscous)
+    return HysteresisLaw(curve, curve.antiderivative(), viscous_damping=viscous)

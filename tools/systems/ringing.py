@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from jointfmu_fmu_src.partners import PARTNERS
-from jointfmu_fmu_src.partners import parameters as partner_parameters
+from jointfmu_fmu_src.partners import load_partner_parameters as partner_parameters
 
 from jointfmu.joints import KINDS
 from jointfmu.progress import track_progress

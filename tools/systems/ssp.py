@@ -8,13 +8,13 @@ from pathlib import Path
 from typing import Any, NamedTuple
 from xml.etree.ElementTree import Element, SubElement
 
-from jointfmu_fmu_src.archive import pack, workshop
-from jointfmu_fmu_src.licence import copyright_line
+from jointfmu_fmu_src.archive import write_archive, staging_folder
+from jointfmu_fmu_src.licence import find_copyright_line
 from jointfmu_fmu_src.native.build import build
-from jointfmu_fmu_src.native.compiled.kept import VERSIONS
-from jointfmu_fmu_src.partners import parameters as partner_parameters
-from jointfmu_fmu_src.ssv import NUMBER, SSP, Value, add_units, parameter_set
-from jointfmu_fmu_src.xml_parts import VARIABILITIES, serialized
+from jointfmu_fmu_src.native.compiled.kept import FMI_VERSIONS
+from jointfmu_fmu_src.partners import load_partner_parameters as partner_parameters
+from jointfmu_fmu_src.ssv import REAL_ELEMENT, SSP_NAMESPACE, ParameterValue, add_units, format_parameter_set
+from jointfmu_fmu_src.xml_parts import VARIABILITIES, serialize_xml
 
 from jointfmu import __version__
 from jointfmu.files.outputs import ARCHIVE, check_outputs
@@ -67,7 +67,7 @@ def structure(system: System, names: Mapping[str, str], version: str, master: Ma
 
     fmu_names_by_component : {component: name of its FMU}
     """
-    spaces = {"xmlns:ssd": f"{SSP}Description", "xmlns:ssc": f"{SSP}Common"}
+    spaces = {"xmlns:ssd": f"{SSP_NAMESPACE}Description", "xmlns:ssc": f"{SSP_NAMESPACE}Common"}
     head = {**spaces, "version": version, "name": system.name, **metadata()}
     root = Element("ssd:SystemStructureDescription", head)
     description = f"{system.description}. {master.doc}"
@@ -91,7 +91,7 @@ def structure(system: System, names: Mapping[str, str], version: str, master: Ma
         for kind, variables, used in (("input", model.inputs, inputs), ("output", model.outputs, outputs)):
             for v in (v for v in variables if (component.name, v.name) in used):
                 connector = SubElement(connectors, "ssd:Connector", name=v.name, kind=kind, description=v.doc)
-                SubElement(connector, f"ssc:{NUMBER[version]}", unit=v.unit)
+                SubElement(connector, f"ssc:{REAL_ELEMENT[version]}", unit=v.unit)
                 units.add(v.unit)
         _bindings(node, component.name)
     connections = SubElement(system_node, "ssd:Connections")
@@ -102,14 +102,14 @@ def structure(system: System, names: Mapping[str, str], version: str, master: Ma
         _for_omsimulator(system_node, system.interval)
     add_units(root, "ssd", units)
     SubElement(root, "ssd:DefaultExperiment", startTime="0", stopTime=repr(system.stop_time))
-    return serialized(root)
+    return serialize_xml(root)
 
 
 def metadata() -> dict[str, str]:
     """XML attributes of an SSP file: author, copyright, licence, generation tool, date if fixed."""
     attributes = {
         "author": "the jointfmu authors",
-        "copyright": copyright_line(),
+        "copyright": find_copyright_line(),
         "license": "MIT",
         "generationTool": f"jointfmu {__version__}",
     }
@@ -175,7 +175,7 @@ def build_systems(
         for fmu, component in components.items()
         if joints or component.own or not component.file
     }
-    fmus_out = [out / f"fmi{version}" / f"{fmu}.fmu" for version in VERSIONS for fmu in built_components]
+    fmus_out = [out / f"fmi{version}" / f"{fmu}.fmu" for version in FMI_VERSIONS for fmu in built_components]
     archives = [_target(system, out, *kind) for system in chosen for kind in product(FOLDERS, MASTERS)]
     check_outputs([*fmus_out, *archives], ARCHIVE, force)
     build_versions = partial(_versions, out, variability)
@@ -192,7 +192,7 @@ def _versions(out: Path, variability: str, fmu: str, component: Component) -> li
     alias = "" if fmu == component.model else fmu
     return [
         build(component.model, file, out / f"fmi{version}", version, variability, alias)
-        for version in VERSIONS
+        for version in FMI_VERSIONS
     ]
 
 
@@ -215,38 +215,44 @@ def _pack(system: System, out: Path, version: str, master: Master) -> Path:
     """Write the archive of a system for one SSP version and one kind of master."""
     lag_parameters, names = lags(system), fmu_names(system)
     members = {"SystemStructure.ssd": structure(system, names, version, master)}
-    system_values: dict[str, Value] = {}
+    system_values: dict[str, ParameterValue] = {}
     for name, component in system.components.items():
-        lag_values = {lag: Value(master.lag, "1", master.doc) for lag in lag_parameters.get(name, ())}
+        lag_values = {
+            lag: ParameterValue(master.lag, "1", master.doc) for lag in lag_parameters.get(name, ())
+        }
         component_values = values(component) | lag_values
         system_values |= {f"{name}.{variable}": value for variable, value in component_values.items()}
         members[f"resources/{names[name]}.fmu"] = (
             out / FOLDERS[version][1] / f"{names[name]}.fmu"
         ).read_bytes()
-        members[f"parameters/{name}.ssv"] = parameter_set(system.name, component_values, version, metadata())
-    members[f"parameters/{system.name}.ssv"] = parameter_set(system.name, system_values, version, metadata())
+        members[f"parameters/{name}.ssv"] = format_parameter_set(
+            system.name, component_values, version, metadata()
+        )
+    members[f"parameters/{system.name}.ssv"] = format_parameter_set(
+        system.name, system_values, version, metadata()
+    )
     target = _target(system, out, version, master)
-    with workshop(target) as work:
-        pack(members, work / target.name)
+    with staging_folder(target) as work:
+        write_archive(members, work / target.name)
     return target
 
 
-def values(component: Component) -> dict[str, Value]:
+def values(component: Component) -> dict[str, ParameterValue]:
     """{variable: value} of a component, from the parameter file of its joint and from the system file.
 
     Booleans of the parameter file are omitted: they are start values of the FMU, and fmpy reads every Boolean
     of a parameter set as true.
     """
-    joint_values: dict[str, Value] = {}
+    joint_values: dict[str, ParameterValue] = {}
     if component.file:
         for name, item in model_of(component).parameter_fields().items():
             value = component.file.values_by_name[name]
             if not isinstance(value, bool):
-                joint_values[name] = Value(
+                joint_values[name] = ParameterValue(
                     value, item.metadata.get("unit", ""), component.file.sources.get(name, "")
                 )
     return joint_values | {
-        name: Value(value, component.units[name], component.sources[name])
+        name: ParameterValue(value, component.units[name], component.sources[name])
         for name, value in component.values.items()
         if name in component.parameters or name in component.state
     }

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from jointfmu_fmu_src.partners import PARTNERS
 
-from jointfmu.mechanics.steps import MAX_STEP, STABLE_STEP_OUTPUTS
+from jointfmu.mechanics.steps import MAX_STABLE_STEP, STABLE_STEP_OUTPUTS
 from jointfmu.quantity import Array, replace_values
 
 from .system import Component, System
@@ -27,7 +27,7 @@ def longest_step(system: System, run: Mapping[str, Array] | None = None) -> tupl
 
     Raises ValueError as `wiring.find_connections`.
     """
-    connected, signals, steps = ends(system), wires(system), [(MAX_STEP, "")]
+    connected, signals, steps = ends(system), wires(system), [(MAX_STABLE_STEP, "")]
     for name, component in system.joints.items():
         bodies = _bodies(component, connected)
         if not component.file or not any(bodies.values()):
@@ -42,7 +42,7 @@ def longest_step(system: System, run: Mapping[str, Array] | None = None) -> tupl
             operating_points = [{key: float(column[k]) for key, column in input_values.items()} for k in rows]
         for inputs in operating_points:
             out = model.evaluate(spring, start | inputs)
-            sequential, parallel = (float(out.get(key, MAX_STEP)) for key, _ in STABLE_STEP_OUTPUTS)
+            sequential, parallel = (float(out.get(key, MAX_STABLE_STEP)) for key, _ in STABLE_STEP_OUTPUTS)
             steps.append((parallel or sequential, name))
     return min(steps)
 

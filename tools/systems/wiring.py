@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from jointfmu_fmu_src.joint_parts.terminals import Terminal
-from jointfmu_fmu_src.native.terminals import terminals
+from jointfmu_fmu_src.native.terminals import find_terminals
 from jointfmu_fmu_src.partners import PARTNERS
 
 from jointfmu.joints import MODELS
@@ -83,7 +83,7 @@ def ends(system: System) -> list[tuple[End, End]]:
         _check_pair(*pair)
         pairs.append((pair[0], pair[1]))
     for component in system.components.values():
-        flanges = [f"{component.name}.{flange.name}" for flange in terminals(model_of(component))]
+        flanges = [f"{component.name}.{flange.name}" for flange in find_terminals(model_of(component))]
         if component.file and (unconnected := [name for name in flanges if name not in partners]):
             raise ValueError(
                 f'{unconnected[0]} is connected to nothing; allowed are a flange of a body, or "{GROUND}"'
@@ -136,7 +136,7 @@ def _end(system: System, text: str) -> End:
         )
     component = system.components[name]
     model = model_of(component)
-    known = {terminal.name: terminal for terminal in terminals(model)}
+    known = {terminal.name: terminal for terminal in find_terminals(model)}
     if not known and component.file is None:
         if flange:
             raise ValueError(f"connect: {text!r}: a {model.name} has no flange, allowed is {name}")

@@ -19,7 +19,7 @@ from typing import Any
 
 from jointfmu.files.reading import check_regular, read_bytes
 from jointfmu.files.text import check_text, replace_unprintable
-from jointfmu.files.writing import existing_folder, write_text
+from jointfmu.files.writing import ensure_folder, write_text
 
 STUDY, RUNS, BANDS = "study.json", "runs.jsonl", "bands.csv"
 LOCK_POSITION = 1 << 40
@@ -67,7 +67,7 @@ def claimed_folder(folder: Path, study: Mapping[str, object]) -> Iterator[None]:
     If the context raises ValueError before a run is finished, a new folder is removed again.
     """
     new = not (folder / STUDY).exists()
-    with existing_folder(folder):
+    with ensure_folder(folder):
         claim(folder, study)
         try:
             yield

@@ -9,7 +9,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
-from jointfmu_fmu_src.proof.standard import FOLDER
+from jointfmu_fmu_src.proof.standard import REFERENCE_FOLDER
 
 from jointfmu.files import archives
 from jointfmu.files.reading import read_bytes
@@ -100,7 +100,9 @@ def _parameter_file_of(fmu: Path) -> ParameterFile:
     Raises ValueError if the FMU contains none.
     """
     with archives.open_archive(fmu) as archive, TemporaryDirectory() as folder:
-        members = [name for name in archive.namelist() if fnmatch(name, f"{FOLDER}/parameters/*.toml")]
+        members = [
+            name for name in archive.namelist() if fnmatch(name, f"{REFERENCE_FOLDER}/parameters/*.toml")
+        ]
         if parameter_files := [name for name in members if Path(name).name != "study.toml"]:
             file = Path(folder, Path(parameter_files[0]).name)
             file.write_bytes(archives.read_member(archive, parameter_files[0]))

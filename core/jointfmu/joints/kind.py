@@ -17,8 +17,8 @@ class RoughSurface:
     direction : direction of the profile on a textured surface, "x" or "y"; None: the one with less scatter
     """
 
-    prefix: str
-    areal: bool = False
+    parameter_prefix: str
+    is_areal: bool = False
     direction: str | None = None
 
 

@@ -44,9 +44,9 @@ class HistoryLayout:
             for (name, shape), start in zip(self.shapes.items(), self.offsets.values(), strict=True)
         }
 
-    def join(self, variables: Mapping[str, ArrayLike], *shape: int) -> Array:
+    def join(self, variables: Mapping[str, ArrayLike], *leading_shape: int) -> Array:
         """Array (*shape, n) of history variables from {name: variable (..., *its shape)}."""
-        memory = np.empty((*shape, self.size))
+        memory = np.empty((*leading_shape, self.size))
         for name, view in self.split(memory).items():
             view[...] = variables[name]
         return memory

@@ -30,7 +30,7 @@ from the derivatives at both ends (fourth order): the difference of its limits w
 SMALL_CYCLE_RATIO = 3e-2
 """Stiffness times displacement over the load [1] below which the energies of a cycle are computed from
 derivatives of the curve: differences of its loads would cancel."""
-GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
+GOLDEN_RATIO_CONJUGATE = 0.5 * (np.sqrt(5.0) - 1.0)
 """Golden ratio conjugate (sqrt(5) - 1)/2 [1]."""
 UNIFORM_DEVIATION = 1.0 / np.sqrt(12.0)
 """Standard deviation of a uniform distribution over its range [1]."""
@@ -51,10 +51,10 @@ def height_offsets(load: Array) -> Array:
     load : (n) loads of the foundations, any unit. The offsets are multiples of the golden ratio modulo 1, in
         descending order of the loads; equal loads keep their order.
     """
-    return np.asarray((rank_descending(load) * GOLDEN + 0.5) % 1.0)
+    return np.asarray((rank_descending(load) * GOLDEN_RATIO_CONJUGATE + 0.5) % 1.0)
 
 
-def slider_heights(curve: Curve, reference: ArrayLike, offset: ArrayLike) -> Array:
+def slider_heights(curve: Curve, reference: ArrayLike, height_offset: ArrayLike) -> Array:
     """Heights (..., n) [m] that separate the sliders of foundations near a reference approach.
 
     They are dense just below the reference approach, where the first springs slip, and near the first
@@ -67,7 +67,7 @@ def slider_heights(curve: Curve, reference: ArrayLike, offset: ArrayLike) -> Arr
     """
     reference_approach, offset_column = (
         np.asarray(reference, dtype=np.float64),
-        np.asarray(offset, dtype=np.float64)[..., None],
+        np.asarray(height_offset, dtype=np.float64)[..., None],
     )
     end = curve.end[1]
     load = curve.derivatives(reference_approach, 0)[0]
@@ -106,7 +106,7 @@ def heights_after_liftoff(heights: Array, min_approach: ArrayLike) -> Array:
 
 
 @cache
-def torsion_directions(sliders: int) -> Array:
+def torsion_directions(slider_count: int) -> Array:
     """Tangential unit vectors (2, n) [1] of the sliders on the circle of a patch.
 
     A rotation theta [rad] of a patch with the circle radius r [m] displaces a slider by r theta times this
@@ -114,7 +114,7 @@ def torsion_directions(sliders: int) -> Array:
     causes no force, and a translation no torque. The angle between adjacent ranges is GOLDEN_RATIO_CONJUGATE
     times 180 degrees.
     """
-    angle = np.pi * (GOLDEN * np.arange(sliders // 2) % 1.0)
+    angle = np.pi * (GOLDEN_RATIO_CONJUGATE * np.arange(slider_count // 2) % 1.0)
     unit = round_to_digits(np.stack([-np.sin(angle), np.cos(angle)]))
     unit /= np.sqrt(unit[0] * unit[0] + unit[1] * unit[1])
     directions = np.asarray(np.stack([unit, -unit], axis=-1).reshape(2, -1))
@@ -122,7 +122,7 @@ def torsion_directions(sliders: int) -> Array:
     return directions
 
 
-def resultant(slider_forces: Array) -> Array:
+def sum_slider_forces(slider_forces: Array) -> Array:
     """Resultant (..., 3) of slider forces (..., 2, n): along x, along y, around the centre of the patch."""
     around_it = np.sum(torsion_directions(slider_forces.shape[-1]) * slider_forces, axis=(-2, -1))
     return np.concatenate([np.sum(slider_forces, axis=-1), around_it[..., None]], axis=-1)
@@ -142,8 +142,8 @@ class SliderProperties:
     """
 
     stiffness: Number
-    limit: Number
-    slope: Number
+    friction_limit: Number
+    stiffness_slope: Number
 
 
 @dataclass(frozen=True)
@@ -169,9 +169,9 @@ class Foundation:
         """Number n of sliders [1]."""
         return 2 * int(self.heights.shape[-1] - 1)
 
-    def virgin_forces(self, *shape: int) -> Array:
+    def virgin_forces(self, *leading_shape: int) -> Array:
         """Slider forces (*shape, 2, n) of the virgin state: zeros."""
-        return np.zeros((*shape, 2, self.slider_count))
+        return np.zeros((*leading_shape, 2, self.slider_count))
 
     def stick_stiffness(self, approach: ArrayLike) -> Array:
         """Tangential stiffness (...) [Pa/m] in full stick at approaches (...) [m]."""
@@ -181,7 +181,11 @@ class Foundation:
         return np.asarray(self.stiffness_ratio * np.maximum(slope_here - slope_at_first, 0.0))
 
     def full_stick_update(
-        self, force: Array, start: ArrayLike, end: ArrayLike, tangential_displacement: ArrayLike
+        self,
+        force: Array,
+        start_approach: ArrayLike,
+        end_approach: ArrayLike,
+        tangential_displacement: ArrayLike,
     ) -> tuple[Array, Array]:
         """Update in full stick: traction (..., 3) [Pa] after an increment, and whether (...) it holds.
 
@@ -189,8 +193,11 @@ class Foundation:
         start_approach, end_approach : (...) [m] approaches at the start and at the end
         tangential_displacement : (..., 3) [m] of the other side along x, y and around the centre
         """
-        stiffness_start, stiffness_end = self.stick_stiffness(start), self.stick_stiffness(end)
-        is_unloading = np.asarray(end) < np.asarray(start)
+        stiffness_start, stiffness_end = (
+            self.stick_stiffness(start_approach),
+            self.stick_stiffness(end_approach),
+        )
+        is_unloading = np.asarray(end_approach) < np.asarray(start_approach)
         rule = stick_retention(stiffness_start, stiffness_end, is_unloading)
         retention, secant_stiffness = (np.asarray(factor)[..., None] for factor in rule)
         traction = retention * force + secant_stiffness * np.asarray(tangential_displacement)
@@ -199,7 +206,7 @@ class Foundation:
             * self.friction_coefficient
             / self.stiffness_ratio
             * stiffness_end
-            * (np.asarray(end) - self.heights[..., 0])
+            * (np.asarray(end_approach) - self.heights[..., 0])
         )
         return traction, np.sqrt(np.sum(traction**2, axis=-1)) <= max_traction
 
@@ -290,7 +297,11 @@ class Foundation:
         return SliderProperties(np.repeat(slider_stiffness, 2, axis=-1), limit, np.repeat(rate, 2, axis=-1))
 
     def advance(
-        self, force: Array, start: ArrayLike, end: ArrayLike, tangential_displacement: ArrayLike
+        self,
+        force: Array,
+        start_approach: ArrayLike,
+        end_approach: ArrayLike,
+        tangential_displacement: ArrayLike,
     ) -> SliderUpdate:
         """Return-map all sliders for one increment, see `return_map`.
 
@@ -302,18 +313,28 @@ class Foundation:
         The loss is exact for sliders of constant stiffness, else accurate to third order in the increment.
         """
         path, properties_end = (
-            _Increment.from_ends(start, end, self._slider_displacements(tangential_displacement)),
-            self.slider_properties(end),
+            _Increment.from_ends(
+                start_approach, end_approach, self._slider_displacements(tangential_displacement)
+            ),
+            self.slider_properties(end_approach),
         )
-        properties_start = self.slider_properties(start) if np.any(path.approach_change) else properties_end
+        properties_start = (
+            self.slider_properties(start_approach) if np.any(path.approach_change) else properties_end
+        )
         update = self._return_map(force, properties_start, properties_end, path)
         stiffness = properties_start.stiffness, properties_end.stiffness
-        loss, is_constant = update.loss, stiffness[0] == stiffness[1]
+        loss, is_constant = update.dissipated_energy, stiffness[0] == stiffness[1]
         if not np.all(is_constant):
             changes = ~self._keeps_contact_state(path)
             middle = self._middle_forces(force, properties_start, path) if np.any(changes) else [0.0, 0.0]
             varying = varying_stiffness_loss(
-                _components(force), update.force, path.components, stiffness, update.slip, changes, middle
+                _components(force),
+                update.force,
+                path.components,
+                stiffness,
+                update.slip_force,
+                changes,
+                middle,
             )
             loss = np.where(is_constant, loss, varying)
         return SliderUpdate(
@@ -341,40 +362,59 @@ class Foundation:
         return np.asarray(np.moveaxis(np.sum(components, axis=-1), 0, -1))
 
     def _return_map(
-        self, force: Array, start: SliderProperties, end: SliderProperties, path: "_Increment"
+        self,
+        force: Array,
+        start_properties: SliderProperties,
+        end_properties: SliderProperties,
+        increment: "_Increment",
     ) -> ReturnMapping:
         """Return mapping of sliders (..., n); its loss is valid for constant stiffness, see `advance`."""
-        change: Number = path.approach_change
+        change: Number = increment.approach_change
         rise: Number = 0.0
         small: Number = True
-        if start is not end:
+        if start_properties is not end_properties:
             steps = np.repeat(np.diff(self.heights), 2, axis=-1)
-            small = (self._keeps_contact_state(path) & (np.abs(change) < SMALL_CHANGE_RATIO * steps)) | (
+            small = (self._keeps_contact_state(increment) & (np.abs(change) < SMALL_CHANGE_RATIO * steps)) | (
                 change == 0.0
             )
-            limits = (end.limit - start.limit).reshape(*end.limit.shape[:-1], -1, 2)
+            limits = (end_properties.friction_limit - start_properties.friction_limit).reshape(
+                *end_properties.friction_limit.shape[:-1], -1, 2
+            )
             rise = (
                 0.5
                 * self.stiffness_ratio
                 / self.friction_coefficient
                 * np.repeat(np.sum(limits, axis=-1), 2, axis=-1)
             )
-        ends = (start.stiffness, start.slope), (end.stiffness, end.slope)
+        ends = (
+            (start_properties.stiffness, start_properties.stiffness_slope),
+            (end_properties.stiffness, end_properties.stiffness_slope),
+        )
         keeps, carries = retention_and_stiffness(*ends, change, rise, small)
-        springs = end.stiffness, compliance(end.stiffness)
+        springs = end_properties.stiffness, compliance(end_properties.stiffness)
         return return_map(
-            _components(force), keeps, carries, path.components, start.limit, end.limit, *springs
+            _components(force),
+            keeps,
+            carries,
+            increment.components,
+            start_properties.friction_limit,
+            end_properties.friction_limit,
+            *springs,
         )
 
-    def _middle_forces(self, force: Array, start: SliderProperties, path: "_Increment") -> Vector:
+    def _middle_forces(
+        self, force: Array, start_properties: SliderProperties, increment: "_Increment"
+    ) -> Vector:
         """Slider forces in the middle of an increment."""
-        half = path.scale(0.5)
-        return self._return_map(force, start, self.slider_properties(half.end[..., 0]), half).force
+        half = increment.scale(0.5)
+        return self._return_map(
+            force, start_properties, self.slider_properties(half.end_approach[..., 0]), half
+        ).force
 
-    def _keeps_contact_state(self, path: "_Increment") -> NDArray[np.bool_]:
+    def _keeps_contact_state(self, increment: "_Increment") -> NDArray[np.bool_]:
         """Whether each slider (..., n) has the same contact state (full, partial, open) at both ends."""
         low, high = (np.repeat(h, 2, axis=-1) for h in (self.heights[..., :-1], self.heights[..., 1:]))
-        first, last = path.start, path.end
+        first, last = increment.start_approach, increment.end_approach
         return np.asarray(((first > low) == (last > low)) & ((first >= high) == (last >= high)))
 
 
@@ -386,19 +426,23 @@ class _Increment:
     tangential_displacement      : (..., 2, 1) or (..., 2, n) [m]
     """
 
-    start: Array
-    end: Array
+    start_approach: Array
+    end_approach: Array
     tangential_displacement: Array
 
     @classmethod
-    def from_ends(cls, start: ArrayLike, end: ArrayLike, tangential_displacement: Array) -> "_Increment":
-        first_approach, last_approach = (np.asarray(x, dtype=np.float64)[..., None] for x in (start, end))
+    def from_ends(
+        cls, start_approach: ArrayLike, end_approach: ArrayLike, tangential_displacement: Array
+    ) -> "_Increment":
+        first_approach, last_approach = (
+            np.asarray(x, dtype=np.float64)[..., None] for x in (start_approach, end_approach)
+        )
         return cls(first_approach, last_approach, tangential_displacement)
 
     @property
     def approach_change(self) -> Array:
         """Change of the approach (..., 1) [m]."""
-        return np.asarray(self.end - self.start)
+        return np.asarray(self.end_approach - self.start_approach)
 
     @property
     def components(self) -> tuple[Array, Array]:
@@ -408,8 +452,8 @@ class _Increment:
     def scale(self, load_factor: float) -> "_Increment":
         """Part of the increment from its start up to a load factor [1], from 0 to 1."""
         return _Increment(
-            self.start,
-            self.start + load_factor * self.approach_change,
+            self.start_approach,
+            self.start_approach + load_factor * self.approach_change,
             load_factor * self.tangential_displacement,
         )
 
@@ -420,7 +464,11 @@ def _components(vector: Array) -> tuple[Array, Array]:
 
 
 def _cycle_energies(
-    friction_coefficient: Number, stiffness_ratio: Number, amplitude: Number, fall: Number, excess: Number
+    friction_coefficient: Number,
+    stiffness_ratio: Number,
+    amplitude: Number,
+    pressure_drop: Number,
+    energy_excess: Number,
 ) -> tuple[Number, Number]:
     """Energy loss and elastic energy [J/m2] of a cycle, see `cycle_energies`.
 
@@ -428,8 +476,8 @@ def _cycle_energies(
     energy_excess : [J/m2] trapezoidal rule minus exact integral of the pressure between both
     """
     return 8.0 * friction_coefficient**2 / stiffness_ratio * np.maximum(
-        excess, 0.0
-    ), 0.5 * friction_coefficient * fall * amplitude
+        energy_excess, 0.0
+    ), 0.5 * friction_coefficient * pressure_drop * amplitude
 
 
 def cycle_energies(
@@ -459,7 +507,11 @@ def cycle_energies(
 
 
 def small_cycle_energies(
-    friction_coefficient: Number, stiffness_ratio: Number, amplitude: Number, upper: Vector, lower: Vector
+    friction_coefficient: Number,
+    stiffness_ratio: Number,
+    amplitude: Number,
+    upper_derivatives: Vector,
+    lower_derivatives: Vector,
 ) -> tuple[Number, Number]:
     """Energy loss and elastic energy [J/m2] of a cycle of small amplitude, exact in one segment of the curve.
 
@@ -470,8 +522,8 @@ def small_cycle_energies(
     """
     reach, (upper_stiffness, upper_d2p, upper_d3p), (lower_stiffness, lower_d2p, lower_d3p) = (
         amplitude * (stiffness_ratio / friction_coefficient),
-        upper,
-        lower,
+        upper_derivatives,
+        lower_derivatives,
     )
     fall = reach * (0.5 * (upper_stiffness + lower_stiffness) - reach * (upper_d2p - lower_d2p) / 12.0)
     excess = reach**3 * ((upper_d2p + lower_d2p) / 24.0 - reach * (upper_d3p - lower_d3p) / 120.0)
@@ -533,7 +585,7 @@ def stick_retention(
 def retention_and_stiffness(
     start: tuple[Number, Number],
     end: tuple[Number, Number],
-    change: Number,
+    approach_change: Number,
     stiffness_integral: Number,
     is_small: Number,
 ) -> tuple[Number, Number]:
@@ -550,16 +602,16 @@ def retention_and_stiffness(
         stiffness_integral cancels
     """
     (stiffness_start, slope_start), (stiffness_end, slope_end) = start, end
-    touches, is_unloading = stiffness_start > 0.0, change < 0.0
+    touches, is_unloading = stiffness_start > 0.0, approach_change < 0.0
     retention = select(touches, np.minimum(stiffness_end / select(touches, stiffness_start, 1.0), 1.0), 0.0)
-    ends = 0.5 * (stiffness_start + stiffness_end) + change * (slope_start - slope_end) / 12.0
+    ends = 0.5 * (stiffness_start + stiffness_end) + approach_change * (slope_start - slope_end) / 12.0
     mean = select(
         is_small,
         ends,
         select(
             stiffness_start == stiffness_end,
             stiffness_end,
-            stiffness_integral / select(is_small, 1.0, change),
+            stiffness_integral / select(is_small, 1.0, approach_change),
         ),
     )
     return select(is_unloading, retention, 1.0), select(is_unloading, stiffness_end, mean)
@@ -571,8 +623,8 @@ def varying_stiffness_loss(
     tangential_displacement: Vector,
     stiffness: tuple[Number, Number],
     slip: Number,
-    contact_changes: Number,
-    middle: Vector,
+    has_contact_change: Number,
+    middle_force: Vector,
 ) -> Number:
     """Energy loss [J/m2] of a slider with changing stiffness: work minus increase of elastic energy.
 
@@ -587,7 +639,7 @@ def varying_stiffness_loss(
     ends = (force[0] + new_force[0]) * tangential_displacement[0] + (
         force[1] + new_force[1]
     ) * tangential_displacement[1]
-    half = middle[0] * tangential_displacement[0] + middle[1] * tangential_displacement[1]
+    half = middle_force[0] * tangential_displacement[0] + middle_force[1] * tangential_displacement[1]
     hermite_term = select(
         slip > 0.0,
         0.0,
@@ -597,7 +649,7 @@ def varying_stiffness_loss(
         )
         * ((stiffness_start - stiffness_end) / 12.0),
     )
-    work = select(contact_changes, ends / 6.0 + 2.0 / 3.0 * half, 0.5 * ends + hermite_term)
+    work = select(has_contact_change, ends / 6.0 + 2.0 / 3.0 * half, 0.5 * ends + hermite_term)
     return np.maximum(
         work - (_elastic_energy(new_force, stiffness_end) - _elastic_energy(force, stiffness_start)), 0.0
     )

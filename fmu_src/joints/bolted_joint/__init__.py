@@ -20,9 +20,9 @@ from jointfmu.mechanics.footprint.shape import BOLT_MEAN_NAMES, MAX_PATCHES, Pre
 from jointfmu.mechanics.sliders import FOUNDATION_SLIDERS, height_offsets, torsion_directions
 from jointfmu.quantity import Array, flatten_parameters
 
-from ...joint_parts import Parts, RampPanel, chart, native_of
-from ...joint_parts.data import DataPart, DataTable
-from ...joint_parts.terminals import axis, rotation
+from ...joint_parts import FmuParts, RampPanel, chart, native_loader
+from ...joint_parts.data import DataConversion, DataTable
+from ...joint_parts.terminals import make_translation_flange, make_rotation_flange
 
 _SECTIONS = ("pattern.", "plate.", "field.", "bodies.")
 BOLTS = 64
@@ -34,7 +34,7 @@ _ONE_POINT_FIELD = {"share": (1.0,), "x": (0.0,), "y": (0.0,), "equal": (1.0,), 
 def _parameter_values(joint: Bolted) -> Mapping[str, object]:
     """The joint with one point, as its C is generated, and the place of its bolts."""
     own = {name: value for name, value in flatten_parameters(joint).items() if not name.startswith(_SECTIONS)}
-    spread = dict(zip(BOLT_MEAN_NAMES, joint.pattern.bolt_means, strict=True))
+    spread = dict(zip(BOLT_MEAN_NAMES, joint.pattern.bolt_position_means, strict=True))
     points: dict[str, object] = {
         f"field.{name}": value for name, value in (_ONE_POINT_FIELD | spread).items()
     }
@@ -71,7 +71,7 @@ def _bodies(joint: Bolted) -> Mapping[str, DataTable]:
     if joint.elastic:
         assert isinstance(joint.bodies, ElasticBodies)
         points, patches = contact_points(joint.pattern), friction_patches_of(joint.pattern)
-        modes = Modes.of(joint.bodies, len(points.share), patches.position)
+        modes = Modes.of(joint.bodies, len(points.area_share), patches.position)
         pressing = _pressure_transfer_table(force_transfer(points, patches))
         pairs = MAX_PATCHES_PER_POINT * MAX_POINTS + MAX_PATCHES
         most = MAX_MODES, MAX_POINTS, MAX_PATCHES, len(bolts)
@@ -84,8 +84,8 @@ def _bodies(joint: Bolted) -> Mapping[str, DataTable]:
             np.column_stack([bolts, moment_lever(bolts)]),
             len(bolts) if joint.elastic else max(len(bolts), BOLTS),
         ),
-        **{name: DataTable(_padded(rows), room[name], digits=True) for name, rows in moved.items()},
-        "pressing": DataTable(pressing, pairs, digits=True),
+        **{name: DataTable(_padded(rows), room[name], is_integer=True) for name, rows in moved.items()},
+        "pressing": DataTable(pressing, pairs, is_integer=True),
     }
 
 
@@ -103,7 +103,7 @@ def _padded(rows: Any) -> Any:
 
 def _rows(shape: PressureDistribution) -> Any:
     """Share, x, y, equal, tilt (n, 5)."""
-    return np.column_stack([shape.share, shape.position, shape.preload_shape, shape.moment_shape])
+    return np.column_stack([shape.area_share, shape.position, shape.preload_shape, shape.moment_shape])
 
 
 LOOP_PRELOAD_RATIO = 0.3
@@ -150,11 +150,16 @@ def _loops(spring: Any, end: float) -> list[chart.Panel]:
 _AXES = zip("xyz", (75.0, 45.0, 15.0), strict=True)
 _TURNS = zip("xyz", (-15.0, -45.0, -75.0), strict=True)
 
-PARTS = Parts(
+PARTS = FmuParts(
     folder=Path(__file__).parent,
-    native=native_of(__name__),
-    data=DataPart(_parameter_values, tables=_tables),
+    native=native_loader(__name__),
+    data=DataConversion(_parameter_values, make_tables=_tables),
     drawings={"BoltedJoint": {"loops": _loops}},
     panels={"BoltedJoint": (RampPanel("preload", ("K_zz", "K_xx")), RampPanel("preload", ("C_zz", "C_xx")))},
-    terminals={"BoltedJoint": (*(axis(*row) for row in _AXES), *(rotation(*row) for row in _TURNS))},
+    terminals={
+        "BoltedJoint": (
+            *(make_translation_flange(*row) for row in _AXES),
+            *(make_rotation_flange(*row) for row in _TURNS),
+        )
+    },
 )

@@ -38,7 +38,7 @@ def plate(x=(-0.08, 0.08, -0.08), y=(-0.03, -0.03, 0.03)):
 def rigid_file(**changes):
     """Three bolts on a plate, between rigid sides: nothing about them is symmetric."""
     file, pattern = load_default("bolted_joint"), plate()
-    row_bolts, row_distance = pattern.equivalent_rows
+    row_bolts, row_distance = pattern.equivalent_bolt_rows
     numbers = {
         "pattern": pattern, "n_bolts": 3.0, "A_0": pattern.area, "row_bolts": row_bolts,
         "row_distance": row_distance, "bolt_stiffness": STIFFNESS, "embedding": EMBEDDING,

@@ -42,7 +42,11 @@ def all_nodes(preload: float, moment: float) -> Array:
     """Stiffness (6, 6) of all nodes in full stick, each with the law's own stiffness."""
     nodes = BoltedJointSpring.of_nodes(JOINT)
     shape = nodes.points
-    k = JOINT.A_0 * shape.share * nodes.curve.derivatives(nodes.preloaded_approach(preload, moment), 1)[1]
+    k = (
+        JOINT.A_0
+        * shape.area_share
+        * nodes.curve.derivatives(nodes.preloaded_approach(preload, moment), 1)[1]
+    )
     x, y = shape.position.T
     none, one = np.zeros_like(x), np.ones_like(x)
     normal = np.array([none, none, one, y, -x, none])
@@ -251,7 +255,7 @@ def swings(first: float, least: float) -> Array:
     """
     nodes = BoltedJointSpring.of_nodes(JOINT)
     approach, law = nodes.preloaded_approach(PRELOAD, 0.0), nodes.friction.foundation()
-    share, limit = nodes.points.share, JOINT.mu * PRELOAD * JOINT.n_bolts / JOINT.A_0
+    share, limit = nodes.points.area_share, JOINT.mu * PRELOAD * JOINT.n_bolts / JOINT.A_0
 
     def force(u: float) -> float:
         return float(share @ law.virgin_traction(approach, u))

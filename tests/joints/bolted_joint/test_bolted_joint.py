@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from jointfmu.contact.interface import at_pressure
+from jointfmu.contact.interface import evaluate_at_pressure
 from jointfmu.contact.laws import mindlin
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.bolted_joint.law import BoltedJoint, preload_pressure
@@ -85,7 +85,7 @@ def test_outputs_are_named_as_promised(spring):
 def test_uniform_pressure_is_the_law(even):
     """Sum over nodes = the law of the whole area at the mean pressure (MAX_ERROR of the table)."""
     out = even.evaluate(9e3, 0.0, STILL, STILL)
-    law = {name: float(value) for name, value in at_pressure(JOINT, total(9e3) / JOINT.A_0).items()}
+    law = {name: float(value) for name, value in evaluate_at_pressure(JOINT, total(9e3) / JOINT.A_0).items()}
     assert out["K_zz"] == pytest.approx(law["K_N"], rel=MAX_ERROR)
     assert out["K_xx"] == out["K_yy"] == pytest.approx(law["K_T"], rel=MAX_ERROR)
     assert out["eta_n"] == pytest.approx(law["eta_n"], rel=MAX_ERROR)
@@ -102,7 +102,7 @@ def test_stiffness_is_the_sum_of_the_nodes_own_laws(spring, preload, moment):
     assert (
         np.min(p) > spring.curve.load[np.searchsorted(spring.curve.displacement, 0.0)]
     )  # outside the closing
-    law = at_pressure(JOINT, p)
+    law = evaluate_at_pressure(JOINT, p)
     out = spring.evaluate(preload, moment, STILL, STILL)
     assert out["K_zz"] == pytest.approx(spring.points.share @ law["K_N"], rel=MAX_ERROR)
     assert out["K_xx"] == pytest.approx(spring.points.share @ law["K_T"], rel=MAX_ERROR)
@@ -117,9 +117,9 @@ def test_uneven_pressure_is_softer_than_even(spring, even):
 def test_shear_ratio_is_that_of_the_law():
     for joint in (JOINT, changed(traction_ratio=0.6, spot_stiffness="hertz")):
         for p in (1e5, 1e8):
-            law = at_pressure(joint, p)
+            law = evaluate_at_pressure(joint, p)
             found = float(law["K_T"] / law["K_N"])
-            assert joint.shear_ratio() == pytest.approx(found, rel=1e-13)  # round-off
+            assert joint.shear_stiffness_ratio() == pytest.approx(found, rel=1e-13)  # round-off
 
 
 # Forces and stiffnesses away from the tightened state
@@ -267,7 +267,7 @@ def test_loss_factors_and_damping(plastic, preload, moment):
     """eta_n: plastic over elastic work of all nodes; eta_t: of the traction ratio; C = eta sqrt(M K)."""
     spring = plastic
     out = spring.evaluate(preload, moment, STILL, STILL)
-    law = at_pressure(JOINT, preload_pressure(JOINT, spring.points, preload, moment))
+    law = evaluate_at_pressure(JOINT, preload_pressure(JOINT, spring.points, preload, moment))
     plastic, elastic = (spring.points.share @ law[name] for name in ("W_NP", "W_NE"))
     assert out["eta_n"] == pytest.approx(plastic / elastic, rel=MAX_ERROR)
     ratio = 12.0 * mindlin.dissipation_function(0.1) / (5.0 * np.pi * mindlin.storage_function(0.1))
@@ -306,7 +306,7 @@ def test_loss_factor_while_closing(even):
     edge = float(curve.load[np.searchsorted(curve.displacement, 0.0)])
     at_edge, below = (even.evaluate(part * edge * JOINT.A_0 / 8, 0.0, STILL, STILL) for part in (1.0, 0.1))
     assert below["eta_n"] == pytest.approx(at_edge["eta_n"], rel=1e-12)  # round-off
-    law = at_pressure(JOINT, edge)
+    law = evaluate_at_pressure(JOINT, edge)
     assert at_edge["eta_n"] == pytest.approx(float(law["eta_n"]), rel=1e-10)  # 1e-12 of the load, steep
 
 
@@ -317,7 +317,7 @@ def test_loss_factor_while_closing(even):
 def test_rotational_stiffness_about_the_centroid(spring, preload, moment):
     """sum A k y^2, sum A k x^2, and rho sum A k (x^2 + y^2), written out."""
     out = spring.evaluate(preload, moment, STILL, STILL)
-    law = at_pressure(JOINT, preload_pressure(JOINT, spring.points, preload, moment))
+    law = evaluate_at_pressure(JOINT, preload_pressure(JOINT, spring.points, preload, moment))
     x, y = spring.points.position.T
     share = spring.points.share
     assert share @ x == pytest.approx(0.0, abs=1e-15)  # m, the origin is the centroid

@@ -30,7 +30,7 @@ from jointfmu.joints import MODELS
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring, contact_points
 from jointfmu.joints.bolted_joint.law import preload_pressure
 from jointfmu.mechanics.footprint.plate import BoltedPlate
-from jointfmu.mechanics.footprint.shape import NodalField, field_entries
+from jointfmu.mechanics.footprint.shape import NodalField, nodal_field_entries
 from jointfmu.parameters import load_default, load_parameter_file
 
 MOVED = ("s_rel_x", "s_rel_y", "s_rel_z", "theta_x", "theta_y", "theta_z")
@@ -43,7 +43,7 @@ def test_bolted_joint_at_rest_follows_the_law_without_a_table(fmu: Host) -> None
         found = instance.at({"preload": preload, "moment": moment})
         node = preload_pressure(joint, spring.points, preload, moment)
         k = stiffness_curve(joint, node)[0]
-        K_zz = joint.A_0 * float(spring.points.share @ k)
+        K_zz = joint.A_0 * float(spring.points.area_share @ k)
         expected = {"K_zz": K_zz, "p_max": float(node.max())}
         assert {n: found[n] for n in expected} == pytest.approx(expected, rel=TABLE)
         assert found["K_xx"] == pytest.approx(joint.shear_ratio() * K_zz, rel=5e-3)  # by the patches
@@ -309,7 +309,7 @@ def test_the_map_is_the_pressure_at_the_points(law):
         assert instance.start(given)
         found = instance.map()
         assert found[:, :2] == pytest.approx(shape.position, rel=1e-12, abs=1e-15)
-        assert found[:, 2] == pytest.approx(shape.share, rel=1e-15)
+        assert found[:, 2] == pytest.approx(shape.area_share, rel=1e-15)
         x, y = shape.position.T
         approach = spring.preloaded_approach(12e3, moment) - (apart + turn * y + turn * x)
         expected = spring.curve.derivatives(approach, 0)[0]
@@ -340,7 +340,7 @@ def test_loops_show_partial_slip_whatever_the_friction(mu: float) -> None:
         1.0 + 1e-9
     )
     if mu < 0.1:
-        assert large["motion"] < 0.5 * model.loop.amplitude
+        assert large["motion"] < 0.5 * model.load_cycle.amplitude
         # slides freely over more than a third of the way back
         assert large["loss_factor"] > 0.7
 
@@ -367,7 +367,9 @@ def test_the_picture_shows_pressure_and_bolts_where_they_are() -> None:
     strip = BoltedPlate(
         length=0.15, width=0.04, x=(0.0,), y=(0.0,), hole_diameter=0.009, cone_diameter=0.02
     )  # its cells are no squares: they are as wide as its columns
-    sides = _cell_sizes(SimpleNamespace(A_0=strip.area, pattern=strip), strip.pressure_distribution().share)
+    sides = _cell_sizes(
+        SimpleNamespace(A_0=strip.area, pattern=strip), strip.pressure_distribution().area_share
+    )
     np.testing.assert_allclose(
         sides.max(axis=0), np.array([0.15, 0.04]) / strip.coarse_cell_counts, rtol=1e-4
     )
@@ -383,7 +385,7 @@ def test_the_picture_of_points_without_an_outline() -> None:
     share = some.share / some.share.sum()
     moved = replace(some, share=share, position=some.position - share @ some.position)
     moved = replace(moved, equal=some.equal / (share @ some.equal), tilt=some.tilt - share @ some.tilt)
-    joint = replace(file.values, pattern=NodalField(**field_entries(moved)))
+    joint = replace(file.values, pattern=NodalField(**nodal_field_entries(moved)))
     drawn = ElementTree.fromstring(draw_plan(joint, 9e3, 0.0))
     discs = list(drawn.iter(f"{SVG}circle"))
     assert len(discs) == len(share)

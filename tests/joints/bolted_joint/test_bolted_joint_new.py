@@ -18,7 +18,7 @@ from jointfmu_tools.joints.bolted_joint.report import friction_results
 from jointfmu_tools.shown import list_entries
 from jointfmu_tools.uncertainty.problem import state_problem
 
-from jointfmu.contact.roughness import GAMMA, RQ_OVER_RA
+from jointfmu.contact.roughness import PERSSON_GAMMA, RQ_OVER_RA
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.parameters import load_parameter_file
 
@@ -173,7 +173,7 @@ def test_any_layout_makes_a_file_that_loads(capsys, tmp_path, layouts):
     assert found["written"] == [str(path)]
     assert (file.law, file.values.n_bolts) == ("roughness", len(file.values.pattern.x))
     left = file.start_value("preload") - file.values.embedding
-    K = left * file.values.n_bolts / (GAMMA * file.values.h)
+    K = left * file.values.n_bolts / (PERSSON_GAMMA * file.values.h)
     assert found["facts"]["interface_K_zz"]["value"] == pytest.approx(
         K, rel=0.05
     )  # p/(gamma h), and few spots

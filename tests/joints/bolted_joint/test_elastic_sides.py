@@ -15,7 +15,7 @@ from jointfmu_fmu_src.building import build
 from jointfmu_fmu_src.native import page
 from jointfmu_tools import cli
 from jointfmu_tools.fem.whole_joint import JointFiniteElements
-from jointfmu_tools.fields.joint_parameters import with_field
+from jointfmu_tools.fields.joint_parameters import insert_field
 from jointfmu_tools.fields.nodal_result import ContactField
 from jointfmu_tools.fitting import branches
 from jointfmu_tools.joints.bolted_joint import report
@@ -148,7 +148,7 @@ def test_the_report_states_the_whole_beside_its_parts(made):
     file = joint.file  # of before outlines were written
     bare = replace(file, values=replace(file.values, bodies=replace(file.values.bodies, outline=())))
     assert format_quantity((), "m") == ("none", "")
-    assert [row.value for row in page._rows(bare) if row.name == "bodies.outline"] == ["none"]
+    assert [row.value for row in page._parameter_rows(bare) if row.name == "bodies.outline"] == ["none"]
     alone = interface_alone(joint.file.values)
     assert report.stiffness_figures(LoadHistory(model, replace(joint.file, values=alone))) == []
 
@@ -580,7 +580,7 @@ def test_an_assembly_makes_the_whole_joint(made, plates, tmp_path, capsys, monke
     assert found.bolt_stiffness == pytest.approx(before.bolt_stiffness, rel=1e-3)
     corners = 0.03 * np.array([[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]])
     even = ContactField(np.full(4, 1e-3), corners, np.full(4, 15e6))
-    alone, _ = with_field(load_parameter_file(out), even, 15e3, "four nodes")
+    alone, _ = insert_field(load_parameter_file(out), even, 15e3, "four nodes")
     assert not alone.values.elastic
     # its field brought back, with plates of the rectangle around it: on a finer mesh the same joint
     again = ["footprint", "import", str(field), "--open", "keep", *words[3:]]
@@ -592,7 +592,9 @@ def test_an_assembly_makes_the_whole_joint(made, plates, tmp_path, capsys, monke
         in capsys.readouterr().out
     )
     np.testing.assert_allclose(returned.compliances(15e3).total, found.total, rtol=0.05)
-    np.testing.assert_allclose(returned.joint.pattern.bolt_means, spring.joint.pattern.bolt_means, atol=1e-6)
+    np.testing.assert_allclose(
+        returned.joint.pattern.bolt_position_means, spring.joint.pattern.bolt_position_means, atol=1e-6
+    )
     capsys.readouterr()
     for wrong, told in (
         (["--thickness", "1", "10"], "side1 is 1 mm thick, expected at least 1.3"),
@@ -618,8 +620,8 @@ def test_stiffness_over_preload_gives_the_roughness_of_the_whole(made, tmp_path)
     start, true = joint.file.with_values({"h": 4e-6}, "user", "test"), joint.file.values.h
     found = over_preload.fit(path, start)
     assert found.parameters.values.elastic
-    assert abs(np.log(found.solution.values["h"] / true)) < 3.0 * found.solution.deviations["h"]
-    assert found.solution.deviations["h"] < 0.01
+    assert abs(np.log(found.solution.values["h"] / true)) < 3.0 * found.solution.relative_deviations["h"]
+    assert found.solution.relative_deviations["h"] < 0.01
     assert not found.warnings()
     alone = over_preload.fit(path, replace(start, values=interface_alone(start.values)))
     assert "the law misses the curve systematically" in alone.warnings()[-1]
@@ -638,7 +640,10 @@ def test_loops_give_friction_and_roughness_of_the_whole(made, tmp_path, monkeypa
     loops = branches.cut_branches([("", motion, force)])
     off = loop._masing_deviation(joint.file.values, 15e3, loops, law)
     for found, low, high in ((loops, 3e-3, 1e-2), (replace(loops, force=loops.force - off), 0.0, 2e-3)):
-        missed = np.max(np.abs(found.fit_turning_points(law, found.scale)[2])) / facts["friction_limit"][0]
+        missed = (
+            np.max(np.abs(found.fit_turning_points(law, found.residual_scale)[2]))
+            / facts["friction_limit"][0]
+        )
         assert low < missed < high
     assert facts["shear_stiffness"][0] == at(joint.spring, *STILL, preload=15e3)[0]["K_xx"]
 
@@ -649,7 +654,7 @@ def test_loops_give_friction_and_roughness_of_the_whole(made, tmp_path, monkeypa
     start = joint.file.with_values({"h": 1.6e-6, "mu": 0.17}, "user", "test")
     found = loop.fit(path, start, preload=15e3)
     assert found.parameters.values.elastic
-    for name, deviation in found.solution.deviations.items():
+    for name, deviation in found.solution.relative_deviations.items():
         assert deviation < 0.03
         ratio = found.solution.values[name] / joint.file.values_by_name[name]
         assert abs(np.log(ratio)) < 3.0 * deviation, name

@@ -72,10 +72,10 @@ def test_pairs_add_up_to_the_joint(joint, preload, moment):
 
 
 def test_stiffness_of_a_pair_is_the_law_at_its_pressure(joint, found):
-    from jointfmu.contact.interface import at_pressure
+    from jointfmu.contact.interface import evaluate_at_pressure
 
     law = joint.joint
-    state = at_pressure(law, found.pressure)  # of the whole A_0; the curve is within 1e-8 of it
+    state = evaluate_at_pressure(law, found.pressure)  # of the whole A_0; the curve is within 1e-8 of it
     np.testing.assert_allclose(found.K_n, found.area / law.A_0 * state["K_N"], rtol=1e-7)
     np.testing.assert_allclose(found.K_t, found.area / law.A_0 * state["K_T"], rtol=1e-7)
 

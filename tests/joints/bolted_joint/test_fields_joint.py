@@ -9,10 +9,10 @@ from conftest import here_alone
 from jointfmu_fmu_src.building import build
 from jointfmu_tools import PARTS, cli, plots
 from jointfmu_tools.fields import nodal_result, reduction
-from jointfmu_tools.fields.joint_parameters import pressure_shape, with_field
+from jointfmu_tools.fields.joint_parameters import pressure_shape, insert_field
 from jointfmu_tools.fields.nodal_result import ContactField
 from jointfmu_tools.fields.reduction import RELATIVE_TOLERANCE, ROUNDING_BITS, reduce_field
-from jointfmu_tools.fields.sums import MAX_COMPRESSION_RATIO, PRELOAD_RANGE, LoadCase, SumFunctions
+from jointfmu_tools.fields.sums import MAX_COMPRESSION_RATIO, PRELOAD_RATIO_RANGE, LoadCase, SumFunctions
 from jointfmu_tools.joints.bolted_joint.published import pressure_between_bolts
 from jointfmu_tools.modelica import library
 from jointfmu_tools.ramps import ramp
@@ -40,9 +40,9 @@ def field(closed=0.0, moment=0.0):
     shape = bolt_pattern(JOINT).pressure_distribution()
     mean = PRELOAD * JOINT.n_bolts / JOINT.A_0
     p = np.maximum(shape.preload_shape - closed, 0.0)
-    p *= mean / (shape.share @ p)
+    p *= mean / (shape.area_share @ p)
     p += moment / (JOINT.row_distance * JOINT.A_0) * shape.moment_shape
-    return ContactField(shape.share * JOINT.A_0, shape.position + OFFSET, p)
+    return ContactField(shape.area_share * JOINT.A_0, shape.position + OFFSET, p)
 
 
 FIELD = field()
@@ -81,7 +81,7 @@ def test_points_keep_the_sums(reduced):
     lowest = SumFunctions.from_joint(joint, PRELOAD, preload_pressure).curve.displacement[0]
     for _ in range(15):  # many in benchmarks/field_reduction.py
         load = LoadCase(
-            float(np.exp(rng.uniform(*np.log(PRELOAD_RANGE)))), found.moment * rng.uniform(-1, 1), 0.0
+            float(np.exp(rng.uniform(*np.log(PRELOAD_RATIO_RANGE)))), found.moment * rng.uniform(-1, 1), 0.0
         )
         start, _, peak = direct(joint, shape, load)
         apart = rng.choice([0.0, rng.uniform(-MAX_COMPRESSION_RATIO, 1.0)]) * (start.max() - lowest)
@@ -120,7 +120,7 @@ def test_a_field_that_is_a_bit_off_is_the_same():
             assert np.array_equal(
                 getattr(round_distribution(other, ROUNDING_BITS), name), getattr(before, name)
             ), name
-    one, two = (reduce_field(JOINT, each, PRELOAD, preload_pressure).shape for each in (shape, other))
+    one, two = (reduce_field(JOINT, each, PRELOAD, preload_pressure).reduced_shape for each in (shape, other))
     for name in numbers:
         was = getattr(one, name)
         np.testing.assert_allclose(getattr(two, name), was, rtol=1e-9, atol=1e-9 * np.max(np.abs(was)))
@@ -131,17 +131,17 @@ def test_patches_come_from_the_nodes(tmp_path):
     friction; the file keeps the patches, and those that do not balance are refused."""
     ring = patch_reduction.annulus(48, 5)
     mean = PRELOAD * JOINT.n_bolts / JOINT.A_0
-    contact = ContactField(ring.share * JOINT.A_0, ring.position, mean * ring.preload_shape)
+    contact = ContactField(ring.area_share * JOINT.A_0, ring.position, mean * ring.preload_shape)
     (tmp_path / "ring.toml").write_text(
-        format_parameter_file(with_field(FILE, contact, PRELOAD, "a ring")[0]), encoding="utf-8"
+        format_parameter_file(insert_field(FILE, contact, PRELOAD, "a ring")[0]), encoding="utf-8"
     )
     joint = load_parameter_file(tmp_path / "ring.toml").values
     spring = BoltedJointSpring.of(joint)
-    assert spring.patches.share.tolist() == list(joint.pattern.patch_share)
+    assert spring.patches.area_share.tolist() == list(joint.pattern.patch_share)
     slides = spring.evaluate(PRELOAD, 0.0, (0.0, 0.0, 0.0), (0.0,) * 3, (0.0, 0.0, 1e-2))
     friction = joint.mu * PRELOAD * joint.n_bolts
     assert np.hypot(slides["f_x"], slides["f_y"]) < 4e-3 * friction
-    arm = (ring.share * ring.preload_shape) @ np.hypot(*ring.position.T)
+    arm = (ring.area_share * ring.preload_shape) @ np.hypot(*ring.position.T)
     assert -slides["m_z"] == pytest.approx(friction * arm, rel=2e-3)
     share = (2.0 * joint.pattern.patch_share[0], *joint.pattern.patch_share[1:])
     with pytest.raises(ValueError, match=r"^the sum of patch_share is 1\.\d+, expected 1 within 1e-06$"):
@@ -150,7 +150,7 @@ def test_patches_come_from_the_nodes(tmp_path):
 
 def test_few_nodes_stay_as_they_are():
     shape = pressure_shape(JOINT, ContactField(*(a[:50] for a in _parts(FIELD))), _preload(FIELD, 50))
-    assert reduce_field(JOINT, shape, PRELOAD, preload_pressure).shape is shape
+    assert reduce_field(JOINT, shape, PRELOAD, preload_pressure).reduced_shape is shape
 
 
 def test_points_that_miss_a_little_stand_for_many_nodes_alone(monkeypatch):
@@ -160,7 +160,7 @@ def test_points_that_miss_a_little_stand_for_many_nodes_alone(monkeypatch):
         None,
     ]
     monkeypatch.setattr(reduction, "_search_points", lambda *given: found[0])
-    assert reduce_field(JOINT, shape, PRELOAD, preload_pressure).point_count == shape.share.size
+    assert reduce_field(JOINT, shape, PRELOAD, preload_pressure).point_count == shape.area_share.size
     monkeypatch.setattr(reduction, "MAX_KEPT_NODES", 1000)
     assert reduce_field(JOINT, shape, PRELOAD, preload_pressure) is found.pop(0)
     with pytest.raises(RuntimeError, match="no points that keep its sums within 1e-05; of up to 1000 all"):
@@ -199,13 +199,13 @@ def test_a_force_more_than_one_per_cent_off_is_refused(factor):
     with pytest.raises(
         ValueError, match=r"the force of the field is .* N, expected 72000 N within 1 %: 8 bolts"
     ):
-        with_field(FILE, wrong, PRELOAD, "test")
+        insert_field(FILE, wrong, PRELOAD, "test")
     assert pressure_shape(JOINT, replace(FIELD, pressure=1.009 * FIELD.pressure), PRELOAD)
 
 
 def test_other_joints_have_no_field():
     with pytest.raises(ValueError, match=r"joint = 'gear_contact' has no field"):
-        with_field(load_default("gear_contact"), FIELD, PRELOAD, "test")
+        insert_field(load_default("gear_contact"), FIELD, PRELOAD, "test")
 
 
 def test_a_joint_of_another_name_may_have_a_field(monkeypatch):
@@ -214,7 +214,7 @@ def test_a_joint_of_another_name_may_have_a_field(monkeypatch):
     monkeypatch.setitem(KINDS, "toy", toy)
     monkeypatch.setitem(PARTS, "toy", PARTS[KIND.name])
     few = ContactField(*(a[:50] for a in _parts(FIELD)))
-    file, found = with_field(replace(FILE, joint="toy"), few, _preload(FIELD, 50), "test")
+    file, found = insert_field(replace(FILE, joint="toy"), few, _preload(FIELD, 50), "test")
     assert (file.joint, found.node_count) == ("toy", 50)
     assert isinstance(file.values, toy.parameters)
     assert len(file.values.pattern.share) == 50
@@ -222,7 +222,7 @@ def test_a_joint_of_another_name_may_have_a_field(monkeypatch):
 
 @pytest.fixture(scope="module")
 def imported():
-    return with_field(FILE, FIELD, PRELOAD, "a test's field")
+    return insert_field(FILE, FIELD, PRELOAD, "a test's field")
 
 
 def test_file_survives_and_says_where_it_comes_from(imported, tmp_path):
@@ -285,7 +285,7 @@ def test_fmus_have_the_field(imported, tmp_path, monkeypatch):
     monkeypatch.setattr(bolts, "CELLS_ACROSS", 10)
     shape = bolt_pattern(JOINT).pressure_distribution()
     mean = PRELOAD * JOINT.n_bolts / JOINT.A_0
-    many = ContactField(shape.share * JOINT.A_0, shape.position, mean * shape.preload_shape)
+    many = ContactField(shape.area_share * JOINT.A_0, shape.position, mean * shape.preload_shape)
     (tmp_path / "field.csv").write_text(nodal_result.csv_text(many))
     out = tmp_path / "joint.toml"
     line = [

@@ -13,9 +13,9 @@ from jointfmu_tools import cli
 from natives import Host, close, jacobian
 from scipy.integrate import quad
 
-from jointfmu.contact.interface import at_pressure
+from jointfmu.contact.interface import evaluate_at_pressure
 from jointfmu.joints.gear_contact.spring import GearContact, GearContactSpring
-from jointfmu.mechanics.curve import CLOSING_RATIO, MAX_ERROR
+from jointfmu.mechanics.curve import CLOSING_AREA_RATIO, MAX_ERROR
 from jointfmu.parameters import load_default, load_parameter_file
 from jointfmu.quantity import build_parameter_set, flatten_parameters
 
@@ -56,7 +56,7 @@ def test_approach_is_the_integral_of_df_over_K(spring):
 
     def per_log(t):
         f = np.exp(t)
-        return f / float(at_pressure(spring.joint, f / A_0)["K_N"])
+        return f / float(evaluate_at_pressure(spring.joint, f / A_0)["K_N"])
 
     spots = spring.joint.spots()
     breaks = [float(spots.total("load", u)) for u in spots.sorted_regime_ends if u > spots.stiffness_onset]
@@ -66,7 +66,7 @@ def test_approach_is_the_integral_of_df_over_K(spring):
         out = spring.evaluate(high)
         assert float(out["s_rel"]) == pytest.approx(s, rel=MAX_ERROR)
         assert float(out["K_N"]) == pytest.approx(
-            float(at_pressure(spring.joint, high / A_0)["K_N"]), rel=MAX_ERROR
+            float(evaluate_at_pressure(spring.joint, high / A_0)["K_N"]), rel=MAX_ERROR
         )
 
 
@@ -119,7 +119,7 @@ def test_real_area_and_its_elastic_part(spring):
     """The law's own sums, and in closed form: A_r = lambda m/(1 - m) a_L, elastic above a_nec."""
     f = np.geomspace(1e-3, 0.9, 12) * spring.max_force
     out = spring.evaluate(f)
-    law = at_pressure(spring.joint, f / spring.joint.A_0)
+    law = evaluate_at_pressure(spring.joint, f / spring.joint.A_0)
     np.testing.assert_allclose(out["A_r"], law["A_r"], rtol=4 * EPS)
     m, spots = spring.joint.spots().m, spring.joint.spots()
     largest = law["largest_spot"]
@@ -141,9 +141,9 @@ def test_the_closing_is_short(spring):
     """It ends where the largest spot is CLOSING_RATIO times the largest plastic one."""
     force, _ = closing_end(spring)
     spots = spring.joint.spots()
-    largest = float(at_pressure(spring.joint, force / spring.joint.A_0)["largest_spot"])
+    largest = float(evaluate_at_pressure(spring.joint, force / spring.joint.A_0)["largest_spot"])
     plastic = spots.reference * np.exp(spots.stiffness_onset)
-    assert largest == pytest.approx(CLOSING_RATIO * plastic, rel=1e-10)  # 1e-12 of the load, steep
+    assert largest == pytest.approx(CLOSING_AREA_RATIO * plastic, rel=1e-10)  # 1e-12 of the load, steep
     assert force < spring.max_force
 
 
@@ -204,7 +204,7 @@ def test_rigid_flat_takes_the_second_body_out(fmu: Host) -> None:
 def test_gear_contact_follows_the_law_without_a_table(fmu: Host) -> None:
     contact, instance = parameters("GearContact"), fmu("GearContact").start()
     for f in (300.0, 2e3, 2e4, 6e4):
-        found, expected = instance.at({"f": f}), at_pressure(contact, f / contact.A_0)
+        found, expected = instance.at({"f": f}), evaluate_at_pressure(contact, f / contact.A_0)
         assert found["K_N"] == pytest.approx(float(expected["K_N"]), rel=TABLE)
         for output in ("A_r", "elastic_fraction"):
             assert found[output] == pytest.approx(float(expected[output]), rel=SAME)

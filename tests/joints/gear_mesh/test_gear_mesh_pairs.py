@@ -11,7 +11,7 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 from test_gear_mesh_spring import MESH, each, motion
 
-from jointfmu.contact.interface import at_pressure
+from jointfmu.contact.interface import evaluate_at_pressure
 from jointfmu.joints.gear_contact.spring import GearContact, GearContactSpring
 from jointfmu.joints.gear_mesh.spring import GearMesh, GearMeshSpring, pairs_in_contact
 from jointfmu.mechanics.curve import MAX_ERROR, tabulate_approach
@@ -150,7 +150,7 @@ def test_the_pair_is_flanks_and_teeth_in_series(spring):
     first, force, delta = mesh.A_0 * flanks.closing_end_load, 0.0, -float(flanks.displacement[0])
 
     def per_log(t):
-        return np.exp(t) / float(at_pressure(mesh, np.exp(t) / mesh.A_0)["K_N"])
+        return np.exp(t) / float(evaluate_at_pressure(mesh, np.exp(t) / mesh.A_0)["K_N"])
 
     spots = mesh.spots()
     breaks = [float(spots.total("load", u)) for u in spots.sorted_regime_ends if u > spots.stiffness_onset]
@@ -160,7 +160,9 @@ def test_the_pair_is_flanks_and_teeth_in_series(spring):
         delta += sum(quad(per_log, a, b, epsabs=0.0, epsrel=1e-11)[0] for a, b in pairwise(ends))
         last = force
         s = delta + force / mesh.K_tooth
-        stiffness = 1.0 / (1.0 / float(at_pressure(mesh, force / mesh.A_0)["K_N"]) + 1.0 / mesh.K_tooth)
+        stiffness = 1.0 / (
+            1.0 / float(evaluate_at_pressure(mesh, force / mesh.A_0)["K_N"]) + 1.0 / mesh.K_tooth
+        )
 
         def miss(f, s=s, mesh=mesh, flanks=flanks):
             approach = float(flanks.inverse(f / mesh.A_0) - flanks.displacement[0])
@@ -216,7 +218,7 @@ def test_any_mesh_gives_a_monotone_table_or_is_refused(law, teeth):
         assert "plastic" in str(error)  # noqa: PT017
         return
     closed = int(np.searchsorted(flanks.displacement, 0.0))
-    p, k, bend = flanks.load[closed], flanks.stiffness[closed], flanks.slope_end[closed - 1]
+    p, k, bend = flanks.load[closed], flanks.stiffness[closed], flanks.stiffness_slope_end[closed - 1]
     assume(bend * p >= 0.75 * k**2)  # else the flanks' own closing begins with a load below zero
     own = {"K_tooth": float(teeth * law.A_0 * k)}
     try:
@@ -227,7 +229,7 @@ def test_any_mesh_gives_a_monotone_table_or_is_refused(law, teeth):
         assert "nodes" in str(error)  # noqa: PT017
         assert teeth < 0.1
         return
-    assert spring.curve.error <= MAX_ERROR
+    assert spring.curve.interpolation_error <= MAX_ERROR
     x = spring.curve.displacement
     places = (x[:-1] + np.linspace(0, 1, 9)[:-1, None] * np.diff(x)).T.ravel()
     load, stiffness = spring.curve.derivatives(places, 1)

@@ -63,7 +63,7 @@ def parameters(law: HarmonicDriveSpring, names: Mapping[str, float]) -> dict[str
     """Those of the component for parameters of the package's drive."""
     given = {name: getattr(law.joint, name) for name in names if not name.startswith("hysteresis")}
     found = law.hysteresis
-    sums = {"friction": float(np.sum(found.limit)), "stiffness": float(np.sum(found.stiffness))}
+    sums = {"friction": float(np.sum(found.friction_limit)), "stiffness": float(np.sum(found.stiffness))}
     return given | {f"hysteresis_{name}": value for name, value in sums.items()}
 
 

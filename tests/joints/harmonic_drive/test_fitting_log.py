@@ -74,7 +74,7 @@ def test_an_arm_that_swings_gives_its_friction_back(monkeypatch):
     assert found.facts["inertia"][0] == pytest.approx(whole, rel=0.02)
     assert found.facts["gravity_cos"][0] == pytest.approx(log_round_trips.GRAVITY, rel=0.02)
     assert abs(found.facts["gravity_sin"][0]) < 0.02 * log_round_trips.GRAVITY
-    assert [picture.labels[0].split(" [")[0] for picture in found.pictures] == [
+    assert [picture.axis_labels[0].split(" [")[0] for picture in found.pictures] == [
         "speed of the joint",
         "time",
         "temperature",

@@ -82,8 +82,8 @@ def test_stiffness_is_the_derivative_and_has_no_kink():
     x, h = np.linspace(1e-6, curve.end[0], 4001), 1e-8
     slope = (curve.derivatives(x + h, 0)[0] - curve.derivatives(x - h, 0)[0]) / (2.0 * h)
     np.testing.assert_allclose(slope, curve.derivatives(x, 1)[1], rtol=1e-6)  # round-off of 1e-13 N m over h
-    assert np.all(curve.slope_start[1:] == curve.slope_end[:-1])
-    assert curve.slope_start[0] == 0.0  # the odd continuation has none either
+    assert np.all(curve.stiffness_slope_start[1:] == curve.stiffness_slope_end[:-1])
+    assert curve.stiffness_slope_start[0] == 0.0  # the odd continuation has none either
     K = curve.derivatives(x, 1)[1]
     assert np.all(np.diff(K) >= -1e-6)
     assert (K[0], K[-1]) == pytest.approx((1e4, 1.6e4), rel=1e-12)
@@ -139,7 +139,7 @@ def test_hysteresis_of_a_drive_without_a_pair():
     assert stiffness_exponent(drive()) == 1.0
     spring = HarmonicDriveSpring.tabulate(drive(hysteresis_loss=loss))
     hysteresis = spring.hysteresis
-    limit, stiffness = np.sum(hysteresis.limit), np.sum(hysteresis.stiffness)
+    limit, stiffness = np.sum(hysteresis.friction_limit), np.sum(hysteresis.stiffness)
     phi = np.linspace(0.0, 3.0 * limit / stiffness, 50)
     rest = np.broadcast_to(HISTORY_LAYOUT.virgin_history(), (50, HISTORY_LAYOUT.virgin_history().size))
     dahl = limit * (1.0 - np.exp(-stiffness * phi / limit))

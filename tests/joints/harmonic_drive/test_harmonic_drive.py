@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from jointfmu.contact.interface import at_pressure
+from jointfmu.contact.interface import evaluate_at_pressure
 from jointfmu.contact.laws.hu2023 import critical_area
 from jointfmu.joints import KINDS
 from jointfmu.joints.harmonic_drive.law import HarmonicDrive, drive_stiffness, pair_stiffness, peak_pressure
@@ -115,7 +115,7 @@ def test_printed_equations():
     psi = 5.454 * np.exp((1.0 - s.D) / 0.628) + 1.499
     K_N = (s.D - 1) / (0.5 * s.D - 1) * E / np.sqrt(np.pi) * psi ** (1.5 - 0.5 * s.D) * root
     K_T = 4.0 * shear / E * (1.0 - DRIVE.traction_ratio) ** (1.0 / 3.0) * K_N
-    state = at_pressure(DRIVE.pair_law, P)
+    state = evaluate_at_pressure(DRIVE.pair_law, P)
     np.testing.assert_allclose(state["K_N"], K_N, rtol=1e-12)  # round-off
     np.testing.assert_allclose(state["K_T"], K_T, rtol=1e-12)
     np.testing.assert_allclose(state["F"], P * DRIVE.node_area, rtol=1e-12)
@@ -127,7 +127,7 @@ def test_roughness_has_no_scale():
     """Energy of a unit twist by the law at the mean pressure."""
     it, T = SETS["rough"], np.array([0.0, 1.0, 5.0, 25.0])
     p = it.mean_over_peak * peak_pressure(it, T)[0]
-    expected = at_pressure(it.law, p)["K_T"] * it.radius**2
+    expected = evaluate_at_pressure(it.law, p)["K_T"] * it.radius**2
     np.testing.assert_allclose(pair_stiffness(it, T)[0], expected, rtol=1e-12)  # round-off
     assert HarmonicDriveSpring.tabulate(it).evaluate_torque(5.0)["K_TS_pair"] == pytest.approx(
         expected[2], rel=1e-6
@@ -218,7 +218,7 @@ def test_spots_that_would_yield_are_refused(side):
         torque_curve(it)
     least = float(str(error.value).split("(")[1].split(",")[0])
     edge = drive(**{f"{side}__sigma_y": least})
-    ends = at_pressure(edge.pair_law, peak_pressure(edge, edge.max_torque)[0])["largest_spot"]
+    ends = evaluate_at_pressure(edge.pair_law, peak_pressure(edge, edge.max_torque)[0])["largest_spot"]
     assert ends == pytest.approx(critical_area(edge.pair_law), rel=1e-5)  # six digits of the message
 
 
@@ -242,10 +242,10 @@ def test_tables_of_other_drives(D, r_m, traction, eccentricity, K_FTS0, smoothin
         torque_smoothing=smoothing,
     )
     curve = torque_curve(it)
-    assert curve.error <= MAX_ERROR
+    assert curve.interpolation_error <= MAX_ERROR
     assert np.all(np.diff(curve.load) > 0.0)
     assert np.all(np.diff(curve.stiffness) > 0.0)
-    assert curve.slope_start[0] == 0.0
+    assert curve.stiffness_slope_start[0] == 0.0
 
 
 # The spring

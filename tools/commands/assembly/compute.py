@@ -67,12 +67,16 @@ def run(args: argparse.Namespace) -> CommandResult:
     if args.field:
         results.check_field_path(args.field)
     file = with_assembly(file, assembly, include_bolts=args.out is not None)
-    levels = convergence.refinements(args.refine, args.refinement)
+    levels = convergence.refinement_series(args.refine, args.refinement)
     with require_fem_packages("the finite-element analysis"):
         curve = tabulate_approach(file.values)
         rows, solution = convergence.run_mesh_study(assembly, curve, args.preload, moment, levels)
     result = _with_field(args, file, solution) if args.out else file
-    whole = field_adapter(file.joint).facts(result, tightening_force(args, result)) if args.attached else {}
+    whole = (
+        field_adapter(file.joint).describe_joint(result, tightening_force(args, result))
+        if args.attached
+        else {}
+    )
     written = _write_outputs(args, result, solution)
     facts = _collect_results(solution, moment, args.preload)
     judgement = judge_assembly(file, assembly, args.preload, facts["p_mean"], solution.peak_pressure)
@@ -113,13 +117,13 @@ def _with_field(args: argparse.Namespace, file: ParameterFile, solution: "JointS
 
     The field is of the preload after embedding; it contains the change of pressure under a moment.
     """
-    from ...fem.bolted_contact import with_contact_field
+    from ...fem.bolted_contact import insert_contact_field
 
-    interface, shape = with_contact_field(file, solution, args.preload, args.moment or 0.0)
+    interface, shape = insert_contact_field(file, solution, args.preload, args.moment or 0.0)
     if not args.attached:
         return interface
     preload = tightening_force(args, interface)
-    return field_adapter(interface.joint).with_elastic_bodies(
+    return field_adapter(interface.joint).insert_elastic_bodies(
         interface, solution.joint.assembly, preload, args.attached, shape
     )
 
@@ -160,7 +164,12 @@ def _format_results(facts: dict[str, Any]) -> Iterator[str]:
 
 
 def _mesh_document(row: "MeshResult") -> dict[str, object]:
-    return {"refinement": row.refinement, "elements": row.elements, "unknowns": row.unknowns, **row.values}
+    return {
+        "refinement": row.refinement,
+        "elements": row.element_count,
+        "unknowns": row.unknown_count,
+        **row.result_values,
+    }
 
 
 def _format_convergence(rows: list["MeshResult"]) -> Iterator[str]:
@@ -172,8 +181,8 @@ def _format_convergence(rows: list["MeshResult"]) -> Iterator[str]:
     heads = [f"{name} [{unit}]" for name, unit in RESULT_UNITS.items()]
     yield f"{'mesh':>6} {'unknowns':>9} " + " ".join(f"{head:>16}" for head in heads)
     for row in rows:
-        values = " ".join(f"{row.values[name]:16.6g}" for name in RESULT_UNITS)
-        yield f"{row.refinement:6.2f} {row.unknowns:9d} {values}"
+        values = " ".join(f"{row.result_values[name]:16.6g}" for name in RESULT_UNITS)
+        yield f"{row.refinement:6.2f} {row.unknown_count:9d} {values}"
     for change, row in zip(relative_changes(rows), rows[1:], strict=True):
         percent = " ".join(f"{100.0 * change[name]:14.3f} %" for name in RESULT_UNITS)
         yield f"change to {row.refinement:6.2f} {percent}"

@@ -89,7 +89,7 @@ def _run_import(args: argparse.Namespace) -> CommandResult:
     if (args.moment is None) != (args.moment_file is None):
         raise ValueError("--moment and --moment-file belong together: expected both or none")
     from ...fields import joint_parameters
-    from ...fields.joint_parameters import FORCE_TOLERANCE, with_field
+    from ...fields.joint_parameters import FORCE_TOLERANCE, insert_field
 
     start = load_joint_file(args.params)
     bodies.check_body_arguments(args, start)
@@ -99,24 +99,24 @@ def _run_import(args: argparse.Namespace) -> CommandResult:
         source += f" and {args.moment_file.name}"
     at = bodies.find_bolt_positions(args, start, field)
     plates, notes = bodies.build_assembly(args, start, field, at) if args.thickness else (None, [])
-    file, reduction = with_field(
+    file, reduction = insert_field(
         start,
         field,
         args.preload,
         source,
         moment_field=tilted,
         moment=args.moment,
-        bolts=at,
-        tolerance=FORCE_TOLERANCE if args.force_tolerance is None else args.force_tolerance,
+        bolt_positions=at,
+        force_tolerance=FORCE_TOLERANCE if args.force_tolerance is None else args.force_tolerance,
     )
     file = replace(file, name=f"{start.name}, field of {args.file.name}")
     whole = {}
     if plates:
         preload, joint = compute.tightening_force(args, file), field_adapter(file.joint)
-        file = joint.with_elastic_bodies(
+        file = joint.insert_elastic_bodies(
             file, plates, preload, args.attached or "faces", reduction.full_shape
         )
-        whole = joint.facts(file, preload)
+        whole = joint.describe_joint(file, preload)
     if args.plot:
         joint_parameters.draw_field(field, reduction, args.plot)
     if args.out:
@@ -143,10 +143,10 @@ def _create_reader(args: argparse.Namespace) -> Any:
     """Build the reader of the contact result. Raises ValueError for a choice that does not exist."""
     from ...fields.contact_surface import AXES, BODY_SIDES, OPEN_NODE_OPTIONS, ContactPlane
     from ...fields.nodal_result import LENGTH_UNITS, PRESSURE_UNITS
-    from ...fields.reading import FORMATS, FieldReader
+    from ...fields.reading import FIELD_FORMATS, FieldReader
 
     for name, value, allowed in (
-        ("--format", args.format, FORMATS),
+        ("--format", args.format, FIELD_FORMATS),
         ("--length-unit", args.length_unit, tuple(LENGTH_UNITS)),
         ("--pressure-unit", args.pressure_unit, tuple(PRESSURE_UNITS)),
         ("--normal", args.normal, tuple(AXES)),
@@ -160,9 +160,9 @@ def _create_reader(args: argparse.Namespace) -> Any:
         format=args.format,
         length_unit=args.length_unit,
         pressure_unit=args.pressure_unit,
-        data=args.data,
+        point_data_name=args.data,
         companion_files=args.beside,
-        plane=ContactPlane(args.normal, args.rows, args.side),
+        contact_plane=ContactPlane(args.normal, args.rows, args.side),
         open_nodes=args.open,
     )
 
@@ -181,18 +181,21 @@ def _collect_results(
         "p_mean": field.force / joint.A_0,
         "open_nodes": int((field.pressure == 0.0).sum()),
         "points": reduction.point_count,
-        "deviation": reduction.deviation,
-        "loads": reduction.test_count,
-        "largest_moment": reduction.moment_ratio * args.preload * joint.row_distance * joint.row_bolts,
-        "deviation_beyond": reduction.deviation_beyond,
+        "deviation": reduction.largest_deviation,
+        "loads": reduction.test_case_count,
+        "largest_moment": reduction.max_tested_moment_ratio
+        * args.preload
+        * joint.row_distance
+        * joint.row_bolts,
+        "deviation_beyond": reduction.deviation_above_tested_moments,
         "written": [str(path) for path in (args.out, args.plot) if path],
     }
 
 
 def _format_results(facts: dict[str, Any], area_before: float) -> list[str]:
-    from ...fields.sums import PRELOAD_RANGE
+    from ...fields.sums import PRELOAD_RATIO_RANGE
 
-    low, high = PRELOAD_RANGE
+    low, high = PRELOAD_RATIO_RANGE
     difference = 100.0 * (facts["force"] / facts["force_of_the_bolts"] - 1.0)
     lines = [
         f"{facts['nodes']} nodes ({facts['open_nodes']} open), pressure up to "

@@ -5,7 +5,7 @@ import math
 from collections.abc import Mapping, Sequence
 
 from jointfmu.contact.laws import ROUGHNESS_LAW
-from jointfmu.contact.roughness import GAMMA, combined_height, predicted_stiffness
+from jointfmu.contact.roughness import PERSSON_GAMMA, combined_height, predicted_stiffness
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Number
@@ -203,7 +203,7 @@ def _format_level(identified: Identification, file: ParameterFile | None) -> str
     else:
         what = "one side, the other smooth"
     return (
-        f"stiffness per area p/({GAMMA:g} h) = {predicted_stiffness(LEVEL_PRESSURE, h):.3g} N/m3 per MPa "
+        f"stiffness per area p/({PERSSON_GAMMA:g} h) = {predicted_stiffness(LEVEL_PRESSURE, h):.3g} N/m3 per MPa "
         f"(h = {1e6 * h:.4g} um of {what})"
     )
 

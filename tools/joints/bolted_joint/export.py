@@ -48,7 +48,7 @@ def springs_of_joint(
     Every node of the pressure shape becomes a pair of coincident nodes with consecutive labels: the node of
     side 1, then that of side 2. The first label is `first_label`.
     """
-    count = spring.points.share.size
+    count = spring.points.area_share.size
     labels = first_label + np.arange(2 * count, dtype=np.int64).reshape(2, count).T
     return _distribute_to_nodes(spring, labels, preload, moment, None)
 
@@ -133,7 +133,7 @@ def _distribute_to_nodes(
     nodes: NDArray[np.int64],
     preload: float,
     moment: float,
-    totals: dict[str, float] | None,
+    total_outputs: dict[str, float] | None,
 ) -> Springs:
     """Distribute stiffness and damping to the nodes, in proportion to area share times k(p).
 
@@ -149,15 +149,15 @@ def _distribute_to_nodes(
             f"preload = {preload:g} N per bolt with moment = {moment:g} N.m is outside the law: expected "
             f"contact after embedding ({joint.embedding:g} N), and at most {highest:g} Pa"
         )
-    nodal_stiffness = shape.share * spring.curve.derivatives(spring.curve.inverse(p), 1)[1]
+    nodal_stiffness = shape.area_share * spring.curve.derivatives(spring.curve.inverse(p), 1)[1]
     closed = nodal_stiffness > 0.0
     fraction = (nodal_stiffness / nodal_stiffness.sum())[closed]
     spring_totals = _interface_totals(spring, preload, moment)
-    sums = totals or spring_totals
+    sums = total_outputs or spring_totals
     return Springs(
         nodes[closed],
         shape.position[closed],
-        (shape.share * joint.A_0)[closed],
+        (shape.area_share * joint.A_0)[closed],
         p[closed],
         sums["K_zz"] * fraction,
         sums["K_xx"] * fraction,
@@ -195,13 +195,13 @@ def tabulate_normal_force(
 
     start = spring.checked_approach(preload, moment)
     low, high = spring.curve.displacement[[0, -1]]
-    shape = spring.points.merge_nodes(with_moment=moment != 0.0)
+    shape = spring.points.merge_nodes(keeps_moment=moment != 0.0)
     approach = spring.curve.inverse(preload_pressure(spring.joint, shape, preload, moment))
-    weight = spring.joint.A_0 * shape.share
+    weight = spring.joint.A_0 * shape.area_share
     springs, held_bolts = spring.bolts, spring.bolts.preload_force(spring.joint, preload, moment)
     bolts = float(spring.joint.n_bolts * spring.joint.bolt_stiffness)
 
-    def missing(separation: Array) -> tuple[Array, Array]:
+    def compression_correction(separation: Array) -> tuple[Array, Array]:
         """Correction for bolts, which only pull: force [N] and stiffness [N/m] of bolts that push."""
         elongation = separation[:, None] + np.zeros(len(held_bolts))
         gap = springs.gap(held_bolts, elongation)
@@ -221,7 +221,7 @@ def tabulate_normal_force(
     opening = float(np.max(start) - low)
     s = np.concatenate([np.linspace(-end, 0.0, _ERROR_POINTS), np.linspace(0.0, opening, _ERROR_POINTS)[1:]])
     force, stiffness = contact_force_and_stiffness(s)
-    pushing, lost = missing(s)
+    pushing, lost = compression_correction(s)
     normal_force = preload_force - force + bolts * s + pushing
     scale = preload_force, preload_stiffness
     table = decimate_curve(
@@ -257,7 +257,7 @@ def _make_springs(
 
 
 def _contact_curve(joint: Bolted) -> "tuple[Curve, Sequence[str]]":
-    ratio = float(joint.shear_ratio())
+    ratio = float(joint.shear_stiffness_ratio())
     note = f"tangential stiffness of the law: {ratio:.9g} times the slope of the table"
     return BoltedJointSpring.of_nodes(joint).curve, [note]
 

@@ -34,8 +34,8 @@ class PlaneLayout:
     """
 
     bolt_positions: Array
-    outline: tuple[Array, ...]
-    extent: Array
+    contact_outline: tuple[Array, ...]
+    bounding_box: Array
     hole_diameter: float
     head_diameter: float
 
@@ -94,21 +94,28 @@ PRESSURE = NominalPressure(
 
 
 def _field_pressures(
-    joint: Bolted, shape: PressureDistribution | MergedDistribution, preload: ArrayLike, moment: ArrayLike
+    joint: Bolted,
+    pressure_shape: PressureDistribution | MergedDistribution,
+    preload: ArrayLike,
+    moment: ArrayLike,
 ) -> Array:
     """Nodal pressures [Pa] at a preload, without a further loss by embedding.
 
     A field is computed for the preload that remains after embedding.
     """
-    return preload_pressure(replace(joint, embedding=0.0), shape, preload, moment)
+    return preload_pressure(replace(joint, embedding=0.0), pressure_shape, preload, moment)
 
 
 def _with_elastic_sides(
-    file: ParameterFile, assembly: "Assembly", preload: float, attached: str, shape: PressureDistribution
+    file: ParameterFile,
+    assembly: "Assembly",
+    preload: float,
+    attachment: str,
+    pressure_shape: PressureDistribution,
 ) -> ParameterFile:
     from .new.computed import compute_joint_of_assembly
 
-    return compute_joint_of_assembly(file, lambda: assembly, preload, attached, shape).file
+    return compute_joint_of_assembly(file, lambda: assembly, preload, attachment, pressure_shape).file
 
 
 def _joint_facts(file: ParameterFile, preload: float) -> dict[str, tuple[float, str, str]]:
@@ -118,11 +125,11 @@ def _joint_facts(file: ParameterFile, preload: float) -> dict[str, tuple[float, 
 
 
 FIELD = FieldAdapter(
-    pressures=_field_pressures,
-    shear_ratio=lambda joint: joint.shear_ratio(),
+    nodal_pressures=_field_pressures,
+    tangential_stiffness_ratio=lambda joint: joint.shear_ratio(),
     bolt_layout=PlaneLayout.from_joint,
-    with_elastic_bodies=_with_elastic_sides,
-    facts=_joint_facts,
+    insert_elastic_bodies=_with_elastic_sides,
+    describe_joint=_joint_facts,
 )
 
 

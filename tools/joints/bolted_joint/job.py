@@ -38,7 +38,7 @@ RAMPS = {_FMU: _check_separation}
 """{FMU: check}, a check being (folder, ramp of the FMU) -> (text, largest relative deviation [1])."""
 
 
-def through_fmu(point: Point, folder: Path) -> float | None:
+def compute_through_fmu(point: Point, folder: Path) -> float | None:
     """Compute a published point by running an FMU of a folder; None if no FMU has this quantity."""
     if point.quantity != "p_max":
         return None
@@ -51,14 +51,14 @@ _MAP_LOADS = ((9e3, 0.0), (15e3, 4500.0))
 paper."""
 
 
-def figures(outcome: Any) -> list[Figure]:
+def figures(job_result: Any) -> list[Figure]:
     """Figures of the bolted joint, from the results of the main job (`JobResult`)."""
     joint = load_default("bolted_joint").values
     return [
         Figure(
             "Stiffness and damping over preload",
             "Normal (zz) and tangential (xx) direction; the damping is the viscous equivalent.",
-            stiffness_panels(outcome.ramps[_FMU]),
+            stiffness_panels(job_result.ramps[_FMU]),
             data=f"{_FMU}.csv",
         ),
         Figure(
@@ -84,7 +84,7 @@ VIBRATION_PRELOADS = (3e3, 9e3, 15e3, 30e3)
 """Preloads per bolt [N] of the simulated free vibrations."""
 
 
-def _vibration_at_rest(path: Path, preload: float, parameters: Mapping[str, Any]) -> Rest:
+def _rest_state(path: Path, preload: float, parameters: Mapping[str, Any]) -> Rest:
     start = {**parameters, "preload": preload, "v_rel_x": 1.0}
     with Slave(path, start, (), ("K_xx", "f_x")) as law:
         K, dashpot = law.get()
@@ -101,7 +101,7 @@ RINGING = Body(
     over="preload",
     loads=lambda path, parameters: VIBRATION_PRELOADS,
     start=lambda preload: {"preload": preload},
-    rest=_vibration_at_rest,
+    rest=_rest_state,
     release=1.0,
     load=Axis("preload", "kN", 1e-3),
     deflection=Axis("motion", "um", 1e6),

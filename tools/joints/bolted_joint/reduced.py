@@ -60,7 +60,7 @@ def equal_pressures(pattern: PressureSource) -> tuple[Array, Array]:
     """
     shape = pressure_distribution(pattern)
     closed = shape.preload_shape > 0.0
-    logs, shares = discrete_gauss(np.log(shape.preload_shape[closed]), shape.share[closed], EQUAL)
+    logs, shares = discrete_gauss(np.log(shape.preload_shape[closed]), shape.area_share[closed], EQUAL)
     return np.exp(logs), shares
 
 
@@ -211,7 +211,7 @@ class Sides(NamedTuple):
         """Raises ValueError for bodies that were computed for another contact."""
         shape, few = contact_points(pattern), friction_patches_of(pattern)
         assert isinstance(joint.bodies, ElasticBodies)
-        modes = Modes.of(joint.bodies, shape.share.size, few.position)
+        modes = Modes.of(joint.bodies, shape.area_share.size, few.position)
         bolts = len(modes.bolt_elongation)
         along_x = tangential_jacobian(few)[:, :, :1]
 
@@ -223,8 +223,8 @@ class Sides(NamedTuple):
 
         return cls(
             (shape.preload_shape, pressure_transfer(shape, few) @ shape.preload_shape),
-            products(shape.share, (np.ones(len(shape.share)), modes.opening)),
-            products(few.share, *zip(along_x, modes.patch_displacement, strict=True)),
+            products(shape.area_share, (np.ones(len(shape.area_share)), modes.opening)),
+            products(few.area_share, *zip(along_x, modes.patch_displacement, strict=True)),
             products(np.ones(bolts), (np.ones(bolts), modes.bolt_elongation)).sum(axis=0),
             modes.stiffness,
         )
@@ -245,7 +245,7 @@ class Sides(NamedTuple):
                 points, patches = (places.at(scaled, load + np.log(equal)) for equal in self.equal)
             pulling = 1.0 if np.isfinite(load) else AT_LIFT_OFF
             normal = joint.A_0 * (points @ self.normal) + joint.bolt_stiffness * self.bolts * pulling
-            shear = joint.shear_ratio() * joint.A_0 * (patches @ self.shear)
+            shear = joint.shear_stiffness_ratio() * joint.A_0 * (patches @ self.shear)
             H = np.stack([each.reshape(-1, size, size) for each in (normal, shear)])
             beside = np.moveaxis(H[:, :, 1:, 0], 0, -1)
             follow = np.linalg.solve(H.sum(axis=0)[:, 1:, 1:] + np.diag(self.modes), beside)
@@ -330,7 +330,9 @@ def exact(joint: Bolted, loads: Array) -> dict[str, Array]:
     pressure = node_pressure(
         alone, spring.points.preload_shape, spring.points.moment_shape, loads[:, None], 0.0
     )
-    slip = alone.A_0 * spring.friction.foundation().friction_coefficient * (pressure @ spring.points.share)
+    slip = (
+        alone.A_0 * spring.friction.foundation().friction_coefficient * (pressure @ spring.points.area_share)
+    )
     lost = [loss_factor(spring, each, shear_at(alone, each)) if each > 0.0 else 0.0 for each in loads]
     found = {"approach": approach(spring, loads), "slip_force": slip, "loss_factor": np.array(lost)}
     return curves | found
@@ -342,7 +344,7 @@ def approach(spring: BoltedJointSpring, loads: Array) -> Array:
     Three Gauss-Legendre nodes per log-spaced panel; nodes of the pressure pattern that its symmetry makes
     equal are taken together.
     """
-    joint, shape = spring.joint, spring.points.merge_nodes(with_moment=False)
+    joint, shape = spring.joint, spring.points.merge_nodes(keeps_moment=False)
     lowest = 1e-9 * spring.curve.closing_end_load * joint.A_0 / joint.n_bolts
     ends = np.unique(np.concatenate([np.geomspace(lowest, np.max(loads), 60), loads[loads > lowest]]))
     places, weights = np.polynomial.legendre.leggauss(3)
@@ -351,7 +353,7 @@ def approach(spring: BoltedJointSpring, loads: Array) -> Array:
     node = spring.curve.inverse(
         node_pressure(joint, shape.preload_shape, shape.moment_shape, preload[:, None], 0.0)
     )
-    K = joint.A_0 * spring.curve.derivatives(node, 1)[1] @ shape.share
+    K = joint.A_0 * spring.curve.derivatives(node, 1)[1] @ shape.area_share
     rate = joint.n_bolts * preload / K
     panels = half * (rate[1:].reshape(-1, 3) @ weights)
     integral = 3.0 * rate[0] + np.concatenate([[0.0], np.cumsum(panels)])

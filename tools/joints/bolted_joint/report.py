@@ -32,7 +32,7 @@ PLOTTED_LOAD_RATIO = 1.3
 """Largest plotted tensile force over the opening load of the interface [1]."""
 EQUAL_SHARE_TOLERANCE = 0.05
 """Excess of the largest bolt share over the mean share [1], up to which bolts count as equally loaded."""
-SHEAR_RATIO = 0.1
+REPORTED_SHEAR_RATIO = 0.1
 """Shear force over the gross-slip force [1] at which the loss factor is reported."""
 
 
@@ -52,7 +52,7 @@ def picture_figure(load_history: LoadHistory) -> Figure:
     text = "The tightened interface from side 2, grey where it is open. "
     if isinstance(joint.pattern, NodalField):
         text += "Dots show the pressure at some nodes of the field, which represent all nodes. "
-    if not PlaneLayout.from_joint(joint).outline:
+    if not PlaneLayout.from_joint(joint).contact_outline:
         text += "The outline is not in the file. "
     text += (
         "The numbers of the bolts are those of the FMU's F_bolt. "
@@ -107,7 +107,7 @@ def friction_results(file: ParameterFile, preload: float) -> tuple[float, list[F
     """
     joint = interface_alone(file.values)
     remaining_preload = float(working_preload(joint, preload))
-    shear = SHEAR_RATIO * float(slip_force(joint, remaining_preload))
+    shear = REPORTED_SHEAR_RATIO * float(slip_force(joint, remaining_preload))
     rows = []
     for mu in (joint.mu, *file.ranges.get("mu", ())):
         other = replace(joint, mu=mu)
@@ -133,10 +133,10 @@ def loss_factor(spring: BoltedJointSpring, remaining_preload: float, shear: floa
     )
     for _ in range(60):
         middle = 0.5 * (low + size)
-        carried = joint.A_0 * float(law.virgin_traction(approach, middle) @ shape.share)
+        carried = joint.A_0 * float(law.virgin_traction(approach, middle) @ shape.area_share)
         low, size = (middle, size) if carried < shear else (low, middle)
     lost, stored = (
-        float(shape.share @ each) for each in law.cycle_energies(approach, np.full(approach.size, size))
+        float(shape.area_share @ each) for each in law.cycle_energies(approach, np.full(approach.size, size))
     )
     return lost / (2.0 * np.pi * stored)
 
@@ -197,14 +197,14 @@ def _stiffness_rows(compliances: Compliances) -> list[tuple[str, ...]]:
     return rows
 
 
-def _stiffness_text(compliances: Compliances, tension: float, moment: float) -> str:
+def _stiffness_text(compliances: Compliances, remaining_preload: float, moment: float) -> str:
     share = compliances.shares[0]
     largest = float(np.max(share))
     effect = (
         "it matters for the stiffness" if compliances.interface_matters else "it hardly affects the stiffness"
     )
     return (
-        f"Small motions of the attachments about the tightened state, {_format_value(tension, 'N')} "
+        f"Small motions of the attachments about the tightened state, {_format_value(remaining_preload, 'N')} "
         "in each bolt"
         + (f" with a moment of {moment:g} N m" if moment else "")
         + ", one at a time with the other five fixed. The stiffness of the whole joint is that of the FMU. "
@@ -227,5 +227,5 @@ def _bolt_force_panel(spring: BoltedJointSpring, preload: float, moment: float, 
 
 
 FIGURES = {"BoltedJoint": joint_figures}
-BESIDE: dict[str, Callable[[Model, ParameterFile], list[ComparisonRow]]] = {}
+CATALOGUE_COMPARISONS: dict[str, Callable[[Model, ParameterFile], list[ComparisonRow]]] = {}
 """Comparisons with catalogue values: none, because there are no catalogues of bolted joints."""

@@ -35,9 +35,9 @@ RAMPS = {"GearContact": _check_approach}
 """{FMU: check}, a check being (folder, ramp of the FMU) -> (text, largest relative deviation [1])."""
 
 
-def figures(outcome: Any) -> list[Figure]:
+def figures(job_result: Any) -> list[Figure]:
     """Figure of the gear contact, from the results of the main job (`JobResult`)."""
-    c = outcome.ramps["GearContact"].columns
+    c = job_result.ramps["GearContact"].columns
     load = c["f"] / 1e3
     panels = [
         Panel("Stiffness over load", "load [kN]", "K_N [N/um]", [Series("K_N", load, c["K_N"] / 1e6)]),

@@ -38,9 +38,9 @@ def drives_with_friction() -> list[CatalogueEntry]:
     ]
 
 
-def friction_and_ratio(item: CatalogueEntry) -> dict[str, float]:
+def friction_and_ratio(catalogue_entry: CatalogueEntry) -> dict[str, float]:
     """Ratio and friction parameters of a catalogue drive: {parameter of the FMU: value}."""
-    numbers = {"ratio": item.numbers["ratio"], **friction_parameters(item.numbers)}
+    numbers = {"ratio": catalogue_entry.numbers["ratio"], **friction_parameters(catalogue_entry.numbers)}
     return {name: number.value for name, number in numbers.items()}
 
 

@@ -39,7 +39,7 @@ RAMPS = {"HarmonicDriveSpring": _check_stiffness, "HarmonicDriveCompliance": _ch
 """{FMU: check}, a check being (folder, ramp of the FMU) -> (text, largest relative deviation [1])."""
 
 
-def through_fmu(point: Point, folder: Path) -> float | None:
+def compute_through_fmu(point: Point, folder: Path) -> float | None:
     """Compute a published point by running an FMU of a folder; None if no FMU has this quantity."""
     where = point.where
 
@@ -68,15 +68,15 @@ def through_fmu(point: Point, folder: Path) -> float | None:
 _COMPLIANCE_FMU = "HarmonicDriveCompliance"
 
 
-def figures(outcome: Any) -> list[Figure]:
+def figures(job_result: Any) -> list[Figure]:
     """Figures of the harmonic drive, from the results of the main job (`JobResult`)."""
-    result = outcome.ramps[_COMPLIANCE_FMU]
+    result = job_result.ramps[_COMPLIANCE_FMU]
     return [
         Figure(
             "Stiffness over torque",
             "K_WTS and the contact pair's part of it on the drive's scale, as the FMU gives them; then the "
             "pair on the scale of the paper's figures.",
-            stiffness_panels(result, outcome.rows),
+            stiffness_panels(result, job_result.rows),
             data=f"{_COMPLIANCE_FMU}.csv",
         ),
         Figure(
@@ -92,7 +92,7 @@ def figures(outcome: Any) -> list[Figure]:
             "motor. Starting and running torque fix friction_coulomb and friction_viscous, the efficiency "
             "load_loss, the back-driving torque load_loss_back. Of the CSF drives the running torque is an "
             "estimate, and the back-driving torque fixes both where that is not below 0.",
-            friction_panels(_spring_fmu(outcome)),
+            friction_panels(_spring_fmu(job_result)),
         ),
     ]
 
@@ -103,7 +103,7 @@ def _spring_fmu(outcome: Any) -> Path:
     return next(p for p in paths if (p.parent.name, p.stem) == ("fmi2", "HarmonicDriveSpring"))
 
 
-def friction_panels(fmu: Path) -> list[Panel]:
+def friction_panels(fmu_path: Path) -> list[Panel]:
     """Panels of efficiency over load, and of back-driving torque, of the catalogue drives, by an FMU."""
     panels, published_torques, found_torques = [], [], []
     drives, share = efficiency.drives_with_friction(), np.linspace(0.1, 1.0, 41) ** 2
@@ -112,7 +112,7 @@ def friction_panels(fmu: Path) -> list[Panel]:
             drive.numbers["rated_torque"].value,
             drive.numbers["back_driving_torque"].value,
         )
-        with efficiency.open_fmu_test_rig(fmu, efficiency.friction_and_ratio(drive)) as bench:
+        with efficiency.open_fmu_test_rig(fmu_path, efficiency.friction_and_ratio(drive)) as bench:
             rows = {
                 rpm: [bench.efficiency(rpm * np.pi / 30.0, load) for load in rated * share]
                 for rpm in (500, 2000, 3500)
@@ -177,7 +177,7 @@ def _vibration_torques(path: Path, parameters: Mapping[str, float]) -> list[floa
     return [share * rated for share in TORQUE_RATIOS]
 
 
-def _vibration_at_rest(path: Path, torque: float, parameters: Mapping[str, float]) -> Rest:
+def _rest_state(path: Path, torque: float, parameters: Mapping[str, float]) -> Rest:
     with Slave(path, {**parameters, "w2": 1.0}, ("w1",), ("tau",)) as dashpot:
         (damping,) = dashpot.get()
     with Slave(path, parameters, ("phi2", "w2"), ("tau", "K_WTS")) as law:
@@ -208,7 +208,7 @@ RINGING = Body(
     over="tau",
     loads=_vibration_torques,
     start=lambda torque: {},
-    rest=_vibration_at_rest,
+    rest=_rest_state,
     release=1e-3,
     load=Axis("torque", "N m", 1.0),
     deflection=Axis("wind-up", "urad", 1e6),
@@ -250,7 +250,7 @@ _TRANSMISSION = TransmissionView(
     rated="rated_torque",
     default_speed=200.0,
 )
-_LOAD_CYCLE = MODELS["HarmonicDriveSpring"].loop
+_LOAD_CYCLE = MODELS["HarmonicDriveSpring"].load_cycle
 _EXAMPLE_DRIVE = efficiency.drives_with_friction()[0]
 _EXAMPLE = Example(
     f"friction of the catalogue's {_EXAMPLE_DRIVE.name}, 1 arcmin of hysteresis and of kinematic error",

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from jointfmu_fmu_src.partners import parameters as partner_parameters
+from jointfmu_fmu_src.partners import load_partner_parameters as partner_parameters
 
 from ..system import System
 from ..wiring import ends, model_of, wires

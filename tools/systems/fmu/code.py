@@ -4,14 +4,20 @@ import re
 from collections.abc import Mapping
 from pathlib import Path
 
-from jointfmu_fmu_src.joint_parts.c_text import array, string
-from jointfmu_fmu_src.native.code.elementary import tables
-from jointfmu_fmu_src.native.code.generate import RUNTIME, code, native_part, runtime, variables_c
-from jointfmu_fmu_src.native.data import block, split
+from jointfmu_fmu_src.joint_parts.c_text import format_array, format_string
+from jointfmu_fmu_src.native.code.elementary import make_tables_header
+from jointfmu_fmu_src.native.code.generate import (
+    RUNTIME_FOLDER,
+    generate_code,
+    load_native_definition,
+    list_runtime_files,
+    format_variables_c,
+)
+from jointfmu_fmu_src.native.data import make_data_block, split_parameters
 
 from .model import SystemComponent, SystemModel
 
-_COMMON = runtime(("elementary",))
+_COMMON = list_runtime_files(("elementary",))
 _LAYERS = {path.stem for path in _COMMON} - {"joint", "variables"} | {"elementary_tables"}
 """Stems of files that all components share."""
 _FUNCTIONS = ("size", "tabulate", "evaluate", "derivative", "outside", "warning")
@@ -36,7 +42,7 @@ def sources(assembly: SystemModel) -> dict[str, str]:
         path.name: path.read_text(encoding="utf-8")
         for path in (*_COMMON, *Path(__file__).parent.glob("*.[ch]"))
     }
-    files |= {"elementary_tables.h": tables(), "variables.c": variables_c(model)}
+    files |= {"elementary_tables.h": make_tables_header(), "variables.c": format_variables_c(model)}
     files |= {"model.h": _header(assembly), "components.c": _components(assembly, prefixes)}
     for prefix, component_code in code_by_prefix.items():
         files |= _prefixed(prefix, component_code)
@@ -45,11 +51,15 @@ def sources(assembly: SystemModel) -> dict[str, str]:
 
 def _component_code(component: SystemComponent) -> dict[str, str]:
     """{file name: text} of a component's C, without the FMI layer and the runtime of the system."""
-    parameter_split = split(component.model, component.parameters)
-    count = 1 + len(component.model.inputs) + len(component.model.outputs) + len(parameter_split.exposed)
-    data = block("part", "", [0.0] * count, list(parameter_split.fixed.values()), parameter_split.tables)
-    files = code(component.model, component.parameters, parameter_split)
-    files |= {"data.h": data.header(), "data.c": data.source()}
+    parameter_split = split_parameters(component.model, component.parameters)
+    count = (
+        1 + len(component.model.inputs) + len(component.model.outputs) + len(parameter_split.variable_names)
+    )
+    data = make_data_block(
+        "part", "", [0.0] * count, list(parameter_split.data_values.values()), parameter_split.tables
+    )
+    files = generate_code(component.model, component.parameters, parameter_split)
+    files |= {"data.h": data.make_header(), "data.c": data.make_source()}
     return {name: text for name, text in files.items() if name.rpartition(".")[0] not in _LAYERS}
 
 
@@ -73,7 +83,7 @@ def _prefixed(prefix: str, files: Mapping[str, str]) -> dict[str, str]:
 
 def _header(assembly: SystemModel) -> str:
     """Text of model.h: sizes of the system."""
-    memory = sum(native_part(p.model).memory.size for p in assembly.components)
+    memory = sum(load_native_definition(p.model).history_layout.size for p in assembly.components)
     events = sum(_event_count(p) for p in assembly.components)
     wires = sum(len(p.model.inputs) + len(p.model.outputs) for p in assembly.components)
     counts = {
@@ -121,10 +131,10 @@ def _components(assembly: SystemModel, prefixes: Mapping[str, str]) -> str:
         functions = [f"{prefix}joint_{name}" for name in _FUNCTIONS]
         functions.append(f"{prefix}joint_events" if events else "NULL")
         counts = [len(model.inputs), len(model.outputs), model.state_count, events, *offset.values()]
-        rows.append("{" + ", ".join([string(component.name), *functions, *map(str, counts)]) + "}")
+        rows.append("{" + ", ".join([format_string(component.name), *functions, *map(str, counts)]) + "}")
         inputs, outputs = len(model.inputs), len(model.outputs)
         offset["parameters"] += len(component.exposed)
-        offset["memory"] += native_part(model).memory.size
+        offset["memory"] += load_native_definition(model).history_layout.size
         offset["row"] += 1 + inputs + outputs
         offset["wire"] += inputs + outputs
         offset["warnings"] += len(model.validity_limits)
@@ -137,15 +147,15 @@ def _components(assembly: SystemModel, prefixes: Mapping[str, str]) -> str:
         '#include "system.h"\n\n'
         + "".join(dict.fromkeys(declared))
         + "\n"
-        + array("const unsigned short wires[N_WIRES]", wires)
+        + format_array("const unsigned short wires[N_WIRES]", wires)
         + "\n"
-        + array("const Component components[N_COMPONENTS]", rows)
+        + format_array("const Component components[N_COMPONENTS]", rows)
     )
 
 
 def _declared(prefix: str) -> list[str]:
     """C declarations of the functions of the components with a prefix."""
-    text = (RUNTIME / "instance" / "joint.h").read_text(encoding="utf-8")
+    text = (RUNTIME_FOLDER / "instance" / "joint.h").read_text(encoding="utf-8")
     declarations = []
     for name in _FUNCTIONS:
         match = re.search(rf"^\w+ (joint_{name})\([^;]*;\n", text, re.M)

@@ -10,10 +10,10 @@ from xml.etree.ElementTree import Element, SubElement
 
 import numpy as np
 from jointfmu_fmu_src.proof import standard
-from jointfmu_fmu_src.proof.files import TEXT, RelatedFile, proof_members
-from jointfmu_fmu_src.proof.series import TimeSeries, text
+from jointfmu_fmu_src.proof.files import TEXT_PATH, RelatedFile, proof_members
+from jointfmu_fmu_src.proof.series import TimeSeries, format_csv
 from jointfmu_fmu_src.proof.standard import CO_SIMULATION, MODEL_EXCHANGE
-from jointfmu_fmu_src.xml_parts import serialized
+from jointfmu_fmu_src.xml_parts import serialize_xml
 
 from jointfmu import __version__
 from jointfmu.joints.model import Model
@@ -95,7 +95,7 @@ def proof(model: Model, stop: float, interval: float, fmu: Path) -> dict[str, by
                 raise RuntimeError("its own experiment is too sensitive from the start")
             results = _first_rows(results, count * substeps + 1)
     except Exception as error:  # fmpy raises bare Exception
-        return {TEXT: f"There is no proof inside this FMU: where it was built {error}\n".encode()}
+        return {TEXT_PATH: f"There is no proof inside this FMU: where it was built {error}\n".encode()}
     scales = _scales(model, results)
     smooth = _is_smooth(results, scales)
     short, long = (f"experiments/{model.title}_{n}_ref.csv" for n in (1, LONGER))
@@ -108,9 +108,9 @@ def proof(model: Model, stop: float, interval: float, fmu: Path) -> dict[str, by
         RelatedFile(
             "../../documentation/index.html", "text/html", "requirement", "what the FMU takes and gives"
         ),
-        RelatedFile(f"../../{TEXT}", "text/plain", "document", "experiments and tolerance"),
+        RelatedFile(f"../../{TEXT_PATH}", "text/plain", "document", "experiments and tolerance"),
         *(
-            RelatedFile(path, standard.CSV, "result", "by model exchange at a tight tolerance")
+            RelatedFile(path, standard.CSV_TYPE, "result", "by model exchange at a tight tolerance")
             for path in members
         ),
     ]
@@ -118,10 +118,12 @@ def proof(model: Model, stop: float, interval: float, fmu: Path) -> dict[str, by
         path = f"{interface.replace(' ', '-')}.exp"
         members[path] = _experiments(model, count * step, steps, scales)
         labels = {interface: "steps of stepSize"}
-        related.append(RelatedFile(path, standard.EXPERIMENTS, "experiment/validation", model.doc, labels))
+        related.append(
+            RelatedFile(path, standard.EXPERIMENTS_TYPE, "experiment/validation", model.doc, labels)
+        )
     page = _PAGE.format(
-        standard=standard.NAME,
-        version=standard.VERSION,
+        standard=standard.STANDARD_NAME,
+        version=standard.STANDARD_VERSION,
         own=__version__,
         short=step,
         long=LONGER * step,
@@ -207,7 +209,7 @@ def _result_file(results: TimeSeries, smooth: np.ndarray, step: int) -> bytes:
     rows = rows[:: -(-rows.size // ROWS)]
     columns = {name: column[rows] for name, column in results.columns.items()}
     times = np.array([float(f"{time:.12g}") for time in results.time[rows]])
-    return text(TimeSeries(times, columns), DIGITS).encode()
+    return format_csv(TimeSeries(times, columns), DIGITS).encode()
 
 
 def _experiments(
@@ -219,9 +221,9 @@ def _experiments(
         name = f"steps of {1e3 * step:g} ms"
         node = SubElement(root, "Experiment", name=name, description=model.doc, tolerance=repr(TOLERANCE))
         times = {"startTime": 0.0, "stopTime": stop, "stepSize": step}
-        SubElement(node, standard.TRANSIENT, {key: f"{value:.12g}" for key, value in times.items()})
+        SubElement(node, standard.TRANSIENT_ELEMENT, {key: f"{value:.12g}" for key, value in times.items()})
         SubElement(node, "References", source=path)
-        annotation = SubElement(SubElement(node, "Annotations"), "Annotation", type=standard.SCALES)
+        annotation = SubElement(SubElement(node, "Annotations"), "Annotation", type=standard.SCALES_TYPE)
         for output, scale in scales.items():
             SubElement(annotation, "Scale", name=output, value=f"{scale:.{DIGITS}g}")
-    return serialized(root)
+    return serialize_xml(root)

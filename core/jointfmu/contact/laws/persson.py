@@ -15,7 +15,9 @@ _MAX_IMAGE_VARIANCE = 0.2
 """Variance of the pressure over squared hardness [1] up to which the series of images converges faster."""
 
 
-def contact_shares(pressure: Number, hardness: Number, deviation: Number) -> tuple[Number, Number]:
+def contact_area_shares(
+    pressure: Number, hardness: Number, pressure_standard_deviation: Number
+) -> tuple[Number, Number]:
     """Shares [1] of the nominal area in elastic and in plastic contact at pressures (...) [Pa].
 
     hardness                    : [Pa], above the pressure
@@ -25,7 +27,7 @@ def contact_shares(pressure: Number, hardness: Number, deviation: Number) -> tup
     carries the load that the elastic one does not.
     """
     x = np.minimum(pressure / hardness, 1.0)
-    t = (deviation / hardness) ** 2
+    t = (pressure_standard_deviation / hardness) ** 2
     image_series, mode_series = (
         _image_series(x, np.minimum(t, _MAX_IMAGE_VARIANCE)),
         _mode_series(x, np.maximum(t, _MAX_IMAGE_VARIANCE)),
@@ -36,7 +38,7 @@ def contact_shares(pressure: Number, hardness: Number, deviation: Number) -> tup
     return elastic, np.maximum(x - load, 0.0)
 
 
-def _mode_series(x: Number, t: Number) -> tuple[Number, Number]:
+def _mode_series(pressure_ratio: Number, variance_ratio: Number) -> tuple[Number, Number]:
     """Area share in elastic contact, and its load over the hardness [1]: series of diffusion modes.
 
     pressure_ratio : pressure over hardness [1]
@@ -45,20 +47,25 @@ def _mode_series(x: Number, t: Number) -> tuple[Number, Number]:
     share: Number = 0.0
     load: Number = 0.0
     for n in range(1, 7):
-        mode = 2.0 / (n * np.pi) * np.sin(n * np.pi * x) * np.exp(-0.5 * (n * np.pi) ** 2 * t)
+        mode = (
+            2.0
+            / (n * np.pi)
+            * np.sin(n * np.pi * pressure_ratio)
+            * np.exp(-0.5 * (n * np.pi) ** 2 * variance_ratio)
+        )
         share = share + (1.0 - (-1.0) ** n) * mode
         load = load - (-1.0) ** n * mode
     return share, load
 
 
-def _image_series(x: Number, t: Number) -> tuple[Number, Number]:
+def _image_series(pressure_ratio: Number, variance_ratio: Number) -> tuple[Number, Number]:
     """Area share in elastic contact, and its load over the hardness [1]: series of images."""
-    spread = np.sqrt(2.0 * t)
+    spread = np.sqrt(2.0 * variance_ratio)
     share: Number = 0.0
     load: Number = 0.0
     for k in range(-2, 3):
         for sign in (1.0, -1.0):
-            start = 2.0 * k + sign * x
+            start = 2.0 * k + sign * pressure_ratio
             to_zero, to_hardness = (0.0 - start) / spread, (1.0 - start) / spread
             weight = 0.5 * (erf(to_hardness) - erf(to_zero))
             tails = spread / (2.0 * np.sqrt(np.pi)) * (np.exp(-(to_zero**2)) - np.exp(-(to_hardness**2)))
@@ -67,12 +74,12 @@ def _image_series(x: Number, t: Number) -> tuple[Number, Number]:
     return share, load
 
 
-def bearing_curve(share: Number) -> Number:
+def bearing_curve_log_slope(area_share: Number) -> Number:
     """Derivative [1] of ln(share) with respect to the approach over the rms height, for a Gaussian surface.
 
     area_share : [1] part of the surface above a cutting plane (bearing curve, Abbott and Firestone 1933). The
         derivative is phi(z)/Phi(-z). The contact area of a perfectly plastic surface follows this curve.
     """
-    inside = np.minimum(np.maximum(share, 1e-300), 1.0 - 1e-12)
+    inside = np.minimum(np.maximum(area_share, 1e-300), 1.0 - 1e-12)
     z = -np.vectorize(NormalDist().inv_cdf, otypes=[float])(inside)
     return np.exp(-0.5 * z**2) / np.sqrt(2.0 * np.pi) / inside

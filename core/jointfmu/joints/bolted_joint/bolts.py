@@ -85,7 +85,7 @@ def bolt_positions(joint: Bolted) -> Array:
     if isinstance(joint.bodies, ElasticBodies):
         return np.stack([joint.bodies.bolt_x, joint.bodies.bolt_y], axis=-1)
     if isinstance(joint.pattern, NodalField) and not joint.pattern.each_bolt_x:
-        return _rectangle(*joint.pattern.bolt_means)
+        return _rectangle(*joint.pattern.bolt_position_means)
     return joint.pattern.bolt_positions
 
 

@@ -117,7 +117,7 @@ def force_transfer(points: PressureDistribution, patches: FrictionPatches) -> Ar
     square = np.sum((patches.position[:, None] - points.position) ** 2, axis=2)
     nearest = np.min(square, axis=0)
     point_force, patch_force = (
-        nodes.share * (nodes.preload_shape + MIN_PRESSURE_RATIO) for nodes in (points, patches)
+        nodes.area_share * (nodes.preload_shape + MIN_PRESSURE_RATIO) for nodes in (points, patches)
     )
     width = np.maximum(point_force @ nearest / np.sum(point_force), np.finfo(float).tiny)
     kernel = np.exp(-np.minimum((square - nearest) / width, MAX_SQUARE_DISTANCE_RATIO))
@@ -135,7 +135,7 @@ def force_transfer(points: PressureDistribution, patches: FrictionPatches) -> Ar
 
 def pressure_transfer(points: PressureDistribution, patches: FrictionPatches) -> Array:
     """Pressure of the patches over the pressure of the points (m, n) [1], by `force_transfer`."""
-    return force_transfer(points, patches) * points.share / patches.share[:, None]
+    return force_transfer(points, patches) * points.area_share / patches.area_share[:, None]
 
 
 def elastic_shear(

@@ -93,12 +93,12 @@ class JointAssembly:
     @cached_property
     def point_area(self) -> Array:
         """Nominal areas (n) [m2] of the points."""
-        return self.area * self.contact.points.share
+        return self.area * self.contact.points.area_share
 
     @cached_property
     def patch_area(self) -> Array:
         """Nominal areas (m) [m2] of the patches."""
-        return self.area * self.contact.patches.share
+        return self.area * self.contact.patches.area_share
 
     @cached_property
     def opening_jacobian(self) -> Array:

@@ -15,7 +15,7 @@ from ...mechanics.sliders import (
     Foundation,
     height_offsets,
     heights_after_liftoff,
-    resultant,
+    sum_slider_forces,
     slider_heights,
 )
 from ...quantity import Array
@@ -92,7 +92,7 @@ class FrictionUpdate:
     def traction(self) -> Array:
         """Traction (m, 3) [Pa] against the displacement along x, along y and around the centre."""
         force = self.slider_update.force
-        return full_stick_force(force) if self.state == FULL_STICK else resultant(force)
+        return full_stick_force(force) if self.state == FULL_STICK else sum_slider_forces(force)
 
 
 @dataclass(frozen=True)
@@ -131,7 +131,7 @@ class FrictionLaw:
         onset_approach : (m) [m] at the end of full stick; None: not known
         min_approach   : (m) [m] smallest approach since then; None: onset_approach
         """
-        onset = np.zeros(self.patches.share.size) if onset_approach is None else onset_approach
+        onset = np.zeros(self.patches.area_share.size) if onset_approach is None else onset_approach
         both = onset, onset if min_approach is None else min_approach
         return self._foundations(*(np.ascontiguousarray(each).tobytes() for each in both))
 
@@ -201,10 +201,10 @@ def consistent_tangent(patches: FrictionPatches, update: FrictionUpdate) -> list
     tangent, traction, stick = update.slider_update.tangent, update.traction, update.stick_stiffness
     lost_tangent, result = stick[:, None] * STICK_TANGENT - tangent, []
     for direction in unit_displacements(patches):
-        lost = patches.share * directional_stiffness(lost_tangent, direction)
+        lost = patches.area_share * directional_stiffness(lost_tangent, direction)
         translation = direction * [1.0, 1.0, 0.0]  # around its centre a patch loses the same both ways
-        signed = patches.share * directional_stiffness(lost_tangent, translation)
+        signed = patches.area_share * directional_stiffness(lost_tangent, translation)
         signed = np.where(np.sum(traction * translation, axis=1) < 0.0, -signed, signed)
-        stuck = patches.share @ (stick * np.sum(direction**2, axis=1))
+        stuck = patches.area_share @ (stick * np.sum(direction**2, axis=1))
         result.append(stuck - 0.5 * (np.sum(lost) + abs(np.sum(signed))))
     return result

@@ -105,7 +105,7 @@ class BoltedJointSpring:
         points, patches = contact_points(joint.pattern), friction_patches_of(joint.pattern)
         if joint.elastic:
             assert isinstance(joint.bodies, ElasticBodies)
-            modes = Modes.of(joint.bodies, points.share.size, patches.position)
+            modes = Modes.of(joint.bodies, points.area_share.size, patches.position)
         else:
             modes = _no_modes(joint, points, patches)
         return cls(joint, tabulate_approach(joint), points, patches, modes)
@@ -132,7 +132,9 @@ class BoltedJointSpring:
     def friction(self) -> FrictionLaw:
         """Friction law of the patches."""
         joint = self.joint
-        return FrictionLaw(self.curve, float(joint.shear_ratio()), joint.mu, self.patches, joint.elastic)
+        return FrictionLaw(
+            self.curve, float(joint.shear_stiffness_ratio()), joint.mu, self.patches, joint.elastic
+        )
 
     @cached_property
     def bolts(self) -> BoltSprings:
@@ -184,7 +186,7 @@ class BoltedJointSpring:
     @property
     def history_layout(self) -> HistoryLayout:
         """Layout of the history variables."""
-        return history_layout(self.patches.share.size)
+        return history_layout(self.patches.area_share.size)
 
     def initial_history(self) -> Array:
         """History variables of a joint that has not moved: zeros."""
@@ -223,7 +225,9 @@ class BoltedJointSpring:
                 friction = self.friction.update_friction(before, normal.patch_approach, increment)
 
         if friction is not None:
-            loss = float(before["loss"]) + joint.A_0 * float(self.patches.share @ friction.slider_update.loss)
+            loss = float(before["loss"]) + joint.A_0 * float(
+                self.patches.area_share @ friction.slider_update.dissipated_energy
+            )
             tangent = consistent_tangent(self.patches, friction)
             shear = friction_sums(self.patches, friction.traction, tangent, loss / joint.A_0)
             added, history = (0.0, 0.0), self._join_history(q, a, friction, loss)
@@ -236,10 +240,10 @@ class BoltedJointSpring:
         sums: dict[str, Number] = {
             **first_moments(points, "tightened", preload.pressure),
             **normal_sums(points, normal.pressure, normal.stiffness, *added),
-            "plastic": points.share @ plastic,
-            "elastic": points.share @ elastic,
+            "plastic": points.area_share @ plastic,
+            "elastic": points.area_share @ elastic,
             **shear,
-            **cycle_sums(foundation, self.patches.share, normal.patch_approach, amplitude),
+            **cycle_sums(foundation, self.patches.area_share, normal.patch_approach, amplitude),
         }
         elongation = assembly.elongation(q, a)
         if state is not None:
@@ -280,7 +284,7 @@ class BoltedJointSpring:
         limit, derivatives = self.joint.mu * preload.pressure, self.curve.derivatives(normal.approach, 3)
         u_x, u_y = point_displacement(self.points, q).T
         t_x, t_y, xx, xy, yy, added_pressure, added_stiffness = elastic_shear(
-            limit, self.joint.shear_ratio(), derivatives, u_x, u_y
+            limit, self.joint.shear_stiffness_ratio(), derivatives, u_x, u_y
         )
         none, nodes = np.zeros_like(limit), self.points.as_patches()
         tangent = tangent_sums(nodes, np.stack([xx, xy, yy, none, none, none], axis=-1))
@@ -321,7 +325,7 @@ class BoltedJointSpring:
 
 def _no_modes(joint: Bolted, points: PressureDistribution, patches: FrictionPatches) -> Modes:
     """Modes of rigid members: none."""
-    return Modes.for_rigid_bodies(points.share.size, patches.share.size, len(bolt_positions(joint)))
+    return Modes.for_rigid_bodies(points.area_share.size, patches.area_share.size, len(bolt_positions(joint)))
 
 
 def _displacement(history: History) -> Array:

@@ -231,7 +231,7 @@ def contradictions(joint: Bolted) -> Iterator[str]:
     if isinstance(joint.pattern, NodalField):
         return
     section, pattern = ("plate" if isinstance(joint.pattern, BoltedPlate) else "pattern"), joint.pattern
-    count, (row_bolts, row_distance) = len(pattern.bolts), pattern.equivalent_rows
+    count, (row_bolts, row_distance) = len(pattern.bolts), pattern.equivalent_bolt_rows
     if joint.n_bolts != count:
         yield f"n_bolts = {joint.n_bolts:g} contradicts [{section}], which has {count} bolts"
     if abs(joint.A_0 / pattern.area - 1.0) > AREA_TOLERANCE:

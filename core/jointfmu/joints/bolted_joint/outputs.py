@@ -50,7 +50,7 @@ _STRETCHES = SUMS[-3:]
 
 def first_moments(points: PressureDistribution, name: str, value: Array) -> dict[str, Number]:
     """Sums of values (n) times share, and times x and y."""
-    each = points.share * value
+    each = points.area_share * value
     return {
         name: np.sum(each),
         f"{name}_x": each @ points.position[:, 0],
@@ -60,7 +60,7 @@ def first_moments(points: PressureDistribution, name: str, value: Array) -> dict
 
 def second_moments(points: PressureDistribution, prefix: str, value: Array) -> dict[str, Number]:
     """Sums of values (n) times share, times y^2 and x^2."""
-    each = points.share * value
+    each = points.area_share * value
     x, y = points.position.T
     return {f"{prefix}about_x": each @ y**2, f"{prefix}about_y": each @ x**2}
 
@@ -77,12 +77,12 @@ def normal_sums(
     x, y = points.position.T
     return {
         **first_moments(points, "normal", p + added_pressure),
-        "normal_stiffness": points.share @ (k + added_stiffness),
+        "normal_stiffness": points.area_share @ (k + added_stiffness),
         **second_moments(points, "normal_", k + added_stiffness),
-        "pressure": points.share @ p,
+        "pressure": points.area_share @ p,
         **first_moments(points, "stiffness", k),
         **second_moments(points, "", k),
-        "about_xy": (points.share * k) @ (x * y),
+        "about_xy": (points.area_share * k) @ (x * y),
     }
 
 
@@ -90,14 +90,14 @@ def friction_sums(
     patches: FrictionPatches, traction: Array, tangent: Sequence[Number], loss: Number
 ) -> dict[str, Number]:
     """Sums of the traction (m, 3) [Pa]; tangent (3) [Pa/m] and loss [J/m2] are sums already."""
-    sums = [patches.share @ np.sum(traction * unit, axis=1) for unit in unit_displacements(patches)]
+    sums = [patches.area_share @ np.sum(traction * unit, axis=1) for unit in unit_displacements(patches)]
     named = [*zip(_TRACTIONS, sums, strict=True), *zip(_TANGENTS, tangent, strict=True)]
     return {**dict(named), "loss": loss}
 
 
 def tangent_sums(patches: FrictionPatches, tangent: Array) -> list[Number]:
     """Stiffness per area [Pa/m] by tangents (m, 6) [Pa/m] against s_x, s_y and theta_z [Pa.m]."""
-    return [patches.share @ directional_stiffness(tangent, unit) for unit in unit_displacements(patches)]
+    return [patches.area_share @ directional_stiffness(tangent, unit) for unit in unit_displacements(patches)]
 
 
 def cycle_sums(foundation: Foundation, share: Array, approach: Array, amplitude: Array) -> dict[str, Number]:
@@ -134,7 +134,10 @@ def assembly_sums(
     loop_energy : [J/m2] of the friction patches
     """
     area, modes, bolts, elongation = joint.A_0, assembly.modes, assembly.bolts, state.elongation
-    bolt_stiffness, (_, _, x2, y2, _) = joint.n_bolts * joint.bolt_stiffness, joint.pattern.bolt_means
+    bolt_stiffness, (_, _, x2, y2, _) = (
+        joint.n_bolts * joint.bolt_stiffness,
+        joint.pattern.bolt_position_means,
+    )
     gap, bolt_tangent = bolts.gap(bolt_force, elongation), bolts.tangent(bolt_force, elongation)
     H = assembly.tangent_stiffness(state.normal.stiffness, state.friction.slider_update.tangent, bolt_tangent)
     K = np.maximum(np.diag(condense_stiffness(H)), 0.0)
@@ -176,15 +179,18 @@ def joint_outputs(
     the plane: Hu 2023, Eq. 45, corrected. The bolts act in parallel with the interface and only pull, see
     `BoltSprings`.
     """
-    area, rho = joint.A_0, joint.shear_ratio()
-    bolts, (_, _, bolt_x2, bolt_y2, _) = joint.n_bolts * joint.bolt_stiffness, joint.pattern.bolt_means
+    area, rho = joint.A_0, joint.shear_stiffness_ratio()
+    bolts, (_, _, bolt_x2, bolt_y2, _) = (
+        joint.n_bolts * joint.bolt_stiffness,
+        joint.pattern.bolt_position_means,
+    )
     K_n = area * sums["stiffness"]
     eta_n, eta_t = sums["plastic"] / sums["elastic"], joint.loss_factor()
     first_loading = mindlin.equivalent_damping(eta_n, joint.mass, K_n)
     C_n = select(joint.plastic_damping, first_loading, 0.0 * K_n)
     C_t = mindlin.equivalent_damping(eta_t, joint.mass, rho * K_n)
     viscous = [select(joint.damping, part, 0.0 * part) for part in _viscous(area, sums, C_t, C_n, rates)]
-    tension = _tension(bolts, joint.pattern.bolt_means, displacement[2], rotation)
+    tension = _tension(bolts, joint.pattern.bolt_position_means, displacement[2], rotation)
     stretch_force = [joint.bolt_stiffness * sums[name] for name in _STRETCHES]
     f_x, f_y, m_z = (-area * sums[name] for name in ("traction_x", "traction_y", "torsion"))
     eta_loop = _ratio(sums["loop_work"], 2.0 * np.pi * sums["loop_energy"])

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...mechanics.steps import STABLE_STEP_OUTPUTS
 from ...quantity import Number, select
-from ..model import EXTRAPOLATION_WARNING, LoadCycle, LoadRamp, Model, ValidityLimit, Values, Variable
+from ..model import EXTRAPOLATION_WARNING, LoadCycle, LoadRamp, Model, ValidityLimit, VariableValues, Variable
 from .joint import BoltedJointSpring, JointInputs
 from .law import Bolted, BoltedJoint, working_preload
 from .outputs import bolt_force_name
@@ -25,17 +25,17 @@ _INTERFACE = ("C_xx", "C_yy", "C_zz", "eta_t", "eta_n")
 _MOTION_INPUTS = (*_NORMAL_INPUTS, "s_rel_x", "s_rel_y", "theta_z")
 
 
-def _three(v: Values, name: str) -> tuple[float, float, float]:
+def _three(v: VariableValues, name: str) -> tuple[float, float, float]:
     return v[f"{name}_x"], v[f"{name}_y"], v[f"{name}_z"]
 
 
-def _advance(spring: BoltedJointSpring, v: Values, history: Any) -> tuple[Mapping[str, float], Any]:
+def _advance(spring: BoltedJointSpring, v: VariableValues, history: Any) -> tuple[Mapping[str, float], Any]:
     q = np.array([*_three(v, "s_rel"), *_three(v, "theta")])
     rates = (*_three(v, "v_rel"), *_three(v, "omega"))
     return spring.advance(JointInputs(v["preload"], v["moment"], q, rates), history)
 
 
-def _find_ramp(spring: BoltedJointSpring, v: Values) -> tuple[float, float]:
+def _find_ramp(spring: BoltedJointSpring, v: VariableValues) -> tuple[float, float]:
     """Start and end of the ramp of the preload [N]; it ends at the stated preload.
 
     Raises ValueError if the stated preload is not larger than its loss by embedding.
@@ -56,8 +56,8 @@ def _row_moment(joint: Any, preload: Number) -> Number:
 
 def _variant(model: Model, joint: Bolted) -> Model:
     """Model of a joint: its loop has a preload above the loss by embedding; see also `_with_bolt_forces`."""
-    assert model.loop
-    loop = replace(model.loop, settings={"preload": max(_LOOP_PRELOAD, 2.0 * joint.embedding)})
+    assert model.load_cycle
+    loop = replace(model.load_cycle, settings={"preload": max(_LOOP_PRELOAD, 2.0 * joint.embedding)})
     return _with_bolt_forces(replace(model, loop=loop), joint)
 
 
@@ -165,7 +165,7 @@ MODELS = (
             ),
         ),
         ramp=LoadRamp("preload", _PRELOAD, 100.0, find_range=_find_ramp),
-        loop=LoadCycle("s_rel_x", 5e-6, {"preload": _LOOP_PRELOAD}),
+        load_cycle=LoadCycle("s_rel_x", 5e-6, {"preload": _LOOP_PRELOAD}),
         dependencies={
             "f_x": (*_MOTION_INPUTS, "v_rel_x", "omega_z"),
             "f_y": (*_MOTION_INPUTS, "v_rel_y", "omega_z"),

@@ -125,7 +125,7 @@ def _tabulate_pair(mesh: MeshParameters, flanks: Curve, divisions: int) -> Curve
     nodes = flanks.displacement
     closing_index = int(np.searchsorted(nodes, 0.0))
     t = np.linspace(0.0, 1.0, CLOSING_STEPS * divisions + 1)
-    kinks = 1 + np.flatnonzero(flanks.slope_end[:-1] != flanks.slope_start[1:])
+    kinks = 1 + np.flatnonzero(flanks.stiffness_slope_end[:-1] != flanks.stiffness_slope_start[1:])
     ends = [closing_index, *(int(i) for i in kinks if i > closing_index), nodes.size - 1]
     abscissas = [(t**2 - 1.0) * -nodes[0]]
     for first, end in pairwise(ends):
@@ -134,9 +134,9 @@ def _tabulate_pair(mesh: MeshParameters, flanks: Curve, divisions: int) -> Curve
     pieces = []
     for x, end in zip(abscissas, ends, strict=True):
         pressure, stiffness, bend = flanks.derivatives(x, 2)
-        bend[-1] = flanks.slope_end[end - 1]  # from below: the derivative jumps where a regime ends
+        bend[-1] = flanks.stiffness_slope_end[end - 1]  # from below: the derivative jumps where a regime ends
         pieces.append(combine_in_series(mesh, x - nodes[0], pressure, stiffness, bend))
-    return assemble_curve(pieces, flanks.error)
+    return assemble_curve(pieces, flanks.interpolation_error)
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,5 +17,5 @@ KIND = JointKind(
     },
     extract_law=lambda drive: drive.law,
     models=MODELS,
-    surfaces=(RoughSurface("surface", areal=True),),
+    surfaces=(RoughSurface("surface", is_areal=True),),
 )

@@ -43,10 +43,10 @@ def torque_curve(drive: Drive) -> Curve:
     raise TypeError(f"{type(drive).__name__} is no ContactPairDrive and no PrescribedDrive")
 
 
-def _tabulate_midline(drive: ContactPairDrive, steps: int) -> Curve:
+def _tabulate_midline(drive: ContactPairDrive, step_count: int) -> Curve:
     """Table of the midline with a number of steps, see `torque_curve`."""
     smoothing = drive.torque_smoothing
-    xi = np.linspace(0.0, np.arcsinh(drive.max_torque / smoothing), steps + 1)
+    xi = np.linspace(0.0, np.arcsinh(drive.max_torque / smoothing), step_count + 1)
     T, half = smoothing * np.sinh(xi), 0.5 * xi[1]
     with np.errstate(all="ignore"):
         K, growth = stiffness_with_play(drive, T)
@@ -132,8 +132,8 @@ class HarmonicDriveSpring:
         friction_update = self.friction.advance(friction_history, motion[0], motion[1], friction_limits_)
         loss = (
             hysteresis.HISTORY_LAYOUT.split(hysteresis_history)["loss"]
-            + hysteresis_update.loss
-            + friction_update.loss
+            + hysteresis_update.dissipated_energy
+            + friction_update.dissipated_energy
         )
         out = motion_outputs(self.joint, motion, kelvin, state, friction_update.traction) | {"E_loss": loss}
         new_friction = self.friction.pack_history(friction_update, motion[0], friction_limits_)
@@ -150,7 +150,7 @@ class HarmonicDriveSpring:
             phi = self.curve.odd_inverse(tau)
         load, stiffness = self.curve.derivatives(np.abs(phi), 1)
         update = self.hysteresis.advance(hysteresis_history, phi)
-        loss = hysteresis.HISTORY_LAYOUT.split(hysteresis_history)["loss"] + update.loss
+        loss = hysteresis.HISTORY_LAYOUT.split(hysteresis_history)["loss"] + update.dissipated_energy
         new = self.hysteresis.pack_history(update, phi, loss)
         locked = np.broadcast_to(friction_history, (*new.shape[:-1], friction_history.shape[-1]))
         out = {"phi_rel": phi, **stiffness_outputs(self.joint, load, stiffness), "E_loss": loss}
@@ -175,21 +175,25 @@ class SpringState:
     """
 
     phi_rel: Number
-    load: Number
-    stiffness: Number
-    friction: Number
-    error: Number
-    slope: Number
+    midline_torque: Number
+    midline_stiffness: Number
+    hysteresis_torque: Number
+    phi_error: Number
+    phi_error_slope: Number
 
 
-def wind_up(drive: Drive, motion: Sequence[Number], error: Number) -> Number:
+def wind_up(drive: Drive, motion: Sequence[Number], phi_error: Number) -> Number:
     """Wind-up phi_rel [rad] at the output, for (phi1, w1, phi2, w2) and the kinematic error [rad]."""
     phi1, _, phi2, _ = motion
-    return phi2 - phi1 / drive.ratio - error
+    return phi2 - phi1 / drive.ratio - phi_error
 
 
 def motion_outputs(
-    drive: Drive, motion: Sequence[Number], temperature: Number, state: SpringState, dry_friction: Number
+    drive: Drive,
+    motion: Sequence[Number],
+    temperature: Number,
+    spring_state: SpringState,
+    dry_friction_torque: Number,
 ) -> dict[str, Number]:
     """Outputs of the spring except E_loss, at a motion (phi1, w1, phi2, w2).
 
@@ -198,40 +202,44 @@ def motion_outputs(
     dry_friction_torque : [N.m] at the wave generator
     """
     tau, friction = (
-        transmitted_torque(drive, motion, state),
-        dry_friction + viscous_torque(drive, motion[1], temperature),
+        transmitted_torque(drive, motion, spring_state),
+        dry_friction_torque + viscous_torque(drive, motion[1], temperature),
     )
     w = mobility(drive.inertia1, 1.0 / drive.ratio) + mobility(drive.inertia2)
-    at_once, side_by_side = largest_stable_steps(state.stiffness, drive.d, w)
+    at_once, side_by_side = largest_stable_steps(spring_state.midline_stiffness, drive.d, w)
     return {
-        "tau1": tau / drive.ratio + state.slope * tau - friction,
+        "tau1": tau / drive.ratio + spring_state.phi_error_slope * tau - friction,
         "tau2": -tau,
-        "phi_rel": state.phi_rel,
+        "phi_rel": spring_state.phi_rel,
         "tau": tau,
-        **stiffness_outputs(drive, state.load, state.stiffness),
+        **stiffness_outputs(drive, spring_state.midline_torque, spring_state.midline_stiffness),
         "tau_friction": friction,
-        "phi_error": state.error,
+        "phi_error": spring_state.phi_error,
         "step_at_once": at_once,
         "step_side_by_side": side_by_side,
     }
 
 
-def transmitted_torque(drive: Drive, motion: Sequence[Number], state: SpringState) -> Number:
+def transmitted_torque(drive: Drive, motion: Sequence[Number], spring_state: SpringState) -> Number:
     """Torque tau [N.m] at the output: sum of midline, hysteresis and damping."""
     _, w1, _, w2 = motion
-    return state.load + state.friction + drive.d * (w2 - w1 / drive.ratio - state.slope * w1)
+    return (
+        spring_state.midline_torque
+        + spring_state.hysteresis_torque
+        + drive.d * (w2 - w1 / drive.ratio - spring_state.phi_error_slope * w1)
+    )
 
 
-def stiffness_outputs(drive: Drive, load: Number, stiffness: Number) -> dict[str, Number]:
+def stiffness_outputs(drive: Drive, midline_torque: Number, midline_stiffness: Number) -> dict[str, Number]:
     """Outputs K_WTS, K_TS, K_FTS, K_TS_pair [N.m/rad] and p_max [Pa] at a torque [N.m] of the midline.
 
     K_TS includes the lost motion; K_TS_pair is K_TS on the scale of Fig. 11 of Hu 2023.
     """
-    K_TS = stiffness * drive.K_FTS / (drive.K_FTS - stiffness)
+    K_TS = midline_stiffness * drive.K_FTS / (drive.K_FTS - midline_stiffness)
     return {
-        "K_WTS": stiffness,
+        "K_WTS": midline_stiffness,
         "K_TS": K_TS,
-        "K_FTS": drive.K_FTS + 0.0 * stiffness,
+        "K_FTS": drive.K_FTS + 0.0 * midline_stiffness,
         "K_TS_pair": K_TS / drive.pair_scale,
-        "p_max": drive.pressure(load),
+        "p_max": drive.pressure(midline_torque),
     }

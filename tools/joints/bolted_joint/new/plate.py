@@ -45,7 +45,7 @@ class ClampedBolt:
     """
 
     grip: float
-    layers: tuple[vdi2230.ClampedPart, ...]
+    clamped_parts: tuple[vdi2230.ClampedPart, ...]
     hole_diameter: float
     bearing_diameter: float
     outer_diameter: float
@@ -83,7 +83,11 @@ def make_joint(options: DrawingOptions) -> NewJoint:
     _add_plate(sheet, plate, bolt, hole_source)
     _add_bolts(sheet, plate, bolt, thread)
     loss = _add_embedding_loss(sheet, options, bolt, heights)
-    mass = plate.area * bolt.layers[0].thickness * faces.read_materials(options)[0].numbers["density"].value
+    mass = (
+        plate.area
+        * bolt.clamped_parts[0].thickness
+        * faces.read_materials(options)[0].numbers["density"].value
+    )
     sheet.add("mass", mass, "estimate", "mass of the plate of side 1; what vibrates")
     preload, warnings = _add_preload(sheet, options, thread)
     if not loss < preload:
@@ -96,7 +100,7 @@ def make_joint(options: DrawingOptions) -> NewJoint:
         sheet.add(choice, default, "estimate", "nearest to the roughness of the surfaces, docs/validity.md")
     file = sheet.build_file(f"plate {options['plate']} with {options['bolts']}")
     density = tuple(material.numbers["density"].value for material in faces.read_materials(options))
-    layers, depth = bolt.layers, 0.0
+    layers, depth = bolt.clamped_parts, 0.0
     if options["tapped"] and options["thickness"] is not None:
         layers, depth = (
             (*layers, vdi2230.ClampedPart(_plate_thicknesses(options)[1], moduli[1])),
@@ -128,9 +132,9 @@ def _hole_diameter(options: DrawingOptions, thread: Thread) -> tuple[float, tupl
 def clamp_bolt(
     options: DrawingOptions,
     thread: Thread,
-    size: tuple[float, float],
+    plate_size: tuple[float, float],
     positions: Array,
-    hole: float,
+    hole_diameter: float,
     moduli: tuple[float, float],
 ) -> ClampedBolt:
     """Compute one bolt with its clamped parts by VDI 2230.
@@ -146,7 +150,7 @@ def clamp_bolt(
     bearing = getattr(thread, head)
     if options["bearing"] is not None:
         bearing = parse_number("bearing", options["bearing"], "mm", "m")
-    for name, value, low in (("hole", hole, thread.d), ("bearing", bearing, hole)):
+    for name, value, low in (("hole", hole_diameter, thread.d), ("bearing", bearing, hole_diameter)):
         if not value > low:
             raise ValueError(f"--{name} = {value * 1e3:g} mm is outside ({low * 1e3:g}, inf) mm")
     thicknesses = _clamped_thicknesses(options)
@@ -165,15 +169,15 @@ def clamp_bolt(
             f"--grip = {grip * 1e3:g} mm is outside (0, {longest_grip:g}] mm: {MAX_GRIP_RATIO} "
             f"times {thread.name}"
         )
-    outer = outer_diameter(size, positions)
+    outer = outer_diameter(plate_size, positions)
     slope = vdi2230.cone_slope(grip, bearing, outer, tapped)
     if not slope > 0.0:
         raise ValueError(f"--grip = {grip * 1e3:g} mm is too short for a deformation cone of VDI 2230")
     shank = vdi2230.shank_length(thread, grip, head, tapped)
     delta_S = vdi2230.bolt_compliance(thread, grip, shank, head, moduli[1] if tapped else None)
-    delta_P = vdi2230.members_compliance(layers, bearing, hole, outer, slope, tapped)
+    delta_P = vdi2230.members_compliance(layers, bearing, hole_diameter, outer, slope, tapped)
     cone = vdi2230.cone_diameter(min(layer.thickness for layer in layers), bearing, slope)
-    return ClampedBolt(grip, layers, hole, bearing, outer, slope, cone, 1.0 / delta_S, 1.0 / delta_P)
+    return ClampedBolt(grip, layers, hole_diameter, bearing, outer, slope, cone, 1.0 / delta_S, 1.0 / delta_P)
 
 
 def _clamped_thicknesses(options: DrawingOptions) -> list[float]:
@@ -204,7 +208,7 @@ def _plate_thicknesses(options: DrawingOptions) -> list[float]:
     return thicknesses
 
 
-def outer_diameter(size: tuple[float, float], positions: Array) -> float:
+def outer_diameter(plate_size: tuple[float, float], positions: Array) -> float:
     """Outer diameter D_A [m] of the clamped parts, mean over the bolts.
 
     For each bolt: twice the distance to the nearest edge, or the distance to the next bolt if this is
@@ -212,7 +216,7 @@ def outer_diameter(size: tuple[float, float], positions: Array) -> float:
 
     Raises ValueError for a bolt outside the plate.
     """
-    edge = np.min(np.array(size) - 2.0 * np.abs(positions), axis=1)
+    edge = np.min(np.array(plate_size) - 2.0 * np.abs(positions), axis=1)
     if np.min(edge) <= 0.0:
         i = int(np.argmin(edge))
         x, y = positions[i] * 1e3
@@ -231,7 +235,7 @@ def _add_plate(
     sheet.add("plate.hole_diameter", plate.hole_diameter, *hole_source)
     cone = (
         f"VDI 2230, cone from d_w = {clamped_bolt.bearing_diameter * 1e3:g} mm over "
-        f"{min(layer.thickness for layer in clamped_bolt.layers) * 1e3:g} mm with tan(phi) = "
+        f"{min(layer.thickness for layer in clamped_bolt.clamped_parts) * 1e3:g} mm with tan(phi) = "
         f"{clamped_bolt.cone_slope:.4g}"
     )
     sheet.add("plate.cone_diameter", plate.cone_diameter, "derived", cone)
@@ -239,7 +243,7 @@ def _add_plate(
 
 
 def _add_bolts(sheet: ParameterSheet, plate: BoltedPlate, clamped_bolt: ClampedBolt, thread: Thread) -> None:
-    row_bolts, row_distance = plate.equivalent_rows
+    row_bolts, row_distance = plate.equivalent_bolt_rows
     rows = "the places of the bolts: two rows that would carry a moment about x as they do"
     sheet.add("n_bolts", float(len(plate.x)), "user", "stated on the drawing")
     sheet.add("row_bolts", row_bolts, "derived", rows)

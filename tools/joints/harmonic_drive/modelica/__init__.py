@@ -56,7 +56,7 @@ def _hysteresis_totals(spring: HarmonicDriveSpring) -> dict[str, float]:
     """Total friction limit [N.m] of the hysteresis sliders, and their stiffness [N.m/rad] while all stick."""
     sliders = spring.hysteresis
     return {
-        "hysteresis_friction": float(np.sum(sliders.limit)),
+        "hysteresis_friction": float(np.sum(sliders.friction_limit)),
         "hysteresis_stiffness": float(np.sum(sliders.stiffness)),
     }
 
