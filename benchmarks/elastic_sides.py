@@ -98,8 +98,8 @@ class Joint:
             if refinement != 1.0:
                 return real(file, plates, to, shape)
             with (  # the command's own finite elements are these
-                patch.object(JointFiniteElements, "of", lambda *_: joint),
-                patch.object(JointFiniteElements, "linear", lambda *_: linear),
+                patch.object(JointFiniteElements, "from_assembly", lambda *_: joint),
+                patch.object(JointFiniteElements, "linearize", lambda *_: linear),
             ):
                 return real(file, plates, to, shape)
 

@@ -71,11 +71,11 @@ def test_springs_of_coulomb_have_backbone_and_loop_of_the_theorem():
     full = 0.15 * law.derivatives(delta, 0)[0] / exact.stick_stiffness(delta)
     for part in (0.1, 0.5, 1.0, 2.0):
         shift = np.column_stack([0.6 * part * full, 0.8 * part * full])
-        up = springs.moved(springs.virgin_forces(3), delta, delta, shift)
+        up = springs.advance(springs.virgin_forces(3), delta, delta, shift)
         force = np.hypot(*up.traction.T)
         np.testing.assert_allclose(force, exact.virgin_traction(delta, part * full), rtol=3e-3)
-        down = springs.moved(up.force, delta, delta, -2.0 * shift)
-        again = springs.moved(down.force, delta, delta, 2.0 * shift)
+        down = springs.advance(up.force, delta, delta, -2.0 * shift)
+        again = springs.advance(down.force, delta, delta, 2.0 * shift)
         heat = exact.cycle_energies(delta, part * full)[0]
         np.testing.assert_allclose(
             down.dissipated_energy + again.dissipated_energy, heat, rtol=2e-3 if part > 0.1 else 0.05
