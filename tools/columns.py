@@ -46,9 +46,9 @@ _ALTERNATIVE_HEADING = re.compile(
 class Columns:
     """Columns (n) of a file, in SI units.
 
-    columns : {name: values (n)}
-    lines   : line number of each row in the file
-    units   : {name: unit in the heading of the file}
+    columns      : {name: values (n)}
+    line_numbers : line number of each row in the file
+    units        : {name: unit in the heading of the file}
     """
 
     path: Path
@@ -98,12 +98,12 @@ def read_columns(
     aliases: Mapping[str, Sequence[str]] | None = None,
     stated_headings: Mapping[str, ColumnHead] | None = None,
 ) -> Columns:
-    """Read from a file those columns of `spec` that the file has.
+    """Read from a file the columns of `allowed_units` that the file has.
 
-    spec            : {name: {allowed unit: its size in SI}}
+    allowed_units   : {name: {allowed unit: its size in SI}}
     min_rows        : rows that the file must have at least
-    aliases         : {name in `spec`: other names in lower case}; the unit decides between several names
-    stated_headings : {name in `spec`: (heading in this file, unit)}; unit None: the unit of the heading
+    aliases         : {column: other names in lower case}; the unit decides between several names
+    stated_headings : {column: (heading in this file, unit)}; unit None: the unit of the heading
 
     Raises ValueError, one line with file, line and column: no file, no text, no heading, a column that has
     no unit or a wrong unit or stands twice, a row of another length, a value that is no finite number, or
@@ -227,7 +227,7 @@ def _apply_stated_headings(
 def _find_columns(
     path: Path, cells: Sequence[str], spec: Mapping[str, UnitSizes], aliases: Mapping[str, Sequence[str]]
 ) -> dict[str, tuple[int, float, str]]:
-    """Find the columns of `spec` in a heading: {name: (index, size of its unit in SI, unit)}.
+    """Find the columns of `allowed_units` in a heading: {name: (index, size of its unit in SI, unit)}.
 
     Raises ValueError for a column that stands twice, has no unit or a wrong unit, or if there is no column.
     """
@@ -261,7 +261,7 @@ def _find_columns(
 def _identify_column(
     cell: str, spec: Mapping[str, UnitSizes], aliases: Mapping[str, Sequence[str]]
 ) -> ColumnHead:
-    """Identify the column of `spec` and the unit that a heading means.
+    """Identify the column and the unit that a heading means.
 
     The unit may be the end of the name: `joint_speed_rad_per_s`.
     """
@@ -281,7 +281,7 @@ def _identify_column(
 def _resolve_alias(
     word: str, unit: str | None, spec: Mapping[str, UnitSizes], aliases: Mapping[str, Sequence[str]]
 ) -> str:
-    """Return the column of `spec` that has `word` as an alias and allows the unit; else `word` itself."""
+    """Return the column that has `word` as an alias and allows the unit; else `word` itself."""
     for name, words in aliases.items():
         if word in words and name in spec and unit is not None:
             with suppress(ValueError):

@@ -37,7 +37,7 @@ class Instance:
     variables   : {name: variable of the model description}
     fmu         : instance of fmpy, for calls that this class does not wrap
     messages    : all log messages
-    lines       : list to which warnings and errors are appended as they come, one line each
+    log_lines   : list to which warnings and errors are appended as they come, one line each
 
     Raises the exceptions of fmpy and ctypes if the library cannot be loaded, and if a call fails.
     """
@@ -174,8 +174,8 @@ def open_instance(
 ) -> Iterator[Instance]:
     """Context with an instance of an unpacked FMU, which is freed at the end.
 
-    source         : name of the FMU in error messages
-    lines          : list to which warnings and errors of the FMU are appended
+    fmu_label      : name of the FMU in error messages
+    log_lines      : list to which warnings and errors of the FMU are appended
     model_exchange : whether to use model exchange; default co-simulation
 
     Raises ValueError if the library cannot be loaded, RuntimeError if it does not instantiate, both with one

@@ -40,7 +40,7 @@ class StiffnessComparison:
 
     @property
     def is_doubtful(self) -> bool:
-        """Whether the ratio is above MAX_RATIO or below 1/MAX_RATIO at any pressure."""
+        """Whether the ratio is above MAX_STIFFNESS_RATIO or below 1/MAX_STIFFNESS_RATIO at any pressure."""
         return bool(np.any((self.ratio > MAX_RATIO) | (self.ratio < 1.0 / MAX_RATIO)))
 
     def __str__(self) -> str:
@@ -98,10 +98,10 @@ def assess_law(
 ) -> Plausibility:
     """Assess the stiffness of an interface law at nominal pressures [Pa]. Zero and infinite ones are ignored.
 
-    h            : [m] combined rms height of both surfaces; None: unknown
-    peak         : [Pa] largest pressure, if `pressures` are mean values
-    scale        : stiffness of the joint over that of the interface law [1], one value or one per pressure
-    check_limits : also warn about pressures outside the range of validity
+    h               : [m] combined rms height of both surfaces; None: unknown
+    peak_pressure   : [Pa] largest pressure, if `pressures` are mean values
+    stiffness_ratio : stiffness of the joint over that of the interface law [1], one value or one per pressure
+    check_limits    : also warn about pressures outside the range of validity
     """
     nominal = np.asarray(pressures, dtype=np.float64)
     in_contact = (nominal > 0.0) & (nominal < np.inf)

@@ -33,7 +33,7 @@ def declare_option(parser: argparse.ArgumentParser, option: Option) -> None:
 def save_panels(path: Path, panels: "Sequence[Panel]", size: tuple[float, float]) -> None:
     """Draw panels side by side and save them as a picture.
 
-    size : width and height [inch]
+    figure_size : width and height [inch]
     """
     from ..report.figure import draw_panels
 

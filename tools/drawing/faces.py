@@ -66,12 +66,12 @@ CUT_OFF_WAVELENGTHS = ((0.02e-6, 0.08e-3), (0.1e-6, 0.25e-3), (2e-6, 0.8e-3), (1
 class Face(NamedTuple):
     """Roughness of one face.
 
-    Rq             : rms height [m]
-    Rq_min, Rq_max : lower and upper limit of the rms height [m]
-    slope, hurst   : rms slope [1], Hurst exponent [1]
-    longest_wave   : longest wavelength [m] that the height includes
-    text           : source of the height
-    stated_heights : {key of the section [roughness] without the number of the side: height [m]}
+    Rq                        : rms height [m]
+    Rq_min, Rq_max            : lower and upper limit of the rms height [m]
+    rms_slope, hurst_exponent : rms slope [1], Hurst exponent [1]
+    longest_wave              : longest wavelength [m] that the height includes
+    height_source             : source of the height
+    stated_heights            : {key of the section [roughness] without the number of the side: height [m]}
     """
 
     Rq: float

@@ -21,7 +21,7 @@ def format_springs(
     """Format the springs as SPRING2 elements along the model's axes, and for Abaqus also DASHPOT2 elements.
 
     comment_lines : lines for the head of the file
-    dashpots      : whether to write dashpots
+    has_dashpots  : whether to write dashpots
 
     Pairs that agree to nine digits share an element set.
     """

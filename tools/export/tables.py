@@ -43,7 +43,7 @@ class LoadTable:
 def tabulate_law(curve: Curve, error: float) -> LoadTable:
     """Tabulate an interface law: approach [m] from first touch, pressure [Pa], stiffness [N/m3].
 
-    error : largest relative error [1] of the pressure with linear interpolation
+    max_error : largest relative error [1] of the pressure with linear interpolation
 
     The table ends at the hardness. Below the range of the law one line leads to first touch; the errors are
     those above this line.
@@ -70,7 +70,7 @@ def tabulate_load(curve: Curve, area: float, error: float) -> LoadTable:
 def tabulate_odd_curve(curve: Curve, error: float) -> LoadTable:
     """Tabulate an odd curve through zero, with both signs of the displacement.
 
-    error : largest relative error [1] of the load with linear interpolation
+    max_error : largest relative error [1] of the load with linear interpolation
 
     The stiffness error is kept below MAX_STIFFNESS_ERROR, unless the curve has a jump of the stiffness.
     """
@@ -95,8 +95,9 @@ def decimate_curve(
 ) -> LoadTable:
     """Select few of the points (n) of a curve so that linear interpolation stays within an error.
 
-    x, y, k         : displacement, load and stiffness (n)
-    error           : [1] largest error of y, relative to y, or to min_reference[0] if that is larger
+    displacement, load, stiffness : points (n) of the curve
+    max_error       : [1] largest error of the load, relative to the load, or to min_reference[0] if that is
+                      larger
     min_reference   : smallest load and stiffness to which errors are relative
     fixed_points    : indices of points that are always selected
     stiffness_error : [1] largest relative error of the slope of a line

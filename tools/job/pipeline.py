@@ -41,15 +41,15 @@ class JobResult:
 
     fmi2_folder : folder of the FMUs of FMI 2.0
     fmu_paths   : FMUs of the joints, of all flavours
-    systems     : system files (.ssp) and the FMUs that they add
+    system_files : system files (.ssp) and the FMUs that they add
     problems    : errors, one line each
     ramps       : {FMU: its load ramp}
     proofs      : results of the experiments of each FMU
     checks      : numerical checks of the ramps, resonances and decays
-    rows        : published points, computed by the package
-    fmu_rows    : published points, computed by running FMUs
-    ringing, decays : {system: simulated free vibrations}
-    arms        : {name: robot arm, its simulated columns}
+    validated_points : published points, computed by the package
+    fmu_validated_points : published points, computed by running FMUs
+    free_vibrations, decays : {system: simulated free vibrations}
+    arm_results : {name: robot arm, its simulated columns}
     figures     : {joint: figures of the report}
     """
 

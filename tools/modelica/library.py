@@ -86,9 +86,9 @@ def write_library(
 ) -> list[Path]:
     """Write the library into a folder; returns the paths of its files.
 
-    file   : parameter file of one joint, in place of its default file
-    points : {joint: working points}, in place of the default working points
-    force  : replace a library of this name that jointfmu did not write
+    file           : parameter file of one joint, in place of its default file
+    working_points : {joint: working points}, in place of the default working points
+    force          : replace a library of this name that jointfmu did not write
     """
     check_output(folder / LIBRARY_NAME / "package.mo", EXCHANGE_TEXT, force)
     return write_files(folder / LIBRARY_NAME, render_library(file, points))

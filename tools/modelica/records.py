@@ -79,8 +79,8 @@ _SAMPLE_FRACTIONS = np.linspace(0.0, 1.0, 9)[1:-1]
 class InterpolationTable(NamedTuple):
     """Quintic spline of a load curve.
 
-    rows  : (n, 5) displacement, load, stiffness, derivative of the stiffness before and after the node
-    error : [1] largest relative error of load and stiffness against the original curve
+    rows      : (n, 5) displacement, load, stiffness, derivative of the stiffness before and after the node
+    max_error : [1] largest relative error of load and stiffness against the original curve
     """
 
     rows: Array
@@ -99,7 +99,7 @@ def decimate_curve(
     fixed_nodes: Collection[int] = (),
     segment_fits: Callable[[int, int], bool] | None = None,
 ) -> InterpolationTable:
-    """Select few nodes of a curve whose quintic spline reproduces it within RELATIVE_TOLERANCE.
+    """Select few nodes of a curve whose quintic spline reproduces it within TABLE_TOLERANCE.
 
     reference_node : node whose load and stiffness are the smallest reference of the relative errors; -1: the
                      errors are relative to each value
@@ -181,7 +181,7 @@ class ModelicaRecord:
     def template_terms(self, base: str) -> dict[str, object]:
         """Template variables of the record.
 
-        base : name of the record that it extends
+        base_record : name of the record that it extends
         """
         return {
             "name": self.name,
@@ -200,13 +200,13 @@ class ModelicaComponent:
 
     This folder has the templates Components/NAME.mo and Data/BASE.mo. The template of the component gets the
     variables `meta` (meanings of the parameters), `docs` (meanings of inputs and outputs), `html` (sections
-    of the FMU's page), `record` (name of the default record), and the result of `template_texts`.
+    of the FMU's page), `record` (name of the default record), and the result of `make_template_texts`.
 
     name           : name of the component, and of the FMU that it replaces
-    base           : name of the base record of its records
-    points         : default working points of the records
-    records        : (parameter file, working points) -> one record for each; the first is the default record
-    template_texts : default record -> {template variable: text}
+    base_record    : name of the base record of its records
+    working_points : default working points of the records
+    make_records   : (parameter file, working points) -> one record for each; the first is the default record
+    make_template_texts : default record -> {template variable: text}
     flanges        : names of its flanges
     system_parameters         : parameter file -> {parameter of the component: text} that a system sets in
                                 addition to the record

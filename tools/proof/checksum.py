@@ -16,7 +16,7 @@ ALGORITHMS = {
 def check(related: Element, content: bytes) -> None:
     """Compare the content of a related file with its checksum in the manifest, if one is stated.
 
-    related : element of the manifest
+    file_element : element of the manifest
 
     Raises ValueError if the checksums differ, or the algorithm is not in ALGORITHMS.
     """

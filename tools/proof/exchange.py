@@ -54,10 +54,10 @@ def run_fmpy_exchange(task: Task, messages: list[str]) -> Rows:
 class _ExchangeSimulation:
     """Simulation of an FMU for model exchange between communication points.
 
-    interval : index of the current communication interval
-    time     : current time [s]
-    event    : time of the next event announced by the FMU [s], or infinity
-    failure  : first exception in a call by the solver, or None
+    interval_index  : index of the current communication interval
+    time            : current time [s]
+    next_event_time : time of the next event announced by the FMU [s], or infinity
+    first_failure   : first exception in a call by the solver, or None
     """
 
     def __init__(self, instance: Instance, task: Task) -> None:

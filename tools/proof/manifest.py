@@ -112,7 +112,7 @@ class RelatedFiles:
     def _check_checksum(self, related: Element) -> None:
         """Compare a related file in the FMU with its checksum, if the manifest states one.
 
-        related : element of the manifest
+        file_element : element of the manifest
 
         Raises ValueError if they differ.
         """

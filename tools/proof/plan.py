@@ -30,10 +30,10 @@ DEFAULT_STEPS, MAX_STEPS = 500, 10_000_000
 class ExperimentPlan:
     """Plan of an experiment in one interface of an FMU: the task for an importer.
 
-    interface : FMI interface; empty if the experiment is not executed
-    nominal   : {output: nominal value}
-    task      : fields of the `Task`; empty if the experiment cannot be executed
-    refusal   : why the experiment cannot be executed with this FMU; empty if it can
+    interface      : FMI interface; empty if the experiment is not executed
+    nominal_values : {output: nominal value}
+    task           : fields of the `Task`; empty if the experiment cannot be executed
+    refusal_reason : why the experiment cannot be executed with this FMU; empty if it can
     """
 
     experiment: Experiment

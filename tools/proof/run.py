@@ -109,7 +109,7 @@ def _check_importer(importer: str) -> None:
 def _differences(starts: Mapping[str, object], expected: ExpectedContents) -> list[str]:
     """A line for each start value of the FMU that differs from the expected one.
 
-    starts : {variable: start value} of the FMU
+    start_values : {variable: start value} of the FMU
     """
     return [
         f"{name} "
@@ -129,7 +129,7 @@ def _offered_interfaces(description: "ModelDescription") -> list[str]:
 def _usable_interfaces(experiment: Experiment, common: Sequence[str]) -> Sequence[str]:
     """Interfaces in which an experiment is executed; [""] if in none.
 
-    common : interfaces of both FMU and importer
+    common_interfaces : interfaces of both FMU and importer
     """
     usable = (
         [] if experiment.unsupported_reason else [name for name in common if name in experiment.interfaces]

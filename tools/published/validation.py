@@ -25,12 +25,12 @@ _ROUNDING = 1e-6
 class ValidatedPoint:
     """Published number with the computed value and the verdict.
 
-    computed    : computed value, in the unit of the published one
-    error       : relative error of the computed value, or absolute in the unit of the point if its tolerance
-        is absolute; 0 or 1 for a claim
-    passed      : whether the error is within the tolerance
-    guess       : trivial guess from calibration points; None: the point has no guess
-    guess_error : error of the trivial guess, as `error`
+    computed_value : computed value, in the unit of the published one
+    error          : relative error of the computed value, or absolute in the unit of the point if its
+        tolerance is absolute; 0 or 1 for a claim
+    has_passed     : whether the error is within the tolerance
+    guess          : trivial guess from calibration points; None: the point has no guess
+    guess_error    : error of the trivial guess, as `error`
     """
 
     point: Point

@@ -36,7 +36,7 @@ class CyclicPath:
     """Path of an input in load cycles: first loading to an amplitude, then cycles about a centre.
 
     centre : value of the input at the start and in the middle of the cycles
-    shape  : waveform, one of SHAPES
+    shape  : waveform, one of WAVEFORMS
     points : number of points of a cycle, a multiple of four
     cycles : number of cycles after the first loading; the last cycle is evaluated
     """
@@ -121,10 +121,10 @@ class HysteresisLoop:
 class HysteresisLoops:
     """Hysteresis loops of one FMU.
 
-    motion, force : names of the variables
-    units         : units of motion and force
-    sign          : force on the joint over the variable `force`: +1 or -1
-    loops         : one loop for each amplitude, in the requested order
+    motion_name, force_name : names of the variables
+    units                   : units of motion and force
+    force_sign              : force on the joint over the variable `force_name`: +1 or -1
+    loops                   : one loop for each amplitude, in the requested order
     """
 
     motion: str
@@ -251,7 +251,7 @@ def find_conjugate(
 
     inputs, outputs : {name: unit}
     output          : output that the user states; None: find it
-    source          : name of the FMU, for messages
+    fmu_label       : name of the FMU, for messages
 
     Raises ValueError if no output is conjugate, or if the stated output is not.
     """

@@ -41,10 +41,10 @@ MAX_END = 1e12
 
 
 def ramp_points(to: float, step: float) -> Array:
-    """Points of a ramp: 0, step, 2 step, ... to; the last step may be shorter.
+    """Points of a ramp: 0, step, 2 step, ..., end; the last step may be shorter.
 
-    Raises ValueError if a value is not finite, if |to| is above MAX_END, or if the step is zero or has the
-    other sign than `to`.
+    Raises ValueError if a value is not finite, if |end| is above MAX_RAMP_END, or if the step is zero or has
+    the other sign than `end`.
     """
     for name, value in (("to", to), ("step", step)):
         if not np.isfinite(value):
@@ -79,7 +79,7 @@ def run_ramp(
     ----------
     fmu        : path of a co-simulation FMU, FMI 2.0 or 3.0
     input_name : name of the varied input
-    to, step   : [unit of the input] end and step of the ramp
+    end, step  : [unit of the input] end and step of the ramp
     settings   : start values of parameters and other inputs
 
     Raises

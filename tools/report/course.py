@@ -31,7 +31,7 @@ class LoadHistory:
     file, spring : parameter file, tabulated curves of the joint
     model        : model of the FMU, with ramp and load cycle for this file
     start_values : {input: start value}
-    limit        : (value of the ramped input, warning) at the end of the law's range; None if there is no end
+    law_limit    : (value of the ramped input, warning) at the end of the law's range; None if there is no end
                    near the ramp
     """
 

@@ -63,7 +63,7 @@ class Figure(NamedTuple):
     title, text : heading, and description of what the figure shows
     panels      : charts
     pictures    : SVG elements
-    data        : name of the CSV file next to the page
+    data_file   : name of the CSV file next to the page
     table       : rows of a table; the first row has the headings
     """
 

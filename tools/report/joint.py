@@ -37,7 +37,7 @@ def summarise_joint(
     """Summarise a joint in a few sentences: stiffness, hysteresis, estimated parameters.
 
     loops   : hysteresis loops; None for a joint without friction history
-    numbers : entries of the parameter file
+    entries : entries of the parameter file
     """
     lines = [f"A {KINDS[load_history.file.joint].title}.", _describe_stiffness(load_history)]
     if loops:

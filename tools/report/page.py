@@ -24,7 +24,7 @@ from .systems import motion_figures, resonance_figures, ring_down_figures
 def build_figures(outcome: Any) -> dict[str, list[Figure]]:
     """Build the figures of all joints: {joint: figures}.
 
-    outcome : result of `python build_fmus.py` with simulated systems
+    job_result : result of `python build_fmus.py` with simulated systems
     """
     return {name: _joint_figures(kind, outcome) for name, kind in KINDS.items()}
 

@@ -38,8 +38,8 @@ def text(
     that about the axis at the pose, with the payload and the other axes locked. The torque of the weight acts
     on it and is applied smoothly. The axes are not coupled.
 
-    files   : {joint: parameter file of its drive}
-    payload : mass [kg] at the body `tip`
+    drive_files : {joint: parameter file of its drive}
+    payload     : mass [kg] at the body `tip`
     """
     load, _ = torques(model, axes, pose, payload, tip)
     link_inertias = np.diag(inertia(model, axes, pose, payload, tip))

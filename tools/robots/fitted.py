@@ -59,7 +59,7 @@ def slider(wind_up: Array, limit: float) -> Array:
 
 
 def fit(drive: Transmission, torque: float) -> FittedTendons:
-    """Fit nonnegative coefficients to the torque of a drive along a ramp to `torque` [N.m] and one loop.
+    """Fit nonnegative coefficients to the torque of a drive along a ramp to `max_torque` [N.m] and one loop.
 
     The yielding springs are fitted first, to half the distance between the branches of the loop, which does
     not depend on the elastic part. So smaller loops also have about the right area.

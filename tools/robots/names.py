@@ -18,7 +18,7 @@ def identifier(name: str) -> str:
 def check_names(files: Mapping[str, ParameterFile]) -> None:
     """Raise ValueError if two drives have the same name but different parameters: one name is one plugin.
 
-    files : {joint: parameter file of its drive}
+    drive_files : {joint: parameter file of its drive}
     """
     first: dict[str, tuple[str, ParameterFile]] = {}
     for joint, file in files.items():

@@ -25,7 +25,7 @@ def spring_of(file: ParameterFile) -> str:
 def plugins(files: Mapping[str, ParameterFile], out: Path) -> dict[str, Path]:
     """Compile the plugin `jointfmu.NAME` of each drive into a folder; returns {name of the drive: file}.
 
-    files : {joint: parameter file of its drive}
+    drive_files : {joint: parameter file of its drive}
 
     Raises ImportError, RuntimeError and ValueError as `jointfmu_tools.mujoco.plugin`.
     """
@@ -42,8 +42,8 @@ def plugins(files: Mapping[str, ParameterFile], out: Path) -> dict[str, Path]:
 def text(spec: Any, chosen: Sequence[ElasticAxis], files: Mapping[str, ParameterFile]) -> str:
     """Format the MJCF of a robot with plugins as drives.
 
-    axes  : axes with a drive
-    files : {joint: parameter file of its drive}
+    axes        : axes with a drive
+    drive_files : {joint: parameter file of its drive}
     """
     model_spec = with_drives(spec, list(chosen), springs=False)
     model_spec.compile()

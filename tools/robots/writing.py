@@ -10,7 +10,7 @@ from .transmission import transmission
 def write_drive(form: str, source: str, torque: float | None) -> tuple[str, list[str], dict[str, object]]:
     """Write a drive in a robot format, fitted up to a torque.
 
-    robot_format : a key of WRITERS
+    robot_format : a key of FORMAT_WRITERS
     source       : parameter file or name of the drive
     torque       : [N.m]; None: rated torque
 

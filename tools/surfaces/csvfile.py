@@ -179,8 +179,8 @@ def _parse_numbers(path: Path, line: int, row: Sequence[str]) -> Array:
 def heights_from_columns(path: Path, values: Array, factors: list[float]) -> Heights:
     """Profile from columns x, z, or areal map from columns x, y, z.
 
-    values  : (n, 2) or (n, 3)
-    factors : units of the columns in metres
+    values       : (n, 2) or (n, 3)
+    unit_factors : units of the columns in metres
 
     Raises ValueError for points that lie on no regular grid or occur twice.
     """

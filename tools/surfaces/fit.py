@@ -44,15 +44,15 @@ class SelfAffineLaw:
     """Self-affine law fitted to a series over scale.
 
     H           : Hurst exponent [1]
-    level       : ln(Phi) at the wavelength `reference`, Phi in m2
-    reference   : [m]
-    covariance  : (2, 2) of (H, level)
+    log_power   : ln(Phi) at the wavelength `reference_wavelength`, Phi in m2
+    reference_wavelength : [m]
+    covariance  : (2, 2) of (H, log_power)
     offset      : constant added to the law, over its value at the shortest scale [1]: > 0 for noise, < 0 for
                   missing short waves
     deviation   : standard deviation of ln(value) from the law beyond statistical scatter [1]
     drift       : change of D over the range [1]
     drift_error : standard error of the drift [1]
-    low, high   : range of scales [m]
+    min_scale, max_scale : range of scales [m]
     covers_interval : whether D covers its whole interval 1 to 2 over all scales, and this range is short
     """
 
@@ -142,7 +142,7 @@ def _fit_series(series: ScaleSeries) -> SelfAffineLaw:
     scatter = series.covariance(0.5)
 
     def log_law(p: Array) -> Array:
-        """ln(value) of the law at all scales, for p = (H, level, offset)."""
+        """ln(value) of the law at all scales, for p = (H, log_power, offset)."""
         expected = series.expected(p[0]) * reference ** (-2.0 * p[0])
         return np.asarray(np.log(expected + (p[2] * expected[0] if offset else 0.0)) + p[1])
 
@@ -195,7 +195,7 @@ def _correlation_matrix(x: Array) -> Array:
 def _excess_deviation(residual: Array, scatter: Array, x: Array, parameter_count: int) -> float:
     """Standard deviation from the law beyond statistical scatter: chi-squared then has its expected value.
 
-    scatter : covariance (n, n) of the residual from statistics
+    statistical_covariance : covariance (n, n) of the residual from statistics
     """
     degrees_of_freedom = max(x.size - parameter_count, 1)
     correlation, deviations = _correlation_matrix(x), np.geomspace(MIN_DEVIATION, 3.0, 60)

@@ -26,10 +26,10 @@ MAX_MISSING_SHARE = 0.2
 class Repair:
     """Repair of a scan, for messages.
 
-    name   : kind of repair
-    count  : number of repaired points
-    points : number of all points
-    effect : text on its effect
+    name            : kind of repair
+    repaired_points : number of repaired points
+    total_points    : number of all points
+    effect_note     : text on its effect
     """
 
     name: str
@@ -148,9 +148,9 @@ def _fill_nearest(z: Array, valid: Mask) -> Array:
 class PreparedScan:
     """Scan without spikes and form.
 
-    gappy    : heights with missing points as NaN, for the structure function
-    complete : heights with missing points filled, for the spectrum
-    repairs  : repairs of spikes and gaps
+    heights_with_gaps : heights with missing points as NaN, for the structure function
+    filled_heights    : heights with missing points filled, for the spectrum
+    repairs           : repairs of spikes and gaps
     """
 
     gappy: Heights
@@ -217,8 +217,8 @@ def check_wave(heights: Heights, longest_wave: float) -> None:
 def scan_roughness(gappy: Heights, complete: Heights, longest_wave: float) -> ScanRoughness:
     """Roughness of a scan from waves up to a longest wavelength [m].
 
-    gappy    : heights without form, missing points as NaN
-    complete : heights without form, missing points filled
+    heights_with_gaps : heights without form, missing points as NaN
+    filled_heights    : heights without form, missing points filled
 
     The heights are decomposed into cosines with 0, 1, 2, ... half waves along each side (type-II cosine
     transform). This needs no window and has no jump at the ends; the squared amplitudes add up to the mean

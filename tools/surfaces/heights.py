@@ -111,9 +111,9 @@ def fit_grid(
 ) -> tuple[GridIndices, float]:
     """Fit a regular grid to positions (n,); return the grid index of each position, from 0, and the spacing.
 
-    path, name    : file and axis, for messages
-    positions     : increasing positions as the file states them, in a unit of `factor` metres
-    allow_repeats : whether rounding may make neighbours equal
+    path, axis_name : file and axis, for messages
+    positions       : increasing positions as the file states them, in a unit of `unit_size` metres
+    allow_repeats   : whether rounding may make neighbours equal
 
     First, the spacing is (last - first)/(n - 1). Each position must lie on the grid within GRID_TOLERANCE of
     the spacing, or within rounding: half a unit of its last digit plus half a unit of the last digit of the

@@ -44,7 +44,7 @@ def identify(
     function is the sum of their structure functions, and its spectrum the sum of their spectra.
 
     surfaces : one surface, or two of the same kind (profile or areal map)
-    form     : form that is removed, one of FORMS
+    form     : form that is removed, one of FORM_NAMES
     scale_range : range [m] of lags and wavelengths; None: the longest self-affine range
     longest_wave : longest wavelength [m] of the roughness; None: the smallest `default_wave` of the surfaces
     side : for one surface, its side of the contact, one of SCAN_SIDES. "1" or "2": the other side is smooth;

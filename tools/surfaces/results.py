@@ -98,7 +98,7 @@ class FractalResult:
 class Identification:
     """Identification of one surface or of the equivalent surface of two.
 
-    names       : names of the files
+    file_names  : names of the files
     results     : results of all methods and directions
     repairs     : (file, repair) of all repairs
     warnings    : messages for the user

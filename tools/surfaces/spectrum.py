@@ -36,7 +36,7 @@ class ScaleSeries:
     scale      : (J,) [m] lag or wavelength, increasing
     value      : (J,) [m2] V(tau) = 4 S(tau) - S(2 tau), or Phi = frequency times power spectral density
     function_value : (J,) S(tau) [m2], or power spectral density [m3]
-    expected   : function of H: value (J,) for Phi(frequency) = frequency^(-2H)
+    expected_value : function of H: value (J,) for Phi(frequency) = frequency^(-2H)
     covariance : function of H: covariance (J, J) [1] of ln(value)
     """
 

@@ -19,8 +19,8 @@ T = TypeVar("T")
 class Slave:
     """Initialized instance of an FMU with selected inputs and outputs; a context manager.
 
-    start    : {variable: start value}
-    messages : log messages of the FMU
+    start_values : {variable: start value}
+    messages     : log messages of the FMU
 
     Raises ValueError if the file is no FMU for this platform, a name is unknown, or the FMU returns an error
     (with the message of the FMU).

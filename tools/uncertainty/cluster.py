@@ -77,7 +77,7 @@ def _submit_runs(
 ) -> Iterator[dict[str, object]]:
     """Submit runs to a dask client, and yield the journal entry of each run when it ends.
 
-    key : key under which the workers have the FMU
+    fmu_key : key under which the workers have the FMU
     """
     from distributed import KilledWorker, as_completed
 

@@ -62,7 +62,7 @@ def claim(folder: Path, study: Mapping[str, object]) -> None:
 
 @contextmanager
 def claimed_folder(folder: Path, study: Mapping[str, object]) -> Iterator[None]:
-    """Context of a claimed folder, see `claim`.
+    """Context of a claimed folder, see `claim_folder`.
 
     If the context raises ValueError before a run is finished, a new folder is removed again.
     """
@@ -82,9 +82,9 @@ def claimed_folder(folder: Path, study: Mapping[str, object]) -> Iterator[None]:
 class Journal:
     """File of finished runs of a sweep, open for appending and locked by this process.
 
-    count         : number of runs of the study
-    finished      : indices of the finished runs
-    failed        : number of failed runs
+    run_count     : number of runs of the study
+    finished_runs : indices of the finished runs
+    failed_count  : number of failed runs
     first_failure : entry of the first failed run, or None
 
     Entering the context raises ValueError, one line, if another process has locked the file, or if a row is

@@ -75,9 +75,9 @@ class Problem:
     """Uncertainty propagation problem of a joint.
 
     joint      : name of the kind of joint
-    parameters : class of the parameter set
+    parameter_class : class of the parameter set
     values     : {name: value} of the parameter file, with the settings that are plain values
-    uncertain  : parameters with a distribution; the load is the last one if it has a distribution
+    uncertain_parameters : parameters with a distribution; the load is the last one if it has a distribution
     loads      : load ramp (m), ascending; one point if the load itself was set
     load_is_relative : whether the distribution of the load is a factor on the ramp; None if it has none
     """
@@ -112,7 +112,7 @@ def state_problem(
     """State the problem of a parameter file and settings.
 
     settings : {name: value or text of a distribution}
-    to       : end of the load ramp; None: end of the joint's law, or of the file
+    ramp_end : end of the load ramp; None: end of the joint's law, or of the file
     points   : number of points of the ramp
 
     A parameter without setting is uniformly distributed over the range that the file states, if it does.
@@ -154,7 +154,7 @@ def state_problem(
 
 
 def resolve_interval(name: str, value: object, file: ParameterFile) -> object:
-    """Replace the setting INTERVAL by the text LOW..HIGH; other settings are returned unchanged.
+    """Replace the setting "interval" by the text LOW..HIGH; other settings are returned unchanged.
 
     The ends are the range of the parameter in the file, else the interval stated in the text of its source.
 
@@ -198,11 +198,11 @@ def _loads(
     points: int,
     load: UncertainParameter | None,
 ) -> Array:
-    """Loads (m): a ramp from 0 to `to`, or the single load that was set.
+    """Loads (m): a ramp from 0 to `ramp_end`, or the single load that was set.
 
-    values      : parameter set
-    single_load : the load that was set, or None
-    load        : distribution of the load, or None
+    values         : parameter set
+    single_load    : the load that was set, or None
+    uncertain_load : distribution of the load, or None
 
     Raises ValueError for a load outside of the tabulated law, or a wrong ramp.
     """

@@ -50,7 +50,7 @@ class SampledOutputs:
 def evaluate_samples(task: Problem, points: Array, loads: Array, text: str) -> SampledOutputs:
     """Evaluate all outputs at loads (m) for points (n, d) of the unit cube.
 
-    text : label of the progress bar
+    progress_label : label of the progress bar
     """
     values, factor = task.sample_values(points)
     n = len(points)
@@ -95,9 +95,9 @@ class Bands:
 
     loads     : nominal loads (m)
     quantiles : {output: (len(QUANTILES), m)}
-    mean, sd  : mean and standard deviation, {output: (m)}
+    mean, standard_deviation : mean and standard deviation, {output: (m)}
     nominal   : outputs for the values of the parameter file, {output: (m)}
-    samples   : number of samples drawn
+    sample_count : number of samples drawn
     refusals  : the samples that the law refuses
     reduction_error : largest relative difference [1] between reduced curves and exported spring model, at
         CHECKED_SAMPLES samples
@@ -251,10 +251,10 @@ class Indices:
 class Sensitivity:
     """Sobol' indices along the load ramp.
 
-    loads   : (m)
-    names   : names of the uncertain parameters (d)
-    outputs : {output: indices (m, d)}
-    rows    : number of base samples
+    loads           : (m)
+    parameter_names : names of the uncertain parameters (d)
+    outputs         : {output: indices (m, d)}
+    base_samples    : number of base samples
     """
 
     loads: Array

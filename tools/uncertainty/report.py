@@ -24,7 +24,7 @@ def table_loads(task: Problem) -> list[float]:
 
 
 def _table_indices(values: Any) -> Any:
-    """Indices of at most TABLE_ROWS equally spaced values of a ramp."""
+    """Indices of at most MAX_TABLE_ROWS equally spaced values of a ramp."""
     return np.unique(np.linspace(0, values.size - 1, TABLE_ROWS).astype(int))
 
 

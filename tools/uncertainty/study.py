@@ -62,7 +62,8 @@ class UncertainParameter:
 def parse_distribution(name: str, text: str, base: float | None) -> UncertainParameter | None:
     """Parse the text of a distribution; None if the text is a plain value or word.
 
-    base : value of the parameter file, to which a percentage without a value refers; None if there is none
+    file_value : value of the parameter file, to which a percentage without a value refers; None if there is
+        none
 
     Raises ValueError that names the parameter, the text and the allowed forms.
     """
@@ -231,7 +232,7 @@ def split_settings(
 ) -> tuple[dict[str, object], tuple[UncertainParameter, ...]]:
     """Split settings into plain values, {name: value}, and uncertain parameters.
 
-    base : {name: value} to which percentages refer
+    file_values : {name: value} to which percentages refer
 
     Raises ValueError for a wrong text of a distribution.
     """

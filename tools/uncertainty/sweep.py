@@ -34,9 +34,9 @@ from .worker import KILLED_MESSAGE, LoadRamp, run_locally, write_slim_fmu
 class Summary:
     """Summary of a sweep.
 
-    runs          : number of runs of the study
+    run_count     : number of runs of the study
     new_runs      : number of runs finished by this call
-    failed        : number of failed runs of the study
+    failed_count  : number of failed runs of the study
     first_failure : journal entry of the first failed run, or None
     """
 
@@ -49,7 +49,7 @@ class Summary:
 def plan_runs(
     fmu: Path, load_ramp: LoadRamp, settings: Mapping[str, object], count: int, seed: int
 ) -> tuple[dict[str, object], list[dict[str, object]]]:
-    """Plan a sweep: the study as a JSON object for its folder, and the settings of each of `count` runs.
+    """Plan a sweep: the study as a JSON object for its folder, and the settings of each of `run_count` runs.
 
     settings : {name: value or text of a distribution} of parameters and inputs
     seed     : seed of the Sobol' sequence
@@ -121,7 +121,7 @@ def sweep(
     """Execute the runs that are not yet in the folder `out`, and write each run when it is finished.
 
     runs      : settings of all runs of the study
-    out       : folder of the sweep, see `journal.claim`
+    out       : folder of the sweep, see `journal.claim_folder`
     scheduler : address of a dask scheduler, whose workers execute the runs
     workers   : number of processes on this machine, if there is no scheduler; None: one for each core
 

@@ -62,7 +62,7 @@ def run_locally(job: tuple[Path, LoadRamp, int, Mapping[str, object]]) -> dict[s
 
 
 def write_slim_fmu(fmu: Path, small: Path) -> None:
-    """Write a copy `small` of an FMU without sources, documentation and binaries of other platforms."""
+    """Write a copy `slim_path` of an FMU without sources, documentation and binaries of other platforms."""
     with archives.open_archive(fmu) as full, zipfile.ZipFile(small, "w") as reduced:
         for item in full.infolist():
             if is_needed_to_run(item.filename) and not item.is_dir():

@@ -29,7 +29,7 @@ SOLVER = 1e-9
 HOST = 1e-5
 """Default relative tolerance of a host [1].
 
-The references end where results with this and with the solver tolerance differ by more than TOLERANCE:
+The references end where results with this and with the solver tolerance differ by more than OUTPUT_TOLERANCE:
 from there the motion is too sensitive to be compared.
 """
 SMALL = 1e-2
@@ -47,7 +47,7 @@ ROWS = 200
 JUMP = 10.0
 """Criterion of a jump: change of an output in a fine step over its changes before and after [1].
 
-The change must also exceed TOLERANCE. A stiffness jumps where the motion reverses.
+The change must also exceed OUTPUT_TOLERANCE. A stiffness jumps where the motion reverses.
 """
 JUMP_DISTANCE = 3
 """Intervals [1] next to a jump in which results are not compared: correct steps find a reversal slightly
@@ -147,9 +147,9 @@ def _scales(model: Model, results: TimeSeries) -> dict[str, float]:
 
 
 def _first_difference(model: Model, fine: TimeSeries, coarse: TimeSeries) -> int:
-    """Index of the first row at which two results differ by more than TOLERANCE; number of rows if none does.
+    """Index of the first row at which two results differ by more than OUTPUT_TOLERANCE.
 
-    Rows near jumps are not compared.
+    It is the number of rows if there is no difference. Rows near jumps are not compared.
     """
     scales, rows = _scales(model, fine), fine.time.size
     differs = [
