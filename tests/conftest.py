@@ -23,8 +23,8 @@ from fmpy import platform_tuple
 from hypothesis import settings
 from jointfmu_fmu_src.native.compiled.cache import (
     COMPILER_CACHE_VARIABLE,
-    compiler_cache,
     compiled_model_folder,
+    compiler_cache,
 )
 from jointfmu_fmu_src.native.compiled.compiler import TARGETS, compile_libraries
 from jointfmu_tools.host import Instance

@@ -8,12 +8,12 @@ from jointfmu.joints import MODELS
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
 
-from ..archive import write_archive, staging_folder
+from ..archive import staging_folder, write_archive
 from ..partners import PARTNERS
 from ..proof.members import make_proof_files
 from ..xml_parts import VARIABILITIES
 from .compiled.binary import fill_library
-from .compiled.compiler import select_units, library_file_name, join_universal
+from .compiled.compiler import join_universal, library_file_name, select_units
 from .compiled.kept import get_compiled_model
 from .data import make_fmu_data, make_placeholder, split_parameters
 from .description import format_build_description, format_fmi2_description, format_fmi3_description

@@ -15,13 +15,13 @@ from jointfmu.quantity.units import CELSIUS, UNITS
 from ..licence import find_copyright_line
 from ..xml_parts import (
     ListedVariable,
+    format_start_value,
+    list_units,
     list_variables,
     make_model_structure,
+    make_unit_definitions,
     serialize_xml,
     stop_time,
-    format_start_value,
-    make_unit_definitions,
-    list_units,
 )
 
 LOG_CATEGORIES = {

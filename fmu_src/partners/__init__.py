@@ -34,4 +34,4 @@ FMU_PARTS = FmuParts(
     },
 )
 
-__all__ = ["PARTNERS", "FMU_PARTS", "load_partner_parameters"]
+__all__ = ["FMU_PARTS", "PARTNERS", "load_partner_parameters"]

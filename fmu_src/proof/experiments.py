@@ -17,7 +17,7 @@ from jointfmu.parameters import ParameterFile, load_parameter_file, read_documen
 from jointfmu.quantity import replace_values
 
 from .neighbours import find_boundary_values
-from .reference import Stimulus, compute_results, round_to_digits, list_start_values
+from .reference import Stimulus, compute_results, list_start_values, round_to_digits
 from .series import TimeSeries
 
 RAMP_LEVELS = 20

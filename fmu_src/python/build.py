@@ -10,7 +10,7 @@ from importlib.metadata import distribution
 from pathlib import Path
 from types import ModuleType
 
-from jointfmu_fmu_src.archive import write_archive, staging_folder
+from jointfmu_fmu_src.archive import staging_folder, write_archive
 from jointfmu_fmu_src.licence import read_licence
 from jointfmu_fmu_src.proof.members import make_proof_files
 from jointfmu_fmu_src.python.imports import find_imported_modules

@@ -13,11 +13,11 @@ from xml.etree.ElementTree import Element
 import numpy as np
 from jointfmu_fmu_src.xml_parts import (
     ListedVariable,
+    format_start_value,
     list_variables,
     make_model_structure,
-    stop_time,
-    format_start_value,
     make_unit_definitions,
+    stop_time,
 )
 from pythonfmu import Boolean, DefaultExperiment, Fmi2Causality, Fmi2Slave, Fmi2Variability, Real
 from pythonfmu.enums import Fmi2Initial, Fmi2Status

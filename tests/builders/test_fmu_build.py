@@ -77,7 +77,7 @@ def test_fixed_parameters_run_as_tunable_ones(tmp_path: Path, capsys: Capture) -
             assert validate_fmu(str(path)) == []
             variables = read_model_description(str(path)).modelVariables
             assert {v.variability for v in variables if v.causality == "parameter"} == {said}
-            found[said, version] = ramp.run_ramp(path, "f", 1e3, 250.0, {"e": 0.3}).csv()
+            found[said, version] = ramp.run_ramp(path, "f", 1e3, 250.0, {"e": 0.3}).format_csv()
     assert len({found[said, "fmi2"] for said in ("fixed", "tunable")}) == 1
     for version in FLAVOURS:
         assert found["fixed", version] == found["tunable", version]
@@ -415,10 +415,10 @@ def test_the_main_job_builds_checks_and_reports(job: Job) -> None:
     assert int(proved[1]) > 3 * len(NAMES)  # those of systems, too
     assert int(proved[2]) > 15 * 5 * len(NAMES)  # of two flavours in both interfaces, of one in one
     for flavour in ("fmi2", "fmi3", "python"):
-        own = [f"six_axis_robot_{drive}" for drive in systems.system("six_axis_robot").joints]
+        own = [f"six_axis_robot_{drive}" for drive in systems.load_system("six_axis_robot").joints]
         partners = [] if flavour == "python" else [*PARTNERS, *own]
         assert {p.stem for p in (folder / flavour).iterdir()} == {*NAMES, *partners}
-    archives = {f"{name}{suffix}" for name in systems.names() for suffix in ("", "_in_turn")}
+    archives = {f"{name}{suffix}" for name in systems.list_system_names() for suffix in ("", "_in_turn")}
     for ssp in ("ssp", "ssp2"):
         assert {p.stem for p in (folder / ssp).iterdir()} == archives
     report = folder / "report"
@@ -443,7 +443,9 @@ def test_the_main_job_builds_checks_and_reports(job: Job) -> None:
     assert not re.findall(r"@import|url\(\s*[\"']?(?:https?:)?//", page)
     assert [x for x in links.loaded if not x.startswith(("#", "data:"))] == []
     assert [name for name in NAMES if name not in page] == []
-    counted = validation.summary(validation.validate())  # the command, the job and the page count alike
+    counted = validation.format_summary(
+        validation.validate()
+    )  # the command, the job and the page count alike
     assert f"compared: {counted}; " in out
     assert f"<p>{counted}.</p>" in page
 
@@ -495,8 +497,8 @@ def test_the_main_job_proves_every_fmu(job: Job) -> None:
 
 def test_the_main_job_has_resonance_and_decay_of_the_working_point(job: Job) -> None:
     """Near the formulas, or it had missed; frequencies rise with the load, damping with the amplitude."""
-    found = job.outcome.ringing
-    assert len(checks.check_ringing(found)) == 3  # the column has no dashpot
+    found = job.outcome.free_vibrations
+    assert len(checks.check_free_vibrations(found)) == 3  # the column has no dashpot
     for name, most in (("robot_joint", 1.69), ("bolted_column", 2.79)):
         frequencies = [r.frequency for r in found[name]]
         assert frequencies == sorted(frequencies)
@@ -522,7 +524,7 @@ def test_the_main_job_fails_when_a_check_or_a_proof_misses(
         return re.sub(rb"(?m)^1\.0,[^,]+", b"1.0,1e99", data) if is_meant else data
 
     changed_copy(job.folder / "fmi2" / f"{name}.fmu", path, change)
-    problems, proof = pipeline._examine(path)
+    problems, proof = pipeline._validate_and_prove(path)
     monkeypatch.setattr(checks, "INTEGRATION_TOLERANCE", -1.0)
     found = [
         c for n, r in job.outcome.ramps.items() for c in checks.check_ramp(n, job.outcome.fmi2_folder, r)

@@ -138,7 +138,7 @@ def test_a_ramp_takes_settings_of_parameters_and_inputs(fmus: Path) -> None:
 
 def test_csv_holds_every_output_with_its_unit_to_the_last_bit(fmus: Path) -> None:
     result = ramp.run_ramp(fmus / "GearContact.fmu", "f", 100.0, 30.0)
-    header, *rows = csv.reader(io.StringIO(result.csv()))
+    header, *rows = csv.reader(io.StringIO(result.format_csv()))
     assert header == ["f [N]", "s_rel [m]", "K_N [N/m]", "A_r [m2]", "elastic_fraction [1]"]
     assert len(rows) == 5
     columns = np.array(rows, dtype=float).T

@@ -284,7 +284,7 @@ def test_validate_as_text(run):
     status, out, err = run("validate")
     assert (status, err) == (0, "")
     *lines, last = out.splitlines()
-    papers = [paper for kind in KINDS.values() for paper in computed.published_numbers(kind).papers]
+    papers = [paper for kind in KINDS.values() for paper in computed.load_published_numbers(kind).papers]
     points = [p for paper in papers for p in reference.read_points(paper)]
     assert len(lines) == len(points) + 1
     for word in (
@@ -310,7 +310,7 @@ def test_validate_as_json(run):
     assert (status, err) == (0, "")
     found = json.loads(out, parse_constant=lambda name: pytest.fail(f"{name} is no JSON"))
     assert found["missed"] == 0
-    assert found["counts"] == asdict(validation.counts(validation.validate()))
+    assert found["counts"] == asdict(validation.count_points(validation.validate()))
     assert {row["verdict"] for row in found["rows"]} == {"pass"}
     for row in found["rows"]:
         assert {"paper", "id", "unit", "value", "computed", "error", "tolerance", "role"} <= set(row)
@@ -343,7 +343,7 @@ def test_a_missed_calibration_point_is_shown(run, monkeypatch):
     assert (status, err) == (0, "")
     assert "MISS" in out
     assert "missed: none" in out
-    assert len([r for r in validation.validate() if not r.passed]) == 1
+    assert len([r for r in validation.validate() if not r.has_passed]) == 1
 
 
 # ramp

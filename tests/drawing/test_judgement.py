@@ -9,7 +9,7 @@ from jointfmu_tools.drawing.tables import read_threads
 from jointfmu_tools.drawing.vdi2230 import proof_load, stress_area
 from jointfmu_tools.fem.convergence import check_bolt_symmetry
 from jointfmu_tools.fields.nodal_result import ContactField
-from jointfmu_tools.judgement import MAX_RATIO, assess_law, find_height
+from jointfmu_tools.judgement import MAX_STIFFNESS_RATIO, assess_law, find_rms_height
 from jointfmu_tools.pressure import judge_file, nominal_pressure
 
 from jointfmu.contact.interface import evaluate_at_pressure, find_validity_violations
@@ -34,7 +34,7 @@ def test_the_ratio_is_that_of_the_joint():
     found = judge_file(BOLTED, [9e3, 15e3])
     for ratio, preload in zip(found.comparison.ratio, (9e3, 15e3), strict=True):
         K = BoltedJointSpring.of(BOLTED.values).evaluate(preload, 0.0, REST, REST)["K_zz"]
-        assert ratio == pytest.approx(K * PERSSON_GAMMA * find_height(BOLTED) / (8 * preload), rel=0.1)
+        assert ratio == pytest.approx(K * PERSSON_GAMMA * find_rms_height(BOLTED) / (8 * preload), rel=0.1)
     assert found.warnings == ()
 
 
@@ -53,7 +53,7 @@ def test_a_height_that_is_no_roughness():
 def test_a_factor_of_three_either_way(side):
     p = 1e6
     k = evaluate_at_pressure(BOLTED.values, p)["K_N"] / BOLTED.values.A_0
-    for factor, doubtful in ((0.99 * MAX_RATIO, False), (1.01 * MAX_RATIO, True)):
+    for factor, doubtful in ((0.99 * MAX_STIFFNESS_RATIO, False), (1.01 * MAX_STIFFNESS_RATIO, True)):
         h = factor**side * p / (PERSSON_GAMMA * k)
         found = assess_law(BOLTED.values, [p], h)
         assert found.comparison.ratio == pytest.approx([factor**side], rel=1e-9)
@@ -66,7 +66,7 @@ def test_what_is_not_known_is_not_judged():
     for joint in KINDS:
         file = load_default(joint)
         found = judge_file(file)
-        assert (found.comparison is None) == (find_height(file) is None)
+        assert (found.comparison is None) == (find_rms_height(file) is None)
         assert judge_file(file).to_json()["warnings"] == []
     assert assess_law(BOLTED.values, [0.0], 1e-6).comparison is None
 

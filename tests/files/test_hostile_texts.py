@@ -17,13 +17,13 @@ from jointfmu_fmu_src.native.page import make_documentation
 from jointfmu_fmu_src.ssv import ParameterValue, format_parameter_set
 from jointfmu_fmu_src.xml_parts import format_xml_comment as xml_comment
 from jointfmu_tools.export import writing
-from jointfmu_tools.export.placing import SI
+from jointfmu_tools.export.placing import SI_UNIT_SET
 from jointfmu_tools.joint_parts import load_tool_module
 from jointfmu_tools.modelica.library import render_library, render_system
 from jointfmu_tools.report.joint import write_joint_report
 from jointfmu_tools.robots import urdf
-from jointfmu_tools.robots.names import identifier
-from jointfmu_tools.robots.transmission import transmission
+from jointfmu_tools.robots.names import make_identifier
+from jointfmu_tools.robots.transmission import make_transmission
 from jointfmu_tools.systems.system import read_system
 
 from jointfmu.files.text import MAX_NAME_LENGTH, MAX_TEXT_LENGTH
@@ -135,7 +135,7 @@ def test_xml_is_well_formed_and_holds_the_text(text: str) -> None:
 @pytest.mark.parametrize("first", range(0, len(TEXTS), 4))
 def test_a_robot_in_urdf_has_any_name(first: int) -> None:
     text = " ".join(TEXTS[first : first + 4])
-    robot, _, _ = urdf.text(transmission(hostile(text)), 10.0)
+    robot, _, _ = urdf.format_urdf(make_transmission(hostile(text)), 10.0)
     assert ElementTree.fromstring(robot).get("name") == text
 
 
@@ -200,7 +200,7 @@ def test_a_system_in_modelica_reads_the_text_as_text(tmp_path: Path) -> None:
 @pytest.mark.parametrize(("form", "mark"), [("csv", "#"), ("modelica", "#")])
 def test_decks_keep_the_text_in_their_comment(text: str, form: str, mark: str) -> None:
     one, other = (
-        writing.export_curve(form, hostile(name), None, SI, 1e-3).text.splitlines()
+        writing.export_curve(form, hostile(name), None, SI_UNIT_SET, 1e-3).text.splitlines()
         for name in (text, "plain")
     )
     assert len(one) == len(other)
@@ -282,7 +282,7 @@ def test_reserved_words_name_neither_fmus_nor_components(
 
 @pytest.mark.parametrize("name", ["CON", "nul", "end", "int"])
 def test_files_of_drives_and_classes_are_never_named_by_reserved_words(name: str) -> None:
-    assert identifier(name) == f"_{name}"
+    assert make_identifier(name) == f"_{name}"
     written = render_library(hostile(name))
     assert f"Data/Joint_{name}.mo" in written
 

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from jointfmu_fmu_src.partners import PARTNERS, models, load_partner_parameters
+from jointfmu_fmu_src.partners import PARTNERS, load_partner_parameters, models
 
 from jointfmu.parameters import ORIGINS
 from jointfmu.quantity import flatten_parameters

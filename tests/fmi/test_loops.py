@@ -25,9 +25,9 @@ def drive(native):
     return loops.run_loops(fmu, "phi2", AMPLITUDES, FINE, settings=HYSTERESIS)
 
 
-@pytest.mark.parametrize("shape", loops.SHAPES)
+@pytest.mark.parametrize("shape", loops.WAVEFORMS)
 def test_first_loading_then_whole_cycles(shape):
-    points = loops.CyclicPath(centre=1.0, shape=shape, points=8, cycles=2).path(3.0)
+    points = loops.CyclicPath(centre=1.0, shape=shape, points=8, cycles=2).input_values(3.0)
     near = 1.5 if shape == "triangle" else 3.0 * np.sqrt(0.5)
     cycle = [0.0, near, 3.0, near, 0.0, -near, -3.0, -near]
     np.testing.assert_allclose(points, 1.0 + np.array([*cycle, *cycle, *cycle[:3]]), atol=1e-12)
@@ -59,10 +59,10 @@ def test_without_memory_nothing_is_lost(native, version):
     """A force drives, a motion answers; about a working point, as the contact takes no pull."""
     fmu = native / version / "GearContact.fmu"
     found = loops.run_loops(fmu, "f", [100.0, 300.0], loops.CyclicPath(centre=500.0))
-    assert (found.motion, found.force) == ("s_rel", "f")
-    assert [row["loss"] for row in found.rows()] == [0.0, 0.0]
-    assert found.rows()[1]["force"] == 300.0
-    assert "E_loss" not in found.rows()[0]
+    assert (found.motion_name, found.force_name) == ("s_rel", "f")
+    assert [row["loss"] for row in found.compute_rows()] == [0.0, 0.0]
+    assert found.compute_rows()[1]["force"] == 300.0
+    assert "E_loss" not in found.compute_rows()[0]
 
 
 @pytest.mark.parametrize(
@@ -80,7 +80,7 @@ def test_without_memory_nothing_is_lost(native, version):
 def test_conjugate_output(native, fmu, input_name, expected):
     with ramp.unpack_fmu(native / "fmi3" / f"{fmu}.fmu") as (_, description):
         assert (
-            loops.find_conjugate(*loops.input_and_output_units(description), input_name, None, fmu)
+            loops.find_conjugate_output(*loops.input_and_output_units(description), input_name, None, fmu)
             == expected
         )
 

@@ -24,16 +24,16 @@ from conftest import RELEASED
 from joint_cases import JOINTS
 from jointfmu_fmu_src.native.code.generate import (
     RUNTIME_FOLDER,
-    list_runtime_files,
     generate_sources,
+    list_runtime_files,
     read_token,
 )
 from jointfmu_fmu_src.native.compiled.compiler import TARGETS
 from jointfmu_fmu_src.partners import PARTNERS
 from jointfmu_fmu_src.partners import load_partner_parameters as partner_parameters
-from jointfmu_tools.systems.fmu.assembly import assembly
-from jointfmu_tools.systems.fmu.build import all_sources
-from jointfmu_tools.systems.system import system
+from jointfmu_tools.systems.fmu.assembly import assemble_system
+from jointfmu_tools.systems.fmu.build import make_sources
+from jointfmu_tools.systems.system import load_system
 from natives import SAID
 
 from jointfmu.joints import MODELS
@@ -137,9 +137,13 @@ def c_of(name: str) -> Sources:
         )
         return Sources(files, len(model.inputs), len(model.outputs), len(model.parameter_fields()))
     if name == SYSTEM:
-        parts = assembly(system(name))
-        counts = len(parts.inputs), len(parts.outputs), sum(len(p.exposed) for p in parts.components)
-        return Sources(all_sources(parts)[0], *counts)
+        parts = assemble_system(load_system(name))
+        counts = (
+            len(parts.inputs),
+            len(parts.outputs),
+            sum(len(p.variable_parameters) for p in parts.components),
+        )
+        return Sources(make_sources(parts)[0], *counts)
     files = {p.name: p.read_text() for p in [*list_runtime_files(), *(HOSTS / name).iterdir()]}
     return Sources(files, *ALONE[name])
 

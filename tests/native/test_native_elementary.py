@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from jointfmu_fmu_src.native.code.elementary import make_tables_header
 from jointfmu_fmu_src.native.code.generate import RUNTIME_FOLDER
-from jointfmu_fmu_src.native.compiled.compiler import library_file_name, compile_libraries
+from jointfmu_fmu_src.native.compiled.compiler import compile_libraries, library_file_name
 
 pytestmark = pytest.mark.slow
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 from conftest import refused_line
-from jointfmu_fmu_src.proof.standard import REFERENCE_FOLDER, MANIFEST_PATH
+from jointfmu_fmu_src.proof.standard import MANIFEST_PATH, REFERENCE_FOLDER
 from jointfmu_tools.proof.checksum import ALGORITHMS
 from jointfmu_tools.proof.manifest import RelatedFiles
 
@@ -34,7 +34,7 @@ def test_a_file_with_its_checksum_is_read(tmp_path: Path, kind: str | None) -> N
     name = name.replace("-", "_") if name.startswith("sha3") else name.replace("-", "")
     digest = hashlib.new(name, EXPERIMENTS).hexdigest().upper()
     stated = f'checksum="{digest}"' + (f' checksumType="{kind}"' if kind else "")
-    assert [one.name for one in RelatedFiles(fmu(tmp_path / "a.fmu", stated)).experiments()] == ["rest"]
+    assert [one.name for one in RelatedFiles(fmu(tmp_path / "a.fmu", stated)).read_experiments()] == ["rest"]
 
 
 @pytest.mark.parametrize(

@@ -22,7 +22,7 @@ from jointfmu_fmu_src.proof.experiments import ReferenceExperiment, list_shipped
 from jointfmu_fmu_src.proof.files import REFERENCE_TOLERANCE
 from jointfmu_fmu_src.proof.members import get_experiments, make_proof_files
 from jointfmu_fmu_src.proof.reference import Stimulus, compute_results
-from jointfmu_fmu_src.proof.series import TimeSeries, parse_csv, format_csv
+from jointfmu_fmu_src.proof.series import TimeSeries, format_csv, parse_csv
 from jointfmu_tools.proof import manifest
 from jointfmu_tools.uncertainty import study as study_files
 from lxml import etree

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from clients import needs
 from conftest import RELEASED, refused_line
-from jointfmu_fmu_src.proof.standard import CO_SIMULATION, REFERENCE_FOLDER, MANIFEST_PATH, MODEL_EXCHANGE
+from jointfmu_fmu_src.proof.standard import CO_SIMULATION, MANIFEST_PATH, MODEL_EXCHANGE, REFERENCE_FOLDER
 from numpy.typing import NDArray
 from proofs import BOTH, ECOS, LIBCOSIM, copy, other_manifest, proved, replaced
 

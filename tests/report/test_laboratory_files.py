@@ -20,7 +20,7 @@ from joint_cases import CASES, law
 from jointfmu_fmu_src.native.data import split_parameters
 from jointfmu_tools import cli
 from jointfmu_tools.laboratory.assemble import write_laboratory
-from jointfmu_tools.laboratory.describe import Module, list_modules
+from jointfmu_tools.laboratory.describe import PageModule, list_modules
 from natives import close
 from webassembly import Instance, random_values
 
@@ -216,7 +216,7 @@ def test_a_shipped_file_is_shown_whatever_was_shown_before(shown: Browser, stem:
 @pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("module", EVERY, ids=lambda m: f"{m.model.name}, {m.files[0].law}")
 def test_a_file_with_other_numbers_is_shown(
-    shown: Browser, module: Module, seed: int, tmp_path: Path
+    shown: Browser, module: PageModule, seed: int, tmp_path: Path
 ) -> None:
     """Whatever the page can take; start values of inputs too."""
     rng = np.random.default_rng(seed)
@@ -429,7 +429,7 @@ def test_an_opened_file_is_reset_and_saved(shown: Browser, drawings: dict[str, s
 
 
 @pytest.mark.parametrize("module", EVERY, ids=lambda m: f"{m.model.name}, {m.files[0].law}")
-def test_a_number_beside_the_code_enters_the_data_as_itself_alone(module: Module) -> None:
+def test_a_number_beside_the_code_enters_the_data_as_itself_alone(module: PageModule) -> None:
     """So the page may write it there."""
     file = module.files[0]
     given = split_parameters(module.model, file)

@@ -8,12 +8,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import refused_line
-from jointfmu_fmu_src.native.page import make_documentation, find_ramp_panels
+from jointfmu_fmu_src.native.page import find_ramp_panels, make_documentation
 from jointfmu_fmu_src.proof.experiments import compute_experiments
 from jointfmu_tools import cli
 from jointfmu_tools.pressure import judge_file
 from jointfmu_tools.report.course import LoadHistory
-from jointfmu_tools.report.joint import TOPICS, write_joint_report
+from jointfmu_tools.report.joint import VALIDITY_HEADINGS, write_joint_report
 
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.parameters import ParameterFile, format_parameter_file, load_default
@@ -94,7 +94,7 @@ def test_loops_lose_what_the_joint_says_it_lost(name: str) -> None:
     own = {n: v for n, v in model.load_cycle.settings.items() if n in model.parameter_fields()}
     file = load_default(model.joint).with_values(own, "user", "with memory")
     loops = LoadHistory(model, file).compute_loops()
-    for row in loops.rows():
+    for row in loops.compute_rows():
         # trapezoids over 80 points of a cycle, a branch of which is about a parabola: 1/40^2 of it
         assert row["loss"] == pytest.approx(row["E_loss"], rel=2e-2)
         assert row["loss"] > 0.0
@@ -135,8 +135,8 @@ def test_what_is_said_of_the_end_of_the_law_is_so_there() -> None:
     for name, model in MODELS.items():
         course = LoadHistory(model, load_default(model.joint))
         assert course.model.ramp.end_value > course.start_values[model.ramp.input_name], name
-        if course.limit:
-            value, text = course.limit
+        if course.law_limit:
+            value, text = course.law_limit
             inputs = {**course.start_values, model.ramp.input_name: value}
             outputs = model.evaluate(course.spring, inputs)
             assert text in model.find_warnings(course.spring, {**inputs, **outputs}).values()
@@ -174,7 +174,7 @@ def test_what_makes_no_page_is_one_line(
 
 
 def test_topics_are_headings_of_the_pages_on_validity() -> None:
-    for page, headings in TOPICS.items():
+    for page, headings in VALIDITY_HEADINGS.items():
         text = (ROOT / page).read_text(encoding="utf-8")
         for heading in headings:
             assert f"\n## {heading}\n" in text

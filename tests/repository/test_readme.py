@@ -176,7 +176,7 @@ def predicted(count):
 
 
 def test_counts_are_those_of_the_comparison(rows):
-    found = validation.counts(rows)
+    found = validation.count_points(rows)
     n, lost = found.roles, sum(found.guessed.values()) - sum(found.nearer.values())
     for said in (
         f"{found.numbers} numbers are compared, {found.printed} printed in the papers and {found.derived} "
@@ -213,7 +213,7 @@ def test_the_start_says_how_far_it_holds(rows):
     here = re.search(r"\n(\*\*How far it holds\..*)\n", start)
     assert here is not None
     assert here.start() < start.index("![")
-    found = validation.counts(rows)
+    found = validation.count_points(rows)
     said = f"Of the {found.numbers} numbers compared with the papers {predicted(found.roles['prediction'])}: "
     assert said in here[1]
     assert f"of the {found.numbers} numbers compared {predicted(found.roles['prediction'])};" in trust

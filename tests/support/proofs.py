@@ -10,8 +10,8 @@ import pytest
 from clients import needs
 from jointfmu_fmu_src.proof.standard import (
     ATTRIBUTE_NAMESPACE,
-    REFERENCE_FOLDER,
     MANIFEST_PATH,
+    REFERENCE_FOLDER,
     STANDARD_NAME,
 )
 from jointfmu_tools import cli

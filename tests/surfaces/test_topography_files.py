@@ -115,8 +115,8 @@ def test_the_effect_of_spikes_on_sq_is_said(area):
     z = area.z.copy()
     z.ravel()[:: z.size // 100] += 1e-4
     (repair,) = remove_spikes(replace(area, z=z))[1]
-    said = float(repair.effect.split("Sq is ")[1].split()[0])
-    share = repair.count / repair.points
+    said = float(repair.effect_note.split("Sq is ")[1].split()[0])
+    share = repair.repaired_points / repair.total_points
     expected = np.hypot(np.std(remove_form(area).z), 1e-4 * np.sqrt(share * (1.0 - share)))
     assert said == pytest.approx(expected / np.std(remove_form(area).z), rel=0.02)  # three digits, 0.6 %
 

@@ -43,10 +43,10 @@ from jointfmu_tools.joints.harmonic_drive.job import TORQUE_RATIOS
 from jointfmu_tools.report.systems import wind_up_and_tip_error
 from jointfmu_tools.systems import decays, ringing, ssp
 from jointfmu_tools.systems.cosimulation import simulate as simulate_system
-from jointfmu_tools.systems.master import Slave, motion
+from jointfmu_tools.systems.master import Slave, simulate_motion
 from jointfmu_tools.systems.ssp import MASTERS, Master
-from jointfmu_tools.systems.system import names, system, systems
-from jointfmu_tools.systems.wiring import model_of, wires
+from jointfmu_tools.systems.system import list_system_names, load_system, load_systems
+from jointfmu_tools.systems.wiring import find_model, find_signals
 from lxml import etree
 from numpy.typing import NDArray
 from scipy.integrate import cumulative_simpson, solve_ivp
@@ -66,8 +66,8 @@ Array = NDArray[np.float64]
 Values = dict[str, float]
 
 DRIVE = HarmonicDriveSpring.tabulate(load_default("harmonic_drive").values)
-ROBOT = HarmonicDriveSpring.tabulate(system("robot_joint").joints["drive"].file.values)
-LINK = system("robot_joint").values["link.J"]
+ROBOT = HarmonicDriveSpring.tabulate(load_system("robot_joint").joints["drive"].parameter_file.values)
+LINK = load_system("robot_joint").list_values["link.J"]
 ROBOT_AXES = ("base", "shoulder", "elbow", "forearm", "wrist", "hand")
 SCHEMAS = {
     "1.0": Path(fmpy.__file__).parent / "ssp" / "schema",
@@ -292,17 +292,17 @@ def test_a_pendulum_swings(built: Path, version: str, kind: str, error: float) -
 # Archives
 
 
-ARCHIVES = pytest.mark.parametrize("version", list(ssp.FOLDERS))
+ARCHIVES = pytest.mark.parametrize("version", list(ssp.ARCHIVE_FOLDERS))
 MASTER = pytest.mark.parametrize("master", MASTERS, ids=["side by side", "in turn"])
 
 
 @ARCHIVES
 @MASTER
-@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("name", list_system_names())
 def test_an_archive_is_complete_and_its_connections_fit(
     built: Path, name: str, version: str, master: Master
 ) -> None:
-    found, folder = system(name), ssp.FOLDERS[version][0]
+    found, folder = load_system(name), ssp.ARCHIVE_FOLDERS[version][0]
     with zipfile.ZipFile(built / folder / f"{name}{master.suffix}.ssp") as archive:
         members = {n: archive.read(n) for n in archive.namelist()}
     for suffix, schema in ((".ssd", "Description"), (".ssv", "ParameterValues")):
@@ -314,11 +314,11 @@ def test_an_archive_is_complete_and_its_connections_fit(
     space = {"ssd": root.nsmap["ssd"], "ssc": root.nsmap["ssc"]}
     assert root.get("version") == version
     assert master.doc in root.get("description")
-    fmus = ssp.fmu_names(found)
+    fmus = ssp.find_fmu_names(found)
     units = {}
     for component in root.iterfind(".//ssd:Component", space):
         own = component.get("name")
-        model = model_of(found.components[own])
+        model = find_model(found.components[own])
         assert component.get("source") == f"resources/{fmus[own]}.fmu"
         assert component.get("source") in members
         listed = {v.name: (kind, v.unit) for kind in ("input", "output") for v in getattr(model, f"{kind}s")}
@@ -332,7 +332,7 @@ def test_an_archive_is_complete_and_its_connections_fit(
         assert units[start] == units[end]
         ends.append(end)
     assert len(ends) == len(set(ends))
-    assert set(ends) == {f"{w.target}.{w.input}" for w in wires(found)}
+    assert set(ends) == {f"{w.target}.{w.input}" for w in find_signals(found)}
     assert {u.get("name") for u in root.iterfind("ssd:Units/ssc:Unit", space)} == set(units.values())
     described = {n: content for n, content in members.items() if n.endswith(".fmu")}
     assert {f"resources/{fmu}.fmu" for fmu in fmus.values()} == set(described)
@@ -359,9 +359,9 @@ def test_omsimulator_is_told_the_kind_of_a_system_that_updates_in_turn(built: Pa
         rb'<oms:SimulationInformation>\s*<oms:FixedStepMaster description="oms-ma" stepSize="0.0005" />'
     )
     for master in MASTERS:
-        path = built / ssp.FOLDERS[version][0] / f"robot_joint{master.suffix}.ssp"
+        path = built / ssp.ARCHIVE_FOLDERS[version][0] / f"robot_joint{master.suffix}.ssp"
         with zipfile.ZipFile(path) as archive:
-            assert bool(kind.search(archive.read("SystemStructure.ssd"))) == master.in_turn
+            assert bool(kind.search(archive.read("SystemStructure.ssd"))) == master.is_sequential
             values = fromstring(archive.read("parameters/robot_joint.ssv")).iter()
             lags = [n for n in values if (n.get("name") or "").endswith(".lag_b")]
         assert [n.get("name") for n in lags] == ["motor.lag_b", "link.lag_b"]
@@ -370,7 +370,7 @@ def test_omsimulator_is_told_the_kind_of_a_system_that_updates_in_turn(built: Pa
 
 @ARCHIVES
 @MASTER
-@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("name", list_system_names())
 def test_a_reader_of_both_versions_opens_the_archives(
     built: Path, name: str, version: str, master: Master
 ) -> None:
@@ -378,13 +378,13 @@ def test_a_reader_of_both_versions_opens_the_archives(
     from pyssp_standard.ssp import SSP
     from pyssp_standard.ssv import SSV
 
-    found = system(name)
-    with SSP(built / ssp.FOLDERS[version][0] / f"{name}{master.suffix}.ssp", mode="r") as archive:
+    found = load_system(name)
+    with SSP(built / ssp.ARCHIVE_FOLDERS[version][0] / f"{name}{master.suffix}.ssp", mode="r") as archive:
         with archive.system_structure as ssd:
             ssd.__check_compliance__()
             ends = ("start_element", "start_connector", "end_element", "end_connector")
             read = [tuple(getattr(c, end) for end in ends) for c in ssd.connections()]
-            assert (ssd.version, read) == (version, [tuple(wire) for wire in wires(found)])
+            assert (ssd.version, read) == (version, [tuple(wire) for wire in find_signals(found)])
             assert [element.name for element in ssd.system.elements] == list(found.components)
             assert ssd.check_connections() == []
         with SSV(archive.unpacked_path / "parameters" / f"{name}.ssv") as ssv:
@@ -393,11 +393,13 @@ def test_a_reader_of_both_versions_opens_the_archives(
             numbers = [p for p in ssv.parameters if p["type_name"] == "Real"]  # of Float64 it has none
             given = {p["name"]: float(p["type_value"].parameter["value"]) for p in numbers}
         assert set(kinds.values()) <= {REAL_ELEMENT[version], "Boolean"}
-        written = {f"{n}.{v}": x.value for n, c in found.components.items() for v, x in ssp.values(c).items()}
+        written = {
+            f"{n}.{v}": x.value for n, c in found.components.items() for v, x in ssp.list_values(c).items()
+        }
         assert written.keys() <= kinds.keys()
         assert given == ({n: given[n] for n in given} | written if version == "1.0" else {})
         assert {p.name for p in archive.ssp_resource_path.iterdir()} == {
-            f"{fmu}.fmu" for fmu in ssp.fmu_names(found).values()
+            f"{fmu}.fmu" for fmu in ssp.find_fmu_names(found).values()
         }
 
 
@@ -406,19 +408,19 @@ def stated(text: str) -> float:
     return float(text == "true") if text in ("true", "false") else float(text)
 
 
-@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("name", list_system_names())
 def test_parameters_come_from_the_files(built: Path, name: str) -> None:
-    path, found = str(built / "ssp" / f"{name}.ssp"), system(name)
+    path, found = str(built / "ssp" / f"{name}.ssp"), load_system(name)
     every = {p.name: stated(p.value) for p in read_ssv(path, f"parameters/{name}.ssv").parameters}
     for joint, component in found.joints.items():
-        assert component.file
-        for key, value in component.file.values_by_name.items():
+        assert component.parameter_file
+        for key, value in component.parameter_file.values_by_name.items():
             if isinstance(value, bool):
                 assert f"{joint}.{key}" not in every  # a start value of the FMU
-            elif key in MODELS[component.model].parameter_fields():
+            elif key in MODELS[component.model_name].parameter_fields():
                 assert every[f"{joint}.{key}"] == value
-    baked = {n for n in found.values if n.partition(".")[2] == "max_torque"}
-    assert {n: v for n, v in found.values.items() if n not in baked}.items() <= every.items()
+    baked = {n for n in found.list_values if n.partition(".")[2] == "max_torque"}
+    assert {n: v for n, v in found.list_values.items() if n not in baked}.items() <= every.items()
     for component in found.components:
         own = read_ssv(path, f"parameters/{component}.ssv").parameters
         prefix = f"{component}."
@@ -433,12 +435,12 @@ def test_another_joint_goes_into_the_archive(built: Path, tmp_path: Path) -> Non
         for version in ("fmi2", "fmi3"):
             (tmp_path / version).mkdir(exist_ok=True)
             shutil.copy(built / version / f"{fmu}.fmu", tmp_path / version)
-    column = system("bolted_column").with_joint(changed)
-    paths = ssp.pack_system(column, tmp_path)
+    column = load_system("bolted_column").with_joint(changed)
+    paths = ssp.write_archives(column, tmp_path)
     every = {p.name: p.value for p in read_ssv(str(paths[0]), "parameters/bolted_column.ssv").parameters}
     assert float(every["joint.mu"]) == 0.11
     first = [path.read_bytes() for path in paths]
-    assert [path.read_bytes() for path in ssp.pack_system(column, tmp_path)] == first
+    assert [path.read_bytes() for path in ssp.write_archives(column, tmp_path)] == first
 
 
 def test_a_joint_without_system_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -471,7 +473,7 @@ STEPS = 2000
 
 def in_fmpy(built: Path, name: str) -> Any:
     """So many steps of a system's own size."""
-    step = system(name).interval
+    step = load_system(name).interval
     return simulated(built, name, step, (STEPS - 0.5) * step)
 
 
@@ -535,7 +537,7 @@ def test_other_simulators_run_the_archive_as_fmpy_does(
 ) -> None:
     """The same equations step by step: they differ by round-off, which the motion does not amplify."""
     out, path = tmp_path / "rows.npy", built / "ssp" / f"{name}.ssp"
-    arguments = [path, name, system(name).interval, STEPS, out, *wanted]
+    arguments = [path, name, load_system(name).interval, STEPS, out, *wanted]
     subprocess.run([sys.executable, "-c", script, *map(str, arguments)], check=True, timeout=100)
     rows = np.load(out)
     other = in_fmpy(built, name)
@@ -544,10 +546,10 @@ def test_other_simulators_run_the_archive_as_fmpy_does(
         np.testing.assert_allclose(rows[:, k], expected, rtol=1e-9, atol=1e-12 * np.max(np.abs(expected)))
 
 
-@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("name", list_system_names())
 def test_the_own_master_runs_an_archive_as_fmpy_does(built: Path, name: str) -> None:
     """Side by side: the same equations step by step."""
-    found = system(name)
+    found = load_system(name)
     own = simulate_system(found, built / "fmi2", stop=STEPS * found.interval)
     rows = in_fmpy(built, name)
     for column in own.keys() - {"time"}:
@@ -565,7 +567,7 @@ def test_a_master_of_the_other_kind_needs_the_other_lag(
 ) -> None:
     """Against a step of a quarter: each archive in its own master converges, a present force that is carried
     on does not come near."""
-    found, (_, in_turn) = system(name), MASTERS
+    found, (_, in_turn) = load_system(name), MASTERS
     stop = 0.6 * found.stop_time
 
     def run(master: Master, h: float) -> Array:
@@ -589,7 +591,7 @@ def test_a_master_of_the_other_kind_needs_the_other_lag(
 @cache
 def moved(folder: Path) -> dict[str, Array]:
     """The robot of six axes through its motion."""
-    return simulate_system(system("six_axis_robot"), folder)
+    return simulate_system(load_system("six_axis_robot"), folder)
 
 
 def until(stop: float, run: dict[str, Array]) -> dict[str, Array]:
@@ -601,7 +603,7 @@ def until(stop: float, run: dict[str, Array]) -> dict[str, Array]:
 def test_drives_of_the_robot_carry_its_inverse_dynamics(built: Path) -> None:
     """Torques of the rigid arm, and the ringing of six inertias about it; at rest the weight alone, and the
     midline's wind-up within the hysteresis."""
-    found, run = system("six_axis_robot"), moved(built / "fmi2")
+    found, run = load_system("six_axis_robot"), moved(built / "fmi2")
     q, speed, acceleration = found.arm.motion(run["time"])
     torque = found.arm.torques(q, speed, acceleration)
     commanded, wound, error = wind_up_and_tip_error(found, run)
@@ -611,7 +613,7 @@ def test_drives_of_the_robot_carry_its_inverse_dynamics(built: Path) -> None:
         carried = run[f"{axis}_drive.tau2"]
         assert np.max(np.abs(carried - torque[:, k])) < 0.12 * np.max(np.abs(torque[:, k])) + 1e-4 * largest
         assert np.mean(carried[-3000:]) == pytest.approx(torque[-1, k], abs=2e-3 * largest)
-        file = found.joints[f"{axis}_drive"].file
+        file = found.joints[f"{axis}_drive"].parameter_file
         assert file is not None
         free = HarmonicDriveSpring.tabulate(replace_values(file.values, {"hysteresis_loss": 0.0}))
         held = float(free.evaluate_torque(abs(torque[-1, k]))["phi_rel"])
@@ -621,7 +623,7 @@ def test_drives_of_the_robot_carry_its_inverse_dynamics(built: Path) -> None:
 
 
 def test_the_tips_error_is_what_the_arms_jacobian_makes_of_the_wind_up(built: Path) -> None:
-    found = system("six_axis_robot")
+    found = load_system("six_axis_robot")
     run = until(0.9, moved(built / "fmi2"))
     commanded, wound, error = wind_up_and_tip_error(found, run)
     q, dq = commanded[-1], wound[-1]
@@ -663,7 +665,7 @@ def robot(time: float, x: Array, found: Values, load: TorqueProfile) -> list[flo
 
 
 def test_the_robot_joint_converges_to_the_packages_law(built: Path) -> None:
-    found, stop = system("robot_joint").values, 0.4
+    found, stop = load_system("robot_joint").list_values, 0.4
     load = TorqueProfile(**{k.removeprefix("load."): v for k, v in found.items() if k.startswith("load.")})
     sliders = ROBOT.hysteresis.friction_limit.size
     start, small = [0.0] * (4 + sliders), [1e-12] * 4 + [1e-8] * sliders  # rad, rad/s and N.m
@@ -678,7 +680,7 @@ def test_the_robot_joint_converges_to_the_packages_law(built: Path) -> None:
 
 
 def test_the_bolted_column_converges_to_the_packages_law(built: Path) -> None:
-    found, stop = system("bolted_column").values, 1.6e-3
+    found, stop = load_system("bolted_column").list_values, 1.6e-3
     defaults = flatten_parameters(ssp.partner_parameters("ForceProfile").values)
     pulse = {k.removeprefix("load."): v for k, v in found.items() if k.startswith("load.")}
     load, mass = (
@@ -751,7 +753,7 @@ def ring(
         Slave(drive, {"d": damping}, ("phi2", "w2"), ("tau2",)) as joint,
         Slave(inertia, start, ("tau_a", "tau_b"), ("phi", "w")) as body,
     ):
-        return motion(joint, body, 0.0, step, count, late)
+        return simulate_motion(joint, body, 0.0, step, count, late)
 
 
 def released(angle: float, damping: bool, stop: float) -> Array:
@@ -812,7 +814,7 @@ def test_the_largest_stable_step_is_the_formulas(built: Path) -> None:
             Slave(drive, {"d": 0.0}, ("phi2", "w2"), ("tau2",)) as joint,
             Slave(inertia, start, ("tau_a", "tau_b"), ("phi", "w")) as body,
         ):
-            found = motion(joint, body, 5.0, factor * largest, 400)[:, 0]
+            found = simulate_motion(joint, body, 5.0, factor * largest, 400)[:, 0]
         return float(np.max(np.abs(found - angle)) / (1e-7 * angle))
 
     assert swing(0.995) < 30.0
@@ -916,9 +918,9 @@ def test_the_whole_robot_joint_in_model_exchange(built: Path, make: Make, versio
     early = {"load.pulse_start": 0.01, "drive.hysteresis_loss": 0.0}
     parameters = {p.name: p.value for p in read_ssv(path, "parameters/robot_joint.ssv").parameters} | early
     fmus = {}
-    for name, part in system("robot_joint").components.items():
+    for name, part in load_system("robot_joint").components.items():
         mine = {n.partition(".")[2]: float(v) for n, v in parameters.items() if n.startswith(f"{name}.")}
-        fmus[name] = make(part.model, version, True).start(mine)
+        fmus[name] = make(part.model_name, version, True).start(mine)
     connections = read_ssd(path).system.connections
     wires = [(c.startElement, c.startConnector, c.endElement, c.endConnector) for c in connections]
     wires.sort(key=lambda wire: wire[0] == "drive")  # its outputs follow its inputs at once
@@ -986,7 +988,7 @@ def test_the_robot_in_modelica_winds_up_as_the_fmus_do(built: Path) -> None:
 
     stop = 0.6
     found = simulate(rumoca, top("extends JointStiffness.Examples.SixAxisRobot;"), stop, 1e-2, rtol=1e-8)
-    own = system("six_axis_robot")
+    own = load_system("six_axis_robot")
     run = until(stop, moved(built / "fmi2"))
     _, wound, _ = wind_up_and_tip_error(own, run)
     for k, axis in enumerate(ROBOT_AXES):
@@ -1006,8 +1008,10 @@ def test_the_struck_column_rings_down_by_its_friction(built: Path) -> None:
     assert 0.45 * limit < np.max(np.abs(rows["joint.f_x"])) < 0.6 * limit
     free = rows["time"] > 1.3e-3
     struck = decay.analyse_decay(rows["time"][free], rows["column.s"][free])
-    column = ringing.vibrating_joints()["bolted_column"]
-    (pulled,) = decays.decays(column, built / "fmi2", column.body.pull.deflection, [column.body.pull.load])
+    column = ringing.find_vibrating_joints()["bolted_column"]
+    (pulled,) = decays.simulate_decays(
+        column, built / "fmi2", column.test.slip_deflection.deflection, [column.test.slip_deflection.load]
+    )
     order = np.argsort(pulled.amplitude)
     seen = struck.amplitude > 1.2e-7
     assert np.count_nonzero(seen) >= 3
@@ -1028,18 +1032,18 @@ def test_a_file_makes_a_system(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
     shutil.copytree(folder, copy)
     shutil.copytree(folder.parent / "harmonic_drive", tmp_path / "harmonic_drive")
     monkeypatch.setattr("jointfmu_tools.systems.system.files", lambda package: tmp_path)
-    shipped = names()
+    shipped = list_system_names()
     assert set(shipped) == {path.stem for path in folder.glob("*.toml")}
     text = (folder / "robot_joint.toml").read_text(encoding="utf-8")
     (copy / "a_second_arm.toml").write_text(text.replace("value = 0.05", "value = 0.07"), encoding="utf-8")
-    assert set(names()) == {"a_second_arm", *shipped}
-    assert systems()["a_second_arm"].values["link.J"] == 0.07
+    assert set(list_system_names()) == {"a_second_arm", *shipped}
+    assert load_systems()["a_second_arm"].list_values["link.J"] == 0.07
 
 
 def test_a_joint_that_does_not_ring_is_refused() -> None:
     said = "joint 'gear_contact' does not say how it rings, allowed are harmonic_drive, bolted_joint"
     with pytest.raises(ValueError, match=said):
-        ringing.body_on("gear_contact")
+        ringing.load_vibration_test("gear_contact")
 
 
 # jointfmu ring

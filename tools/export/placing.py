@@ -34,8 +34,10 @@ class UnitSet:
         return replace_symbols(unit, self.symbols)
 
 
-SI = UnitSet("m-N-Pa-kg", {})
-UNITS = {units.name: units for units in (SI, UnitSet("mm-N-MPa-t", {"m": "mm", "Pa": "MPa", "kg": "t"}))}
+SI_UNIT_SET = UnitSet("m-N-Pa-kg", {})
+UNIT_SETS = {
+    units.name: units for units in (SI_UNIT_SET, UnitSet("mm-N-MPa-t", {"m": "mm", "Pa": "MPa", "kg": "t"}))
+}
 """{name: set of units}: SI, and the set that is common in finite-element models."""
 
 
@@ -63,7 +65,7 @@ class Springs:
     C_n: Array
     C_t: Array
     totals: dict[str, float]
-    correction: float
+    stiffness_correction: float
     open_pairs: int
 
 
@@ -82,7 +84,7 @@ class Placement:
     has_own_nodes    : whether the written file defines the nodes, in place of nodes of the model
     """
 
-    units: UnitSet = SI
+    units: UnitSet = SI_UNIT_SET
     normal: str = "z"
     first_number: int = 1
     first_set_number: int = 1

@@ -9,8 +9,8 @@ from jointfmu.parameters import load_default
 
 from ..fields.clamped import field_adapter
 from ..joint_parts import load_tool_module
-from ..published.reference import read_points, trivial_guesses
-from ..published.validation import ValidatedPoint, compare
+from ..published.reference import compute_trivial_guesses, read_points
+from ..published.validation import ValidatedPoint, compare_point
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,5 +55,5 @@ def _compare_frequencies(joint_kind: str, measurement: MeasuredFrequencies) -> l
     computed = modes.compute_frequencies(assembly.read_assembly(measurement.path), values, shear, states)
     by_state = dict(zip(states, computed.tolist(), strict=True))
     matching = [by_state[p.where["preload"], p.where["moment"]][p.where["mode"] - 1] for p in published]
-    guessed = trivial_guesses(published)
-    return [compare(p, value, guessed.get(p.id)) for p, value in zip(published, matching, strict=True)]
+    guessed = compute_trivial_guesses(published)
+    return [compare_point(p, value, guessed.get(p.id)) for p, value in zip(published, matching, strict=True)]

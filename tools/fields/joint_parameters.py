@@ -10,8 +10,8 @@ from jointfmu.mechanics.footprint.shape import (
     BOLT_MEAN_NAMES,
     MAX_PATCHES,
     PressureDistribution,
-    nodal_field_entries,
     moment_pressure,
+    nodal_field_entries,
     position_means,
 )
 from jointfmu.parameters import ParameterFile

@@ -107,7 +107,7 @@ def read_csv(path: Path) -> NodalResult:
     return NodalResult(
         path=path,
         node_label="line",
-        node_numbers=np.array(table.lines, dtype=np.int64),
+        node_numbers=np.array(table.line_numbers, dtype=np.int64),
         position=np.column_stack([quantities["x"], quantities["y"], np.zeros_like(quantities["x"])]),
         pressure=quantities["pressure"],
         area=quantities["area"],

@@ -14,7 +14,7 @@ from jointfmu.quantity.refusal import InputRefusal
 from ..plots import choose_unit
 from .branches import Loops, sort_points
 from .hysteresis import ForcedResponse, FreeVibration, HysteresisLaw, Oscillator
-from .least_squares import UnknownExchange, Residuals, Solution, Unknown, select_start, solve
+from .least_squares import Residuals, Solution, Unknown, UnknownExchange, select_start, solve
 from .measurement import Measurement
 from .outcome import Facts, Picture, correlation_note
 

@@ -14,7 +14,7 @@ from jointfmu.quantity import Array, flat_fields, flatten_parameters
 from .. import plots
 from ..judgement import assess_law
 from ..laws import LAW_COLUMN_UNITS, LAW_COLUMNS, build_law_parameters, known_surface_height
-from ..ramps.ramp import broadcast
+from ..ramps.ramp import broadcast_columns
 from ..shown import format_quantity
 from .frame import Frame, Table, TableDisplay
 
@@ -82,7 +82,7 @@ class Law(TableDisplay):
     def _to_column(self, name: str, values: ArrayLike) -> Array:
         """Convert values to an array (n) or (1). Raises ValueError if parameters have another length."""
         column = np.ravel(np.asarray(values, dtype=np.float64))
-        broadcast({name: column, **self._array_parameters}, f"law {self.name}")
+        broadcast_columns({name: column, **self._array_parameters}, f"law {self.name}")
         return column
 
     def _build_frame(self, state: Mapping[str, Any], messages: tuple[str, ...]) -> Frame:

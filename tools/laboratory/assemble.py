@@ -17,13 +17,16 @@ from jointfmu_fmu_src.templates import load_template
 from jointfmu import __version__
 from jointfmu.contact.roughness import RQ_OVER_RA
 from jointfmu.files.writing import write_text
-from jointfmu.parameters import RELATIVE_HEIGHT_TOLERANCE, ORIGINS
+from jointfmu.parameters import ORIGINS, RELATIVE_HEIGHT_TOLERANCE
 from jointfmu.quantity import units
 
 from .describe import compile_modules, describe_module, list_modules
 
-_FOLDER = Path(__file__).with_name("web")
-_SCRIPTS = (*("engine", "sight", "controls"), *("curves", "path", "turn", "contact", "body", "files", "main"))
+_WEB_FOLDER = Path(__file__).with_name("web")
+_SCRIPT_NAMES = (
+    *("engine", "sight", "controls"),
+    *("curves", "path", "turn", "contact", "body", "files", "main"),
+)
 """Scripts of the page in the order of execution, after the script of the charts."""
 _FILE_UNITS = {
     "rad": ("rad", "mrad", "deg", "arcmin", "arcsec"),
@@ -58,10 +61,10 @@ def render_page() -> str:
     }
     text = json.dumps(document, ensure_ascii=False, allow_nan=False, separators=(",", ":")).encode()
     content = gzip.compress(b"".join([struct.pack("<I", len(text)), text, *binaries]), 9, mtime=0)
-    return load_template(_FOLDER / "page.html").render(
+    return load_template(_WEB_FOLDER / "page.html").render(
         version=__version__,
         style=chart.read_style() + read_web_file("style.css"),
-        script=chart.read_script() + "\n".join(read_web_file(f"{name}.js") for name in _SCRIPTS),
+        script=chart.read_script() + "\n".join(read_web_file(f"{name}.js") for name in _SCRIPT_NAMES),
         content=b64encode(content).decode(),
         licences=read_webassembly_licences(),
     )
@@ -69,4 +72,4 @@ def render_page() -> str:
 
 def read_web_file(name: str) -> str:
     """Read a file of the page as text. The report uses the style sheet too."""
-    return (_FOLDER / name).read_text(encoding="utf-8")
+    return (_WEB_FOLDER / name).read_text(encoding="utf-8")

@@ -19,12 +19,12 @@ from jointfmu.quantity import Array
 
 from ..thinning import decimate
 
-GIVEN_DIGITS, COMPUTED_DIGITS = 15, 10
+PARAMETER_DIGITS, COMPUTED_DIGITS = 15, 10
 """Digits of numbers from a parameter file, and of computed numbers. More digits of computed numbers would
 depend on the processor; the error of the tables is 1e-7."""
 
 
-def format_number(value: float, digits: int = GIVEN_DIGITS) -> str:
+def format_number(value: float, digits: int = PARAMETER_DIGITS) -> str:
     """Format a number or a Boolean as a Modelica expression."""
     if isinstance(value, bool):
         return str(value).lower()
@@ -71,7 +71,7 @@ def template_environment(*folders: Path) -> Environment:
     )
 
 
-RELATIVE_TOLERANCE = 1e-7
+TABLE_TOLERANCE = 1e-7
 """Largest relative error [1] of load and stiffness of a table, against the original curve."""
 _SAMPLE_FRACTIONS = np.linspace(0.0, 1.0, 9)[1:-1]
 
@@ -84,7 +84,7 @@ class InterpolationTable(NamedTuple):
     """
 
     rows: Array
-    error: float
+    max_error: float
 
 
 def to_curve(table: InterpolationTable) -> Curve:
@@ -115,7 +115,7 @@ def decimate_curve(
     )
 
     def reproduces(i: int, j: int) -> bool:
-        accurate = _segment_error(curve, i, j, floor) <= RELATIVE_TOLERANCE
+        accurate = _segment_error(curve, i, j, floor) <= TABLE_TOLERANCE
         return accurate and (segment_fits is None or segment_fits(i, j))
 
     index = decimate(stops, reproduces)
@@ -174,11 +174,11 @@ class ModelicaRecord:
     error_note: str = ""
 
     @property
-    def end(self) -> float:
+    def max_load(self) -> float:
         """Largest load of the table [N or N.m]."""
         return float(self.table.rows[-1, 1])
 
-    def template_terms(self, base: str) -> dict[str, object]:
+    def template_terms(self, base_record: str) -> dict[str, object]:
         """Template variables of the record.
 
         base_record : name of the record that it extends
@@ -186,10 +186,10 @@ class ModelicaRecord:
         return {
             "name": self.name,
             "title": escape_string(self.title),
-            "base": base,
+            "base": base_record,
             "values": {**self.values, "table": format_matrix(self.table.rows)},
             "about": escape_html(f"From the parameters {self.title}."),
-            "error": f"{max(self.table.error, RELATIVE_TOLERANCE):.0e}",
+            "error": f"{max(self.table.max_error, TABLE_TOLERANCE):.0e}",
             "more": self.error_note,
         }
 
@@ -217,10 +217,10 @@ class ModelicaComponent:
     """
 
     name: str
-    base: str
-    points: Sequence[WorkingPoint] = ((),)
-    records: Callable[[ParameterFile, Sequence[WorkingPoint]], list[ModelicaRecord]]
-    template_texts: Callable[[ModelicaRecord], Mapping[str, str]]
+    base_record: str
+    working_points: Sequence[WorkingPoint] = ((),)
+    make_records: Callable[[ParameterFile, Sequence[WorkingPoint]], list[ModelicaRecord]]
+    make_template_texts: Callable[[ModelicaRecord], Mapping[str, str]]
     note: str = ""
     flanges: Sequence[str] = ("flange_a", "flange_b")
     system_parameters: Callable[[ParameterFile], Mapping[str, str]] = lambda file: {}
@@ -228,11 +228,11 @@ class ModelicaComponent:
     component_only_parameters: Sequence[str] = ()
 
 
-def format_given(values: Mapping[str, float]) -> dict[str, str]:
+def format_parameter_values(values: Mapping[str, float]) -> dict[str, str]:
     """Format values of a parameter file as Modelica expressions."""
-    return {name: format_number(value, GIVEN_DIGITS) for name, value in values.items()}
+    return {name: format_number(value, PARAMETER_DIGITS) for name, value in values.items()}
 
 
-def format_computed(values: Mapping[str, float]) -> dict[str, str]:
+def format_computed_values(values: Mapping[str, float]) -> dict[str, str]:
     """Format computed values as Modelica expressions."""
     return {name: format_number(value, COMPUTED_DIGITS) for name, value in values.items()}

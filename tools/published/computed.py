@@ -37,7 +37,7 @@ class PublishedNumbers:
     calibration: Sequence[CalibrationFit] = ()
 
 
-def published_numbers(kind: JointKind) -> PublishedNumbers:
+def load_published_numbers(kind: JointKind) -> PublishedNumbers:
     """Published numbers that a joint defines; without papers if it defines none."""
     own: PublishedNumbers = getattr(load_tool_module(kind, "published"), "PUBLISHED", PublishedNumbers())
     return own

@@ -28,7 +28,7 @@ GUESS_ROLES = ("interpolation", "prediction")
 CALIBRATION_TOLERANCE = 1e-6
 """Relative tolerance of a calibration point [1]: the fits are exact apart from rounding."""
 
-_RULE_POINTS = {"constant": 1, "power law": 2, "offset": 3, "proportion": 3, "growth": 3}
+_POINTS_PER_RULE = {"constant": 1, "power law": 2, "offset": 3, "proportion": 3, "growth": 3}
 """{rule of a trivial guess: number of points that it needs}."""
 _POWER_RULES = ("power law", "growth")
 
@@ -48,11 +48,11 @@ class Guess:
     over: str = ""
 
     def __post_init__(self) -> None:
-        if self.rule not in _RULE_POINTS:
-            raise ValueError(f"guess: rule = {self.rule!r}, allowed are {', '.join(_RULE_POINTS)}")
-        if len(self.points) != _RULE_POINTS[self.rule]:
+        if self.rule not in _POINTS_PER_RULE:
+            raise ValueError(f"guess: rule = {self.rule!r}, allowed are {', '.join(_POINTS_PER_RULE)}")
+        if len(self.points) != _POINTS_PER_RULE[self.rule]:
             raise ValueError(
-                f"guess: {len(self.points)} points, a {self.rule} takes {_RULE_POINTS[self.rule]}"
+                f"guess: {len(self.points)} points, a {self.rule} takes {_POINTS_PER_RULE[self.rule]}"
             )
         if bool(self.over) != (self.rule in _POWER_RULES):
             raise ValueError(
@@ -120,38 +120,40 @@ def read_points(paper: str) -> list[Point]:
     """Read the published numbers of a paper, in the order of its file."""
     text = (files("jointfmu_models") / "reference" / f"{paper}.toml").read_text(encoding="utf-8")
     document = tomllib.loads(text)
-    return [_point(paper, document["joint"], entry) for entry in document["point"]]
+    return [_make_point(paper, document["joint"], entry) for entry in document["point"]]
 
 
-def _point(paper: str, joint: str, entry: dict[str, Any]) -> Point:
+def _make_point(paper: str, joint: str, entry: dict[str, Any]) -> Point:
     guess = {"guess": Guess(**entry["guess"])} if "guess" in entry else {}
     return Point(paper=paper, joint=joint, **(entry | guess))
 
 
-def trivial_guesses(published: Sequence[Point]) -> dict[str, float]:
+def compute_trivial_guesses(points: Sequence[Point]) -> dict[str, float]:
     """Trivial guesses of the published numbers of one paper, from calibration points: {id: guess}.
 
     Raises ValueError if a guess names a point that is no calibration point and has no guess.
     """
-    known = {p.id: p for p in published}
+    known = {p.id: p for p in points}
 
-    def value(name: str, asking: tuple[str, ...]) -> float:
-        point = known.get(name)
+    def find_value(point_id: str, requesting_ids: tuple[str, ...]) -> float:
+        point = known.get(point_id)
         if point is not None and point.role == "calibration":
             return float(point.value)
-        if point is None or point.guess is None or name in asking:
-            raise ValueError(f"{asking[-1]}: guess from {name!r}, allowed are calibration points and guesses")
-        return guess(point, point.guess, (*asking, name))
+        if point is None or point.guess is None or point_id in requesting_ids:
+            raise ValueError(
+                f"{requesting_ids[-1]}: guess from {point_id!r}, allowed are calibration points and guesses"
+            )
+        return evaluate_guess(point, point.guess, (*requesting_ids, point_id))
 
-    def guess(point: Point, how: Guess, asking: tuple[str, ...]) -> float:
-        a, *more = (value(name, asking) for name in how.points)
-        if how.rule in _POWER_RULES:
-            x, x_a, *others = (p.where[how.over] for p in (point, *(known[name] for name in how.points)))
+    def evaluate_guess(point: Point, rule: Guess, requesting_ids: tuple[str, ...]) -> float:
+        a, *more = (find_value(name, requesting_ids) for name in rule.points)
+        if rule.rule in _POWER_RULES:
+            x, x_a, *others = (p.where[rule.over] for p in (point, *(known[name] for name in rule.points)))
             (y, z), (x_y, x_z) = (a, *more)[-2:], (x_a, *others)[-2:]
             power = np.log(z / y) / np.log(x_z / x_y)
             return float(a * (x / x_a) ** power)
-        if how.rule == "offset":
+        if rule.rule == "offset":
             return a + more[0] - more[1]
-        return a * more[0] / more[1] if how.rule == "proportion" else a
+        return a * more[0] / more[1] if rule.rule == "proportion" else a
 
-    return {p.id: guess(p, p.guess, (p.id,)) for p in published if p.guess}
+    return {p.id: evaluate_guess(p, p.guess, (p.id,)) for p in points if p.guess}

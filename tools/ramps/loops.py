@@ -17,7 +17,7 @@ from . import ramp
 if TYPE_CHECKING:
     from fmpy.model_description import ModelDescription
 
-SHAPES = ("triangle", "sine")
+WAVEFORMS = ("triangle", "sine")
 """Waveforms of load cycles."""
 DEFAULT_POINTS, DEFAULT_CYCLES = 200, 2
 MIN_POINTS, MAX_POINTS = 8, 1_000_000
@@ -42,7 +42,7 @@ class CyclicPath:
     """
 
     centre: float = 0.0
-    shape: str = SHAPES[0]
+    shape: str = WAVEFORMS[0]
     points: int = DEFAULT_POINTS
     cycles: int = DEFAULT_CYCLES
 
@@ -56,7 +56,7 @@ class CyclicPath:
         if not 1 <= self.cycles <= MAX_CYCLES:
             raise ValueError(f"cycles = {self.cycles} is outside [1, {MAX_CYCLES}]")
 
-    def path(self, amplitude: float) -> Array:
+    def input_values(self, amplitude: float) -> Array:
         """Values of the input: first loading to an amplitude, then full cycles from there."""
         if not 0.0 < amplitude < np.inf:
             raise ValueError(f"loop = {amplitude:g} is outside (0, inf): the amplitude of the input")
@@ -91,13 +91,13 @@ class HysteresisLoop:
         return 0.5 * float(np.ptp(motion)), 0.5 * float(np.ptp(force))
 
     @property
-    def loss(self) -> float:
+    def energy_loss(self) -> float:
         """Energy loss [J] of the last cycle, by the trapezoidal rule; 0 if it is round-off."""
         motion, force = self._cycle
         work = float(np.sum(0.5 * (force[1:] + force[:-1]) * np.diff(motion)))
         return work if abs(work) > RELATIVE_ROUNDING * float(np.ptp(motion) * np.ptp(force)) else 0.0
 
-    def row(self) -> dict[str, float]:
+    def compute_row(self) -> dict[str, float]:
         """Results of the loop: {name: value}.
 
         The secant stiffness K is that between the ends of the loop. The loss factor is loss/(pi K a^2) with
@@ -109,8 +109,8 @@ class HysteresisLoop:
             "motion": motion,
             "force": force,
             "secant_stiffness": stiffness,
-            "loss": self.loss,
-            "loss_factor": self.loss / (np.pi * force * motion) if force else 0.0,
+            "loss": self.energy_loss,
+            "loss_factor": self.energy_loss / (np.pi * force * motion) if force else 0.0,
         }
         if "E_loss" in self.result.columns:
             found["E_loss"] = float(np.diff(self.result.columns["E_loss"][[self.cycle_start, -1]])[0])
@@ -127,10 +127,10 @@ class HysteresisLoops:
     loops                   : one loop for each amplitude, in the requested order
     """
 
-    motion: str
-    force: str
+    motion_name: str
+    force_name: str
     units: tuple[str, str]
-    sign: float
+    force_sign: float
     loops: Sequence[HysteresisLoop]
 
     @property
@@ -148,12 +148,12 @@ class HysteresisLoops:
         stiffness = "N/m" if self.units[0] == "m" else "N.m/rad"
         return {"motion": self.units[0], "force": self.units[1], "secant_stiffness": stiffness, "loss": "J"}
 
-    def rows(self) -> list[dict[str, float]]:
-        return [loop.row() for loop in self.loops]
+    def compute_rows(self) -> list[dict[str, float]]:
+        return [loop.compute_row() for loop in self.loops]
 
-    def table(self) -> str:
+    def format_table(self) -> str:
         """Format the results of the loops as CSV text with six digits, one row for each loop."""
-        rows = self.rows()
+        rows = self.compute_rows()
         own = dict(zip(("motion", "force"), self.column_names, strict=True))
         given = {"E_loss": "J", "loss_factor": "1"} | self.row_units
         return columns.format_table(
@@ -162,13 +162,13 @@ class HysteresisLoops:
             digits=6,
         )
 
-    def csv(self) -> str:
+    def format_csv(self) -> str:
         """Format all points of all loops as CSV text that `jointfmu fit loop` reads.
 
         Columns: number of the loop, motion, force, outputs.
         """
         first = self.loops[0].result
-        others = [name for name in first.columns if name not in (self.motion, self.force)]
+        others = [name for name in first.columns if name not in (self.motion_name, self.force_name)]
         names = [*self.column_names, *others]
         heads = [
             ("run", "1"),
@@ -183,8 +183,10 @@ class HysteresisLoops:
             ]
             for number, loop in enumerate(self.loops, 1)
         ]
-        sign = "-" if self.sign < 0.0 else ""
-        told = f"# {self.column_names[0]} = {self.motion}, {self.column_names[1]} = {sign}{self.force}"
+        sign = "-" if self.force_sign < 0.0 else ""
+        told = (
+            f"# {self.column_names[0]} = {self.motion_name}, {self.column_names[1]} = {sign}{self.force_name}"
+        )
         return columns.format_table(
             heads, [np.concatenate(part) for part in zip(*parts, strict=True)], header_lines=[told]
         )
@@ -208,9 +210,9 @@ def run_loops(
     Raises ValueError as `ramp.run_ramp`, for an amplitude that is not positive, or if no output is conjugate
     to the input.
     """
-    points = [cyclic_path.path(amplitude) for amplitude in amplitudes]
+    points = [cyclic_path.input_values(amplitude) for amplitude in amplitudes]
     with unpack_fmu(fmu) as (_, description):
-        output = find_conjugate(*input_and_output_units(description), input_name, output, str(fmu))
+        output = find_conjugate_output(*input_and_output_units(description), input_name, output, str(fmu))
     return loops_from_results(
         [ramp.run_path(fmu, input_name, each, settings) for each in points], input_name, output, cyclic_path
     )
@@ -242,8 +244,8 @@ def input_and_output_units(description: "ModelDescription") -> tuple[dict[str, s
     return inputs, outputs
 
 
-def find_conjugate(
-    inputs: Mapping[str, str], outputs: Mapping[str, str], input_name: str, output: str | None, source: str
+def find_conjugate_output(
+    inputs: Mapping[str, str], outputs: Mapping[str, str], input_name: str, output: str | None, fmu_label: str
 ) -> str:
     """Find the output that is energy-conjugate to an input: the product of their units is an energy.
 
@@ -256,38 +258,38 @@ def find_conjugate(
     Raises ValueError if no output is conjugate, or if the stated output is not.
     """
     if input_name not in inputs:
-        raise ValueError(f"{source}: unknown input {input_name!r}, allowed are {', '.join(inputs)}")
+        raise ValueError(f"{fmu_label}: unknown input {input_name!r}, allowed are {', '.join(inputs)}")
     own = inputs[input_name]
     fitting = [name for name, unit in outputs.items() if unit != "J" and _is_energy(own, unit)]
     if output is not None:
         if output not in fitting:
             raise ValueError(
-                f"{source}: {output!r} is no output whose product with {input_name} is an energy, allowed "
+                f"{fmu_label}: {output!r} is no output whose product with {input_name} is an energy, allowed "
                 f"are {', '.join(fitting) or 'none'}"
             )
         return output
     if not fitting:
         raise ValueError(
-            f"{source}: no output makes an energy with {input_name} [{own}]; expected a displacement, an "
+            f"{fmu_label}: no output makes an energy with {input_name} [{own}]; expected a displacement, an "
             "angle, a force or a torque as input"
         )
-    same = [name for name in fitting if suffix(name) == suffix(input_name)]
+    same = [name for name in fitting if variable_suffix(name) == variable_suffix(input_name)]
     return (same or fitting)[0]
 
 
-def suffix(name: str) -> str:
+def variable_suffix(variable_name: str) -> str:
     """Suffix of a variable name for the axis or the flange: `_x` of `f_x`, `2` of `tau2`; else empty."""
-    match = re.search(r"(_[xyz]|\d+)$", name)
+    match = re.search(r"(_[xyz]|\d+)$", variable_name)
     return match[0] if match else ""
 
 
-def _is_energy(first: str, second: str) -> bool:
+def _is_energy(first_unit: str, second_unit: str) -> bool:
     """Whether the product of two units is an energy; the radian is ignored."""
     try:
-        parts = units.base_exponents(first), units.base_exponents(second)
+        parts = units.base_exponents(first_unit), units.base_exponents(second_unit)
     except ValueError:
         return False
     whole = {name: sum(part.get(name, 0) for part in parts) for name in {**parts[0], **parts[1]}}
     return {
         name: n for name, n in whole.items() if n and name != "rad"
-    } == ENERGY_UNIT and first != "1" != second
+    } == ENERGY_UNIT and first_unit != "1" != second_unit

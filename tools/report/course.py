@@ -10,7 +10,7 @@ from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
 
-from ..ramps.loops import CyclicPath, HysteresisLoops, find_conjugate, loops_from_results
+from ..ramps.loops import CyclicPath, HysteresisLoops, find_conjugate_output, loops_from_results
 from ..ramps.ramp import RampResult
 
 _RAMP_POINTS = 101
@@ -41,7 +41,7 @@ class LoadHistory:
         self.model = model.with_parameters(file.joint, file.values).with_load_range(
             self.spring, self.start_values
         )
-        self.limit = _find_law_limit(self.model, self.spring, self.start_values)
+        self.law_limit = _find_law_limit(self.model, self.spring, self.start_values)
 
     def compute_ramp(self) -> dict[str, Array]:
         """Compute inputs and outputs (n) along the load ramp; points are dense where curves bend."""
@@ -62,11 +62,11 @@ class LoadHistory:
         loop, driven = self.model.load_cycle, {v.name: v.unit for v in self.model.inputs}
         assert loop
         outputs = {v.name: v.unit for v in self.model.outputs}
-        output = find_conjugate(driven, outputs, loop.input_name, None, self.model.name)
+        output = find_conjugate_output(driven, outputs, loop.input_name, None, self.model.name)
         swing = CyclicPath(centre=self.loop_inputs[loop.input_name], points=_LOAD_CYCLE.points)
         largest = self._largest_amplitude(output)
         results = [
-            self._follow_path(loop.input_name, swing.path(a * largest), driven | outputs)
+            self._follow_path(loop.input_name, swing.input_values(a * largest), driven | outputs)
             for a in AMPLITUDE_RATIOS
         ]
         return loops_from_results(results, loop.input_name, output, swing)

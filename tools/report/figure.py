@@ -54,7 +54,7 @@ class ComparisonRow(NamedTuple):
 
 __all__ = ["Figure", "Panel", "Series", "draw_panels", "published_series"]
 
-_COLOURS = (BLUE, RED, GREEN, GREY, "#8055a8", "#b8860b")
+_SERIES_COLOURS = (BLUE, RED, GREEN, GREY, "#8055a8", "#b8860b")
 
 
 class Figure(NamedTuple):
@@ -71,7 +71,7 @@ class Figure(NamedTuple):
     text: str
     panels: Sequence[Panel] = ()
     pictures: Sequence[str] = ()
-    data: str | None = None
+    data_file: str | None = None
     table: Sequence[Sequence[str]] = ()
 
 
@@ -92,7 +92,7 @@ def published_series(points: Sequence[Point], argument: str) -> list[Series]:
 def draw_panels(canvas: "Canvas", panels: Sequence[Panel]) -> None:
     """Draw panels side by side with matplotlib."""
     for axes, panel in zip(canvas.subplots(1, len(panels), squeeze=False)[0], panels, strict=True):
-        for series, color in zip(panel.series, _COLOURS, strict=False):
+        for series, color in zip(panel.series, _SERIES_COLOURS, strict=False):
             style = {"ls": "", "marker": "o", "mfc": "white" if series.marks == "empty" else color}
             axes.plot(
                 series.x,

@@ -32,7 +32,7 @@ _CONSTANT_STIFFNESS_RATIO = 0.02
 
 
 def summarise_joint(
-    load_history: LoadHistory, loops: HysteresisLoops | None, numbers: Sequence[FileEntry]
+    load_history: LoadHistory, loops: HysteresisLoops | None, entries: Sequence[FileEntry]
 ) -> str:
     """Summarise a joint in a few sentences: stiffness, hysteresis, estimated parameters.
 
@@ -42,7 +42,7 @@ def summarise_joint(
     lines = [f"A {KINDS[load_history.file.joint].title}.", _describe_stiffness(load_history)]
     if loops:
         lines.append(_describe_loss(loops))
-    count = Counter(entry.kind for entry in numbers)
+    count = Counter(entry.kind for entry in entries)
     uncertain = [f"{count[kind]} {text}" for kind, text in _UNCERTAIN_ORIGINS.items() if count[kind]]
     if uncertain:
         total = sum(count.values())
@@ -92,10 +92,10 @@ def _describe_stiffness(load_history: LoadHistory) -> str:
 
 def _describe_loss(loops: HysteresisLoops) -> str:
     """Describe the energy loss of the largest loop in a sentence."""
-    row = max(loops.rows(), key=lambda row: row["motion"])
+    row = max(loops.compute_rows(), key=lambda row: row["motion"])
     if not row["loss"]:
         return "The joint has no hysteresis: loading and unloading follow the same curve."
-    amplitude = f"{loops.motion} = {_format_value(row['motion'], loops.units[0])}"
+    amplitude = f"{loops.motion_name} = {_format_value(row['motion'], loops.units[0])}"
     return (
         f"In a cycle between plus and minus {amplitude} the joint dissipates "
         f"{_format_value(row['loss'], 'J')}, "
@@ -112,7 +112,7 @@ ORIGIN_MEANINGS = {
     "user": "set by you",
 }
 """{origin of a number: meaning}, for all parameters.ORIGINS."""
-TOPICS = {
+VALIDITY_HEADINGS = {
     "docs/validity.md": ("In short", "What this does not show"),
     "docs/validity_stiffness.md": (
         "The laws on their own surfaces",
@@ -175,7 +175,7 @@ def _render_page(model: Model, file: ParameterFile) -> str:
         origins=[(kind, ORIGIN_MEANINGS[kind], [r.name for r in rows if r.kind == kind]) for kind in ORIGINS],
         judgement=judge_file(file),
         range=_describe_range(course),
-        topics=TOPICS,
+        topics=VALIDITY_HEADINGS,
         style=style_sheet(),
         script=page_script() + "drawAll();",
     )
@@ -255,10 +255,12 @@ def loop_figure(load_history: LoadHistory, loops: HysteresisLoops) -> Figure:
     text = "Quasi-static load cycles, each amplitude from rest with two cycles" + (
         f", at {', '.join(settings)}. " if settings else ". "
     )
-    if not any(loop.loss for loop in loops.loops):
+    if not any(loop.energy_loss for loop in loops.loops):
         text += "With these parameters there is no hysteresis: loading and unloading follow one curve."
-    force = f"{'-' if loops.sign < 0.0 else ''}{loops.force}"
-    panel = Panel(f"{force} over {loops.motion}", f"{loops.motion} [{x_unit}]", f"{force} [{y_unit}]", series)
+    force = f"{'-' if loops.force_sign < 0.0 else ''}{loops.force_name}"
+    panel = Panel(
+        f"{force} over {loops.motion_name}", f"{loops.motion_name} [{x_unit}]", f"{force} [{y_unit}]", series
+    )
     return Figure("Loops", text, [panel], table=_loop_rows(loops))
 
 
@@ -273,7 +275,7 @@ def _loop_rows(loops: HysteresisLoops) -> list[tuple[str, ...]]:
     rows: list[tuple[str, ...]] = [
         ("amplitude", "force or torque", "secant stiffness", "energy loss per cycle", "loss factor")
     ]
-    for row in loops.rows():
+    for row in loops.compute_rows():
         rows.append((*(format_cell(row, name) for name in units), f"{row['loss_factor']:.3g}"))
     return rows
 
@@ -294,10 +296,10 @@ def _comparison_rows(rows: list[ComparisonRow]) -> list[dict[str, str]]:
 def _describe_range(load_history: LoadHistory) -> str:
     """Describe the load range in which the law is valid."""
     ramped = next(v for v in load_history.model.inputs if v.name == load_history.model.ramp.input_name)
-    if load_history.limit is None:
+    if load_history.law_limit is None:
         return f"The law is valid for {ramped.name} far beyond the load ramp."
-    value, unit = _to_display_unit(load_history.limit[0], ramped.unit)
+    value, unit = _to_display_unit(load_history.law_limit[0], ramped.unit)
     return (
         f"The law is valid up to {ramped.name} = {float(value):.3g} {unit}. Above, the FMU warns: "
-        f"{load_history.limit[1]}."
+        f"{load_history.law_limit[1]}."
     )

@@ -75,7 +75,7 @@ def with_surface(
     elif sure:
         file = _with_fractal_parameters(file, identification, method)
     for side, scan in identification.roughness_by_side.items():
-        name = identification.names[min(side, len(identification.names)) - 1]
+        name = identification.file_names[min(side, len(identification.file_names)) - 1]
         source = f"measured: {name}; waves up to {scan.longest_wave:.4g} m"
         file = file.with_roughness({f"Rq{side}": scan.h}, "user", source)
     return file
@@ -104,7 +104,7 @@ def _with_fractal_parameters(
         if not math.isfinite(value):
             D, G = result.profile.D.value, result.profile.G
             raise ValueError(
-                f"{name} of {' and '.join(identification.names)} is not determined (D = {D:.2f}, "
+                f"{name} of {' and '.join(identification.file_names)} is not determined (D = {D:.2f}, "
                 "the interval of "
                 f"G spans {G.decades:.0f} decades): {file.joint} needs a number"
             )
@@ -116,10 +116,10 @@ def _with_fractal_parameters(
 
 def _describe_files(identification: Identification) -> str:
     """Names of the scanned files and the sides that they represent, as text."""
-    if len(identification.names) == 2:
-        return f"{identification.names[0]} and {identification.names[1]} (equivalent surface)"
+    if len(identification.file_names) == 2:
+        return f"{identification.file_names[0]} and {identification.file_names[1]} (equivalent surface)"
     side = identification.side
-    return identification.names[0] + (
+    return identification.file_names[0] + (
         ""
         if side is None
         else " (both sides alike)"
@@ -133,7 +133,7 @@ def _describe_fit(identification: Identification, result: FractalResult) -> str:
     methods = {"structure": "structure function, lags", "psd": "power spectral density, wavelengths"}
     return (
         f"identified from {_describe_files(identification)} by {methods[result.method]} "
-        f"{result.fit.low:.3g} to {result.fit.high:.3g} m"
+        f"{result.fit.min_scale:.3g} to {result.fit.max_scale:.3g} m"
     )
 
 

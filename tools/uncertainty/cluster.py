@@ -13,7 +13,7 @@ from .worker import KILLED_MESSAGE, LoadRamp
 
 RUNS_PER_WORKER = 4
 """Runs submitted at once for each worker thread [1]: enough to keep the workers busy."""
-MAX_LOSSES = 3
+MAX_RESTARTS = 3
 """Maximum number of restarts of a run whose result was lost with its worker [1]."""
 
 
@@ -35,7 +35,7 @@ def run_on_cluster(
     Raises ValueError if dask is missing or the scheduler does not answer. Raises RuntimeError if the cluster
     has no worker, or a worker cannot run the FMU at all.
     """
-    with _client(scheduler) as client:
+    with _connect(scheduler) as client:
         from .plugin import FmuDistribution
 
         try:
@@ -52,7 +52,7 @@ def run_on_cluster(
 
 
 @contextmanager
-def _client(scheduler: str) -> Iterator[Any]:
+def _connect(scheduler: str) -> Iterator[Any]:
     """Connect to a dask scheduler; TLS settings are those of dask's own configuration."""
     try:
         from distributed import Client
@@ -73,7 +73,7 @@ def _client(scheduler: str) -> Iterator[Any]:
 
 
 def _submit_runs(
-    client: Any, key: str, load_ramp: LoadRamp, runs: Sequence[Mapping[str, Any]], pending: Sequence[int]
+    client: Any, fmu_key: str, load_ramp: LoadRamp, runs: Sequence[Mapping[str, Any]], pending: Sequence[int]
 ) -> Iterator[dict[str, object]]:
     """Submit runs to a dask client, and yield the journal entry of each run when it ends.
 
@@ -86,7 +86,7 @@ def _submit_runs(
     waiting, indices, lost = iter(pending), {}, Counter[int]()
 
     def submit(index: int) -> object:
-        future = client.submit(run_on_dask_worker, key, load_ramp, index, runs[index], pure=False)
+        future = client.submit(run_on_dask_worker, fmu_key, load_ramp, index, runs[index], pure=False)
         indices[future.key] = index
         return future
 
@@ -100,7 +100,7 @@ def _submit_runs(
             yield {"run": index, "parameters": dict(runs[index]), "error": KILLED_MESSAGE}
         except Exception as error:
             lost[index] += 1
-            if not isinstance(error, CancelledError) or lost[index] > MAX_LOSSES:
+            if not isinstance(error, CancelledError) or lost[index] > MAX_RESTARTS:
                 text = " ".join(str(error).split())[:200]
                 error_name = type(error).__name__
                 raise RuntimeError(f"run {index}: the worker failed: {error_name}: {text}") from None

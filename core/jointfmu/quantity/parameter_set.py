@@ -8,7 +8,7 @@ from dataclasses import MISSING, Field, dataclass, fields, is_dataclass
 from functools import cache
 from typing import Any, TypeVar, get_type_hints
 
-from .declaration import name_in_file, find_problems
+from .declaration import find_problems, name_in_file
 from .interval import Interval, Number
 
 T = TypeVar("T")

@@ -22,7 +22,7 @@ from jointfmu.quantity import Array, flatten_parameters
 
 from ...joint_parts import FmuParts, RampPanel, chart, native_loader
 from ...joint_parts.data import DataConversion, DataTable
-from ...joint_parts.terminals import make_translation_flange, make_rotation_flange
+from ...joint_parts.terminals import make_rotation_flange, make_translation_flange
 
 _SECTIONS = ("pattern.", "plate.", "field.", "bodies.")
 BOLTS = 64

@@ -9,7 +9,7 @@ from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Interval
 
-from ...folders import find_source_folder, find_fmu_parts
+from ...folders import find_fmu_parts, find_source_folder
 from ...joint_parts.c_text import format_array, format_number, format_string
 from ...joint_parts.data import ParameterSplit
 from ...joint_parts.graph import build_graph

@@ -29,8 +29,8 @@ from jointfmu.progress import set_step
 from ...folders import find_source_folder
 from ...joint_parts.data import ParameterSplit
 from ..data import PLACEHOLDER, make_placeholder
-from .cache import check_access, make_folder, compiled_model_folder
-from .compiler import select_units, compile_libraries
+from .cache import check_access, compiled_model_folder, make_folder
+from .compiler import compile_libraries, select_units
 
 SHIPPED_FOLDER = Path(__file__).parent.with_name("parts")
 """Folder of the compiled models in a wheel."""

@@ -17,7 +17,7 @@ from clients import needs
 from conftest import Fmu
 from jointfmu_tools.cli import main
 from jointfmu_tools.fem.geometry import Plate
-from jointfmu_tools.systems.master import peak
+from jointfmu_tools.systems.master import peak_frequency
 from numpy.typing import NDArray
 from scipy.linalg import eigh
 from scipy.optimize import brentq
@@ -62,7 +62,7 @@ def force_of(fmu: Fmu) -> Force:
 
     def force(place: Array, done: bool) -> Array:
         fmu.write(inputs, place.tolist())
-        if done and fmu.exchange:
+        if done and fmu.is_model_exchange:
             fmu.fmu.completedIntegratorStep()
         elif done:
             fmu.step(1.0)
@@ -99,7 +99,7 @@ def test_six_frequencies_of_a_block(native: Path, exchange: bool) -> None:
         omega = float(np.sqrt(square))
         step, size = 2.0 * np.pi / omega / 40.0, 1e-9 / float(np.max(np.abs(shape)))
         places = leapfrog(force_of(fmu), MASS, 0.0 * shape, omega * size * shape, step, 1600)
-        found = peak(places @ MASS @ shape, step)
+        found = peak_frequency(places @ MASS @ shape, step)
         assert 2.0 / step * np.sin(0.5 * found * step) == pytest.approx(omega, rel=2e-3)
         fmu.free_instance()
 

@@ -332,7 +332,7 @@ def test_loops_show_partial_slip_whatever_the_friction(mu: float) -> None:
     file = load_default("bolted_joint").with_values({"mu": mu, "memory": True}, "user", "friction")
     model = MODELS["BoltedJoint"]
     course = LoadHistory(model, file)
-    small, *_, large = course.compute_loops().rows()
+    small, *_, large = course.compute_loops().compute_rows()
     point = {**course.loop_inputs, "s_rel_x": 0.0}
     stiff = model.evaluate(course.spring, point)["K_xx"]
     assert small["secant_stiffness"] > 0.25 * stiff

@@ -458,10 +458,10 @@ def test_friction_of_which_nothing_is_said_has_a_range(capsys, tmp_path):
     (mu,) = (each for each in list_entries(file) if each.name == "mu")
     assert mu.source.startswith(f"{low:g} to {high:g}; ")
     study = state_problem(file, {}, 30e3, 3)
-    assert [(each.name, each.support) for each in study.uncertain] == [("mu", (low, high))]
-    assert state_problem(file, {"mu": "interval"}, 30e3, 3).uncertain[0].support == (low, high)
+    assert [(each.name, each.support) for each in study.uncertain_parameters] == [("mu", (low, high))]
+    assert state_problem(file, {"mu": "interval"}, 30e3, 3).uncertain_parameters[0].support == (low, high)
     assert "mu" not in {
-        each.name for each in state_problem(file, {"mu": 0.2, "h": "+-10%"}, 30e3, 3).uncertain
+        each.name for each in state_problem(file, {"mu": 0.2, "h": "+-10%"}, 30e3, 3).uncertain_parameters
     }
     assert not file.with_values({"mu": 0.2}, "user", "set").ranges
 

@@ -9,7 +9,7 @@ from conftest import here_alone
 from jointfmu_fmu_src.building import build
 from jointfmu_tools import PARTS, cli, plots
 from jointfmu_tools.fields import nodal_result, reduction
-from jointfmu_tools.fields.joint_parameters import pressure_shape, insert_field
+from jointfmu_tools.fields.joint_parameters import insert_field, pressure_shape
 from jointfmu_tools.fields.nodal_result import ContactField
 from jointfmu_tools.fields.reduction import RELATIVE_TOLERANCE, ROUNDING_BITS, reduce_field
 from jointfmu_tools.fields.sums import MAX_COMPRESSION_RATIO, PRELOAD_RATIO_RANGE, LoadCase, SumFunctions

@@ -326,7 +326,7 @@ def test_drag_and_temperature(tmp_path, capsys):
 
 def test_uncertainty_takes_the_interval_of_the_source(tmp_path):
     file = made("CSG-25-100", motor_drag="0.01")
-    (found,) = state_problem(file, {"friction_coulomb": "interval"}, None, 5).uncertain
+    (found,) = state_problem(file, {"friction_coulomb": "interval"}, None, 5).uncertain_parameters
     number = catalogue.find_drive("CSG-25-100").numbers["starting_torque"]
     assert found.support == pytest.approx([end + 0.01 for end in number.interval], rel=1e-3)
     assert load_again(file, tmp_path).sources == file.sources

@@ -352,7 +352,7 @@ def test_the_modelica_record_is_the_midline(law):
     from jointfmu_tools.modelica.records import to_curve
 
     file = load_default("harmonic_drive", law)
-    (record,) = COMPONENT.records(file, [()])
+    (record,) = COMPONENT.make_records(file, [()])
     exact, made = torque_curve(file.values), to_curve(record.table)
     x = np.linspace(0.0, 1.2 * exact.end[0], 500)
     for a, b in zip(made.derivatives(x, 1), exact.derivatives(x, 1), strict=True):

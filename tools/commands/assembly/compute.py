@@ -8,7 +8,7 @@ from jointfmu.files.outputs import PARAMETER_FILE, PICTURE, write_parameter_text
 from jointfmu.mechanics.curve import tabulate_approach
 from jointfmu.parameters import ParameterFile, format_parameter_file
 
-from ...columns import FIELD
+from ...columns import FIELD_FILE_KIND
 from ...command_line.common import CommandResult, SubParsers, declare_argument, declare_command
 from ...command_line.outputs import declare_output
 from ...fem import require_fem_packages
@@ -42,7 +42,7 @@ def add(commands: SubParsers) -> None:
         help="write the whole joint (sides = elastic) between these surfaces of the bodies: outer faces, "
         "edges (side 1 at -x, side 2 at +x), or seats of the heads (default: write the interface only)",
     )
-    declare_output(sub, "--field", FIELD, "write the pressure field (.csv, .vtu)")
+    declare_output(sub, "--field", FIELD_FILE_KIND, "write the pressure field (.csv, .vtu)")
     declare_output(sub, "--plot", PICTURE, "draw the pressure (.png, .svg)")
     declare_argument(
         sub, "--refine", int, f"number of meshes of a convergence study, 1 to {MAX_MESHES}", default=1
@@ -152,39 +152,39 @@ def _collect_results(solution: "JointSolution", moment: float, preload: float) -
     }
 
 
-def _format_results(facts: dict[str, Any]) -> Iterator[str]:
+def _format_results(result_values: dict[str, Any]) -> Iterator[str]:
     """Format the results as lines of text."""
-    yield f"{facts['assembly']}: {facts['preload']:g} N per bolt, moment {facts['moment']:g} N.m"
-    yield f"contact   {facts['area'] * 1e4:.2f} cm2, {100 * facts['open_share']:.3g} % open"
-    yield f"force     {facts['force']:.6g} N"
-    yield f"pressure  mean {facts['p_mean'] / 1e6:.3g} MPa, peak {facts['p_max'] / 1e6:.4g} MPa"
-    for middle in facts["between"]:
+    yield f"{result_values['assembly']}: {result_values['preload']:g} N per bolt, moment {result_values['moment']:g} N.m"
+    yield f"contact   {result_values['area'] * 1e4:.2f} cm2, {100 * result_values['open_share']:.3g} % open"
+    yield f"force     {result_values['force']:.6g} N"
+    yield f"pressure  mean {result_values['p_mean'] / 1e6:.3g} MPa, peak {result_values['p_max'] / 1e6:.4g} MPa"
+    for middle in result_values["between"]:
         yield f"          between bolts at ({middle['x']:g}, {middle['y']:g}) m: {middle['p'] / 1e6:.3g} MPa"
-    yield f"interface K_N {facts['K_N']:.5g} N/m, K_rx {facts['K_rx']:.5g}, K_ry {facts['K_ry']:.5g} N.m/rad"
+    yield f"interface K_N {result_values['K_N']:.5g} N/m, K_rx {result_values['K_rx']:.5g}, K_ry {result_values['K_ry']:.5g} N.m/rad"
 
 
-def _mesh_document(row: "MeshResult") -> dict[str, object]:
+def _mesh_document(mesh_result: "MeshResult") -> dict[str, object]:
     return {
-        "refinement": row.refinement,
-        "elements": row.element_count,
-        "unknowns": row.unknown_count,
-        **row.result_values,
+        "refinement": mesh_result.refinement,
+        "elements": mesh_result.element_count,
+        "unknowns": mesh_result.unknown_count,
+        **mesh_result.result_values,
     }
 
 
-def _format_convergence(rows: list["MeshResult"]) -> Iterator[str]:
+def _format_convergence(mesh_results: list["MeshResult"]) -> Iterator[str]:
     """Format the convergence study: results of each mesh, relative changes, observed order."""
-    if len(rows) < 2:
+    if len(mesh_results) < 2:
         return
     from ...fem.convergence import RESULT_UNITS, observed_orders, relative_changes
 
     heads = [f"{name} [{unit}]" for name, unit in RESULT_UNITS.items()]
     yield f"{'mesh':>6} {'unknowns':>9} " + " ".join(f"{head:>16}" for head in heads)
-    for row in rows:
+    for row in mesh_results:
         values = " ".join(f"{row.result_values[name]:16.6g}" for name in RESULT_UNITS)
         yield f"{row.refinement:6.2f} {row.unknown_count:9d} {values}"
-    for change, row in zip(relative_changes(rows), rows[1:], strict=True):
+    for change, row in zip(relative_changes(mesh_results), mesh_results[1:], strict=True):
         percent = " ".join(f"{100.0 * change[name]:14.3f} %" for name in RESULT_UNITS)
         yield f"change to {row.refinement:6.2f} {percent}"
-    if observed := observed_orders(rows):
+    if observed := observed_orders(mesh_results):
         yield "observed order   " + " ".join(f"{observed[name]:16.1f}" for name in RESULT_UNITS)

@@ -19,7 +19,7 @@ from ...command_line.common import (
 )
 from ...command_line.outputs import declare_output
 from ...fields.clamped import field_adapter
-from ...judgement import assess_law, find_height
+from ...judgement import assess_law, find_rms_height
 from ...pressure import warn_missing_members
 from ...shown import fact_document, format_facts
 from . import bodies, compute, load_joint_file
@@ -42,9 +42,9 @@ OPTION_NAMES = {"length": "length_unit", "pressure": "pressure_unit", "beside": 
 """{name of an argument in the library: name of its option}, where the names differ."""
 
 
-def _declare_import(steps: SubParsers) -> None:
+def _declare_import(subcommands: SubParsers) -> None:
     text = "import a nodal contact result into the parameter file of a joint"
-    step = declare_command(steps, "import", _run_import, text)
+    step = declare_command(subcommands, "import", _run_import, text)
     declare_argument(
         step, "file", Path, "contact result: CSV, CalculiX .frd, ANSYS or Abaqus listing, or a mesh"
     )
@@ -123,7 +123,7 @@ def _run_import(args: argparse.Namespace) -> CommandResult:
         write_parameter_text(args.out, format_parameter_file(file))
     facts = _collect_results(args, file, field, reduction)
     judgement = assess_law(
-        KINDS[file.joint].extract_law(file.values), [facts["p_mean"]], find_height(file), facts["p_max"]
+        KINDS[file.joint].extract_law(file.values), [facts["p_mean"]], find_rms_height(file), facts["p_max"]
     )
     facts |= {"outline": notes[0]} if notes else {}
     judgement = judgement.with_warnings([*notes[1:], *([] if plates else warn_missing_members(start))])
@@ -192,30 +192,30 @@ def _collect_results(
     }
 
 
-def _format_results(facts: dict[str, Any], area_before: float) -> list[str]:
+def _format_results(result_values: dict[str, Any], area_before: float) -> list[str]:
     from ...fields.sums import PRELOAD_RATIO_RANGE
 
     low, high = PRELOAD_RATIO_RANGE
-    difference = 100.0 * (facts["force"] / facts["force_of_the_bolts"] - 1.0)
+    difference = 100.0 * (result_values["force"] / result_values["force_of_the_bolts"] - 1.0)
     lines = [
-        f"{facts['nodes']} nodes ({facts['open_nodes']} open), pressure up to "
-        f"{facts['p_max'] / 1e6:.4g} MPa, mean {facts['p_mean'] / 1e6:.4g} MPa",
-        f"force {facts['force']:.6g} N, {difference:+.2g} % from the bolt force, "
-        f"{facts['force_of_the_bolts']:.6g} N; the field is scaled to the bolt force",
-        f"A_0 is the nodes' area, {facts['A_0']:.6g} m2 (it was {area_before:.6g} m2)",
+        f"{result_values['nodes']} nodes ({result_values['open_nodes']} open), pressure up to "
+        f"{result_values['p_max'] / 1e6:.4g} MPa, mean {result_values['p_mean'] / 1e6:.4g} MPa",
+        f"force {result_values['force']:.6g} N, {difference:+.2g} % from the bolt force, "
+        f"{result_values['force_of_the_bolts']:.6g} N; the field is scaled to the bolt force",
+        f"A_0 is the nodes' area, {result_values['A_0']:.6g} m2 (it was {area_before:.6g} m2)",
     ]
-    if facts["loads"]:
+    if result_values["loads"]:
         lines.append(
-            f"{facts['points']} points stand for them: force, K_zz, K_xx, K_rx, K_ry within "
-            f"{facts['deviation']:.1e} at {facts['loads']} other loads (preload {low:g} to {high:g} times "
-            f"this one, pressed to fully open, moment up to {facts['largest_moment']:.4g} N.m at this one)"
+            f"{result_values['points']} points stand for them: force, K_zz, K_xx, K_rx, K_ry within "
+            f"{result_values['deviation']:.1e} at {result_values['loads']} other loads (preload {low:g} to {high:g} times "
+            f"this one, pressed to fully open, moment up to {result_values['largest_moment']:.4g} N.m at this one)"
         )
     else:
         lines.append("all nodes are kept")
-    if facts["deviation_beyond"]:
+    if result_values["deviation_beyond"]:
         lines.append(
-            f"larger moments open nodes: within {facts['deviation_beyond']:.1e} until a row is unloaded"
+            f"larger moments open nodes: within {result_values['deviation_beyond']:.1e} until a row is unloaded"
         )
-    if "outline" in facts:
-        lines.append(facts["outline"])
+    if "outline" in result_values:
+        lines.append(result_values["outline"])
     return lines

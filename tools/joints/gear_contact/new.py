@@ -32,18 +32,18 @@ def _make_joint(options: DrawingOptions) -> NewJoint:
     hertz = hertz_line_contact(load, width, curvature, contact_modulus(*sides))
     text = f"Hertz's line contact under {load:g} N, {width * 1e3:g} mm wide, 1/R = {curvature:.4g} 1/m"
     sheet.add("A_0", float(hertz.area), "derived", text)
-    sheet.add_stated("inputs.f", load)
+    sheet.add_drawing_value("inputs.f", load)
     file = sheet.build_file(f"flanks {options['width']} wide")
     state = GearContactSpring.tabulate(file.values).evaluate(load)
     facts = {
         "load": (load, "N", "normal load"),
         "half_width": (float(hertz.half_width), "m", "half width of the patch (Hertz)"),
-        "p_hertz": (float(hertz.pressure), "Pa", "largest pressure of smooth flanks (Hertz)"),
+        "p_hertz": (float(hertz.peak_pressure), "Pa", "largest pressure of smooth flanks (Hertz)"),
         "h": (file.values_by_name["h"], "m", "combined rms height of both flanks"),
         "K_N": (float(state["K_N"]), "N/m", "stiffness of the rough interface at this load"),
         "s_rel": (float(state["s_rel"]), "m", "approach of the rough interface at this load"),
     }
-    return NewJoint(file, facts, faces.warn_hardness(float(hertz.pressure), file.values_by_name["H"]))
+    return NewJoint(file, facts, faces.warn_hardness(float(hertz.peak_pressure), file.values_by_name["H"]))
 
 
 def _parse_curvature(radius_text: str) -> float:

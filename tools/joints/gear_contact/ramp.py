@@ -44,7 +44,7 @@ def figures(job_result: Any) -> list[Figure]:
         Panel("Approach over load", "load [kN]", "s_rel [um]", [Series("s_rel", load, c["s_rel"] * 1e6)]),
     ]
     text = "Up to about a tenth of the nominal area in real contact."
-    return [Figure("Stiffness and approach over load", text, panels, data="GearContact.csv")]
+    return [Figure("Stiffness and approach over load", text, panels, data_file="GearContact.csv")]
 
 
 def evaluate(

@@ -145,7 +145,11 @@ def make_joint(options: DrawingOptions) -> NewJoint:
     stiffness = wheels.contact_ratio * float(spring.curve.derivatives(np.array([deflection]), 1)[1][0])
     facts = {
         "load": (load, "N", "normal force of the mesh at the torque"),
-        "p_hertz": (float(hertz.pressure), "Pa", "largest pressure of smooth flanks, one pair in contact"),
+        "p_hertz": (
+            float(hertz.peak_pressure),
+            "Pa",
+            "largest pressure of smooth flanks, one pair in contact",
+        ),
         "contact_ratio": (wheels.contact_ratio, "1", "mean number of pairs in contact over the full width"),
         "overlap_ratio": (wheels.overlap_ratio, "1", "mesh cycles over which a helix spreads the contact"),
         "K_tooth": (file.values_by_name["K_tooth"], "N/m", "bending of one pair (ISO 6336-1)"),
@@ -158,7 +162,7 @@ def make_joint(options: DrawingOptions) -> NewJoint:
         ),
         "deflection": (deflection, "m", "deflection of a tooth pair at this load"),
     }
-    return NewJoint(file, facts, faces.warn_hardness(float(hertz.pressure), file.values_by_name["H"]))
+    return NewJoint(file, facts, faces.warn_hardness(float(hertz.peak_pressure), file.values_by_name["H"]))
 
 
 def _parse_wheels(options: DrawingOptions) -> InvoluteGearPair:
@@ -192,14 +196,14 @@ def _add_parameters(
     """
     for i, radius in enumerate(wheels.base_radii):
         sheet.add(f"r_b{i + 1}", radius, "derived", "m_n z cos(alpha_t)/(2 cos(beta)) of the drawing")
-    sheet.add_stated("teeth1", wheels.tooth_counts[0])
+    sheet.add_drawing_value("teeth1", wheels.tooth_counts[0])
     if options["backlash"] is None:
         distance = sum(wheels.reference_radii) * 1e3
         min_backlash = 2.0 / 3.0 * (0.06 + 0.0005 * distance + 0.03 * wheels.normal_module * 1e3) * 1e-3
         text = f"least backlash of ISO/TR 10064-2, Annex A, at {distance:.4g} mm of centre distance"
         sheet.add("backlash", min_backlash, "estimate", text)
     else:
-        sheet.add_stated("backlash", parse_number("backlash", options["backlash"], "um", "m"))
+        sheet.add_drawing_value("backlash", parse_number("backlash", options["backlash"], "um", "m"))
     sheet.add(
         "K_tooth", tooth_stiffness, "derived", "single stiffness c' of ISO 6336-1, method B, times the width"
     )

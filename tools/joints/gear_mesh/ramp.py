@@ -74,7 +74,7 @@ def figures(job_result: Any) -> list[Figure]:
             "Torque over angle",
             "What turns wheel 1, wheel 2 held: backlash and the flanks of both sides; then the first touch.",
             torque_angle_panels(job_result.ramps["GearMesh"]),
-            data="GearMesh.csv",
+            data_file="GearMesh.csv",
         ),
     ]
 

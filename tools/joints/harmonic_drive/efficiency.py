@@ -118,12 +118,12 @@ class DriveTestRig:
         torque : [N.m] external torque on the output, positive in the direction of its angle
         """
         wind_up, ratio = self._wind_up(torque), self.ratio
-        self.drive.set(self.motor_angle, 0.0, self.motor_angle / ratio + wind_up, 0.0)
-        self.drive.step(float(self.step_count), 1.0)
+        self.drive.set_inputs(self.motor_angle, 0.0, self.motor_angle / ratio + wind_up, 0.0)
+        self.drive.do_step(float(self.step_count), 1.0)
         self.step_count += 1
         self.motor_angle += math.copysign(_DEVELOPED_ROTATION_RATIO * self.presliding, speed)
-        self.drive.set(self.motor_angle, speed, self.motor_angle / ratio + wind_up, speed / ratio)
-        return -self.drive.get()[1]
+        self.drive.set_inputs(self.motor_angle, speed, self.motor_angle / ratio + wind_up, speed / ratio)
+        return -self.drive.get_outputs()[1]
 
     def efficiency(self, speed: float, load: float) -> float:
         """Efficiency [1]: output power over motor power.
@@ -157,8 +157,8 @@ class DriveTestRig:
         """Wind-up [rad] of the output under a torque [N.m]."""
 
         def transmitted_torque(angle: float) -> float:
-            self.drive.set(self.motor_angle, 0.0, self.motor_angle / self.ratio + angle, 0.0)
-            return self.drive.get()[0]
+            self.drive.set_inputs(self.motor_angle, 0.0, self.motor_angle / self.ratio + angle, 0.0)
+            return self.drive.get_outputs()[0]
 
         return solve_wind_up(transmitted_torque, torque, self.stiffness)
 
@@ -168,7 +168,7 @@ def open_fmu_test_rig(path: Path, parameters: Mapping[str, float]) -> Iterator[D
     """Open the FMU HarmonicDriveSpring (FMI 2.0) as a test rig; the parameters replace default values."""
     wires = (*_TORQUE_OUTPUTS, "K_WTS", "ratio", "presliding")
     with Slave(path, {**parameters, **_STEADY_PARAMETERS}, _FLANGE_MOTION, wires) as drive:
-        _, _, stiffness, ratio, presliding = drive.get()
+        _, _, stiffness, ratio, presliding = drive.get_outputs()
         yield DriveTestRig(drive, ratio, presliding, stiffness)
 
 

@@ -19,7 +19,7 @@ from ...ramps import ramp
 from ...ramps.ramp import RampResult
 from ...report.figure import Figure, Panel, Series, published_series
 from ...systems.master import Slave
-from ...systems.ringing import Axis, Body, Pull, Rest
+from ...systems.ringing import PlotAxis, SlipDeflection, VibrationTest, WorkingPoint
 from . import efficiency
 
 
@@ -77,13 +77,13 @@ def figures(job_result: Any) -> list[Figure]:
             "K_WTS and the contact pair's part of it on the drive's scale, as the FMU gives them; then the "
             "pair on the scale of the paper's figures.",
             stiffness_panels(result, job_result.rows),
-            data=f"{_COMPLIANCE_FMU}.csv",
+            data_file=f"{_COMPLIANCE_FMU}.csv",
         ),
         Figure(
             "Torque over wind-up",
             "The integral of dT/K_WTS, odd in the torque.",
             [torque_angle_panel(result)],
-            data=f"{_COMPLIANCE_FMU}.csv",
+            data_file=f"{_COMPLIANCE_FMU}.csv",
         ),
         Figure(
             "What friction costs",
@@ -147,7 +147,7 @@ def stiffness_panels(result: RampResult, rows: list[ValidatedPoint]) -> list[Pan
         Series(
             "computed: largest and least over w",
             [r.point.where["torque"] for r in ends],
-            [float(r.computed) for r in ends],
+            [float(r.computed_value) for r in ends],
             "empty",
             titles=[r.point.id for r in ends],
         ),
@@ -173,24 +173,24 @@ TORQUE_RATIOS = (0.0, 0.1, 0.2, 0.4, 0.7, 1.0)
 def _vibration_torques(path: Path, parameters: Mapping[str, float]) -> list[float]:
     """Torques [N.m] of the simulated free vibrations, from zero to the rated torque."""
     with Slave(path, parameters, (), ("rated_torque",)) as drive:
-        (rated,) = drive.get()
+        (rated,) = drive.get_outputs()
     return [share * rated for share in TORQUE_RATIOS]
 
 
-def _rest_state(path: Path, torque: float, parameters: Mapping[str, float]) -> Rest:
+def _rest_state(path: Path, torque: float, parameters: Mapping[str, float]) -> WorkingPoint:
     with Slave(path, {**parameters, "w2": 1.0}, ("w1",), ("tau",)) as dashpot:
-        (damping,) = dashpot.get()
+        (damping,) = dashpot.get_outputs()
     with Slave(path, parameters, ("phi2", "w2"), ("tau", "K_WTS")) as law:
         angle, stiffness = _wind_up_and_stiffness(law, torque)
-    return Rest(torque, angle, stiffness, damping)
+    return WorkingPoint(torque, angle, stiffness, damping)
 
 
 def _wind_up_and_stiffness(drive: Slave, torque: float) -> tuple[float, float]:
     """Wind-up [rad] and stiffness [N.m/rad] of a drive under a torque [N.m]."""
 
     def torque_and_stiffness(angle: float) -> tuple[float, float]:
-        drive.set(angle, 0.0)
-        transmitted, stiffness = drive.get()
+        drive.set_inputs(angle, 0.0)
+        transmitted, stiffness = drive.get_outputs()
         return transmitted, stiffness
 
     def transmitted_torque(angle: float) -> float:
@@ -200,22 +200,22 @@ def _wind_up_and_stiffness(drive: Slave, torque: float) -> tuple[float, float]:
     return angle, torque_and_stiffness(angle)[1]
 
 
-RINGING = Body(
-    model="HarmonicDriveSpring",
-    motion=("phi2", "w2"),
-    force="tau2",
-    partner="RotationalInertia",
-    over="tau",
-    loads=_vibration_torques,
-    start=lambda torque: {},
-    rest=_rest_state,
-    release=1e-3,
-    load=Axis("torque", "N m", 1.0),
-    deflection=Axis("wind-up", "urad", 1e6),
+RINGING = VibrationTest(
+    model_name="HarmonicDriveSpring",
+    motion_inputs=("phi2", "w2"),
+    force_output="tau2",
+    body_model="RotationalInertia",
+    load_variable="tau",
+    find_example_loads=_vibration_torques,
+    find_start_values=lambda torque: {},
+    find_working_point=_rest_state,
+    release_force=1e-3,
+    load_axis=PlotAxis("torque", "N m", 1.0),
+    deflection_axis=PlotAxis("wind-up", "urad", 1e6),
     doc="motor held",
-    stiffness="K_WTS",
-    pull=Pull(0.0, 5e-4, "three lengths of its hysteresis"),
-    elastic={"hysteresis_loss": 0.0},
+    stiffness_output="K_WTS",
+    slip_deflection=SlipDeflection(0.0, 5e-4, "three lengths of its hysteresis"),
+    frictionless_parameters={"hysteresis_loss": 0.0},
 )
 
 

@@ -82,13 +82,13 @@ def TRANSMISSION(name: str, drive: Drive) -> Transmission:
         damping=drive.d,
         rated_torque=drive.rated_torque,
         max_torque=float(spring.curve.end[1]),
-        dry=drive.friction_coulomb,
-        viscous=drive.friction_viscous,
-        static=drive.friction_coulomb + drive.friction_stribeck,
+        dry_friction=drive.friction_coulomb,
+        viscous_friction=drive.friction_viscous,
+        static_friction=drive.friction_coulomb + drive.friction_stribeck,
         stribeck_speed=drive.stribeck_speed,
-        presliding=drive.presliding,
-        wind_up=wind_up,
-        lacks=tuple(_list_missing_effects(drive)),
+        presliding_angle=drive.presliding,
+        compute_wind_up=wind_up,
+        omitted_effects=tuple(_list_missing_effects(drive)),
     )
 
 

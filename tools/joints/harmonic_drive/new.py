@@ -14,8 +14,8 @@ from ...drawing.reading import parse_number, parse_temperature
 from ...joint_parts import Option
 from .catalogue import COLUMNS, STIFFNESS_COLUMNS, STIFFNESS_NAMES, find_drive
 from .friction import (
-    FRICTION_COLUMNS,
     CATALOGUE_SPEED,
+    FRICTION_COLUMNS,
     describe_interval,
     friction_parameters,
     rated_efficiency,

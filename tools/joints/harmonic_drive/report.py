@@ -23,7 +23,7 @@ from ...report.figure import ROLE_INDEPENDENT, ROLE_PREDICTED, ROLE_SET, Compari
 from .catalogue import COLUMNS, STIFFNESS_NAMES, find_drive
 from .efficiency import DriveTestRig, hysteresis_loss, lost_motion, make_python_test_rig
 from .fit.drive import CatalogueRow
-from .friction import FRICTION_COLUMNS, PARAMETER_OF_COLUMN, CATALOGUE_SPEED
+from .friction import CATALOGUE_SPEED, FRICTION_COLUMNS, PARAMETER_OF_COLUMN
 
 MOTOR_SPEEDS = (500, 2000, 3500)
 """Motor speeds [rev/min] in the figure of the efficiency."""

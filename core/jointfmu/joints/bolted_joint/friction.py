@@ -15,8 +15,8 @@ from ...mechanics.sliders import (
     Foundation,
     height_offsets,
     heights_after_liftoff,
-    sum_slider_forces,
     slider_heights,
+    sum_slider_forces,
 )
 from ...quantity import Array
 from .kinematics import TANGENTIAL, tangential_jacobian

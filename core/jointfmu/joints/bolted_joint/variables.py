@@ -9,7 +9,7 @@ import numpy as np
 
 from ...mechanics.steps import STABLE_STEP_OUTPUTS
 from ...quantity import Number, select
-from ..model import EXTRAPOLATION_WARNING, LoadCycle, LoadRamp, Model, ValidityLimit, VariableValues, Variable
+from ..model import EXTRAPOLATION_WARNING, LoadCycle, LoadRamp, Model, ValidityLimit, Variable, VariableValues
 from .joint import BoltedJointSpring, JointInputs
 from .law import Bolted, BoltedJoint, working_preload
 from .outputs import bolt_force_name

@@ -2,7 +2,7 @@
 
 from ...mechanics.steps import STABLE_STEP_OUTPUTS
 from ..kind import JointKind, RoughSurface
-from ..model import EXTRAPOLATION_WARNING, LoadRamp, Model, ValidityLimit, VariableValues, Variable
+from ..model import EXTRAPOLATION_WARNING, LoadRamp, Model, ValidityLimit, Variable, VariableValues
 from .spring import GearMesh, GearMeshSpring, RoughGearMesh
 
 _ANGLE_INPUTS = ("phi1", "phi2")

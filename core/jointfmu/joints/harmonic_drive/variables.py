@@ -2,7 +2,7 @@
 
 from ...mechanics.steps import STABLE_STEP_OUTPUTS
 from ...quantity.units import LUBRICANT_TEMPERATURES
-from ..model import EXTRAPOLATION_WARNING, LoadCycle, LoadRamp, Model, ValidityLimit, VariableValues, Variable
+from ..model import EXTRAPOLATION_WARNING, LoadCycle, LoadRamp, Model, ValidityLimit, Variable, VariableValues
 from .drive import HARMONICS
 from .friction import REFERENCE_TEMPERATURE
 from .law import HarmonicDrive

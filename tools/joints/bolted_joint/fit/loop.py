@@ -33,7 +33,7 @@ from jointfmu.quantity.units import unit_sizes
 from ....fitting import memory
 from ....fitting.branches import Loops
 from ....fitting.hysteresis import HysteresisLaw
-from ....fitting.least_squares import UnknownExchange, Unknown
+from ....fitting.least_squares import Unknown, UnknownExchange
 from ....fitting.measurement import ColumnNames, Measurement, read_measurement
 from ....fitting.outcome import Facts, FitResult, fitted_parameters, make_unknowns
 from .preload import FITTED_PARAMETERS as INTERFACE

@@ -19,10 +19,10 @@ from ....modelica.records import (
     ModelicaRecord,
     WorkingPoint,
     decimate_curve,
-    format_computed,
-    format_given,
+    format_computed_values,
     format_matrix,
     format_number,
+    format_parameter_values,
     make_identifier,
 )
 
@@ -142,7 +142,7 @@ def _make_records(file: ParameterFile, points: Sequence[WorkingPoint]) -> list[M
 def _make_record(name: str, spring: BoltedJointSpring, preload: float, moment: float) -> ModelicaRecord:
     tight = combine_nodes(spring, preload, moment)
     rest = spring.evaluate(preload, moment, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-    values = format_given(
+    values = format_parameter_values(
         {
             "preload": preload,
             "moment": moment,
@@ -153,7 +153,7 @@ def _make_record(name: str, spring: BoltedJointSpring, preload: float, moment: f
             "damping": spring.joint.damping,
             "mu": spring.joint.mu,
         }
-    ) | format_computed(
+    ) | format_computed_values(
         {"tight": tight.preload_contact_force, "shear": tight.shear_ratio, "eta_t": float(rest["eta_t"])}
     )
     force = f"{preload / 1e3:g} kN"
@@ -174,11 +174,11 @@ def _make_record(name: str, spring: BoltedJointSpring, preload: float, moment: f
 
 COMPONENT = ModelicaComponent(
     name="BoltedJoint",
-    base="BoltedJoint",
-    points=WORKING_POINTS,
-    records=_make_records,
+    base_record="BoltedJoint",
+    working_points=WORKING_POINTS,
+    make_records=_make_records,
     flanges=("flange_x", "flange_y", "flange_z"),
-    template_texts=lambda joint: {
+    make_template_texts=lambda joint: {
         "damping_tolerance": f"{DAMPING_TOLERANCE:g}",
         "strongest": f"{MAX_FORCE_RATIO:g}",
         "spread": f"{UNIFORM_DEVIATION:.15g}",

@@ -13,7 +13,7 @@ from jointfmu.quantity import Array
 from ....drawing import faces, vdi2230
 from ....drawing.part import DrawingOptions, NewJoint, ParameterSheet
 from ....drawing.reading import parse_number, parse_numbers
-from ....drawing.tables import Thread, strength, thread_source
+from ....drawing.tables import Thread, property_class_strength, thread_source
 from ....pressure import warn_overload
 from ..report import friction_results
 from . import computed, layout
@@ -231,7 +231,7 @@ def _add_plate(
     sheet: ParameterSheet, plate: BoltedPlate, clamped_bolt: ClampedBolt, hole_source: tuple[str, str]
 ) -> None:
     for name in ("length", "width", "x", "y"):
-        sheet.add_stated(f"plate.{name}", getattr(plate, name))
+        sheet.add_drawing_value(f"plate.{name}", getattr(plate, name))
     sheet.add("plate.hole_diameter", plate.hole_diameter, *hole_source)
     cone = (
         f"VDI 2230, cone from d_w = {clamped_bolt.bearing_diameter * 1e3:g} mm over "
@@ -259,15 +259,15 @@ def _add_preload(sheet: ParameterSheet, options: DrawingOptions, thread: Thread)
     """
     name = options["property_class"] or "8.8"
     if options["preload"] is None:
-        preload = vdi2230.assembly_preload(thread, strength(name, "yield", thread))
+        preload = vdi2230.assembly_preload(thread, property_class_strength(name, "yield", thread))
         text = f"VDI 2230, Table A1: {thread.name}-{name}, 90 % of the yield strength, mu_G = 0.12"
         sheet.add("inputs.preload", preload, "estimate", text)
     else:
         preload = parse_number("preload", options["preload"], "N", "N")
-        sheet.add_stated("inputs.preload", preload)
+        sheet.add_drawing_value("inputs.preload", preload)
     if options["property_class"] is None:
         return preload, []
-    proof_load = strength(name, "proof", thread) * vdi2230.stress_area(thread)
+    proof_load = property_class_strength(name, "proof", thread) * vdi2230.stress_area(thread)
     return preload, warn_overload(
         "preload", preload, (proof_load, f"the proof load of {thread.name}-{name} (ISO 898-1)")
     )
@@ -279,7 +279,7 @@ def _add_embedding_loss(
     """Add the preload loss [N] by embedding to the sheet, and return it."""
     if options["embedding"] is not None:
         loss = parse_number("embedding", options["embedding"], "N", "N", None)
-        sheet.add_stated("embedding", loss)
+        sheet.add_drawing_value("embedding", loss)
         return loss
     depth = vdi2230.embedding_depth(heights.Rz, 1, bool(options["tapped"]))
     loss = depth / (1.0 / clamped_bolt.bolt_stiffness + 1.0 / clamped_bolt.member_stiffness)

@@ -26,7 +26,7 @@ from ....fitting.branches import Loops
 from ....fitting.hysteresis import HysteresisLaw, NonlinearSpring
 from ....fitting.least_squares import Solution, Unknown, solve
 from ....fitting.measurement import read_measurement
-from ....fitting.outcome import FitResult, Picture, fitted_parameters, undetermined_names, make_unknowns
+from ....fitting.outcome import FitResult, Picture, fitted_parameters, make_unknowns, undetermined_names
 from . import drive
 from .drive import COLUMN_NAMES, RAD_PER_ARCMIN
 from .log_reading import Samples

@@ -307,14 +307,14 @@ def _time_step(table: columns.Columns) -> tuple[Array, float]:
     if np.any(wrong := steps <= 0.0):
         first = int(np.argmax(wrong))
         raise ValueError(
-            f"{table.path}: line {table.lines[first + 1]}: time = {time[first + 1]:.9g} s after "
+            f"{table.path}: line {table.line_numbers[first + 1]}: time = {time[first + 1]:.9g} s after "
             f"{time[first]:.9g} s runs back; expected rising times"
         )
     step = float(np.median(steps))
     if np.any(wrong := steps > GAP_RATIO * step):
         first = int(np.argmax(wrong))
         raise ValueError(
-            f"{table.path}: line {table.lines[first + 1]}: a gap of {steps[first]:.4g} s, allowed is "
+            f"{table.path}: line {table.line_numbers[first + 1]}: a gap of {steps[first]:.4g} s, allowed is "
             f"{GAP_RATIO * step:.4g} s; cut the log there, several files are read at once"
         )
     if np.max(np.abs(steps - step)) < STEP_TOLERANCE * step:
