@@ -5,8 +5,8 @@ import sys
 from pathlib import Path
 
 try:
-    from jointfmu_fmu_src.native.compiled.ahead import compile_ahead
-    from jointfmu_fmu_src.native.compiled.kept import SHIPPED_FOLDER
+    from jointfmu_fmu_src.native.compiled.compile_ahead import compile_ahead
+    from jointfmu_fmu_src.native.compiled.compiled_models import SHIPPED_FOLDER
 except ImportError as error:
     sys.exit(f"compile_parts.py: {error}; install what building needs with: pip install -e '.[build]'")
 

@@ -137,7 +137,8 @@ def main():
     mass = sum(body.mass.sum() for body in structure.bodies) * 2.0 / 3.0
     nodes = sum(body.size for body in structure.bodies) // 3
     print(
-        f"{mass:.3f} kg, {nodes} nodes and {structure.interface.quadrature_area.size} patches in half the width"
+        f"{mass:.3f} kg, {nodes} nodes and {structure.interface.quadrature_area.size} patches in half "
+        "the width"
     )
     found = joints(structure)
     glued = linear(structure, found)

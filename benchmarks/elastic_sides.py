@@ -26,7 +26,7 @@ from jointfmu_fmu_src.native.compiled import compiler
 from jointfmu_tools.fem.reduction.states import CellJoint, CellLoads
 from jointfmu_tools.fem.whole_joint import JointFiniteElements, LinearJoint
 from jointfmu_tools.host import Instance, open_instance, unpack_fmu
-from jointfmu_tools.joints.bolted_joint.new import NEW, computed
+from jointfmu_tools.joints.bolted_joint.new import NEW, plate_finite_elements
 from lap_beam_reduction import patches as one_each
 from numpy.typing import NDArray
 from patch_reduction import gross_slip, poles_inside
@@ -36,8 +36,8 @@ from jointfmu.joints import MODELS
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring, JointInputs
 from jointfmu.joints.bolted_joint.law import preload_pressure
 from jointfmu.mechanics.footprint.bolts import pressure_distribution
-from jointfmu.mechanics.footprint.patches import reduce_points
-from jointfmu.mechanics.footprint.shape import PressureDistribution
+from jointfmu.mechanics.footprint.distribution import PressureDistribution
+from jointfmu.mechanics.footprint.point_reduction import reduce_points
 from jointfmu.parameters import ParameterFile
 
 Array = NDArray[np.float64]
@@ -84,15 +84,18 @@ class Joint:
         elements : the contact has a point for each element in place of nine
         """
         seen: dict[str, object] = {}
-        real = computed.compute_joint
+        real = plate_finite_elements.compute_joint
 
         def watched(
-            file: ParameterFile, plates: computed.BoltedPlates, to: str, shape: PressureDistribution | None
-        ) -> computed.ComputedJoint:
+            file: ParameterFile,
+            plates: plate_finite_elements.BoltedPlates,
+            to: str,
+            shape: PressureDistribution | None,
+        ) -> plate_finite_elements.ComputedJoint:
             joint = JointFiniteElements.from_assembly(plates.make_assembly(file), to, refinement)
             if elements:
                 joint = replace(joint, interface=one_each(joint.interface))
-            springs = computed._interface_stiffness(file, plates.preload, joint, shape)
+            springs = plate_finite_elements._interface_stiffness(file, plates.preload, joint, shape)
             linear = joint.linearize(springs, file.values.bolt_stiffness)
             seen.update(rigid=file, preload=plates.preload, normal=springs[:, 2], linear=linear)
             if refinement != 1.0:
@@ -103,13 +106,13 @@ class Joint:
             ):
                 return real(file, plates, to, shape)
 
-        computed.compute_joint = watched
+        plate_finite_elements.compute_joint = watched
         try:
             given = dict.fromkeys(option.name for option in NEW.options) | dict(example)
             given["attached"] = attached
             made = NEW.make_joint(given)
         finally:
-            computed.compute_joint = real
+            plate_finite_elements.compute_joint = real
         facts: dict[str, tuple[float, str, str]] = dict(made.facts)
         return cls(file=made.file, members=facts["member_stiffness"][0], **seen)  # type: ignore[arg-type]
 

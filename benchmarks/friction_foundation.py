@@ -156,7 +156,8 @@ def main() -> None:
             cells = [f"{max(f for f, _ in found):.2%}", *(f"{a:.1%}" for a in areas)]
             print("| " + " | ".join([name, f"{first:g}", *cells]) + " |", flush=True)
     print(
-        f"{spring.patches.area_share.size} patches, {spring.friction.foundation().slider_count} sliders each\n"
+        f"{spring.patches.area_share.size} patches, {spring.friction.foundation().slider_count} "
+        "sliders each\n"
     )
     print_counts()
     print_swings()

@@ -29,7 +29,7 @@ from jointfmu_fmu_src.native import data
 from jointfmu_fmu_src.native.code import generate
 from jointfmu_fmu_src.native.compiled import compiler
 from jointfmu_fmu_src.native.compiled.binary import fill_library
-from jointfmu_fmu_src.native.compiled.kept import get_compiled_model
+from jointfmu_fmu_src.native.compiled.compiled_models import get_compiled_model
 from jointfmu_tools.host import Instance
 
 from jointfmu.joints import MODELS

@@ -16,10 +16,10 @@ from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.bolted_joint.kinematics import tangential_displacement
 from jointfmu.mechanics.curve import Curve
 from jointfmu.mechanics.footprint.bolts import pressure_distribution
-from jointfmu.mechanics.footprint.friction import reduce_patches
-from jointfmu.mechanics.footprint.patches import reduce_points
+from jointfmu.mechanics.footprint.distribution import FrictionPatches, NodalField, PressureDistribution
+from jointfmu.mechanics.footprint.patch_reduction import reduce_patches
 from jointfmu.mechanics.footprint.plate import BoltedPlate
-from jointfmu.mechanics.footprint.shape import FrictionPatches, NodalField, PressureDistribution
+from jointfmu.mechanics.footprint.point_reduction import reduce_points
 from jointfmu.mechanics.jenkins import SliderUpdate
 from jointfmu.mechanics.sliders import FOUNDATION_SLIDERS, sum_slider_forces, torsion_directions
 from jointfmu.parameters import load_default

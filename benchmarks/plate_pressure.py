@@ -22,7 +22,7 @@ from jointfmu_tools.fields.joint_parameters import pressure_shape
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.mechanics.curve import tabulate_approach
 from jointfmu.mechanics.footprint import plate
-from jointfmu.mechanics.footprint.shape import PressureDistribution
+from jointfmu.mechanics.footprint.distribution import PressureDistribution
 from jointfmu.parameters import ParameterFile, load_parameter_file
 from jointfmu.quantity import flatten_parameters
 

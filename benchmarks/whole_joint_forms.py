@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.bolted_joint.law import RoughBoltedJoint
 from jointfmu.mechanics.curve import Curve
-from jointfmu.mechanics.footprint.shape import NodalField
+from jointfmu.mechanics.footprint.distribution import NodalField
 
 Array = NDArray[np.float64]
 

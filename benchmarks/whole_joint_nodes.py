@@ -24,7 +24,7 @@ from jointfmu_tools.fem.elasticity import Cholesky
 from jointfmu_tools.fem.reduction import elastic_bodies as reduction
 from jointfmu_tools.fem.reduction.states import approach_at_stiffness
 from jointfmu_tools.fem.whole_joint import JointFiniteElements
-from jointfmu_tools.joints.bolted_joint.new.computed import set_elastic_bodies
+from jointfmu_tools.joints.bolted_joint.new.plate_finite_elements import set_elastic_bodies
 from lap_beam_loops import Joint as Loops
 from lap_beam_reduction import AT_ONCE, Reduced
 from numpy.typing import NDArray

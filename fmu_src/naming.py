@@ -6,7 +6,8 @@ from keyword import iskeyword
 MAX_NAME_LENGTH = 63
 """Largest length of a name [1]: C compilers need not distinguish more characters."""
 NAME_RULE = (
-    f"at most {MAX_NAME_LENGTH} letters, digits and _, no digit first, no word of C, Python or Modelica, no device "
+    f"at most {MAX_NAME_LENGTH} letters, digits and _, no digit first, no word of C, Python or "
+    "Modelica, no device "
     "of Windows (con, nul, com1)"
 )
 """Rule for valid names, as error messages print it."""

@@ -228,10 +228,10 @@ def here_alone(versions: str = "23") -> Iterator[None]:
 
     versions : of FMI that are compiled
     """
-    from jointfmu_fmu_src.native.compiled import kept
+    from jointfmu_fmu_src.native.compiled import compiled_models
     from jointfmu_tools.systems.fmu import build as system
 
-    places, read = kept._candidate_paths, kept.unpack_model
+    places, read = compiled_models._candidate_paths, compiled_models.unpack_model
 
     def places_here(name: str) -> tuple[Path, ...]:
         *others, last = places(name)
@@ -244,17 +244,17 @@ def here_alone(versions: str = "23") -> Iterator[None]:
     def libraries_here(*files: Any, **options: Any) -> dict[str, bytes]:
         return compile_libraries(*files[:3], [platform_tuple], **options)
 
-    def read_here(content: bytes) -> kept.CompiledModel:
+    def read_here(content: bytes) -> compiled_models.CompiledModel:
         part = read(content)
-        return kept.CompiledModel(
+        return compiled_models.CompiledModel(
             part.sources, {v: {platform_tuple: built[platform_tuple]} for v, built in part.libraries.items()}
         )
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(kept, "VERSIONS", (*versions,))
-        patch.setattr(kept, "_places", places_here)
-        patch.setattr(kept, "unpack_model", read_here)
-        patch.setattr(kept, "libraries", libraries_here)
+        patch.setattr(compiled_models, "VERSIONS", (*versions,))
+        patch.setattr(compiled_models, "_places", places_here)
+        patch.setattr(compiled_models, "unpack_model", read_here)
+        patch.setattr(compiled_models, "libraries", libraries_here)
         patch.setattr(system, "libraries", libraries_here)
         yield
 
@@ -284,7 +284,7 @@ def solved_once(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     """Bodies of equal plates, of elements twice as large but with `fine_elements`, and patches of equal
     contacts are found once for all processes that share the tests."""
     from jointfmu_tools.fields import joint_parameters
-    from jointfmu_tools.joints.bolted_joint.new import computed
+    from jointfmu_tools.joints.bolted_joint.new import plate_finite_elements
 
     from jointfmu.joints.bolted_joint import joint
 
@@ -303,8 +303,8 @@ def solved_once(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
 
         return found
 
-    solve = computed.compute_joint
-    kept = once("whole", solve)
+    solve = plate_finite_elements.compute_joint
+    compiled_models = once("whole", solve)
 
     def whole(*asked: Any) -> Any:
         try:
@@ -320,10 +320,10 @@ def solved_once(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
                 "from_assembly",
                 partial(JointFiniteElements.from_assembly, refinement=REFINEMENT["bodies"]),
             )
-            return kept(*asked)
+            return compiled_models(*asked)
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(computed, "compute_joint", whole)
+        patch.setattr(plate_finite_elements, "compute_joint", whole)
         for module in (joint, joint_parameters):
             patch.setattr(module, "reduce_patches", once("patches", module.reduce_patches))
         yield

@@ -246,7 +246,8 @@ def _find_columns(
             raise ValueError(f"{path}: column {name!r} is given twice, allowed is once")
         if unit is None:
             raise ValueError(
-                f"{path}: column {name!r} has no unit, expected e.g. {name} [{next(iter(allowed_units[name]))}]"
+                f"{path}: column {name!r} has no unit, expected e.g. {name} "
+                f"[{next(iter(allowed_units[name]))}]"
             )
         try:
             places[name] = place, unit_size_in(unit, allowed_units[name]), unit
@@ -304,7 +305,8 @@ def _parse_column(path: Path, name: str, line_numbers: Sequence[int], cells: Seq
     if np.any(wrong := ~np.isfinite(values)):
         first = int(np.argmax(wrong))
         raise ValueError(
-            f"{path}: line {line_numbers[first]}: {name} = {cells[first].strip()!r} is no finite number with a "
+            f"{path}: line {line_numbers[first]}: {name} = {cells[first].strip()!r} is no finite "
+            "number with a "
             "decimal point"
         )
     return values

@@ -225,7 +225,8 @@ def _law_height(
     if not abs(entry_values[name] / stated - 1.0) <= RELATIVE_HEIGHT_TOLERANCE:
         makers = ", ".join(_ROUGHNESS_PREFIX + height for height in heights)
         raise ValueError(
-            f"{name} = {entry_values[name]:g} m beside {makers}, which make {stated:.4g} m: expected one of them, "
+            f"{name} = {entry_values[name]:g} m beside {makers}, which make {stated:.4g} m: expected "
+            "one of them, "
             f"or both within {RELATIVE_HEIGHT_TOLERANCE:.1%}"
         )
     return {}
@@ -277,7 +278,8 @@ def read_entries(
             raise ValueError(f"{path}: {name} = {entry!r}, expected a table {{ value, unit, kind, source }}")
         if unknown := set(entry) - set(allowed_keys):
             raise ValueError(
-                f"{path}: {name} has an unknown key {sorted(unknown)[0]!r}, allowed are {', '.join(allowed_keys)}"
+                f"{path}: {name} has an unknown key {sorted(unknown)[0]!r}, allowed are "
+                f"{', '.join(allowed_keys)}"
             )
         if name in declared_fields:
             unit = declared_fields[name].metadata.get("unit")

@@ -116,7 +116,7 @@ class Graph:
         reduced, self.constant_symbols, self.constants = ca.extract_parametric(everything, theta)
         values, functions = iter(ca.densify(reduced).nz), []
         for f in self.functions:
-            functions.append(replace(f, y=[next(values) for _ in f.result_expressions]))
+            functions.append(replace(f, result_expressions=[next(values) for _ in f.result_expressions]))
         self.functions = functions
 
     @property
@@ -221,7 +221,7 @@ def _split_regimes(spots: SpotDistribution) -> tuple[list[Number], list[SpotDist
     return ends, [
         replace(
             spots,
-            terms={
+            regime_terms={
                 name: tuple(active for term in row for active in active_terms(term, k)) or (zero,)
                 for name, row in spots.regime_terms.items()
             },

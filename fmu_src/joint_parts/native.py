@@ -10,7 +10,7 @@ import casadi as ca
 from jointfmu.contact import interface
 from jointfmu.joints.model import Model
 from jointfmu.mechanics import curve
-from jointfmu.mechanics.memory import HistoryLayout
+from jointfmu.mechanics.history_layout import HistoryLayout
 
 from .c_text import format_number
 from .graph import Graph

@@ -13,8 +13,8 @@ from ..partners import PARTNERS
 from ..proof.members import make_proof_files
 from ..xml_parts import VARIABILITIES
 from .compiled.binary import fill_library
+from .compiled.compiled_models import get_compiled_model
 from .compiled.compiler import join_universal, library_file_name, select_units
-from .compiled.kept import get_compiled_model
 from .data import make_fmu_data, make_placeholder, split_parameters
 from .description import format_build_description, format_fmi2_description, format_fmi3_description
 from .page import make_documentation

@@ -118,7 +118,7 @@ def make_data_block(
         c_text = _array_member(
             table, padded_rows[: max(len(rows), 1)]
         ).c_text  # C fills the remaining rows with zeros
-        members += [count, _array_member(table, padded_rows)._replace(text=c_text)]
+        members += [count, _array_member(table, padded_rows)._replace(c_text=c_text)]
         counts[f"MOST_{table.upper()}"] = most
     return DataBlock(token, members, counts)
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from jointfmu import __version__
 from jointfmu.joints.model import Model, TabulatedJoint
-from jointfmu.mechanics.steps import largest_stable_steps
+from jointfmu.mechanics.stable_steps import largest_stable_steps
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import describe_range, find_problem, flat_fields
 from jointfmu.quantity.units import UNITS, display_unit

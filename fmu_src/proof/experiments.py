@@ -16,7 +16,7 @@ from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile, load_parameter_file, read_document
 from jointfmu.quantity import replace_values
 
-from .neighbours import find_boundary_values
+from .boundary_values import find_boundary_values
 from .reference import Stimulus, compute_results, list_start_values, round_to_digits
 from .series import TimeSeries
 

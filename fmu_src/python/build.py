@@ -97,7 +97,8 @@ def build(
             members = {n: archive.read(n) for n in archive.namelist() if "__pycache__" not in n}
         if not any(name.startswith("binaries/") for name in members):
             raise RuntimeError(
-                f"{title}: pythonfmu in {_find_pythonfmu_folder()} has no libraries for an FMU; expected them below "
+                f"{title}: pythonfmu in {_find_pythonfmu_folder()} has no libraries for an FMU; "
+                "expected them below "
                 "pythonfmu/resources/binaries: install it again"
             )
         licences = {"license.txt": read_licence().encode(), "pythonfmu.txt": _pythonfmu_licence()}

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from clients import needs
 from conftest import refused_line
-from jointfmu_fmu_src.native.compiled import cache, compiler, kept
+from jointfmu_fmu_src.native.compiled import cache, compiled_models, compiler
 from jointfmu_fmu_src.native.data import split_parameters
 from jointfmu_tools.cli import main
 
@@ -37,9 +37,10 @@ MODEL = MODELS["GearContact"]
 POSIX = needs("Linux or macOS")
 
 
-def part() -> kept.CompiledModel:
-    return kept.CompiledModel(
-        {"law.c": "int x;\n"}, {v: dict.fromkeys(compiler.TARGETS, b"library") for v in kept.FMI_VERSIONS}
+def part() -> compiled_models.CompiledModel:
+    return compiled_models.CompiledModel(
+        {"law.c": "int x;\n"},
+        {v: dict.fromkeys(compiler.TARGETS, b"library") for v in compiled_models.FMI_VERSIONS},
     )
 
 
@@ -49,17 +50,19 @@ def cached(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     file = load_default(MODEL.joint)
     model = MODEL.with_parameters(file.joint, file.values)
     monkeypatch.setenv(cache.CACHE_VARIABLE, str(tmp_path / "cache"))
-    monkeypatch.setattr(kept, "SHIPPED", tmp_path / "none")
-    place = kept._candidate_paths(kept.compiled_model_name(model, split_parameters(model, file)))[-1]
-    kept._write_cached(place, kept.pack_model(part()))
-    monkeypatch.setattr(kept, "compile_model", lambda *_: pytest.fail("is compiled"))
+    monkeypatch.setattr(compiled_models, "SHIPPED", tmp_path / "none")
+    place = compiled_models._candidate_paths(
+        compiled_models.compiled_model_name(model, split_parameters(model, file))
+    )[-1]
+    compiled_models._write_cached(place, compiled_models.pack_model(part()))
+    monkeypatch.setattr(compiled_models, "compile_model", lambda *_: pytest.fail("is compiled"))
     return place
 
 
-def found() -> kept.CompiledModel:
+def found() -> compiled_models.CompiledModel:
     file = load_default(MODEL.joint)
     model = MODEL.with_parameters(file.joint, file.values)
-    return kept.get_compiled_model(model, file, split_parameters(model, file))
+    return compiled_models.get_compiled_model(model, file, split_parameters(model, file))
 
 
 def levels(cached: Path) -> list[Path]:
@@ -117,8 +120,8 @@ def test_what_the_compiler_keeps_is_checked_too(
 
 def test_a_missing_cache_is_empty(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(cache.CACHE_VARIABLE, str(tmp_path / "none"))
-    monkeypatch.setattr(kept, "SHIPPED", tmp_path / "none")
-    monkeypatch.setattr(kept, "compile_model", lambda *_: part())
+    monkeypatch.setattr(compiled_models, "SHIPPED", tmp_path / "none")
+    monkeypatch.setattr(compiled_models, "compile_model", lambda *_: part())
     assert cache.count_files() == (0, 0)
     assert found() == part()
 
@@ -127,8 +130,8 @@ def test_a_missing_cache_is_empty(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     "name", ["sources/../../x.c", "sources/a/b.c", "sources//x", "2/../../x", "/x", "other/x"]
 )
 def test_a_member_that_leaves_the_fmu_is_refused(name: str) -> None:
-    buffer = io.BytesIO(lzma.decompress(kept.pack_model(part())))
+    buffer = io.BytesIO(lzma.decompress(compiled_models.pack_model(part())))
     with tarfile.open(fileobj=buffer, mode="a") as archive:
         archive.addfile(tarfile.TarInfo(name))
     with pytest.raises(ValueError, match="no part"):
-        kept.unpack_model(lzma.compress(buffer.getvalue()))
+        compiled_models.unpack_model(lzma.compress(buffer.getvalue()))

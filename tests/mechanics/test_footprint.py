@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from jointfmu.joints.bolted_joint.law import preload_pressure, row_forces
 from jointfmu.mechanics.footprint.bolts import BoltedFrame, bolt_pressures, frame_cells, pressure_distribution
-from jointfmu.mechanics.footprint.shape import PRESSURE_DECIMALS
+from jointfmu.mechanics.footprint.distribution import PRESSURE_DECIMALS
 from jointfmu.parameters import load_default
 from jointfmu.quantity import flatten_parameters
 

@@ -8,11 +8,11 @@ import pytest
 
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.mechanics.footprint.bolts import pressure_distribution
+from jointfmu.mechanics.footprint.distribution import FrictionPatches, PressureDistribution
 from jointfmu.mechanics.footprint.elimination import solve_linear
-from jointfmu.mechanics.footprint.friction import reduce_patches
-from jointfmu.mechanics.footprint.patches import reduce_points
+from jointfmu.mechanics.footprint.patch_reduction import reduce_patches
 from jointfmu.mechanics.footprint.plate import BoltedPlate
-from jointfmu.mechanics.footprint.shape import FrictionPatches, PressureDistribution
+from jointfmu.mechanics.footprint.point_reduction import reduce_points
 from jointfmu.mechanics.sliders import FOUNDATION_SLIDERS, torsion_directions
 from jointfmu.parameters import load_default
 

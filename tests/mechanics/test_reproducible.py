@@ -5,7 +5,8 @@ import patch_reduction
 import pytest
 from test_patches import CONTACTS, balance, contact
 
-from jointfmu.mechanics.footprint import friction, patches
+from jointfmu.mechanics.footprint import patch_reduction, point_reduction
+from jointfmu.mechanics.footprint.distribution import PressureDistribution
 from jointfmu.mechanics.footprint.reproducible import (
     binary_power,
     binary_root,
@@ -13,7 +14,6 @@ from jointfmu.mechanics.footprint.reproducible import (
     matrix_product,
     round_distribution,
 )
-from jointfmu.mechanics.footprint.shape import PressureDistribution
 
 TIMES = 20
 """Each moves thousands of numbers, so that many lie where rounding changes its mind if any do."""
@@ -58,8 +58,8 @@ def searched(monkeypatch):
 
         return known
 
-    monkeypatch.setattr(patches, "_select_groups", once(patches._select_groups))
-    monkeypatch.setattr(friction, "_fit_points", once(friction._fit_points))
+    monkeypatch.setattr(point_reduction, "_select_groups", once(point_reduction._select_groups))
+    monkeypatch.setattr(patch_reduction, "_fit_points", once(patch_reduction._fit_points))
     return done
 
 
@@ -68,13 +68,15 @@ def searched(monkeypatch):
 def test_points_and_patches_are_those_of_inputs_a_bit_off(name, searched):
     """All numbers within 1e-9, and the exact sums those of the perturbed contact."""
     shape, rng = shape_of(name), np.random.default_rng(4)
-    before = [patches.reduce_points(shape, 120), friction.reduce_patches(shape, 22)]
+    before = [point_reduction.reduce_points(shape, 120), patch_reduction.reduce_patches(shape, 22)]
     searches = len(searched)
     for _ in range(TIMES):
         other = perturbed(shape, rng)
         there, size = balance(other)
         for one, few in zip(
-            before, (patches.reduce_points(other, 120), friction.reduce_patches(other, 22)), strict=True
+            before,
+            (point_reduction.reduce_points(other, 120), patch_reduction.reduce_patches(other, 22)),
+            strict=True,
         ):
             np.testing.assert_allclose(few.area_share, one.share, rtol=AGREE)
             for number in NUMBERS[1:]:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from jointfmu.mechanics.steps import MAX_STABLE_STEP, largest_stable_steps, mobility
+from jointfmu.mechanics.stable_steps import MAX_STABLE_STEP, largest_stable_steps, mobility
 
 
 def largest(zeta, late):

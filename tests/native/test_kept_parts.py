@@ -12,9 +12,9 @@ from conftest import RELEASED, Fmu, run_host
 from joint_cases import CASES, STATE, law, random_inputs
 from jointfmu_fmu_src.building import build
 from jointfmu_fmu_src.native.code.generate import generate_sources
-from jointfmu_fmu_src.native.compiled import cache, kept
-from jointfmu_fmu_src.native.compiled.ahead import list_structures
+from jointfmu_fmu_src.native.compiled import cache, compiled_models
 from jointfmu_fmu_src.native.compiled.binary import fill_library
+from jointfmu_fmu_src.native.compiled.compile_ahead import list_structures
 from jointfmu_fmu_src.native.data import (
     PLACEHOLDER,
     make_data_block,
@@ -40,7 +40,7 @@ def of(name: str, changes: dict[str, Any] | None = None) -> tuple[Model, Paramet
 
 
 def part_name(model: Model, file: ParameterFile) -> str:
-    return kept.compiled_model_name(model, split_parameters(model, file))
+    return compiled_models.compiled_model_name(model, split_parameters(model, file))
 
 
 # What a part is kept by
@@ -64,30 +64,32 @@ def test_a_part_is_of_the_sources_it_was_made_of(tmp_path: Path, monkeypatch: py
     model, file = of(NAMES[0])
     before = part_name(model, file)
     (tmp_path / "law.py").write_text("K = 1\n")
-    own = kept.find_source_folder
-    monkeypatch.setattr(kept, "own_folder", lambda model: tmp_path)
+    own = compiled_models.find_source_folder
+    monkeypatch.setattr(compiled_models, "own_folder", lambda model: tmp_path)
     first = part_name(model, file)
-    kept._digest_folders.cache_clear()
+    compiled_models._digest_folders.cache_clear()
     assert part_name(model, file) == first != before
     (tmp_path / "law.py").write_text("K = 2\n")
-    kept._digest_folders.cache_clear()
+    compiled_models._digest_folders.cache_clear()
     assert part_name(model, file) not in (first, before)
-    monkeypatch.setattr(kept, "own_folder", own)
+    monkeypatch.setattr(compiled_models, "own_folder", own)
     assert part_name(model, file) == before
 
 
-def a_part() -> kept.CompiledModel:
-    libraries = {v: {"x86_64-linux": f"library {v}".encode() * 100} for v in kept.FMI_VERSIONS}
-    return kept.CompiledModel({"law.c": "int x;\n", "law.h": ""}, libraries)
+def a_part() -> compiled_models.CompiledModel:
+    libraries = {v: {"x86_64-linux": f"library {v}".encode() * 100} for v in compiled_models.FMI_VERSIONS}
+    return compiled_models.CompiledModel({"law.c": "int x;\n", "law.h": ""}, libraries)
 
 
 def test_a_part_is_read_as_it_was_written() -> None:
-    content = kept.pack_model(a_part())
-    assert kept.unpack_model(content) == a_part()
-    assert kept.pack_model(kept.unpack_model(content)) == content
+    content = compiled_models.pack_model(a_part())
+    assert compiled_models.unpack_model(content) == a_part()
+    assert compiled_models.pack_model(compiled_models.unpack_model(content)) == content
     for broken in (b"", content[:-40], content[:100], b"x" + content):
-        with pytest.raises((OSError, ValueError, EOFError, kept.lzma.LZMAError, kept.tarfile.TarError)):
-            kept.unpack_model(broken)
+        with pytest.raises(
+            (OSError, ValueError, EOFError, compiled_models.lzma.LZMAError, compiled_models.tarfile.TarError)
+        ):
+            compiled_models.unpack_model(broken)
 
 
 def test_it_is_compiled_once_and_again_where_the_file_is_broken(
@@ -95,14 +97,14 @@ def test_it_is_compiled_once_and_again_where_the_file_is_broken(
 ) -> None:
     compiled = []
     monkeypatch.setenv(cache.CACHE_VARIABLE, str(tmp_path))
-    monkeypatch.setattr(kept, "compile_model", lambda *_: compiled.append(1) or a_part())
+    monkeypatch.setattr(compiled_models, "compile_model", lambda *_: compiled.append(1) or a_part())
     model, file = of(NAMES[0])
     for _ in range(3):
-        assert kept.get_compiled_model(model, file, split_parameters(model, file)) == a_part()
+        assert compiled_models.get_compiled_model(model, file, split_parameters(model, file)) == a_part()
     assert len(compiled) == 1
     (found,) = tmp_path.rglob("*.tar.xz")
     found.write_bytes(found.read_bytes()[:-40])
-    assert kept.get_compiled_model(model, file, split_parameters(model, file)) == a_part()
+    assert compiled_models.get_compiled_model(model, file, split_parameters(model, file)) == a_part()
     assert len(compiled) == 2
     assert [p for p in tmp_path.rglob("*") if p.is_file()] == [found]
 
@@ -110,23 +112,23 @@ def test_it_is_compiled_once_and_again_where_the_file_is_broken(
 def test_a_cache_that_cannot_be_written_is_no_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "file").write_text("mine")
     monkeypatch.setenv(cache.CACHE_VARIABLE, str(tmp_path / "file" / "below"))
-    monkeypatch.setattr(kept, "compile_model", lambda *_: a_part())
+    monkeypatch.setattr(compiled_models, "compile_model", lambda *_: a_part())
     model, file = of(NAMES[0])
-    assert kept.get_compiled_model(model, file, split_parameters(model, file)) == a_part()
+    assert compiled_models.get_compiled_model(model, file, split_parameters(model, file)) == a_part()
 
 
 def test_many_may_keep_the_same_part_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Old ones go, and nobody reads half a file."""
-    monkeypatch.setattr(kept, "MOST_KEPT", 3)
-    place, content = tmp_path / "new.tar.xz", kept.pack_model(a_part())
+    monkeypatch.setattr(compiled_models, "MOST_KEPT", 3)
+    place, content = tmp_path / "new.tar.xz", compiled_models.pack_model(a_part())
     for i in range(6):
         old = tmp_path / f"{i}.tar.xz"
         old.write_bytes(b"")
         os.utime(old, (i, i))
 
-    def keep_and_read(_: int) -> kept.CompiledModel:
-        kept._write_cached(place, content)
-        return kept.unpack_model(place.read_bytes())
+    def keep_and_read(_: int) -> compiled_models.CompiledModel:
+        compiled_models._write_cached(place, content)
+        return compiled_models.unpack_model(place.read_bytes())
 
     with ThreadPoolExecutor(8) as pool:
         assert set(map(str, pool.map(keep_and_read, range(64)))) == {str(a_part())}

@@ -11,8 +11,8 @@ import fmpy
 import numpy as np
 from conftest import here_alone
 from jointfmu_fmu_src.native.compiled.binary import fill_library
+from jointfmu_fmu_src.native.compiled.compiled_models import get_compiled_model
 from jointfmu_fmu_src.native.compiled.compiler import library_file_name
-from jointfmu_fmu_src.native.compiled.kept import get_compiled_model
 from jointfmu_fmu_src.native.data import make_fmu_data, make_placeholder, split_parameters
 from jointfmu_fmu_src.native.description import format_fmi3_description
 from jointfmu_tools.laboratory.describe import PageModule

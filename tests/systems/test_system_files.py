@@ -25,7 +25,7 @@ from jointfmu_tools.systems.wiring import find_connections, find_lag_parameters,
 from numpy.typing import NDArray
 
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
-from jointfmu.mechanics.steps import largest_stable_steps
+from jointfmu.mechanics.stable_steps import largest_stable_steps
 from jointfmu.parameters import format_parameter_file, load_default
 from jointfmu.quantity import replace_values as replaced
 

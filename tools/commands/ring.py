@@ -10,7 +10,7 @@ import numpy as np
 
 from jointfmu.files.outputs import PICTURE
 from jointfmu.files.writing import write_text
-from jointfmu.mechanics.steps import largest_stable_steps
+from jointfmu.mechanics.stable_steps import largest_stable_steps
 
 from .. import columns
 from ..command_line.common import (

@@ -134,7 +134,8 @@ def _run_sweep(args: argparse.Namespace) -> CommandResult:
     counts = {"runs": done.run_count, "now": done.new_runs, "failed": done.failed_count}
     before = done.run_count - done.new_runs
     lines = [
-        f"{done.run_count} runs in {args.out}: {done.new_runs} now, {before} before, {done.failed_count} failed"
+        f"{done.run_count} runs in {args.out}: {done.new_runs} now, {before} before, "
+        f"{done.failed_count} failed"
     ]
     if failure:
         values = ", ".join(f"{k} = {v}" for k, v in failure["parameters"].items())

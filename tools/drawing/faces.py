@@ -284,7 +284,8 @@ def warn_hardness(peak_pressure: float, hardness: float) -> list[str]:
     if peak_pressure <= hardness:
         return []
     return [
-        f"the greatest pressure, {peak_pressure:.4g} Pa, is above the hardness, {hardness:.4g} Pa: the law ends there"
+        f"the greatest pressure, {peak_pressure:.4g} Pa, is above the hardness, {hardness:.4g} Pa: the "
+        "law ends there"
     ]
 
 

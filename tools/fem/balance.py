@@ -106,7 +106,8 @@ class RigidBalance:
         """Raise RuntimeError if contact forces (q) [N] >= 0 do not balance the loads or leave a body free."""
         if not _has_independent_columns(self.unsupported_approach[contact_force > 0.0]):
             raise RuntimeError(
-                f"the contact does not hold the bodies: it stays closed at {np.count_nonzero(contact_force)} of "
+                "the contact does not hold the bodies: it stays closed at "
+                f"{np.count_nonzero(contact_force)} of "
                 f"{contact_force.size} points"
             )
         imbalance = float(np.abs(self.generalised_load - self.rigid_approach.T @ contact_force).sum())

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from jointfmu.mechanics.footprint.shape import PressureDistribution
+from jointfmu.mechanics.footprint.distribution import PressureDistribution
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
 

@@ -192,7 +192,8 @@ def _column_names(location: str, head_lines: Sequence[str]) -> list[str]:
     columns = [_standard_name(name) for name in names]
     if columns.count(PRESSURE_COLUMN) > 1:
         raise ValueError(
-            f"{location}: has {columns.count(PRESSURE_COLUMN)} columns {PRESSURE_COLUMN}, expected one contact pair"
+            f"{location}: has {columns.count(PRESSURE_COLUMN)} columns {PRESSURE_COLUMN}, expected one "
+            "contact pair"
         )
     return columns
 

@@ -164,7 +164,8 @@ def _classify_row(
     if PRESSURE_COLUMN in column_names and "X" not in column_names:
         if len(row_numbers) != len(column_names):
             raise ValueError(
-                f"{location}: has {len(row_numbers)} numbers, its table {len(column_names)}: {' '.join(column_names)}"
+                f"{location}: has {len(row_numbers)} numbers, its table {len(column_names)}: "
+                f"{' '.join(column_names)}"
             )
         return "pressure", [row_numbers[0], row_numbers[column_names.index(PRESSURE_COLUMN)]]
     if column_names[1:4] == ["X", "Y", "Z"]:

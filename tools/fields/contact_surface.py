@@ -137,7 +137,8 @@ def _contact_faces(result: NodalResult, plane: ContactPlane) -> list[NodeIndices
     if np.any(off_plane[loaded]):
         i = int(loaded[np.argmax(off_plane[loaded])])
         raise InputRefusal(
-            f"{result.describe_node(i)}: lies {abs(height[i] - level):.3g} m off the plane {plane.normal_axis} = "
+            f"{result.describe_node(i)}: lies {abs(height[i] - level):.3g} m off the plane "
+            f"{plane.normal_axis} = "
             f"{level:.6g} m; expected a plane contact and its normal",
             "normal",
         )

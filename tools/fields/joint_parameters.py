@@ -5,8 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from jointfmu.mechanics.footprint.friction import reduce_patches
-from jointfmu.mechanics.footprint.shape import (
+from jointfmu.mechanics.footprint.distribution import (
     BOLT_MEAN_NAMES,
     MAX_PATCHES,
     PressureDistribution,
@@ -14,12 +13,13 @@ from jointfmu.mechanics.footprint.shape import (
     nodal_field_entries,
     position_means,
 )
+from jointfmu.mechanics.footprint.patch_reduction import reduce_patches
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array, build_parameter_set
 from jointfmu.quantity.refusal import InputRefusal
 
 from .. import plots
-from .clamped import BoltedInterface, field_adapter
+from .bolted_interface import BoltedInterface, field_adapter
 from .nodal_result import ContactField
 from .reduction import MAX_KEPT_NODES, Reduction, reduce_field
 
@@ -79,7 +79,10 @@ def insert_field(
         }
         new_values |= {f"field.each_bolt_{a}": tuple(positions[:, i].tolist()) for i, a in enumerate("xy")}
     old_values = {n: v for n, v in file.values_by_name.items() if not n.startswith(_REPLACED_PREFIXES)}
-    text = f"{field_source}, {preload:g} N per bolt; {reduction.point_count} points for {reduction.node_count} nodes"
+    text = (
+        f"{field_source}, {preload:g} N per bolt; {reduction.point_count} points for "
+        f"{reduction.node_count} nodes"
+    )
     return replace(
         file,
         values=build_parameter_set(type(file.values), old_values | new_values),
@@ -150,7 +153,8 @@ def _force_ratio(
     if not abs(field.force / expected - 1.0) <= force_tolerance:
         raise InputRefusal(
             f"the force of {field_name} is {field.force:.6g} N, expected {expected:.6g} N within "
-            f"{100.0 * force_tolerance:.3g} %: {joint.n_bolts:g} bolts of {preload:g} N; a larger tolerance scales "
+            f"{100.0 * force_tolerance:.3g} %: {joint.n_bolts:g} bolts of {preload:g} N; a larger "
+            "tolerance scales "
             "it to theirs",
             "force_tolerance",
         )

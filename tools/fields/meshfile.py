@@ -102,6 +102,7 @@ def _select_values(path: Path, point_data: dict[str, Any], point_data_name: str 
         component = "1"
     if not component.isdigit() or not 1 <= int(component) <= value.shape[1]:
         raise ValueError(
-            f"{path}: {point_data_name!r} is no component of {name}; expected {name}:1 to {name}:{value.shape[1]}"
+            f"{path}: {point_data_name!r} is no component of {name}; expected {name}:1 to "
+            f"{name}:{value.shape[1]}"
         )
     return np.asarray(value[:, int(component) - 1], dtype=np.float64)

@@ -16,13 +16,13 @@ import numpy as np
 from scipy.linalg import qr, solve_triangular
 from scipy.optimize import nnls
 
-from jointfmu.mechanics.footprint.patches import find_peak_nodes
+from jointfmu.mechanics.footprint.distribution import PressureDistribution
+from jointfmu.mechanics.footprint.point_reduction import find_peak_nodes
 from jointfmu.mechanics.footprint.reproducible import round_distribution, round_to_digits
-from jointfmu.mechanics.footprint.shape import PressureDistribution
 from jointfmu.progress import track_progress
 from jointfmu.quantity import Array
 
-from .clamped import BoltedInterface, PressureFunction
+from .bolted_interface import BoltedInterface, PressureFunction
 from .nodal_result import NodeIndices
 from .sums import (
     PRELOAD_RATIO_RANGE,

@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointfmu.mechanics.curve import Curve, tabulate_approach
-from jointfmu.mechanics.footprint.shape import PressureDistribution
+from jointfmu.mechanics.footprint.distribution import PressureDistribution
 from jointfmu.quantity import Array
 
-from .clamped import BoltedInterface, PressureFunction
+from .bolted_interface import BoltedInterface, PressureFunction
 from .nodal_result import NodeIndices
 
 PRELOAD_RATIO_RANGE = (0.05, 3.0)

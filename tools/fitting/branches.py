@@ -122,7 +122,7 @@ class Loops:
         if law.elastic_spring is None:
             return 0.0
         force = law.elastic_spring.force
-        without_friction = self._force_residuals(replace(law, elastic=None), 0.0)
+        without_friction = self._force_residuals(replace(law, elastic_spring=None), 0.0)
         size = float(np.ptp(self.motion))
 
         def misfit(rest_motion: float) -> Array:
@@ -304,7 +304,8 @@ def _check_energy(
     )
     if area < -max(MAX_CREATED_ENERGY * deviation, RELATIVE_ROUNDING * size * float(np.ptp(force))):
         raise ValueError(
-            f"{message_prefix}the loop creates energy, area = {area:.3g} J, expected is 0 or more: the force has to "
+            f"{message_prefix}the loop creates energy, area = {area:.3g} J, expected is 0 or more: the "
+            "force has to "
             "lead the motion; reverse the order of the rows if they run back in time"
         )
     closed = [(work, common) for work, common, longer in loops if common >= MIN_COMMON_RANGE * longer]

@@ -73,13 +73,15 @@ def analyse_decay(time: Array, motion: Array, message_prefix: str = "") -> Decay
     largest = time[int(np.argmax(np.abs(motion - np.median(motion))))]
     if largest > time[-1] - RECORD_END_FRACTION * (time[-1] - time[0]):
         raise ValueError(
-            f"{message_prefix}the motion is largest at {largest:.3g} s, near its end: the joint creates energy, "
+            f"{message_prefix}the motion is largest at {largest:.3g} s, near its end: the joint "
+            "creates energy, "
             "expected is a decay; reverse the order of the rows if they run back in time"
         )
     windows = list(_fit_windows(time, motion, 2.0 * np.pi * frequency))
     if len(windows) < MIN_WINDOWS:
         raise ValueError(
-            f"{message_prefix}{len(windows)} windows of a few periods of {1.0 / frequency:.3g} s stand out of the "
+            f"{message_prefix}{len(windows)} windows of a few periods of {1.0 / frequency:.3g} s stand "
+            "out of the "
             f"noise, at least {MIN_WINDOWS} are needed"
         )
     amplitude, w, s, w_deviation, s_deviation, length = np.array(windows).T

@@ -82,7 +82,7 @@ class HysteresisLaw:
             return self
         force, energy = self.elastic_spring.force, self.elastic_spring.energy
         return replace(
-            self, elastic=NonlinearSpring(lambda u: force(u - rest_motion), lambda u: energy(u - rest_motion))
+            self, elastic_spring=NonlinearSpring(lambda u: force(u - rest_motion), lambda u: energy(u - rest_motion))
         )
 
     def equivalent_spring(self, amplitude: Array) -> tuple[Array, Array]:

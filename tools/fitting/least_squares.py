@@ -185,7 +185,7 @@ def select_start(
         except (ValueError, RuntimeError):
             continue
         if cost < least and all(u.lower_bound < values[u.name] < u.upper_bound for u in unknowns):
-            least, best = cost, [replace(u, start=values[u.name]) for u in unknowns]
+            least, best = cost, [replace(u, start_value=values[u.name]) for u in unknowns]
     return best
 
 
@@ -305,7 +305,8 @@ class UnknownExchange:
             at_low, at_high = at_high, logarithmic_error(high)
         if abs(at_high) > 1e3 * EXCHANGE_TOLERANCE:
             raise ValueError(
-                f"no {self.exchanged_name} gives {self.quantity_label} = {values[self.quantity_label]:g} {self.unit}"
+                f"no {self.exchanged_name} gives {self.quantity_label} = "
+                f"{values[self.quantity_label]:g} {self.unit}"
             )
         return {**rest, self.exchanged_name: float(np.exp(high))}
 

@@ -85,7 +85,8 @@ class ColumnNames:
         raise InputRefusal(
             f"{path}: the stiffness is {stiffness_ratio:.3g} times that of {start_file.name}, "
             f"allowed are {1.0 / WRONG_UNIT_RATIO:g} to {WRONG_UNIT_RATIO:g}: "
-            f"{self.describe_likely_unit_error(stiffness_ratio, stated_units)}; if both are right, start from a joint of its size",
+            f"{self.describe_likely_unit_error(stiffness_ratio, stated_units)}; if both are right, "
+            "start from a joint of its size",
             "params",
         )
 
@@ -215,7 +216,10 @@ class Measurement:
     @property
     def range_text(self) -> str:
         """Range of the data as text: kind of the measurement and largest amplitude."""
-        return f"{self.kind} up to {self.column_names.motion_column} {self.amplitude:.4g} {self.column_names.si_units[1]}"
+        return (
+            f"{self.kind} up to {self.column_names.motion_column} {self.amplitude:.4g} "
+            f"{self.column_names.si_units[1]}"
+        )
 
 
 def read_measurement(path: str | Path, column_names: ColumnNames) -> Measurement:

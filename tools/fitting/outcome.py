@@ -216,7 +216,8 @@ class FitResult:
                     )
                 elif len(combination.exponents) > 1:
                     lines.append(
-                        f"the combination {combination} stays open: {format_deviation(combination.relative_deviation)}"
+                        f"the combination {combination} stays open: "
+                        f"{format_deviation(combination.relative_deviation)}"
                     )
         lines += [f"{name} ended on its bound" for name in self.solution.names_at_bound]
         if self.solution.refusal_message:

@@ -169,7 +169,8 @@ def main(out_folder: Path) -> int:
     folders = ", ".join(str(out_folder / flavour) for flavour in FLAVOURS)
     print(f"built: {len(outcome.fmu_paths)} FMUs in {folders}: {', '.join(MODELS)}")
     print(
-        f"systems: {', '.join(p.name for p in outcome.system_files if p.suffix == '.ssp')} in {out_folder / 'ssp'}"
+        f"systems: {', '.join(p.name for p in outcome.system_files if p.suffix == '.ssp')} in "
+        f"{out_folder / 'ssp'}"
     )
     partners = [path for path in outcome.system_files if path.suffix == ".fmu"]
     print(f"validated with fmpy: {len(outcome.fmu_paths) + len(partners)}; ramps run: {len(outcome.ramps)}")
@@ -181,7 +182,8 @@ def main(out_folder: Path) -> int:
     )
     print(
         f"compared: {validation.format_summary(outcome.validated_points)}; "
-        f"{len(outcome.fmu_validated_points)} of them again through the FMUs; {len(outcome.checks)} checks of the ramps"
+        f"{len(outcome.fmu_validated_points)} of them again through the FMUs; {len(outcome.checks)} "
+        "checks of the ramps"
     )
     print(
         f"report: {out_folder / 'report' / 'index.html'}; laboratory: "

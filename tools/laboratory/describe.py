@@ -8,8 +8,8 @@ from pathlib import Path
 from threading import Lock
 from typing import Any
 
+from jointfmu_fmu_src.native.compiled.compiled_models import cached_result
 from jointfmu_fmu_src.native.compiled.compiler import compile_webassembly
-from jointfmu_fmu_src.native.compiled.kept import cached_result
 from jointfmu_fmu_src.native.data import split_parameters
 from jointfmu_fmu_src.native.page import find_ramp_panels
 from jointfmu_fmu_src.xml_parts import ListedVariable, list_variables

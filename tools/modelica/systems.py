@@ -124,7 +124,8 @@ def _modelica_component(system_component: Part) -> ModelicaComponent:
     module = joint_part(KINDS[system_component.joint_kind], "modelica")
     if module is None or module.COMPONENT.name != system_component.model_name:
         raise ValueError(
-            f"{system_component.name}: the Modelica library has no component of a {system_component.model_name}"
+            f"{system_component.name}: the Modelica library has no component of a "
+            f"{system_component.model_name}"
         )
     component: ModelicaComponent = module.COMPONENT
     return component

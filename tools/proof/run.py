@@ -57,7 +57,8 @@ def prove(fmu: Path, importer: str = "fmpy", expected: ExpectedContents | None =
         common = [name for name in list_interfaces(importer) if name in offered]
         if not common:
             raise ValueError(
-                f"{fmu}: is for {' and '.join(offered)}, {importer} runs {' and '.join(list_interfaces(importer))}"
+                f"{fmu}: is for {' and '.join(offered)}, {importer} runs "
+                f"{' and '.join(list_interfaces(importer))}"
             )
         plans = [
             ExperimentPlan.create(fmu, folder, experiment, interface, description)

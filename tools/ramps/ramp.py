@@ -51,7 +51,8 @@ def ramp_points(end: float, step: float) -> Array:
             raise ValueError(f"{name} = {value:g} is outside (-inf, inf): must be finite")
     if abs(end) > MAX_RAMP_END:
         raise ValueError(
-            f"to = {end:g} is outside [-{MAX_RAMP_END:g}, {MAX_RAMP_END:g}] (SI): no load or motion is so large"
+            f"to = {end:g} is outside [-{MAX_RAMP_END:g}, {MAX_RAMP_END:g}] (SI): no load or motion is "
+            "so large"
         )
     if step == 0.0 or end / step < 0.0:
         allowed = "(-inf, 0)" if end < 0.0 else "(0, inf)"

@@ -73,11 +73,16 @@ def ring_down_figures(decays: Mapping[str, Sequence[Decay]], joint: str) -> list
 def _ring_down_figure(name: str, vibrating_joint: VibratingJoint, decays: Sequence[Decay]) -> Figure:
     body, moving, (point, *_) = vibrating_joint.test, vibrating_joint.moving_body.name, decays
     has_law = point.half_eta_loop is not None
-    deflection = f"{body.deflection_axis.factor * body.slip_deflection.deflection:g} {format_unit(body.deflection_axis.unit)}"
+    deflection = (
+        f"{body.deflection_axis.factor * body.slip_deflection.deflection:g} "
+        f"{format_unit(body.deflection_axis.unit)}"
+    )
     return Figure(
         f"In a system: free decay of the {name.replace('_', ' ')}",
-        f"The {moving}, {body.doc}, is released from a deflection of {deflection} ({body.slip_deflection.doc}) at "
-        f"{body.load_axis.factor * point.load:g} {body.load_axis.unit}. Circles: frequency and damping ratio of the "
+        f"The {moving}, {body.doc}, is released from a deflection of {deflection} "
+        f"({body.slip_deflection.doc}) at "
+        f"{body.load_axis.factor * point.load:g} {body.load_axis.unit}. Circles: frequency and damping "
+        "ratio of the "
         "simulated signal in windows of two to five periods, over the mean amplitude. Line: values from the "
         "energy loss of the joint's hysteresis loops of the same amplitude, with viscous damping"
         + ("; dashes: half of eta_loop, the law before it is divided into sliders. " if has_law else ". ")

@@ -249,7 +249,8 @@ def joint_positions(model: Any, position_texts: Mapping[str, str]) -> Array:
         if not (np.isfinite(value) and low <= value <= high):
             allowed = f"[{low:g}, {high:g}]" if model.jnt_limited[joint] else "(-inf, inf)"
             raise ValueError(
-                f"--pose {name} = {text} {coordinate_unit(model, name)} is outside {allowed} {coordinate_unit(model, name)}"
+                f"--pose {name} = {text} {coordinate_unit(model, name)} is outside {allowed} "
+                f"{coordinate_unit(model, name)}"
             )
         pose[known[name]] = value
     return pose

@@ -152,7 +152,9 @@ def check_version() -> None:
 def _friction_comments(drive: Transmission, motor_inertia: float) -> Iterator[str]:
     """Comment lines on the motor friction of the written file."""
     angle = presliding_angle(drive, motor_inertia, TIME_STEP)
-    yield f"dry friction builds up over {angle:.3g} rad of the motor, {drive.presliding_angle:g} rad in the FMU"
+    yield (
+        f"dry friction builds up over {angle:.3g} rad of the motor, {drive.presliding_angle:g} rad in the FMU"
+    )
     yield "  and after a reversal as Dahl has it, not Masing; its numbers are of this motor"
     yield f"  and steps up to {TIME_STEP:g} s, not for the integrator RK4"
 
@@ -172,7 +174,8 @@ def format_mjcf(drive: Transmission, torque: float) -> tuple[str, FitErrors, lis
     motor = link / drive.ratio**2
     about = [
         f"{drive.name} as plain MJCF, written by jointfmu {__version__}; MuJoCo 4.0 or newer, no plugin",
-        f"torque = k x + k3 x^3 and {len(fitted.yielding_springs)} springs that yield, x = link - motor/ratio, "
+        f"torque = k x + k3 x^3 and {len(fitted.yielding_springs)} springs that yield, x = link - "
+        "motor/ratio, "
         f"by least squares up to {torque:g} N.m",
         f"measured in MuJoCo {mujoco.__version__} beside the FMU, motor locked:",
         *(f"  {line}" for line in miss.format_lines(torque)),

@@ -97,7 +97,8 @@ def fit_law(
         inside = (series.scale >= min_scale * (1 - 1e-9)) & (series.scale <= max_scale * (1 + 1e-9))
         if (inside & sure).sum() < 4:
             raise ValueError(
-                f"range {min_scale:g} {max_scale:g} m holds {int((inside & sure).sum())} values of the {series.method} "
+                f"range {min_scale:g} {max_scale:g} m holds {int((inside & sure).sum())} values of the "
+                f"{series.method} "
                 f"method, at least 4 are needed; allowed is within {series.scale[sure][0]:.3g} "
                 f"{series.scale[sure][-1]:.3g} m"
             )

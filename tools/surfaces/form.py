@@ -39,7 +39,10 @@ class Repair:
 
     def __str__(self) -> str:
         share = 100.0 * self.repaired_points / self.total_points
-        return f"{self.name}: {self.repaired_points} of {self.total_points} points ({share:.3g} %){self.effect_note}"
+        return (
+            f"{self.name}: {self.repaired_points} of {self.total_points} points ({share:.3g} "
+            f"%){self.effect_note}"
+        )
 
 
 def remove_spikes(heights: Heights) -> tuple[Heights, list[Repair]]:

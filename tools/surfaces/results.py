@@ -204,7 +204,8 @@ def list_warnings(results: Sequence[FractalResult], is_textured: bool) -> list[s
         label = f"{result.method}, {result.direction}"
         if not (result.fit.is_self_affine or result.fit.covers_interval):
             lines.append(
-                f"{label}: not self-affine over {result.fit.min_scale:.3g} to {result.fit.max_scale:.3g} m: D drifts by "
+                f"{label}: not self-affine over {result.fit.min_scale:.3g} to "
+                f"{result.fit.max_scale:.3g} m: D drifts by "
                 f"{result.fit.drift:+.2f}, deviation from the law {100.0 * result.fit.deviation:.0f} %"
             )
         if result.fit.decades < 1.0:

@@ -55,7 +55,7 @@ class ScaleSeries:
             scale=self.scale[selection],
             value=self.value[selection],
             function_value=self.function_value[selection],
-            expected=lambda H: self.expected_value(H)[selection],
+            expected_value=lambda H: self.expected_value(H)[selection],
             covariance=lambda H: self.covariance(H)[np.ix_(selection, selection)],
         )
 

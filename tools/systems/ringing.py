@@ -236,7 +236,8 @@ def find_vibrating_joint(system: System, joint: str | None = None) -> VibratingJ
     moving = system.components[body_names[0]] if body_names else None
     if joints[name].model_name != body.model_name or moving is None or moving.model_name != body.body_model:
         raise ValueError(
-            f"{name}: expected a {body.model_name} that takes {body.motion_inputs[0]} from a {body.body_model}"
+            f"{name}: expected a {body.model_name} that takes {body.motion_inputs[0]} from a "
+            f"{body.body_model}"
         )
     key = next(iter(dict(flat_fields(PARTNERS[body.body_model].parameters))))
     return VibratingJoint(body, joints[name], find_fmu_names(system)[name], moving, key)

@@ -11,7 +11,7 @@ from xml.etree.ElementTree import Element, SubElement
 from jointfmu_fmu_src.archive import staging_folder, write_archive
 from jointfmu_fmu_src.licence import find_copyright_line
 from jointfmu_fmu_src.native.build import build
-from jointfmu_fmu_src.native.compiled.kept import FMI_VERSIONS
+from jointfmu_fmu_src.native.compiled.compiled_models import FMI_VERSIONS
 from jointfmu_fmu_src.partners import load_partner_parameters as partner_parameters
 from jointfmu_fmu_src.ssv import REAL_ELEMENT, SSP_NAMESPACE, ParameterValue, add_units, format_parameter_set
 from jointfmu_fmu_src.xml_parts import VARIABILITIES, serialize_xml

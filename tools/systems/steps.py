@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from jointfmu_fmu_src.partners import PARTNERS
 
-from jointfmu.mechanics.steps import MAX_STABLE_STEP, STABLE_STEP_OUTPUTS
+from jointfmu.mechanics.stable_steps import MAX_STABLE_STEP, STABLE_STEP_OUTPUTS
 from jointfmu.quantity import Array, replace_values
 
 from .system import Component, System

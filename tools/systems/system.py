@@ -134,7 +134,7 @@ class System:
                     key: value for key, value in joint.values.items() if key not in joint.constant_inputs
                 }
                 changed_file = file.with_values(changes, "user", f"system {self.name}")
-                components[name] = replace(joint, base=file, file=changed_file)
+                components[name] = replace(joint, base_file=file, parameter_file=changed_file)
         return replace(self, components=components)
 
 

@@ -169,7 +169,8 @@ def resolve_interval(name: str, value: object, file: ParameterFile) -> object:
     source = file.sources.get(name, "")
     if not (match := _INTERVAL_PATTERN.search(source)):
         raise ValueError(
-            f"{name} = {INTERVAL_SETTING}: its source states none: {source!r}; expected '... interval LOW to HIGH'"
+            f"{name} = {INTERVAL_SETTING}: its source states none: {source!r}; expected '... interval "
+            "LOW to HIGH'"
         )
     return f"{match[1]}..{match[2]}"
 

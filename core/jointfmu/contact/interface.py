@@ -198,7 +198,8 @@ def evaluate_at_largest_spot(law: InterfaceLaw, area: ArrayLike) -> dict[str, Nu
     if np.any(bad := (u < MIN_LOG_AREA) | (u > MAX_LOG_AREA)):
         raise ValueError(
             f"largest spot = {np.broadcast_to(a, bad.shape)[bad].flat[0]:g} m2 is not representable beside "
-            f"the critical area {np.max(spots.reference_area):g} m2, allowed are 260 decades below to 130 above"
+            f"the critical area {np.max(spots.reference_area):g} m2, allowed are 260 decades below to "
+            "130 above"
         )
     return evaluate(law, u)
 

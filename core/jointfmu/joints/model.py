@@ -218,8 +218,8 @@ class Model:
         scale = end / ramp.end_value
         if loop and loop.input_name == ramp.input_name:
             loop = replace(loop, amplitude=scale * loop.amplitude)
-        ramp = replace(ramp, onset=max(onset, 0.0), end=end, step=scale * ramp.value_step)
-        return replace(self, ramp=ramp, loop=loop)
+        ramp = replace(ramp, onset_value=max(onset, 0.0), end_value=end, value_step=scale * ramp.value_step)
+        return replace(self, ramp=ramp, load_cycle=loop)
 
     def find_warnings(self, spring: TabulatedJoint, variable_values: VariableValues) -> dict[int, str]:
         """{index of the validity limit: warning} for values of inputs and outputs outside their intervals."""

@@ -229,7 +229,8 @@ def refine_curve(tabulate: Callable[[int], Curve], initial_steps: int) -> Curve:
         if curve.interpolation_error <= MAX_ERROR:
             return curve
     raise RuntimeError(
-        f"the table of {curve.load.size} nodes has an interpolation error of {curve.interpolation_error:.2g}, "
+        f"the table of {curve.load.size} nodes has an interpolation error of "
+        f"{curve.interpolation_error:.2g}, "
         f"allowed is {MAX_ERROR:g}: the law is not smooth enough with these parameters"
     )
 

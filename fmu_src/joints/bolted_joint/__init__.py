@@ -16,7 +16,7 @@ from jointfmu.joints.bolted_joint.contact import MAX_PATCHES_PER_POINT, TRANSFER
 from jointfmu.joints.bolted_joint.joint import MAX_POINTS, contact_points, friction_patches_of
 from jointfmu.joints.bolted_joint.law import MAX_MODES, Bolted, ElasticBodies
 from jointfmu.joints.bolted_joint.outputs import cycle_sums
-from jointfmu.mechanics.footprint.shape import BOLT_MEAN_NAMES, MAX_PATCHES, PressureDistribution
+from jointfmu.mechanics.footprint.distribution import BOLT_MEAN_NAMES, MAX_PATCHES, PressureDistribution
 from jointfmu.mechanics.sliders import FOUNDATION_SLIDERS, height_offsets, torsion_directions
 from jointfmu.quantity import Array, flatten_parameters
 

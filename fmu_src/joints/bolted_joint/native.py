@@ -5,8 +5,8 @@ import casadi as ca
 from jointfmu.joints.bolted_joint import bodies, bolts, contact, equilibrium, friction, law, outputs
 from jointfmu.joints.model import Model
 from jointfmu.mechanics import jenkins, sliders
-from jointfmu.mechanics.footprint.shape import MAX_PATCHES
-from jointfmu.mechanics.memory import HistoryLayout
+from jointfmu.mechanics.footprint.distribution import MAX_PATCHES
+from jointfmu.mechanics.history_layout import HistoryLayout
 
 from ...joint_parts.graph import Graph, add_closing_function, add_law_functions, make_symbols
 from ...joint_parts.native import APPROACH_FILES, Definitions, NativeDefinition

@@ -8,7 +8,12 @@ from typing import Any
 import numpy as np
 
 from jointfmu.joints.harmonic_drive.drive import Drive
-from jointfmu.joints.harmonic_drive.given import MAX_TABLE_POINTS, MeasuredDrive, SplineNode, TableDrive
+from jointfmu.joints.harmonic_drive.prescribed_midline import (
+    MAX_TABLE_POINTS,
+    MeasuredDrive,
+    SplineNode,
+    TableDrive,
+)
 from jointfmu.quantity import Number, flatten_parameters, quantity_field
 
 from ...joint_parts import FmuParts, RampPanel, native_loader

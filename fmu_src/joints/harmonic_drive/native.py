@@ -4,8 +4,8 @@ import casadi as ca
 
 from jointfmu.joints.harmonic_drive import friction, hysteresis, spring
 from jointfmu.joints.harmonic_drive.drive import HARMONICS, error_amplitudes, kinematic_error
-from jointfmu.joints.harmonic_drive.given import CatalogueDrive, MeasuredDrive, SplineNode
 from jointfmu.joints.harmonic_drive.law import ContactPairDrive, stiffness_with_play
+from jointfmu.joints.harmonic_drive.prescribed_midline import CatalogueDrive, MeasuredDrive, SplineNode
 from jointfmu.joints.model import Model
 
 from ...joint_parts.graph import Graph, Symbols, make_symbols

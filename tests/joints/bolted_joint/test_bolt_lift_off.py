@@ -10,14 +10,14 @@ from jointfmu_fmu_src.building import build
 from jointfmu_tools import cli
 from jointfmu_tools.joints.bolted_joint.export import tabulate_normal_force
 from jointfmu_tools.joints.bolted_joint.fit.preload import joint_stiffness
-from jointfmu_tools.joints.bolted_joint.pull import bolt_forces
+from jointfmu_tools.joints.bolted_joint.tensile_load import bolt_forces
 from natives import jacobian
 
 from jointfmu.joints.bolted_joint import bolts as bolt_law
 from jointfmu.joints.bolted_joint.bolts import BoltSprings
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring, JointInputs
+from jointfmu.mechanics.footprint.distribution import NodalField, position_means
 from jointfmu.mechanics.footprint.plate import BoltedPlate
-from jointfmu.mechanics.footprint.shape import NodalField, position_means
 from jointfmu.parameters import load_default, load_parameter_file
 
 PRELOAD, EMBEDDING = 15e3, 800.0

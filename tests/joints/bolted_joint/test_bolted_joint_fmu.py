@@ -29,8 +29,8 @@ from jointfmu.contact.interface import stiffness_curve
 from jointfmu.joints import MODELS
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring, contact_points
 from jointfmu.joints.bolted_joint.law import preload_pressure
+from jointfmu.mechanics.footprint.distribution import NodalField, nodal_field_entries
 from jointfmu.mechanics.footprint.plate import BoltedPlate
-from jointfmu.mechanics.footprint.shape import NodalField, nodal_field_entries
 from jointfmu.parameters import load_default, load_parameter_file
 
 MOVED = ("s_rel_x", "s_rel_y", "s_rel_z", "theta_x", "theta_y", "theta_z")

@@ -13,7 +13,7 @@ from jointfmu_tools import cli
 from jointfmu_tools.drawing import vdi2230
 from jointfmu_tools.drawing.tables import read_property_classes, read_threads
 from jointfmu_tools.fem.bolted_contact import BoltedContact
-from jointfmu_tools.joints.bolted_joint.new import computed, layout
+from jointfmu_tools.joints.bolted_joint.new import layout, plate_finite_elements
 from jointfmu_tools.joints.bolted_joint.report import friction_results
 from jointfmu_tools.shown import list_entries
 from jointfmu_tools.uncertainty.problem import state_problem
@@ -32,7 +32,11 @@ STILL = (0.0, 0.0, 0.0)
 @pytest.fixture(autouse=True)
 def interface_alone(monkeypatch):
     """The finite elements of the whole joint take seconds; test_bolted_plate.py looks at them."""
-    monkeypatch.setattr(computed, "compute_facts", lambda file, *arguments: computed.NewJoint(file, {}, []))
+    monkeypatch.setattr(
+        plate_finite_elements,
+        "compute_facts",
+        lambda file, *arguments: plate_finite_elements.NewJoint(file, {}, []),
+    )
 
 
 def made(capsys, *words, path=None):

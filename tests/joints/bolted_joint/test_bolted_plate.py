@@ -16,7 +16,7 @@ from jointfmu_tools.commands.assembly import with_assembly
 from jointfmu_tools.fem.bolted_contact import BoltedContact
 from jointfmu_tools.fem.geometry import Assembly, BoltList, Plate
 from jointfmu_tools.joints.bolted_joint.field import PlaneLayout
-from jointfmu_tools.joints.bolted_joint.new import computed
+from jointfmu_tools.joints.bolted_joint.new import plate_finite_elements
 
 from jointfmu.contact.surface import ElasticConstants
 from jointfmu.joints import MODELS
@@ -379,8 +379,10 @@ def test_the_whole_of_a_computed_field_has_the_stiffness_of_all_its_nodes(capsys
     )  # as the bodies' here
     path = tmp_path / "plate.toml"
     words = ["--plate", "60x30", "--bolts", "2xM8", "--at", "40x0", "--grip", "20", *M16[6:]]
-    seen, real = [], computed.compute_joint
-    monkeypatch.setattr(computed, "compute_joint", lambda *asked: seen.append(real(*asked)) or seen[-1])
+    seen, real = [], plate_finite_elements.compute_joint
+    monkeypatch.setattr(
+        plate_finite_elements, "compute_joint", lambda *asked: seen.append(real(*asked)) or seen[-1]
+    )
     facts, _ = made(capsys, *words, "--preload", "15e3", "--field", "computed", "--out", str(path))
     values = load_parameter_file(path).values
     found = Compliances.of(BoltedJointSpring.of(values), 15e3)

@@ -21,8 +21,8 @@ from jointfmu_tools.fitting import branches
 from jointfmu_tools.joints.bolted_joint import report
 from jointfmu_tools.joints.bolted_joint.fit import loop
 from jointfmu_tools.joints.bolted_joint.fit import preload as over_preload
-from jointfmu_tools.joints.bolted_joint.new import computed
-from jointfmu_tools.joints.bolted_joint.pull import bolt_forces
+from jointfmu_tools.joints.bolted_joint.new import plate_finite_elements
+from jointfmu_tools.joints.bolted_joint.tensile_load import bolt_forces
 from jointfmu_tools.report.course import LoadHistory
 from jointfmu_tools.shown import format_quantity
 from jointfmu_tools.uncertainty import propagate
@@ -50,7 +50,7 @@ def made(tmp_path_factory):
     """Joints that the command makes, with the compliances that finite elements gave it; those that
     are not compared with VDI 2230, loaded at their faces, of coarse ones."""
     found, seen = {}, {}
-    real = computed.compute_joint
+    real = plate_finite_elements.compute_joint
 
     def watched(*arguments):
         seen["last"] = real(*arguments)
@@ -60,7 +60,7 @@ def made(tmp_path_factory):
         if words not in found:
             path = tmp_path_factory.mktemp("whole") / "joint.toml"
             with pytest.MonkeyPatch.context() as patch:
-                patch.setattr(computed, "compute_joint", watched)
+                patch.setattr(plate_finite_elements, "compute_joint", watched)
                 if "heads" in words:
                     patch.setitem(REFINEMENT, "bodies", 1.0)
                 stated = [*words, "--embedding", "0", "--preload", str(preload), "--out", str(path)]

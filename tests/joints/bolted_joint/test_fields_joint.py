@@ -22,8 +22,8 @@ from jointfmu.joints.bolted_joint import KIND
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.bolted_joint.law import bolt_pattern, preload_pressure
 from jointfmu.mechanics.footprint import bolts
+from jointfmu.mechanics.footprint.distribution import NodalField
 from jointfmu.mechanics.footprint.reproducible import round_distribution
-from jointfmu.mechanics.footprint.shape import NodalField
 from jointfmu.parameters import format_parameter_file, load_default, load_parameter_file
 from jointfmu.quantity import flatten_parameters
 

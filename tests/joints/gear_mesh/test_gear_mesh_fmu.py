@@ -10,7 +10,7 @@ from conftest import Fmu
 from natives import VERSIONS, close, jacobian
 
 from jointfmu.joints.gear_mesh.spring import GearMeshSpring, base_pitch
-from jointfmu.mechanics.steps import MAX_STABLE_STEP
+from jointfmu.mechanics.stable_steps import MAX_STABLE_STEP
 from jointfmu.parameters import load_default
 from jointfmu.quantity import replace_values
 

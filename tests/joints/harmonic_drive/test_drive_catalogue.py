@@ -13,7 +13,7 @@ from jointfmu_tools import cli
 from jointfmu_tools.joints.harmonic_drive import catalogue
 
 import jointfmu
-from jointfmu.joints.harmonic_drive.given import DEFAULT_CORNER_RATIO, MIN_CORNER_RATIO
+from jointfmu.joints.harmonic_drive.prescribed_midline import DEFAULT_CORNER_RATIO, MIN_CORNER_RATIO
 
 REFERENCE = files("jointfmu_models") / "reference"
 

@@ -12,8 +12,8 @@ import pytest
 from conftest import here_alone, refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.fitting import decay
+from jointfmu_tools.fitting.backbone import Backbone
 from jointfmu_tools.fitting.hysteresis import Oscillator
-from jointfmu_tools.fitting.loop import Backbone
 from jointfmu_tools.joints.harmonic_drive.fit import catalogue, hysteresis, torque_angle
 from jointfmu_tools.joints.harmonic_drive.fit.drive import wind_up
 from jointfmu_tools.ramps import ramp

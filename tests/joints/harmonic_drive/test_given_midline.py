@@ -15,8 +15,8 @@ from jointfmu_tools.uncertainty.problem import state_problem
 from scipy.interpolate import PchipInterpolator
 
 from jointfmu.joints import KINDS
-from jointfmu.joints.harmonic_drive.given import CatalogueDrive, MeasuredMidline, TableDrive
 from jointfmu.joints.harmonic_drive.hysteresis import HISTORY_LAYOUT, stiffness_exponent
+from jointfmu.joints.harmonic_drive.prescribed_midline import CatalogueDrive, MeasuredMidline, TableDrive
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring, torque_curve
 from jointfmu.parameters import format_parameter_file, load_default, load_parameter_file
 from jointfmu.quantity import replace_values

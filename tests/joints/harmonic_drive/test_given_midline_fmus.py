@@ -16,12 +16,12 @@ from fmpy.validation import validate_fmu
 from joint_cases import CASES, law, random_inputs
 from jointfmu_fmu_src.archive import write_archive
 from jointfmu_fmu_src.building import FLAVOURS, build
-from jointfmu_fmu_src.native.compiled import kept
+from jointfmu_fmu_src.native.compiled import compiled_models
 from jointfmu_tools.joints.harmonic_drive.new import NEW
 from natives import Host, close
 
 from jointfmu.joints.harmonic_drive.friction import REFERENCE_TEMPERATURE
-from jointfmu.joints.harmonic_drive.given import MAX_TABLE_POINTS
+from jointfmu.joints.harmonic_drive.prescribed_midline import MAX_TABLE_POINTS
 from jointfmu.parameters import ParameterFile, load_default
 from jointfmu.quantity import replace_values
 
@@ -162,7 +162,7 @@ def test_another_table_needs_no_compiler(
     def refused(*_: object) -> None:
         raise AssertionError("compiled")
 
-    monkeypatch.setattr(kept, "compile_model", refused)
+    monkeypatch.setattr(compiled_models, "compile_model", refused)
     file = table_of(points)
     with here_alone("3"):
         build([name], ["fmi3"], file, tmp_path)

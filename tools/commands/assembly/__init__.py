@@ -10,7 +10,7 @@ from jointfmu.parameters import ParameterFile, load_default, load_parameter_file
 
 from ...command_line.common import declare_argument
 from ...drawing.vdi2230 import proof_load
-from ...fields.clamped import field_adapters
+from ...fields.bolted_interface import field_adapters
 from ...judgement import Plausibility, assess_law, find_rms_height
 from ...pressure import warn_overload
 

@@ -11,7 +11,7 @@ from jointfmu.quantity import Array
 from ...command_line.common import declare_argument
 from ...drawing.reading import parse_number, parse_numbers
 from ...drawing.tables import read_threads
-from ...fields.clamped import field_adapter
+from ...fields.bolted_interface import field_adapter
 from ...fields.nodal_result import ContactField
 from . import check_bolt_stiffness
 

@@ -12,7 +12,7 @@ from ...columns import FIELD_FILE_KIND
 from ...command_line.common import CommandResult, SubParsers, declare_argument, declare_command
 from ...command_line.outputs import declare_output
 from ...fem import require_fem_packages
-from ...fields.clamped import field_adapter
+from ...fields.bolted_interface import field_adapter
 from ...shown import fact_document, format_facts
 from . import check_bolt_stiffness, declare_assembly_arguments, judge_assembly, load_joint_file, with_assembly
 
@@ -154,13 +154,21 @@ def _collect_results(solution: "JointSolution", moment: float, preload: float) -
 
 def _format_results(result_values: dict[str, Any]) -> Iterator[str]:
     """Format the results as lines of text."""
-    yield f"{result_values['assembly']}: {result_values['preload']:g} N per bolt, moment {result_values['moment']:g} N.m"
+    yield (
+        f"{result_values['assembly']}: {result_values['preload']:g} N per bolt, moment "
+        f"{result_values['moment']:g} N.m"
+    )
     yield f"contact   {result_values['area'] * 1e4:.2f} cm2, {100 * result_values['open_share']:.3g} % open"
     yield f"force     {result_values['force']:.6g} N"
-    yield f"pressure  mean {result_values['p_mean'] / 1e6:.3g} MPa, peak {result_values['p_max'] / 1e6:.4g} MPa"
+    yield (
+        f"pressure  mean {result_values['p_mean'] / 1e6:.3g} MPa, peak {result_values['p_max'] / 1e6:.4g} MPa"
+    )
     for middle in result_values["between"]:
         yield f"          between bolts at ({middle['x']:g}, {middle['y']:g}) m: {middle['p'] / 1e6:.3g} MPa"
-    yield f"interface K_N {result_values['K_N']:.5g} N/m, K_rx {result_values['K_rx']:.5g}, K_ry {result_values['K_ry']:.5g} N.m/rad"
+    yield (
+        f"interface K_N {result_values['K_N']:.5g} N/m, K_rx {result_values['K_rx']:.5g}, K_ry "
+        f"{result_values['K_ry']:.5g} N.m/rad"
+    )
 
 
 def _mesh_document(mesh_result: "MeshResult") -> dict[str, object]:

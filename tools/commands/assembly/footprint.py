@@ -18,7 +18,7 @@ from ...command_line.common import (
     format_sentence,
 )
 from ...command_line.outputs import declare_output
-from ...fields.clamped import field_adapter
+from ...fields.bolted_interface import field_adapter
 from ...judgement import assess_law, find_rms_height
 from ...pressure import warn_missing_members
 from ...shown import fact_document, format_facts
@@ -207,14 +207,17 @@ def _format_results(result_values: dict[str, Any], area_before: float) -> list[s
     if result_values["loads"]:
         lines.append(
             f"{result_values['points']} points stand for them: force, K_zz, K_xx, K_rx, K_ry within "
-            f"{result_values['deviation']:.1e} at {result_values['loads']} other loads (preload {low:g} to {high:g} times "
-            f"this one, pressed to fully open, moment up to {result_values['largest_moment']:.4g} N.m at this one)"
+            f"{result_values['deviation']:.1e} at {result_values['loads']} other loads (preload "
+            f"{low:g} to {high:g} times "
+            f"this one, pressed to fully open, moment up to {result_values['largest_moment']:.4g} N.m "
+            "at this one)"
         )
     else:
         lines.append("all nodes are kept")
     if result_values["deviation_beyond"]:
         lines.append(
-            f"larger moments open nodes: within {result_values['deviation_beyond']:.1e} until a row is unloaded"
+            f"larger moments open nodes: within {result_values['deviation_beyond']:.1e} until a row is "
+            "unloaded"
         )
     if "outline" in result_values:
         lines.append(result_values["outline"])

@@ -11,7 +11,7 @@ from jointfmu.mechanics.curve import tabulate_approach
 from ...command_line.common import CommandResult, SubParsers, declare_argument, declare_command
 from ...command_line.outputs import declare_output
 from ...fem import require_fem_packages
-from ...fields.clamped import field_adapter
+from ...fields.bolted_interface import field_adapter
 from . import declare_assembly_arguments, judge_assembly, load_joint_file, with_assembly
 
 if TYPE_CHECKING:
@@ -57,7 +57,10 @@ def run(args: argparse.Namespace) -> CommandResult:
     judgement = judge_assembly(
         file, assembly, args.preload, force / assembly.contact_area, solution.peak_pressure
     )
-    head = f"{assembly.name}: {args.preload:g} N per bolt, moment {args.moment:g} N.m, {modes.assembly_mass:.4g} kg"
+    head = (
+        f"{assembly.name}: {args.preload:g} N per bolt, moment {args.moment:g} N.m, "
+        f"{modes.assembly_mass:.4g} kg"
+    )
     document = _build_document(args, assembly.name, modes, even)
     return CommandResult(document=document, lines=[head, *_format_modes(modes, even)], judgement=judgement)
 

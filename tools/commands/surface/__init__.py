@@ -148,7 +148,8 @@ def _load_start_file(args: argparse.Namespace) -> ParameterFile | None:
         if args.side in ("1", "2") and find_rms_height(file) and not file.roughness.keys() - {"h"}:
             other = 3 - int(args.side)
             raise ValueError(
-                f"{args.params}: states h = {find_rms_height(file):g} m of both sides together; expected of the "
+                f"{args.params}: states h = {find_rms_height(file):g} m of both sides together; "
+                "expected of the "
                 f"other side Ra{other} or Rq{other} in its section [{file.heights_prefix[:-1]}], or "
                 "--side both"
             )

@@ -218,7 +218,8 @@ def _format_stiffness(identification: Identification, file: ParameterFile | None
     else:
         what = "one side, the other smooth"
     return (
-        f"stiffness per area p/({PERSSON_GAMMA:g} h) = {predicted_stiffness(STIFFNESS_PRESSURE, h):.3g} N/m3 per MPa "
+        f"stiffness per area p/({PERSSON_GAMMA:g} h) = "
+        f"{predicted_stiffness(STIFFNESS_PRESSURE, h):.3g} N/m3 per MPa "
         f"(h = {1e6 * h:.4g} um of {what})"
     )
 

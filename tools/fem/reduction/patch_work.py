@@ -15,8 +15,8 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.spatial import cKDTree
 
-from jointfmu.mechanics.footprint.friction import CIRCLE_POINTS
-from jointfmu.mechanics.footprint.shape import FrictionPatches
+from jointfmu.mechanics.footprint.distribution import FrictionPatches
+from jointfmu.mechanics.footprint.patch_reduction import CIRCLE_POINTS
 from jointfmu.mechanics.sliders import Foundation
 from jointfmu.quantity import Array
 

@@ -16,7 +16,7 @@ from jointfmu.joints.bolted_joint import KIND
 from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.bolted_joint.law import Bolted, preload_pressure
 from jointfmu.joints.model import Variable
-from jointfmu.mechanics.footprint.shape import PressureDistribution
+from jointfmu.mechanics.footprint.distribution import PressureDistribution
 from jointfmu.quantity import Array, quantity_field
 
 from ...export.exports import Exports, LoadCurve

@@ -8,14 +8,14 @@ from numpy.typing import ArrayLike
 
 from jointfmu.joints.bolted_joint.law import Bolted, ElasticBodies, bolt_pressures, preload_pressure
 from jointfmu.mechanics.footprint.bolts import BoltedFrame, pressure_distribution
+from jointfmu.mechanics.footprint.distribution import MergedDistribution, NodalField, PressureDistribution
 from jointfmu.mechanics.footprint.plate import BoltedPlate
-from jointfmu.mechanics.footprint.shape import MergedDistribution, NodalField, PressureDistribution
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
 
 from ...drawing.vdi2230 import proof_load
 from ...fem.validation import MeasuredFrequencies
-from ...fields.clamped import FieldAdapter
+from ...fields.bolted_interface import FieldAdapter
 from ...pressure import NominalPressure
 
 if TYPE_CHECKING:
@@ -113,13 +113,13 @@ def _with_elastic_sides(
     attachment: str,
     pressure_shape: PressureDistribution,
 ) -> ParameterFile:
-    from .new.computed import compute_joint_of_assembly
+    from .new.plate_finite_elements import compute_joint_of_assembly
 
     return compute_joint_of_assembly(file, lambda: assembly, preload, attachment, pressure_shape).file
 
 
 def _joint_facts(file: ParameterFile, preload: float) -> dict[str, tuple[float, str, str]]:
-    from .new.computed import joint_facts
+    from .new.plate_finite_elements import joint_facts
 
     return joint_facts(file, preload)
 

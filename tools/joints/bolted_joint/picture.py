@@ -7,8 +7,8 @@ import numpy as np
 
 from jointfmu.joints.bolted_joint.law import Bolted, ElasticBodies, preload_pressure, working_preload
 from jointfmu.mechanics.footprint.bolts import pressure_distribution
+from jointfmu.mechanics.footprint.distribution import NodalField
 from jointfmu.mechanics.footprint.plate import BoltedPlate
-from jointfmu.mechanics.footprint.shape import NodalField
 from jointfmu.quantity import Array
 
 from .field import PlaneLayout

@@ -18,7 +18,7 @@ from jointfmu.joints.bolted_joint.law import (
 )
 from jointfmu.joints.bolted_joint.outputs import bolt_force_name
 from jointfmu.joints.model import Model
-from jointfmu.mechanics.footprint.shape import NodalField
+from jointfmu.mechanics.footprint.distribution import NodalField
 from jointfmu.parameters import ParameterFile
 
 from ...report.course import LoadHistory
@@ -26,7 +26,7 @@ from ...report.figure import ComparisonRow, Figure
 from ...shown import format_quantity
 from .field import PlaneLayout
 from .picture import draw_plan, draw_section
-from .pull import MAX_BOLT_FORCE_RATIO, bolt_forces
+from .tensile_load import MAX_BOLT_FORCE_RATIO, bolt_forces
 
 PLOTTED_LOAD_RATIO = 1.3
 """Largest plotted tensile force over the opening load of the interface [1]."""
@@ -204,7 +204,8 @@ def _stiffness_text(compliances: Compliances, remaining_preload: float, moment: 
         "it matters for the stiffness" if compliances.interface_matters else "it hardly affects the stiffness"
     )
     return (
-        f"Small motions of the attachments about the tightened state, {_format_value(remaining_preload, 'N')} "
+        "Small motions of the attachments about the tightened state, "
+        f"{_format_value(remaining_preload, 'N')} "
         "in each bolt"
         + (f" with a moment of {moment:g} N m" if moment else "")
         + ", one at a time with the other five fixed. The stiffness of the whole joint is that of the FMU. "

@@ -8,8 +8,8 @@ import numpy as np
 
 from jointfmu.joints.harmonic_drive import KIND
 from jointfmu.joints.harmonic_drive.drive import Drive, lost_motion_angle
-from jointfmu.joints.harmonic_drive.given import CatalogueDrive, TableDrive
 from jointfmu.joints.harmonic_drive.law import ContactPairDrive, drive_stiffness
+from jointfmu.joints.harmonic_drive.prescribed_midline import CatalogueDrive, TableDrive
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring, torque_curve
 from jointfmu.quantity import Array
 

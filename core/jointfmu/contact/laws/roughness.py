@@ -109,7 +109,8 @@ class RoughnessLaw(RoughSurfaces, CheckedParameters):
         messages = []
         if lowest_pressure < min_pressure:
             messages.append(
-                f"a pressure of {lowest_pressure:.4g} Pa is below {min_pressure:.3g} Pa, from where the law roughness "
+                f"a pressure of {lowest_pressure:.4g} Pa is below {min_pressure:.3g} Pa, from where "
+                "the law roughness "
                 "is proven: one hill carries, and surfaces of the same roughness differ by half and more "
                 "(docs/validity.md)"
             )

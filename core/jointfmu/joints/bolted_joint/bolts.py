@@ -13,7 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ...mechanics.footprint.shape import NodalField
+from ...mechanics.footprint.distribution import NodalField
 from ...quantity import Array
 from .law import Bolted, ElasticBodies, working_preload
 

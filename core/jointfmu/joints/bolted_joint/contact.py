@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...mechanics.curve import Curve
-from ...mechanics.footprint.shape import FrictionPatches, PressureDistribution
+from ...mechanics.footprint.distribution import FrictionPatches, PressureDistribution
 from ...quantity import Array, Number, select
 from .kinematics import rigid_opening
 from .law import Bolted, preload_pressure

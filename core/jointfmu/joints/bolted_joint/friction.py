@@ -7,9 +7,9 @@ from functools import cached_property, lru_cache
 import numpy as np
 
 from ...mechanics.curve import Curve
-from ...mechanics.footprint.shape import FrictionPatches
+from ...mechanics.footprint.distribution import FrictionPatches
+from ...mechanics.history_layout import HistoryLayout
 from ...mechanics.jenkins import SliderUpdate
-from ...mechanics.memory import HistoryLayout
 from ...mechanics.sliders import (
     FOUNDATION_SLIDERS,
     Foundation,

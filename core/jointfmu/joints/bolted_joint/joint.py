@@ -10,10 +10,10 @@ import numpy as np
 from ...contact.interface import solve_largest_spot
 from ...mechanics.curve import Curve, tabulate_approach
 from ...mechanics.footprint.bolts import PressureSource, pressure_distribution
-from ...mechanics.footprint.friction import reduce_patches
-from ...mechanics.footprint.patches import reduce_points
-from ...mechanics.footprint.shape import MAX_PATCHES, FrictionPatches, NodalField, PressureDistribution
-from ...mechanics.memory import HistoryLayout
+from ...mechanics.footprint.distribution import MAX_PATCHES, FrictionPatches, NodalField, PressureDistribution
+from ...mechanics.footprint.patch_reduction import reduce_patches
+from ...mechanics.footprint.point_reduction import reduce_points
+from ...mechanics.history_layout import HistoryLayout
 from ...quantity import Array, Number
 from .bodies import Modes
 from .bolts import BoltSprings, bolt_positions

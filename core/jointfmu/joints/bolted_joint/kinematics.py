@@ -6,7 +6,7 @@ the small rotation theta_x, theta_y, theta_z [rad] about the centroid of the con
 
 import numpy as np
 
-from ...mechanics.footprint.shape import FrictionPatches, PressureDistribution
+from ...mechanics.footprint.distribution import FrictionPatches, PressureDistribution
 from ...quantity import Array
 
 NORMAL, TANGENTIAL = slice(2, 5), [0, 1, 5]

@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike
 from ...contact.laws.roughness import RoughnessLaw
 from ...contact.laws.zhao2018 import Zhao2018
 from ...mechanics.footprint.bolts import BoltedFrame, PressureSource
+from ...mechanics.footprint.distribution import MergedDistribution, NodalField, PressureDistribution
 from ...mechanics.footprint.plate import BoltedPlate
-from ...mechanics.footprint.shape import MergedDistribution, NodalField, PressureDistribution
 from ...quantity import (
     Array,
     Interval,

@@ -5,9 +5,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from ...contact.laws import mindlin
-from ...mechanics.footprint.shape import FrictionPatches, PressureDistribution
+from ...mechanics.footprint.distribution import FrictionPatches, PressureDistribution
 from ...mechanics.sliders import Foundation
-from ...mechanics.steps import STABLE_STEP_OUTPUTS, largest_stable_steps
+from ...mechanics.stable_steps import STABLE_STEP_OUTPUTS, largest_stable_steps
 from ...quantity import Array, Number, select
 from .bolts import BoltSprings
 from .equilibrium import JointAssembly, TrialState, condense_stiffness

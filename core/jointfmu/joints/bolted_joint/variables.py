@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ...mechanics.steps import STABLE_STEP_OUTPUTS
+from ...mechanics.stable_steps import STABLE_STEP_OUTPUTS
 from ...quantity import Number, select
 from ..model import EXTRAPOLATION_WARNING, LoadCycle, LoadRamp, Model, ValidityLimit, Variable, VariableValues
 from .joint import BoltedJointSpring, JointInputs
@@ -58,7 +58,7 @@ def _variant(model: Model, joint: Bolted) -> Model:
     """Model of a joint: its loop has a preload above the loss by embedding; see also `_with_bolt_forces`."""
     assert model.load_cycle
     loop = replace(model.load_cycle, settings={"preload": max(_LOOP_PRELOAD, 2.0 * joint.embedding)})
-    return _with_bolt_forces(replace(model, loop=loop), joint)
+    return _with_bolt_forces(replace(model, load_cycle=loop), joint)
 
 
 def _with_bolt_forces(model: Model, joint: Bolted) -> Model:

@@ -1,6 +1,6 @@
 """Gear mesh: tooth pairs with rough flanks (Yu 2022) and bending teeth between two wheels."""
 
-from ...mechanics.steps import STABLE_STEP_OUTPUTS
+from ...mechanics.stable_steps import STABLE_STEP_OUTPUTS
 from ..kind import JointKind, RoughSurface
 from ..model import EXTRAPOLATION_WARNING, LoadRamp, Model, ValidityLimit, Variable, VariableValues
 from .spring import GearMesh, GearMeshSpring, RoughGearMesh

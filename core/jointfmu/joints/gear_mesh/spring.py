@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from ...contact.laws.roughness import RoughnessLaw
 from ...contact.laws.yu2022 import Yu2022
 from ...mechanics.curve import Curve, assemble_curve, refine_curve, tabulate_approach
-from ...mechanics.steps import largest_stable_steps, mobility
+from ...mechanics.stable_steps import largest_stable_steps, mobility
 from ...quantity import Array, Number, quantity_field, smooth_step, smooth_step_integral, smooth_step_slopes
 
 CLOSING_STEPS = 96

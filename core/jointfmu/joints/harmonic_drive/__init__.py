@@ -1,8 +1,8 @@
 """Harmonic drive: torsional stiffness, hysteresis, friction, lost motion and kinematic error."""
 
 from ..kind import JointKind, RoughSurface
-from .given import CatalogueDrive, TableDrive
 from .law import HarmonicDrive, RoughHarmonicDrive
+from .prescribed_midline import CatalogueDrive, TableDrive
 from .variables import MODELS
 
 KIND = JointKind(

@@ -26,8 +26,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ...mechanics.history_layout import HistoryLayout
 from ...mechanics.jenkins import Sliders, SliderUpdate
-from ...mechanics.memory import HistoryLayout
 from ...quantity import Array, Number
 from .drive import PLAY_WIDTH_RATIO, Drive
 from .hysteresis import slider_shares
@@ -132,7 +132,7 @@ class FrictionSliders(Sliders):
             for ends in (start["limit"], now)
         )
         moved = self.advance_1d(force, way, before, after)
-        return replace(moved, loss=np.where(begun, moved.dissipated_energy, 0.0))
+        return replace(moved, dissipated_energy=np.where(begun, moved.dissipated_energy, 0.0))
 
     def pack_history(self, update: SliderUpdate, phi1: ArrayLike, end_limits: Sequence[ArrayLike]) -> Array:
         """New history variables (..., n) after the path; all zero without dry friction."""

@@ -23,8 +23,8 @@ from numpy.typing import ArrayLike
 from ...contact.interface import MAX_ITERATIONS
 from ...contact.powerlaw import exprel
 from ...mechanics.curve import Curve
+from ...mechanics.history_layout import HistoryLayout
 from ...mechanics.jenkins import Sliders, SliderUpdate
-from ...mechanics.memory import HistoryLayout
 from ...quantity import Array, Number
 from .drive import Drive
 from .law import ContactPairDrive, pair_log_area
@@ -113,7 +113,7 @@ class HysteresisSliders(Sliders):
         )
         unit_sliders = cls(_initial_stiffness(drive, curve, half_loop_torque) * springs, friction)
         return replace(
-            unit_sliders, limit=_find_limit_torque(drive, curve, unit_sliders, half_loop_torque) * friction
+            unit_sliders, friction_limit=_find_limit_torque(drive, curve, unit_sliders, half_loop_torque) * friction
         )
 
     @property
@@ -204,7 +204,7 @@ def _find_limit_torque(
     for _ in range(MAX_LIMIT_ITERATIONS):
         if limit == 0.0:
             return limit
-        sliders = replace(unit_sliders, limit=limit * unit_sliders.friction_limit)
+        sliders = replace(unit_sliders, friction_limit=limit * unit_sliders.friction_limit)
         previous, opening = (
             limit,
             sliders.unloading_friction(curve, drive.rated_torque, 0.5 * drive.hysteresis_loss),

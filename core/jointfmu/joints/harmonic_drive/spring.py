@@ -7,14 +7,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...mechanics.curve import Curve, assemble_curve, refine_curve
-from ...mechanics.steps import largest_stable_steps, mobility
+from ...mechanics.stable_steps import largest_stable_steps, mobility
 from ...quantity import Array, Number, check_limits
 from . import friction, hysteresis
 from .drive import Drive, kinematic_error
 from .friction import REFERENCE_TEMPERATURE, FrictionSliders, friction_limits, viscous_torque
-from .given import PrescribedDrive
 from .hysteresis import HysteresisSliders
 from .law import ContactPairDrive, stiffness_with_play
+from .prescribed_midline import PrescribedDrive
 
 MIN_TABLE_STEPS = 160
 """Initial number of steps of the midline's table [1]; doubled until the table is accurate."""

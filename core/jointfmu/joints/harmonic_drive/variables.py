@@ -1,6 +1,6 @@
 """Models of the harmonic drive that are exported as FMUs, with their inputs and outputs."""
 
-from ...mechanics.steps import STABLE_STEP_OUTPUTS
+from ...mechanics.stable_steps import STABLE_STEP_OUTPUTS
 from ...quantity.units import LUBRICANT_TEMPERATURES
 from ..model import EXTRAPOLATION_WARNING, LoadCycle, LoadRamp, Model, ValidityLimit, Variable, VariableValues
 from .drive import HARMONICS

@@ -7,8 +7,8 @@ from typing import TypeAlias
 import numpy as np
 
 from ...quantity import Array, check_fields, quantity_field
+from .distribution import NodalField, PositionMeans, PressureDistribution, position_means
 from .plate import EDGE_FACTOR, BoltedPlate
-from .shape import NodalField, PositionMeans, PressureDistribution, position_means
 
 CELLS_ACROSS_FLANGE = 7
 """Number of cells across the flange [1]: 1000 nodes for the default frame; Zhao's mesh has 1019."""

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...quantity import Array, check_fields, quantity_field, series_field
-from .shape import PositionMeans, PressureDistribution, moment_pressure, position_means
+from .distribution import PositionMeans, PressureDistribution, moment_pressure, position_means
 
 MIN_CELLS_PER_RADIUS = 5
 """Smallest number of cells [1] from the axis of a bolt to the edge R of its pressure."""

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...quantity import Array
-from .shape import PressureDistribution
+from .distribution import PressureDistribution
 
 BINARY_DIGITS = 20
 """Binary digits to which numbers are rounded before comparisons [1]. 2^-20 = 1e-6 is far above differences

@@ -30,7 +30,7 @@ from jointfmu.quantity import Array
 from jointfmu.quantity.refusal import InputRefusal
 from jointfmu.quantity.units import unit_sizes
 
-from ....fitting import memory
+from ....fitting import hysteresis_fit
 from ....fitting.branches import Loops
 from ....fitting.hysteresis import HysteresisLaw
 from ....fitting.least_squares import Unknown, UnknownExchange
@@ -46,7 +46,7 @@ vibrations, which hardly distinguish it from the level."""
 START_VALUES: Mapping[str, Sequence[float]] = {"mu": (0.05, 0.15, 0.4), "surface.D": (1.2, 1.45)}
 """{parameter: further start values of the search}, in addition to the values of the start file. The start
 value of the level follows from the data."""
-NON_JOINT_UNKNOWNS = (memory.DAMPING_RATIO_NAME, SERIES_STIFFNESS)
+NON_JOINT_UNKNOWNS = (hysteresis_fit.DAMPING_RATIO_NAME, SERIES_STIFFNESS)
 """Unknowns that are not parameters of the joint."""
 SERIES_START_RATIOS = (2.0, 1.1, 1.5, 5.0)
 """Start values of the series stiffness over the measured stiffness at rest [1]."""
@@ -153,13 +153,13 @@ def _masing_deviation(joint: Bolted, preload: float, loops: Loops, law: Hysteres
         branches = np.unique(loops.branch_index[loops.run_index == run])
         middle = 0.5 * (np.max(loops.start_motion[branches]) + np.min(loops.start_motion[branches]))
         first = np.linspace(0.0, loops.start_motion[branches[0]] - middle, _ELASTIC_TABLE_STEPS + 1)
-        memory = _follow_path(spring, preload, first, spring.initial_history())[2]
+        hysteresis_fit = _follow_path(spring, preload, first, spring.initial_history())[2]
         for k in branches:
             start, motion = loops.start_motion[k], loops.motion[loops.branch_index == k]
             distance = np.abs(motion - start)
             end = motion[np.argmax(distance)]
             path = np.linspace(start, end, _ELASTIC_TABLE_STEPS + 1)
-            force, _, memory = _follow_path(spring, preload, path - middle, memory)
+            force, _, hysteresis_fit = _follow_path(spring, preload, path - middle, hysteresis_fit)
             difference = force - force[0] - law.force_change(path, np.full_like(path, start))
             deviation[loops.branch_index == k] = np.interp(distance, np.abs(path - start), difference)
     return deviation
@@ -242,7 +242,7 @@ def fit(
         set_step("tries " + ", ".join(f"{name} = {value:.4g}" for name, value in values.items()))
         return first_loading(make_joint(values), force, get_series_stiffness(values), reach)[0]
 
-    model = memory.build_model(data, make_law, "modal_mass", modal_mass, damping_ratio)
+    model = hysteresis_fit.build_model(data, make_law, "modal_mass", modal_mass, damping_ratio)
     measured_rest = data.rest_stiffness(modal_mass)
 
     def total_rest_stiffness(values: Mapping[str, float]) -> float:
@@ -262,7 +262,7 @@ def fit(
             SERIES_STIFFNESS,
         )
     unknown_list = make_unknowns(file, [name for name in names if name not in NON_JOINT_UNKNOWNS], {})
-    unknown_list += [memory.DAMPING_UNKNOWN] * (memory.DAMPING_RATIO_NAME in names)
+    unknown_list += [hysteresis_fit.DAMPING_UNKNOWN] * (hysteresis_fit.DAMPING_RATIO_NAME in names)
     unknown_list += [
         Unknown(SERIES_STIFFNESS, "N/m", SERIES_START_RATIOS[0] * measured_rest, 0.0, np.inf)
     ] * (SERIES_STIFFNESS in names)
@@ -277,7 +277,7 @@ def fit(
         off = _masing_deviation(make_joint(values), force, data.data, make_law(values))
         return replace(data, data=replace(data.data, force=data.data.force - off))
 
-    solution, scale, data = memory.fit_measurement(
+    solution, scale, data = hysteresis_fit.fit_measurement(
         data,
         unknown_list,
         model,
@@ -302,9 +302,9 @@ def fit(
     return FitResult(
         result,
         solution,
-        facts | memory.summarize_fit(data, solution, law, scale),
-        memory.make_pictures(data, model, solution.values, scale),
-        notes=memory.misfit_notes(data, solution),
+        facts | hysteresis_fit.summarize_fit(data, solution, law, scale),
+        hysteresis_fit.make_pictures(data, model, solution.values, scale),
+        notes=hysteresis_fit.misfit_notes(data, solution),
     )
 
 

@@ -27,7 +27,7 @@ from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.bolted_joint.law import Bolted, preload_pressure, working_preload
 from jointfmu.mechanics.curve import tabulate_approach
 from jointfmu.mechanics.footprint.bolts import PressureSource, pressure_distribution
-from jointfmu.mechanics.footprint.shape import MergedDistribution
+from jointfmu.mechanics.footprint.distribution import MergedDistribution
 from jointfmu.parameters import ParameterFile, load_default
 from jointfmu.quantity import Array
 from jointfmu.quantity.units import UnitSizes, conversion_factor, unit_sizes
@@ -132,7 +132,7 @@ def fit(
     result = fitted_parameters(file, own, "calibration", Path(path).name, span)
     stiffness = solution.values.get(SERIES_STIFFNESS, series_stiffness)
     grid = np.linspace(curve.preload[0], curve.preload[-1], 200)
-    finer = replace(curve, preload=grid, value=np.ones_like(grid))
+    finer = replace(curve, preload=grid, measured_values=np.ones_like(grid))
     unit, size = (
         ("Hz", 1.0) if curve.quantity_name == "frequency" else ("N/um", conversion_factor("N/m", "N/um"))
     )

@@ -16,8 +16,8 @@ from ....drawing.reading import parse_number, parse_numbers
 from ....drawing.tables import Thread, property_class_strength, thread_source
 from ....pressure import warn_overload
 from ..report import friction_results
-from . import computed, layout
-from .computed import BoltedPlates, compute_pressure_field
+from . import layout, plate_finite_elements
+from .plate_finite_elements import BoltedPlates, compute_pressure_field
 
 ZERO_MOTION = (0.0, 0.0, 0.0)
 """Zero displacement [m] or rotation [rad] along x, y, z."""
@@ -117,7 +117,7 @@ def make_joint(options: DrawingOptions) -> NewJoint:
             file, facts, [*warnings, f"{alone}: for the whole joint state --thickness of both plates"]
         )
     attached, sides = options["attached"] or "faces", options["sides"]
-    complete_joint = computed.compute_facts(file, plates, attached, sides, alone, shape)
+    complete_joint = plate_finite_elements.compute_facts(file, plates, attached, sides, alone, shape)
     return NewJoint(
         complete_joint.file, {**facts, **complete_joint.facts}, [*warnings, *complete_joint.warnings]
     )

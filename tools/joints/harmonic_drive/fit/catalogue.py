@@ -15,7 +15,7 @@ from itertools import pairwise, product
 import numpy as np
 
 from jointfmu.joints.harmonic_drive.drive import Drive
-from jointfmu.joints.harmonic_drive.given import DEFAULT_CORNER_RATIO, CatalogueDrive
+from jointfmu.joints.harmonic_drive.prescribed_midline import DEFAULT_CORNER_RATIO, CatalogueDrive
 from jointfmu.parameters import ParameterFile, load_default
 from jointfmu.quantity import Array
 

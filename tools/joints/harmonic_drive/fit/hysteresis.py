@@ -21,7 +21,7 @@ from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import ParameterFile, load_default
 from jointfmu.quantity import Array
 
-from ....fitting import memory
+from ....fitting import hysteresis_fit
 from ....fitting.branches import Loops
 from ....fitting.hysteresis import HysteresisLaw, NonlinearSpring
 from ....fitting.least_squares import Solution, Unknown, solve
@@ -97,12 +97,12 @@ def fit(
     def law_at_values(values: Mapping[str, float]) -> HysteresisLaw:
         return make_law(file.with_values(values, "calibration", "fit").values)
 
-    model = memory.build_model(data, law_at_values, "inertia", inertia, 0.0)
+    model = hysteresis_fit.build_model(data, law_at_values, "inertia", inertia, 0.0)
     starts = {
         HYSTERESIS_LOSS: LOSS_START_VALUES,
         HYSTERESIS_STIFFNESS: tuple(rest * np.array(STIFFNESS_START_RATIOS)),
     }
-    solution, scale, _ = memory.fit_measurement(
+    solution, scale, _ = hysteresis_fit.fit_measurement(
         data, make_unknowns(file, names, drive.parameter_bounds(file)), model, starts
     )
     result = fitted_parameters(file, solution.values, "calibration", data.path.name, data.range_text)
@@ -112,9 +112,9 @@ def fit(
     return FitResult(
         result,
         solution,
-        law_facts | memory.summarize_fit(data, solution, fitted_law, scale),
-        memory.make_pictures(data, model, solution.values, scale),
-        notes=memory.misfit_notes(data, solution),
+        law_facts | hysteresis_fit.summarize_fit(data, solution, fitted_law, scale),
+        hysteresis_fit.make_pictures(data, model, solution.values, scale),
+        notes=hysteresis_fit.misfit_notes(data, solution),
     )
 
 

@@ -215,7 +215,8 @@ def _check_speeds(file_label: str, samples: Samples) -> None:
         )
     if speed.max() < MIN_SPEED_RATIO * speed.min():
         raise ValueError(
-            f"{file_label}: has one speed alone, {speed.min():.4g} to {speed.max():.4g} rad/s; expected several, "
+            f"{file_label}: has one speed alone, {speed.min():.4g} to {speed.max():.4g} rad/s; "
+            "expected several, "
             f"{MIN_SPEED_RATIO:g} times as fast or more"
         )
 
@@ -338,7 +339,7 @@ def _speed_picture(samples: Samples, fitted_log: FittedLog, misfit: Array) -> Pi
     )
     picture = _friction_picture(samples.dq, y, misfit, line, "speed of the joint [rad/s]")
     marks = None if samples.is_dynamic.any() else samples.is_held_out
-    return replace(picture, labels=(picture.axis_labels[0], _NO_LOAD_LABEL, _ERROR_LABEL), highlighted=marks)
+    return replace(picture, axis_labels=(picture.axis_labels[0], _NO_LOAD_LABEL, _ERROR_LABEL), highlighted_points=marks)
 
 
 def _friction_picture(

@@ -7,15 +7,15 @@ from typing import Any
 
 import numpy as np
 
-from jointfmu.joints.harmonic_drive.given import TableDrive
 from jointfmu.joints.harmonic_drive.law import ContactPairDrive
+from jointfmu.joints.harmonic_drive.prescribed_midline import TableDrive
 from jointfmu.parameters import ParameterFile, load_default
 from jointfmu.quantity import Array
 from jointfmu.quantity.refusal import InputRefusal
 
 from .... import columns
 from ....catalogue import SourcedNumber
-from ....fitting import loop
+from ....fitting import backbone
 from ....fitting.least_squares import EMPTY_SOLUTION, Solution, solve
 from ....fitting.measurement import COLUMN_SYNONYMS
 from ....fitting.outcome import (
@@ -43,7 +43,7 @@ class MeasuredCurve:
     """Measured curve: path of the file, its midline, and start parameters for a drive of this size."""
 
     path: Path
-    midline: loop.Backbone
+    midline: backbone.Backbone
     start: ParameterFile
 
 
@@ -106,7 +106,7 @@ def read_curve(path: str | Path, start: ParameterFile | None, rated_torque: floa
     table = columns.read_columns(path, COLUMN_UNITS, MIN_POINTS, COLUMN_SYNONYMS)
     torque, angle = (table.require_column(name, COLUMN_UNITS) for name in COLUMN_UNITS)
     try:
-        line = loop.find_backbone(torque, angle)
+        line = backbone.find_backbone(torque, angle)
     except ValueError as error:
         raise ValueError(f"{table.path}: {error}") from None
     start_file = start or load_default("harmonic_drive")
@@ -120,7 +120,7 @@ def read_curve(path: str | Path, start: ParameterFile | None, rated_torque: floa
     return MeasuredCurve(table.path, line, file)
 
 
-def describe_range(midline: loop.Backbone) -> str:
+def describe_range(midline: backbone.Backbone) -> str:
     """Describe the range of torques of a measured curve, as text."""
     return f"torque {midline.torque[0]:.4g} to {midline.torque[-1]:.4g} N.m"
 
@@ -167,14 +167,15 @@ def _resize_start(
         )
     if isinstance(start_file.values, ContactPairDrive) and reach > start_file.values.max_torque:
         raise InputRefusal(
-            f"{path}: torque reaches {reach:g} N.m, beyond max_torque = {start_file.values.max_torque:g} N.m of "
+            f"{path}: torque reaches {reach:g} N.m, beyond max_torque = "
+            f"{start_file.values.max_torque:g} N.m of "
             f"{start_file.name}: state the drive's rated torque, max_torque is scaled with it",
             "rated_torque",
         )
     return start_file
 
 
-def _check_size(midline: loop.Backbone, start_file: ParameterFile, table: columns.Columns) -> None:
+def _check_size(midline: backbone.Backbone, start_file: ParameterFile, table: columns.Columns) -> None:
     """Check wind-up and loop energy before the fit.
 
     Raises InputRefusal for a wind-up that is implausible for this size, ValueError for a loop that creates
@@ -189,7 +190,8 @@ def _check_size(midline: loop.Backbone, start_file: ParameterFile, table: column
         raise InputRefusal(
             f"{path}: the angle turns {angle_range:.3g} rad over {torque_range:.3g} N.m, that is "
             f"{at_rated:.3g} rad at the rated torque {rated:g} N.m, allowed are {low:g} to {high:g}: "
-            f"{COLUMN_NAMES.describe_likely_unit_error(typical / at_rated, table.units)}, or state the drive's rated torque",
+            f"{COLUMN_NAMES.describe_likely_unit_error(typical / at_rated, table.units)}, or state the "
+            "drive's rated torque",
             "rated_torque",
         )
     if midline.loop_area is not None:
@@ -201,7 +203,7 @@ def _check_size(midline: loop.Backbone, start_file: ParameterFile, table: column
             )
 
 
-def _facts(midline: loop.Backbone, angle_offset: float, residuals: Array, angle_noise: float) -> Facts:
+def _facts(midline: backbone.Backbone, angle_offset: float, residuals: Array, angle_noise: float) -> Facts:
     """Facts about the measured curve: offset, loop area, backlash, drift, noise, largest error."""
     facts = {
         "points": (float(np.sum(midline.sample_counts)), "1", "samples used"),
@@ -222,7 +224,7 @@ def _facts(midline: loop.Backbone, angle_offset: float, residuals: Array, angle_
     return facts
 
 
-def _notes(midline: loop.Backbone, residuals: Array) -> list[str]:
+def _notes(midline: backbone.Backbone, residuals: Array) -> list[str]:
     """Notes about quantities that the curve does not determine, and about systematic errors of the law."""
     notes = []
     if midline.loop_area is None:
@@ -264,7 +266,7 @@ def fit_table(
     return make_result(record, file, EMPTY_SOLUTION, offset, noise)
 
 
-def table_points(midline: loop.Backbone) -> tuple[Array, Array, float]:
+def table_points(midline: backbone.Backbone) -> tuple[Array, Array, float]:
     """Torques (n) [N.m] and angles (n) [rad] of a table, and the offset [rad]: the angle at zero torque.
 
     Raises ValueError if the midline does not include zero torque or does not rise.

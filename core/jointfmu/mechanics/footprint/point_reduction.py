@@ -13,6 +13,7 @@ the unrounded nodes. benchmarks/patch_reduction.py prints the deviation from the
 import numpy as np
 
 from ...quantity import Array
+from .distribution import PressureDistribution
 from .elimination import NodeIndices, reduce_weights, select_independent, weight_changes
 from .reproducible import (
     binary_power,
@@ -23,7 +24,6 @@ from .reproducible import (
     successive_powers,
     weighted_sums,
 )
-from .shape import PressureDistribution
 
 LAW_EXPONENTS = (4.0, 8.0, 16.0, 64.0)
 """Exponents N of the laws p ~ delta^N [1], with k ~ p^(1 - 1/N). Hertz has 1.5, rough surfaces about 10; the

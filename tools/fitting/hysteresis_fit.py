@@ -163,7 +163,7 @@ def fit_measurement(
         data.noise_groups
     )
     scale = first_scale * np.sqrt(np.maximum(square, MIN_NOISE_RATIO**2 * np.max(square)))[data.noise_groups]
-    free = [replace(u, start=_clip_to_bounds(u, first.values[u.name])) for u in free]
+    free = [replace(u, start_value=_clip_to_bounds(u, first.values[u.name])) for u in free]
     solution = solve(
         free,
         apply_exchange(residuals(scale)),

@@ -13,7 +13,7 @@ from jointfmu.quantity import flat_fields
 from ...partners import PARTNERS
 from ...partners import load_partner_parameters as partner_parameters
 from ..data import split_parameters
-from .kept import compiled_model_name, get_compiled_model, pack_model
+from .compiled_models import compiled_model_name, get_compiled_model, pack_model
 
 
 def compile_ahead(fmu_names: Sequence[str], output_folder: Path) -> list[Path]:

@@ -7,7 +7,7 @@ from typing import Any, ClassVar, Protocol
 from jointfmu.contact.interface import InterfaceLaw
 from jointfmu.joints import KINDS
 from jointfmu.mechanics.footprint.bolts import PressureSource
-from jointfmu.mechanics.footprint.shape import PressureDistribution
+from jointfmu.mechanics.footprint.distribution import PressureDistribution
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array, Number
 

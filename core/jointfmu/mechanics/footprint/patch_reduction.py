@@ -20,8 +20,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...quantity import Array
+from .distribution import FrictionPatches, PressureDistribution
 from .elimination import solve_linear, weight_changes
-from .patches import exact_sum_functions, largest_moment_factor, reduce_points
+from .point_reduction import exact_sum_functions, largest_moment_factor, reduce_points
 from .reproducible import (
     binary_power,
     binary_root,
@@ -34,7 +35,6 @@ from .reproducible import (
     successive_powers,
     weighted_sums,
 )
-from .shape import FrictionPatches, PressureDistribution
 
 LAW_EXPONENTS = (4.0, 8.0, 8.0, 16.0)
 """Exponents N of the laws p ~ delta^N [1], powers of 2; real laws: Hertz 1.5, default law 7, roughness 12."""

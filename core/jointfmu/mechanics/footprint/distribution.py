@@ -224,7 +224,8 @@ class NodalField:
         for name in (*_POINT_ENTRIES, "radius") if entry_prefix and self.patch_radius else _POINT_ENTRIES:
             if (length := len(getattr(self, entry_prefix + name))) != count:
                 raise ValueError(
-                    f"{entry_prefix}{name} has {length} numbers, expected as many as {entry_prefix}share has: {count}"
+                    f"{entry_prefix}{name} has {length} numbers, expected as many as "
+                    f"{entry_prefix}share has: {count}"
                 )
         if not count:
             return

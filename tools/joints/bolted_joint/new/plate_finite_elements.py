@@ -11,8 +11,8 @@ from jointfmu.joints.bolted_joint.joint import BoltedJointSpring
 from jointfmu.joints.bolted_joint.law import ElasticBodies, preload_pressure, working_preload
 from jointfmu.mechanics.curve import tabulate_approach
 from jointfmu.mechanics.footprint.bolts import pressure_distribution
+from jointfmu.mechanics.footprint.distribution import PressureDistribution
 from jointfmu.mechanics.footprint.plate import BoltedPlate
-from jointfmu.mechanics.footprint.shape import PressureDistribution
 from jointfmu.parameters import ParameterFile
 from jointfmu.progress import set_step
 from jointfmu.quantity import Array, flatten_parameters
