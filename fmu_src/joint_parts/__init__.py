@@ -52,7 +52,7 @@ def native_loader(package: str) -> "Callable[[], NativeDefinition]":
     """Function that imports the module `native` of a joint's folder and returns its `NATIVE_PART`."""
 
     def load() -> "NativeDefinition":
-        part: NativeDefinition = import_module(f"{package}.native").PART
+        part: NativeDefinition = import_module(f"{package}.native").NATIVE_PART
         return part
 
     return load

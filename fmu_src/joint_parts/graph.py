@@ -244,9 +244,9 @@ def add_law_functions(
         "law_switches", "-> log-areas between which law_..._0, 1, ... are valid", [], switches
     )
     function_graph.add_function(
-        "law_ends", "-> log-areas where a regime of the stiffness ends", [], spots.regime_ends
+        "law_ends", "-> log-areas where a regime of the stiffness ends", [], spots.regime_end_log_areas
     )
-    head = [law.A_0, law.hardness, spots.reference, spots.m, spots.stiffness_onset]
+    head = [law.A_0, law.hardness, spots.reference, spots.m, spots.stiffness_onset_log_area]
     function_graph.add_function(
         "law_head",
         "-> A_0 [m2], hardness [Pa], reference area [m2], m, log-area of first stiffness",

@@ -288,7 +288,7 @@ def test_approach_is_the_integral_of_dp_over_k(law):
     spots = law.spots()
     start = float(curve.load[np.searchsorted(curve.displacement, 0.0)])
     pressures = np.geomspace(start, 0.999 * law.hardness, 7)
-    ends = [end for end in spots.sorted_regime_ends if end > spots.stiffness_onset]
+    ends = [end for end in spots.sorted_regime_end_log_areas if end > spots.stiffness_onset_log_area]
     breaks = [float(spots.total("load", end)) / law.A_0 for end in ends]
 
     def per_decade(t):
@@ -321,7 +321,9 @@ def test_stiffness_is_the_laws(law):
 @given(data=st.data())
 def test_any_law_gives_a_monotone_table_or_is_refused(kind, data):
     law = data.draw(RANDOM[kind])
-    if law.spots().stiffness_onset + np.log(CLOSING_AREA_RATIO) >= solve_largest_spot(law, law.hardness):
+    if law.spots().stiffness_onset_log_area + np.log(CLOSING_AREA_RATIO) >= solve_largest_spot(
+        law, law.hardness
+    ):
         with pytest.raises(ValueError, match="plastic"):
             tabulate_approach(law)
         return
@@ -345,7 +347,7 @@ def test_closing_begins_at_nothing_and_joins_smoothly(law):
     # the closing takes over the very same numbers; its last polynomial sums three of them
     assert curve.stiffness_slope_end[i - 1] == pytest.approx(curve.stiffness_slope_start[i], rel=1e-12)
     state = evaluate_at_largest_spot(
-        law, law.spots().reference * np.exp(law.spots().stiffness_onset) * CLOSING_AREA_RATIO
+        law, law.spots().reference * np.exp(law.spots().stiffness_onset_log_area) * CLOSING_AREA_RATIO
     )
     assert p == pytest.approx(float(state["pressure"]), rel=1e-12)  # round-off of exp and log
     slope = stiffness_curve(law, p)[1]

@@ -5,7 +5,8 @@ import patch_reduction
 import pytest
 from test_patches import CONTACTS, balance, contact
 
-from jointfmu.mechanics.footprint import patch_reduction, point_reduction
+from jointfmu.mechanics.footprint import patch_reduction as reduction
+from jointfmu.mechanics.footprint import point_reduction
 from jointfmu.mechanics.footprint.distribution import PressureDistribution
 from jointfmu.mechanics.footprint.reproducible import (
     binary_power,
@@ -59,7 +60,7 @@ def searched(monkeypatch):
         return known
 
     monkeypatch.setattr(point_reduction, "_select_groups", once(point_reduction._select_groups))
-    monkeypatch.setattr(patch_reduction, "_fit_points", once(patch_reduction._fit_points))
+    monkeypatch.setattr(reduction, "_fit_points", once(reduction._fit_points))
     return done
 
 
@@ -68,14 +69,14 @@ def searched(monkeypatch):
 def test_points_and_patches_are_those_of_inputs_a_bit_off(name, searched):
     """All numbers within 1e-9, and the exact sums those of the perturbed contact."""
     shape, rng = shape_of(name), np.random.default_rng(4)
-    before = [point_reduction.reduce_points(shape, 120), patch_reduction.reduce_patches(shape, 22)]
+    before = [point_reduction.reduce_points(shape, 120), reduction.reduce_patches(shape, 22)]
     searches = len(searched)
     for _ in range(TIMES):
         other = perturbed(shape, rng)
         there, size = balance(other)
         for one, few in zip(
             before,
-            (point_reduction.reduce_points(other, 120), patch_reduction.reduce_patches(other, 22)),
+            (point_reduction.reduce_points(other, 120), reduction.reduce_patches(other, 22)),
             strict=True,
         ):
             np.testing.assert_allclose(few.area_share, one.share, rtol=AGREE)

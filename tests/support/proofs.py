@@ -53,7 +53,8 @@ def replaced(part: str, old: bytes, new: bytes) -> Change:
 
 def other_manifest(source: Path, target: Path, experiments: str, **files: bytes) -> Path:
     """A copy of an FMU with a manifest of one file of experiments, in place of what it carries."""
-    head = f'xmlns:fmi-ls="{ATTRIBUTE_NAMESPACE}" fmi-ls:fmi-ls-name="{STANDARD_NAME}" fmi-ls:fmi-ls-version="1.0.0-alpha.1"'
+    head = f'xmlns:fmi-ls="{ATTRIBUTE_NAMESPACE}" fmi-ls:fmi-ls-name="{STANDARD_NAME}" '
+    head += 'fmi-ls:fmi-ls-version="1.0.0-alpha.1"'
     related = '<Related type="application/x-ma-ls-experiments" source="own.exp" role="experiment"/>'
     texts = {
         Path(MANIFEST_PATH).name: f"<fmiReferences {head}>{related}</fmiReferences>".encode(),

@@ -74,7 +74,8 @@ def _real_constant_set(
 
 
 def _format_real_constants(numbers_by_values: dict[tuple[str, ...], int]) -> Iterable[str]:
-    yield f"RLBLOCK,{len(numbers_by_values):8d},{max(numbers_by_values.values()):8d},{_UPPER_TRIANGLE[0].size:8d},{7:8d}"
+    sizes = (len(numbers_by_values), max(numbers_by_values.values()), _UPPER_TRIANGLE[0].size, 7)
+    yield ",".join(["RLBLOCK", *(f"{size:8d}" for size in sizes)])
     yield from ("(2i8,6g16.9)", "(7g16.9)")
     for values, number in numbers_by_values.items():
         cells = [f"{v:16.8E}" for v in upper_triangle(np.array(values, dtype=np.float64))]

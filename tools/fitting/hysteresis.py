@@ -81,9 +81,8 @@ class HysteresisLaw:
         if self.elastic_spring is None:
             return self
         force, energy = self.elastic_spring.force, self.elastic_spring.energy
-        return replace(
-            self, elastic_spring=NonlinearSpring(lambda u: force(u - rest_motion), lambda u: energy(u - rest_motion))
-        )
+        moved = NonlinearSpring(lambda u: force(u - rest_motion), lambda u: energy(u - rest_motion))
+        return replace(self, elastic_spring=moved)
 
     def equivalent_spring(self, amplitude: Array) -> tuple[Array, Array]:
         """Equivalent stiffness (n) and loss factor (n) [1] of closed loops about rest with amplitudes (n).

@@ -112,10 +112,10 @@ def _list_differences(start_values: Mapping[str, object], expected: ExpectedCont
 
     start_values : {variable: start value} of the FMU
     """
+    missing = "is no parameter of the FMU"
+    found = {name: f"starts at {_format_value(value)}" for name, value in start_values.items()}
     return [
-        f"{name} "
-        f"{f'starts at {_format_value(start_values[name])}' if name in start_values else 'is no parameter of the FMU'}, "
-        f"{expected.source} says {_format_value(value)}"
+        f"{name} {found.get(name, missing)}, {expected.source} says {_format_value(value)}"
         for name, value in expected.start_values.items()
         if name not in start_values or start_values[name] != value
     ]

@@ -44,7 +44,7 @@ def write_report(path: Path, outcome: Any) -> None:
         shown_error=format_error,
         shown_tolerance=format_tolerance,
         shown_claim=format_claim,
-        fmu_values={(r.point.paper, r.point.id): r for r in outcome.fmu_rows},
+        fmu_values={(r.point.paper, r.point.id): r for r in outcome.fmu_validated_points},
         tabs=[_tab_terms(kind, outcome) for kind in KINDS.values()],
         style=style_sheet(),
         script=page_script("tabs.js"),

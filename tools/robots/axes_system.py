@@ -56,7 +56,8 @@ def format_axes_system(
         sections += [
             f'[{name}_motor]\nmodel = "AngleProfile"',
             _format_entry("height", 0.0, "rad", "the motor holds; its input phi_in turns it"),
-            f'\n[{name}_drive]\nmodel = "{find_spring_fmu(file)}"\nparameters = "{make_identifier(file.name)}.toml"',
+            f'\n[{name}_drive]\nmodel = "{find_spring_fmu(file)}"',
+            f'parameters = "{make_identifier(file.name)}.toml"',
             f'\n[{name}_link]\nmodel = "RotationalInertia"',
             _format_entry("J", J, "kg.m2", "what the axis turns at the pose, the others held"),
             f'\n[{name}_weight]\nmodel = "TorqueProfile"',

@@ -65,7 +65,8 @@ def format_tendons(drive: Transmission, spring: FittedSpring, name: str, motor: 
         f'<joint joint={quoteattr(link)} coef="1"/>'
         f'<joint joint={quoteattr(motor)} coef="{-1.0 / drive.ratio:.17g}"/>'
     )
-    elastic = f'stiffness="{spring.linear_stiffness:.9g} 0 {spring.cubic_stiffness:.9g}" damping="{drive.damping:.9g}"'
+    stiffness = f"{spring.linear_stiffness:.9g} 0 {spring.cubic_stiffness:.9g}"
+    elastic = f'stiffness="{stiffness}" damping="{drive.damping:.9g}"'
     springs = [(name, elastic)] + [
         (f"{name}_slider{i}", f'stiffness="{k:.9g}" springyield="{y:.9g}"')
         for i, (k, y) in enumerate(spring.yielding_springs, 1)

@@ -150,7 +150,7 @@ def _loops(spring: Any, end: float) -> list[chart.Panel]:
 _AXES = zip("xyz", (75.0, 45.0, 15.0), strict=True)
 _TURNS = zip("xyz", (-15.0, -45.0, -75.0), strict=True)
 
-PARTS = FmuParts(
+FMU_PARTS = FmuParts(
     folder=Path(__file__).parent,
     native=native_loader(__name__),
     data=DataConversion(_parameter_values, make_tables=_tables),

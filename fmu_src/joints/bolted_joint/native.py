@@ -149,4 +149,4 @@ def _history_layout() -> HistoryLayout:
     return HistoryLayout({_C_NAMES.get(name, name): shape for name, shape in shapes.items()})
 
 
-PART = NativeDefinition(_functions, (*APPROACH_FILES, *SLIDER_FILES), _definitions, _history_layout())
+NATIVE_PART = NativeDefinition(_functions, (*APPROACH_FILES, *SLIDER_FILES), _definitions, _history_layout())

@@ -111,7 +111,8 @@ def _format_limits(function_graph: Graph) -> str:
     """C array of the limits between parameters; at least one row, since C has no empty arrays."""
     index = {name: i for i, name in enumerate(function_graph.parameter_symbols)}
     rows = [
-        f"{{{index[m.name]}, {int(m.interval.low_open)}, {int(m.interval.high_open)}, {format_string(m.doc)}}}"
+        f"{{{index[m.name]}, {int(m.interval.low_open)}, {int(m.interval.high_open)}, "
+        f"{format_string(m.doc)}}}"
         for m in function_graph.limits
     ]
     return format_array(f"const Limit limits[{max(len(rows), 1)}]", rows or ['{0, 0, 0, ""}'])

@@ -49,7 +49,7 @@ def plate(x, y, **changes):
 
 
 def joint(pattern, **changes):
-    row_bolts, row_distance = pattern.equivalent_rows
+    row_bolts, row_distance = pattern.equivalent_bolt_rows
     steel = ElasticConstants(E=210e9, nu=0.3)
     values = {
         "h": 1e-6, "gamma": 0.45, "longest_wave": 0.8e-3, "hurst": 0.8, "slope": 0.1, "side1": steel,

@@ -59,7 +59,11 @@ def test_approach_is_the_integral_of_df_over_K(spring):
         return f / float(evaluate_at_pressure(spring.joint, f / A_0)["K_N"])
 
     spots = spring.joint.spots()
-    breaks = [float(spots.total("load", u)) for u in spots.sorted_regime_ends if u > spots.stiffness_onset]
+    breaks = [
+        float(spots.total("load", u))
+        for u in spots.sorted_regime_end_log_areas
+        if u > spots.stiffness_onset_log_area
+    ]
     for low, high in pairwise(np.geomspace(first, 0.99 * spring.max_force, 5)):
         ends = np.log([low, *(b for b in breaks if low < b < high), high])
         s += sum(quad(per_log, a, b, epsabs=0.0, epsrel=1e-10)[0] for a, b in pairwise(ends))
@@ -142,7 +146,7 @@ def test_the_closing_is_short(spring):
     force, _ = closing_end(spring)
     spots = spring.joint.spots()
     largest = float(evaluate_at_pressure(spring.joint, force / spring.joint.A_0)["largest_spot"])
-    plastic = spots.reference * np.exp(spots.stiffness_onset)
+    plastic = spots.reference * np.exp(spots.stiffness_onset_log_area)
     assert largest == pytest.approx(CLOSING_AREA_RATIO * plastic, rel=1e-10)  # 1e-12 of the load, steep
     assert force < spring.max_force
 

@@ -153,7 +153,11 @@ def test_the_pair_is_flanks_and_teeth_in_series(spring):
         return np.exp(t) / float(evaluate_at_pressure(mesh, np.exp(t) / mesh.A_0)["K_N"])
 
     spots = mesh.spots()
-    breaks = [float(spots.total("load", u)) for u in spots.sorted_regime_ends if u > spots.stiffness_onset]
+    breaks = [
+        float(spots.total("load", u))
+        for u in spots.sorted_regime_end_log_areas
+        if u > spots.stiffness_onset_log_area
+    ]
     last = first
     for force in np.geomspace(3.0 * first, 0.9 * mesh.A_0 * mesh.hardness, 5):
         ends = np.log([last, *(b for b in breaks if last < b < force), force])

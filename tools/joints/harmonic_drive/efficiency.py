@@ -52,18 +52,18 @@ class PythonDrive:
         self._model, self._spring = model, model.tabulate(file.values)
         self._memory = model.initial_history(self._spring)
         self._rest = {v.name: file.start_value(v.name) for v in model.inputs}
-        self.set(0.0, 0.0, 0.0, 0.0)
-        self.step(0.0, 0.0)
+        self.set_inputs(0.0, 0.0, 0.0, 0.0)
+        self.do_step(0.0, 0.0)
 
-    def set(self, *values: float) -> None:
+    def set_inputs(self, *values: float) -> None:
         self._inputs = {**self._rest, **dict(zip(_FLANGE_MOTION, values, strict=True))}
 
-    def get(self) -> list[float]:
+    def get_outputs(self) -> list[float]:
         """Outputs tau, tau1 [N.m] and K_WTS [N.m/rad] at the present inputs."""
         outputs = self._advance()[0]
         return [float(outputs[name]) for name in (*_TORQUE_OUTPUTS, "K_WTS")]
 
-    def step(self, time: float, size: float) -> None:
+    def do_step(self, time: float, step_size: float) -> None:
         """Accept the present inputs: update the history variables."""
         self._memory = self._advance()[1]
 
@@ -176,7 +176,7 @@ def make_python_test_rig(model: Model, file: ParameterFile) -> DriveTestRig:
     """Make a test rig of the drive in Python, with the parameters of a file. No FMU is needed."""
     steady = file.with_values(_STEADY_PARAMETERS, "user", "steady")
     drive = PythonDrive(model, steady)
-    return DriveTestRig(drive, steady.values.ratio, steady.values.presliding, drive.get()[2])
+    return DriveTestRig(drive, steady.values.ratio, steady.values.presliding, drive.get_outputs()[2])
 
 
 LOST_MOTION_RATIO = 0.04

@@ -228,5 +228,8 @@ def _plastic_stages(law: Yu2022) -> tuple[tuple[PlasticStage, PlasticStage], tup
     """
     if law.plastic_area == "kogut_etsion":
         return (FIRST_STAGE, SECOND_STAGE), (PLASTIC_AREA_RATIO, SECOND_STAGE_AREA_RATIO)
-    plain = (FIRST_STAGE._replace(area_factor=1.0, area_exponent=1.0), SECOND_STAGE._replace(m=1.0, n=1.0))
+    plain = (
+        FIRST_STAGE._replace(area_factor=1.0, area_exponent=1.0),
+        SECOND_STAGE._replace(area_factor=1.0, area_exponent=1.0),
+    )
     return plain, (PLASTIC_DEFORMATION_RATIO, SECOND_STAGE_DEFORMATION_RATIO)

@@ -112,9 +112,8 @@ class HysteresisSliders(Sliders):
             np.array(share, dtype=np.float64) for share in slider_shares(stiffness_exponent(drive))
         )
         unit_sliders = cls(_initial_stiffness(drive, curve, half_loop_torque) * springs, friction)
-        return replace(
-            unit_sliders, friction_limit=_find_limit_torque(drive, curve, unit_sliders, half_loop_torque) * friction
-        )
+        limit = _find_limit_torque(drive, curve, unit_sliders, half_loop_torque) * friction
+        return replace(unit_sliders, friction_limit=limit)
 
     @property
     def is_active(self) -> bool:

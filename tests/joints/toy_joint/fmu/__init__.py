@@ -7,4 +7,4 @@ from jointfmu_fmu_src.joint_parts.terminals import TRANSLATIONAL, Terminal
 
 WIRES = {"s": ("s_rel", "signal"), "f": ("f", "outflow")}
 FLANGES = (Terminal("flange", TRANSLATIONAL, "b", "side 2, side 1 fixed", WIRES),)
-PARTS = FmuParts(folder=Path(__file__).parent, native=load_equations, terminals={"ToySpring": FLANGES})
+FMU_PARTS = FmuParts(folder=Path(__file__).parent, native=load_equations, terminals={"ToySpring": FLANGES})

@@ -166,7 +166,9 @@ def _make_record(name: str, spring: BoltedJointSpring, preload: float, moment: f
             "heights": format_matrix(tight.pair_boundaries),
             "sliders": format_matrix(tight.slider_properties),
             "eta_n": format_matrix(tight.damping_table),
-            "bolt_forces": f"{{{', '.join(format_number(force, COMPUTED_DIGITS) for force in tight.bolt_forces)}}}",
+            "bolt_forces": "{"
+            + ", ".join(format_number(F, COMPUTED_DIGITS) for F in tight.bolt_forces)
+            + "}",
         },
         error_note="; where the force is below the one at tightening, relative to that",
     )

@@ -339,7 +339,8 @@ def _speed_picture(samples: Samples, fitted_log: FittedLog, misfit: Array) -> Pi
     )
     picture = _friction_picture(samples.dq, y, misfit, line, "speed of the joint [rad/s]")
     marks = None if samples.is_dynamic.any() else samples.is_held_out
-    return replace(picture, axis_labels=(picture.axis_labels[0], _NO_LOAD_LABEL, _ERROR_LABEL), highlighted_points=marks)
+    labels = (picture.axis_labels[0], _NO_LOAD_LABEL, _ERROR_LABEL)
+    return replace(picture, axis_labels=labels, highlighted_points=marks)
 
 
 def _friction_picture(
