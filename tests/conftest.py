@@ -251,11 +251,11 @@ def here_alone(versions: str = "23") -> Iterator[None]:
         )
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(compiled_models, "VERSIONS", (*versions,))
-        patch.setattr(compiled_models, "_places", places_here)
+        patch.setattr(compiled_models, "FMI_VERSIONS", (*versions,))
+        patch.setattr(compiled_models, "_candidate_paths", places_here)
         patch.setattr(compiled_models, "unpack_model", read_here)
-        patch.setattr(compiled_models, "libraries", libraries_here)
-        patch.setattr(system, "libraries", libraries_here)
+        patch.setattr(compiled_models, "compile_libraries", libraries_here)
+        patch.setattr(system, "compile_libraries", libraries_here)
         yield
 
 

@@ -39,7 +39,7 @@ def _make_model(
         },
         state_count=state_count,
         is_time_dependent=True,
-        find_event_times=getattr(parameters, "corners", None),
+        find_event_times=getattr(parameters, "find_corner_times", None),
     )
 
 

@@ -31,9 +31,8 @@ TEXT_PATH = "documentation/fmi-ls-ref.txt"
 """Path in an FMU of the text that explains its experiments."""
 _RUN_INSTRUCTIONS = {
     standard.CO_SIMULATION: "steps of stepSize; each takes the inputs of its begin or of its end",
-    standard.MODEL_EXCHANGE: f"a solver with {SOLVER_TOLERANCE_RATIO:g} times the tolerance of the experiment "
-    "as its own; "
-    "a completed integrator step at each row of inputs and results",
+    standard.MODEL_EXCHANGE: f"a solver with {SOLVER_TOLERANCE_RATIO:g} times the tolerance of the "
+    "experiment as its own; a completed integrator step at each row of inputs and results",
 }
 """{interface type: how an experiment is run}."""
 _PURPOSE_TITLES = {

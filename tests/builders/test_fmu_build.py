@@ -288,7 +288,7 @@ def test_a_python_fmu_without_its_libraries_is_refused(
 ) -> None:
     copy = tmp_path / "broken"
     copytree(Path(pythonfmu.__file__).parent, copy / "pythonfmu", ignore=ignore_patterns("binaries"))
-    monkeypatch.setattr(python_build, "_installed", lambda: str(copy))
+    monkeypatch.setattr(python_build, "_find_pythonfmu_folder", lambda: str(copy))
     assert cli.main(["build", "GearContact", "--flavour", "python", "--out", str(tmp_path / "out")]) == 1
     (line,) = capsys.readouterr().err.splitlines()
     assert f"pythonfmu in {copy} has no libraries" in line
@@ -303,7 +303,7 @@ def test_ctrl_c_is_heard_after_what_swallows_it(tmp_path: Path, monkeypatch: pyt
             signal.raise_signal(signal.SIGINT)
         return {}
 
-    monkeypatch.setattr(generate, "code", swallowing)
+    monkeypatch.setattr(generate, "generate_code", swallowing)
     with pytest.raises(KeyboardInterrupt):
         build(["GearContact"], ["fmi3"], None, tmp_path / "new")
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler

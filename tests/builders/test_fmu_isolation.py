@@ -152,7 +152,7 @@ _single = GearContactSpring.evaluate
 GearContactSpring.evaluate = lambda self, f: _single(self, f) | {"K_N": 2.0 * _single(self, f)["K_N"]}
 """
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(python_build, "runtime_sources", lambda kind: sources)
+        patch.setattr(python_build, "collect_runtime_sources", lambda kind: sources)
         build(["GearContact", "BoltedJoint"], ["python"], None, out)
     return out / "python"
 

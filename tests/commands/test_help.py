@@ -117,7 +117,9 @@ def test_an_example_runs(
     monkeypatch.chdir(folder)
     monkeypatch.setenv(CACHE_VARIABLE, str(folder / "parts"))  # a user's may be large
     if line.startswith("robot"):
-        monkeypatch.setattr("jointfmu_tools.robots.pictures.POINTS", 7)  # few poses are drawn as many are
+        monkeypatch.setattr(
+            "jointfmu_tools.robots.pictures.GRID_ANGLES", 7
+        )  # few poses are drawn as many are
     assert cli.main(shlex.split(line)) == 0
     assert capsys.readouterr().out
 

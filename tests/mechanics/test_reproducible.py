@@ -42,7 +42,7 @@ def content(value: object) -> bytes:
         return value.tobytes()
     if isinstance(value, PressureDistribution):
         return b"".join(getattr(value, name).tobytes() for name in NUMBERS)
-    return value.sums.tobytes() if hasattr(value, "sums") else str(value).encode()
+    return value.target_sums.tobytes() if hasattr(value, "target_sums") else str(value).encode()
 
 
 @pytest.fixture

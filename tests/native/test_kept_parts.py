@@ -65,14 +65,14 @@ def test_a_part_is_of_the_sources_it_was_made_of(tmp_path: Path, monkeypatch: py
     before = part_name(model, file)
     (tmp_path / "law.py").write_text("K = 1\n")
     own = compiled_models.find_source_folder
-    monkeypatch.setattr(compiled_models, "own_folder", lambda model: tmp_path)
+    monkeypatch.setattr(compiled_models, "find_source_folder", lambda model: tmp_path)
     first = part_name(model, file)
     compiled_models._digest_folders.cache_clear()
     assert part_name(model, file) == first != before
     (tmp_path / "law.py").write_text("K = 2\n")
     compiled_models._digest_folders.cache_clear()
     assert part_name(model, file) not in (first, before)
-    monkeypatch.setattr(compiled_models, "own_folder", own)
+    monkeypatch.setattr(compiled_models, "find_source_folder", own)
     assert part_name(model, file) == before
 
 
@@ -119,7 +119,7 @@ def test_a_cache_that_cannot_be_written_is_no_error(tmp_path: Path, monkeypatch:
 
 def test_many_may_keep_the_same_part_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Old ones go, and nobody reads half a file."""
-    monkeypatch.setattr(compiled_models, "MOST_KEPT", 3)
+    monkeypatch.setattr(compiled_models, "MAX_CACHED_FILES", 3)
     place, content = tmp_path / "new.tar.xz", compiled_models.pack_model(a_part())
     for i in range(6):
         old = tmp_path / f"{i}.tar.xz"

@@ -296,7 +296,7 @@ def test_an_fmu_survives_a_failed_build(tmp_path: Path, monkeypatch: pytest.Monk
     def fail(*arguments: object) -> None:
         raise RuntimeError("law.c:1:1: error: no")
 
-    monkeypatch.setattr("jointfmu_fmu_src.native.build.compiled_model", fail)
+    monkeypatch.setattr("jointfmu_fmu_src.native.build.get_compiled_model", fail)
     with pytest.raises(RuntimeError, match=r"law\.c:1:1"):
         build(["GearContact"], ["fmi3"], None, tmp_path)
     assert sorted(tmp_path.rglob("*")) == [built.parent, built]
@@ -308,7 +308,7 @@ def test_an_unwritable_place_is_refused_before_anything_is_compiled(
 ) -> None:
     (tmp_path / "file").write_text("mine")
     monkeypatch.setattr(
-        "jointfmu_fmu_src.native.build.compiled_model", lambda *arguments: pytest.fail("compiled")
+        "jointfmu_fmu_src.native.build.get_compiled_model", lambda *arguments: pytest.fail("compiled")
     )
     with pytest.raises(ValueError, match="cannot be written") as raised:
         build(["GearContact"], ["fmi2"], None, tmp_path / "file" / "below")

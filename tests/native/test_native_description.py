@@ -462,16 +462,20 @@ def test_there_is_a_date_only_if_it_is_given(
 DIGEST = """
 import hashlib
 from jointfmu.parameters import load_default
-from jointfmu_fmu_src.native.description import build_description, fmi2_xml, fmi3_xml
-from jointfmu_fmu_src.native.page import documentation
-from jointfmu_fmu_src.native.terminals import terminals_and_icons
+from jointfmu_fmu_src.native.description import (
+    format_build_description,
+    format_fmi2_description,
+    format_fmi3_description,
+)
+from jointfmu_fmu_src.native.page import make_documentation
+from jointfmu_fmu_src.native.terminals import terminal_files
 from jointfmu.joints import MODELS
 
 for model in MODELS.values():
     file = load_default(model.joint)
-    files = documentation(model, file) | terminals_and_icons(model)
-    files |= {"2": fmi2_xml(model, file, "{}", ["a.c"]), "3": fmi3_xml(model, file, "{}")}
-    files |= {"build": build_description(model, ["a.c"])}
+    files = make_documentation(model, file) | terminal_files(model)
+    files |= {"2": format_fmi2_description(model, file, "{}", ["a.c"]), "3": format_fmi3_description(model, file, "{}")}
+    files |= {"build": format_build_description(model, ["a.c"])}
     for text in files.values():
         print(hashlib.sha256(text).hexdigest())
 """

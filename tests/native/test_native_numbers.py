@@ -32,13 +32,13 @@ def pairs(*given: ModuleConstants) -> list[tuple[ModuleType, str]]:
 TABLES = pairs(NUMBER_NAMES, COUNT_NAMES)
 EVERY = {
     DRIVE: (*TABLES, *pairs(drive_native.NUMBER_NAMES), (hysteresis, "MAX_LIMIT_ITERATIONS")),
-    GEAR: (*TABLES, (curve, "CLOSING_RATIO")),
+    GEAR: (*TABLES, (curve, "CLOSING_AREA_RATIO")),
 }
 
 
 def c_of(name: str) -> dict[str, str]:
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(generate, "_laws", {})  # what is kept is of other numbers
+        patch.setattr(generate, "_law_texts", {})  # what is kept is of other numbers
         return generate.generate_sources(name, load_default(MODELS[name].joint))
 
 
@@ -77,7 +77,7 @@ def test_runtime_types_none_of_them_again() -> None:
 
 @pytest.mark.parametrize(
     ("name", "module", "constant", "size"),
-    [(DRIVE, curve, "MAX_NODES", "CURVE_NODES"), (BOLTED, curve, "MAX_NODES", "CURVE_NODES")],
+    [(DRIVE, curve, "MAX_TABLE_NODES", "CURVE_NODES"), (BOLTED, curve, "MAX_TABLE_NODES", "CURVE_NODES")],
 )
 def test_arrays_follow_a_count(
     monkeypatch: pytest.MonkeyPatch,
@@ -98,7 +98,7 @@ def test_arrays_follow_a_count(
 @pytest.mark.parametrize(
     ("name", "source", "module", "constant", "value"),
     [
-        (GEAR, "curve.c", curve, "MAX_NODES", 70_000),  # buckets hold a segment's number in 16 bits
+        (GEAR, "curve.c", curve, "MAX_TABLE_NODES", 70_000),  # buckets hold a segment's number in 16 bits
         (GEAR, "approach.c", curve, "CLOSING_STEPS", 49),  # the error is measured on pairs of segments
     ],
 )
@@ -119,7 +119,7 @@ def test_build_refuses_what_does_not_fit(
 
 
 def test_build_refuses_a_table_without_room(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setattr(curve, "MAX_NODES", 100)  # fewer than its first steps
+    monkeypatch.setattr(curve, "MAX_TABLE_NODES", 100)  # fewer than its first steps
     with pytest.raises(RuntimeError, match="the table needs more than 100 nodes"):
         jointfmu.load(DRIVE).build(tmp_path)
     assert not list(tmp_path.iterdir())

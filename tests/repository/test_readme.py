@@ -83,7 +83,7 @@ def folder(tmp_path_factory, native):
     (place / ASSEMBLY).write_text((ROOT / ASSEMBLY).read_text())
     joint = load_default("bolted_joint").values
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(bolts, "CELLS_ACROSS", 3)  # few nodes are read as many are
+        patch.setattr(bolts, "CELLS_ACROSS_FLANGE", 3)  # few nodes are read as many are
         shape, mean = joint.pattern.shape(), 9e3 * joint.n_bolts / joint.A_0
     field = ContactField(joint.A_0 * shape.share, shape.position, mean * shape.equal)
     (place / "my_field.csv").write_text(nodal_result.csv_text(field))

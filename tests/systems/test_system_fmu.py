@@ -144,7 +144,7 @@ def test_the_proof_ends_before_the_motion_is_too_sensitive(monkeypatch, sensitiv
             columns["link.phi"] = np.where(times < sensitive - 1e-9, times + 1.0, 0.0)
         return TimeSeries(times, columns)
 
-    monkeypatch.setattr(proof, "_exchanged", exchanged)
+    monkeypatch.setattr(proof, "_simulate", exchanged)
     members = proof.make_proof_files(model, 2.0, 5e-4, Path())
     (text,) = (content.decode() for path, content in members.items() if path.endswith("model-exchange.exp"))
     assert f'stopTime="{end:g}"' in text

@@ -125,9 +125,9 @@ def _decay_columns(decay: Any) -> tuple[np.ndarray[Any, Any], ...]:
         np.full(decay.amplitude.size, decay.load),
         decay.amplitude,
         hertz * decay.frequency,
-        hertz * decay.expected,
+        hertz * decay.expected_frequency,
         decay.damping,
-        decay.stated,
+        decay.expected_damping,
     )
 
 
@@ -152,14 +152,14 @@ def _resonance_row(vibration: Any) -> dict[str, float]:
     passes the force on one step late.
     """
     at_once, late = largest_stable_steps(
-        vibration.expected**2, 2.0 * vibration.stated * vibration.expected, 1.0
+        vibration.expected_frequency**2, 2.0 * vibration.expected_damping * vibration.expected_frequency, 1.0
     )
     return {
         "load": vibration.load,
         "frequency": vibration.frequency / math.tau,
-        "expected_frequency": vibration.expected / math.tau,
+        "expected_frequency": vibration.expected_frequency / math.tau,
         "damping_ratio": vibration.damping,
-        "stated_damping_ratio": vibration.stated,
+        "stated_damping_ratio": vibration.expected_damping,
         "largest_step": float(at_once),
         "largest_step_late": float(late),
     }

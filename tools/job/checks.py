@@ -132,10 +132,10 @@ def relative_deviation(value: object, expected: object) -> float:
 
 
 def compute_published_points(folder: Path) -> list[ValidatedPoint]:
-    """Compute published points by running FMUs, with `through_fmu` of the joints that define it."""
+    """Compute published points by running FMUs, with `compute_through_fmu` of the joints that define it."""
     rows = []
     for kind in KINDS.values():
-        compute: FmuEvaluation | None = getattr(load_tool_module(kind, "checks"), "through_fmu", None)
+        compute: FmuEvaluation | None = getattr(load_tool_module(kind, "checks"), "compute_through_fmu", None)
         if compute is None:
             continue
         for point in (p for paper in load_published_numbers(kind).papers for p in read_points(paper)):

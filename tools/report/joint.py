@@ -159,7 +159,11 @@ def _render_page(model: Model, file: ParameterFile) -> str:
     figures = [ramp_figure(course), *([loop_figure(course, loops)] if loops else [])]
     if module and model.name in module.FIGURES:
         figures += module.FIGURES[model.name](course)
-    compared = module.BESIDE[model.name](model, file) if module and model.name in module.BESIDE else []
+    compared = (
+        module.CATALOGUE_COMPARISONS[model.name](model, file)
+        if module and model.name in module.CATALOGUE_COMPARISONS
+        else []
+    )
     return load_template(find_asset(model, "page.html"), folder, PAGE_FOLDER).render(
         model=course.model,
         spring=course.spring,

@@ -40,7 +40,7 @@ def write_report(path: Path, outcome: Any) -> None:
         when=build_time().strftime("%Y-%m-%d %H:%M UTC"),
         outcome=outcome,
         roles=ROLES,
-        sentence=format_summary(outcome.rows),
+        sentence=format_summary(outcome.validated_points),
         shown_error=format_error,
         shown_tolerance=format_tolerance,
         shown_claim=format_claim,
@@ -61,7 +61,7 @@ def _tab_terms(kind: JointKind, job_result: Any) -> dict[str, Any]:
         "name": kind.name,
         "title": kind.title,
         "figures": [(figure, encode_panels(figure.panels)) for figure in job_result.figures[kind.name]],
-        "rows": [row for row in job_result.rows if row.point.joint == kind.name],
+        "rows": [row for row in job_result.validated_points if row.point.joint == kind.name],
         "checks": [check for check in job_result.checks if check.fmu in names],
         "proofs": [proof for proof in job_result.proofs if proof.fmu.stem in names],
     }
@@ -71,7 +71,7 @@ def _joint_figures(kind: JointKind, job_result: Any) -> list[Figure]:
     module = load_tool_module(kind, "figures")
     figures: list[Figure] = module.figures(job_result) if module else []
     figures += [
-        *resonance_figures(job_result.ringing, kind.name, job_result.fmi2_folder),
+        *resonance_figures(job_result.free_vibrations, kind.name, job_result.fmi2_folder),
         *ring_down_figures(job_result.decays, kind.name),
     ]
-    return figures + motion_figures(job_result.arms, kind.name)
+    return figures + motion_figures(job_result.arm_results, kind.name)

@@ -188,13 +188,13 @@ def wind_up_and_tip_error(system: System, results: SystemResults) -> tuple[Array
     The tip error is the distance between the tip at the angles of the links and at the commanded angles.
     """
     commanded, links = [], []
-    for name in system.arm.names:
+    for name in system.arm.axis_names:
         drive = system.joints[f"{name}_drive"]
         assert drive.parameter_file
         commanded.append(results[f"{name}_motor.phi"] / drive.parameter_file.values_by_name["ratio"])
         links.append(results[f"{name}_link.phi"])
     q, real = np.stack(commanded, axis=1), np.stack(links, axis=1)
-    error = np.linalg.norm(system.arm.tip(real) - system.arm.tip(q), axis=1)
+    error = np.linalg.norm(system.arm.tip_position(real) - system.arm.tip_position(q), axis=1)
     return q, real - q, error
 
 
@@ -220,7 +220,7 @@ def system_panels(system: System, results: SystemResults) -> list[Panel]:
         _, wind_up, error = wind_up_and_tip_error(system, results)
         curves = [
             _thin_series(name, results["time"], 1e3 * values)
-            for name, values in zip(system.arm.names, wind_up.T, strict=True)
+            for name, values in zip(system.arm.axis_names, wind_up.T, strict=True)
         ]
         charts.append(Panel("Wind-up of the drives", over, "wind-up [mrad]", curves))
         tip = [_thin_series("tip", results["time"], 1e3 * error)]
@@ -240,7 +240,7 @@ def motion_figures(results_by_system: Mapping[str, tuple[System, SystemResults]]
 def _motion_figure(system: System, results: SystemResults) -> Figure:
     _, wind_up, error = wind_up_and_tip_error(system, results)
     (largest, worst) = np.max(np.abs(wind_up), axis=0), float(np.max(error))
-    soft = system.arm.names[int(np.argmax(largest))]
+    soft = system.arm.axis_names[int(np.argmax(largest))]
     return Figure(
         f"In a system: the {system.name.replace('_', ' ')}",
         f"The motors move the arm from the upright pose to the final pose within {system.arm.duration:g} s. "

@@ -247,7 +247,7 @@ def _make_component(path: Path, name: str, section: Any) -> Component:
                     f"{name}.{key} = {section[key]!r}, expected none of a {model}, only its values"
                 )
         file, declared, inputs = None, dict(flat_fields(PARTNERS[model].parameters)), {}
-        needed = getattr(PARTNERS[model].parameters, "inertia", None)
+        needed = getattr(PARTNERS[model].parameters, "inertia_name", None)
         if needed and needed not in section:
             missing = declared[needed].metadata
             raise ValueError(

@@ -53,7 +53,7 @@ def _parameter_values(drive: Drive) -> Mapping[str, Any]:
     values = flatten_parameters(drive)
     if not isinstance(drive, TableDrive):
         return values
-    midline = {"end": drive.max_table_torque, "stiffest": drive.K_FTS}
+    midline = {"end_torque": drive.max_table_torque, "max_stiffness": drive.K_FTS}
     return {name: value for name, value in values.items() if not name.startswith("table.")} | midline
 
 

@@ -282,7 +282,7 @@ def test_what_asks_for_bolts_refuses_a_field(imported):
 
 def test_fmus_have_the_field(imported, tmp_path, monkeypatch):
     """Import, parameter file, native FMU, ramp: the stiffnesses of direct summation over all nodes."""
-    monkeypatch.setattr(bolts, "CELLS_ACROSS", 10)
+    monkeypatch.setattr(bolts, "CELLS_ACROSS_FLANGE", 10)
     shape = bolt_pattern(JOINT).pressure_distribution()
     mean = PRELOAD * JOINT.n_bolts / JOINT.A_0
     many = ContactField(shape.area_share * JOINT.A_0, shape.position, mean * shape.preload_shape)
@@ -349,7 +349,7 @@ def test_a_force_that_is_off_is_scaled_if_that_is_asked_for(imported, tmp_path, 
 
 def test_import_draws_and_refuses(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(plots, "RESOLUTION", 40)
-    monkeypatch.setattr(bolts, "CELLS_ACROSS", 4)
+    monkeypatch.setattr(bolts, "CELLS_ACROSS_FLANGE", 4)
     path = tmp_path / "field.csv"
     path.write_text(nodal_result.csv_text(field(0.45)))
     line = ["footprint", "import", str(path), "--preload", f"{PRELOAD:g}"]
