@@ -1,7 +1,7 @@
 /* Repeats `BoltedJointSpring.evolve` of the package: the sums over nodes and patches; the laws in it are
  * generated. */
 #include "bolts.h"
-#include "whole.h"
+#include "equilibrium.h"
 
 #include <math.h>
 #include <string.h>
@@ -56,10 +56,10 @@ static void lay(Kind *kind, int j, double reference, double lowest)
     if (f->reference == reference && f->lowest == lowest)
         return;
     if (f->reference != reference)
-        foundation_lay(f, reference);
-    foundation_lower(f, lowest);
-    foundation_find(f, &kind->from[j]);
-    foundation_find(f, &kind->to[j]);
+        foundation_set_heights(f, reference);
+    heights_after_liftoff(f, lowest);
+    find_ranges(f, &kind->from[j]);
+    find_ranges(f, &kind->to[j]);
 }
 
 bool kind_tabulate(Joint *joint, Text *why)
@@ -69,7 +69,7 @@ bool kind_tabulate(Joint *joint, Text *why)
     kind->tight = false;
     if (!spots_begin(&kind->spots, joint->c, why) || !refined(joint, tabulate, APPROACH_STEPS, why))
         return false;
-    joint_head(0, joint->c, head);
+    joint_constants(0, joint->c, head);
     kind->memory = head[0] != 0.0;
     kind->mu = head[1];
     kind->ratio = head[2];
@@ -82,7 +82,7 @@ bool kind_tabulate(Joint *joint, Text *why)
                                    : "memory = false beside sides = elastic: expected true, elastic sides go with friction that remembers");
         return false;
     }
-    kind->work.abreast.fours = vectors_of_four();
+    kind->work.batch.use_avx = vectors_of_four();
     whole_begin(kind);
     energy_tabulate(&kind->energy, &joint->curve);
     for (int i = 0; i < n_nodes(); i++) {
@@ -99,8 +99,8 @@ bool kind_tabulate(Joint *joint, Text *why)
         f->turning[0] = data.turning[0];
         f->turning[1] = data.turning[1];
         f->offset = data.offsets[j][0];
-        foundation_lay(f, 0.0);
-        kind->from[j] = kind->to[j] = foundation_point(f, f->curve->end.x, 0);
+        foundation_set_heights(f, 0.0);
+        kind->from[j] = kind->to[j] = patch_state(f, f->curve->end.x, 0);
     }
     return true;
 }
@@ -454,20 +454,20 @@ static void find_points(Joint *joint, const double *inputs, const double *memory
     Kind *kind = &joint->kind;
     const bool begun = memory[AT_STATE] != (double)UNKNOWN;
     for (int j = 0; j < n_patches(); j++) {
-        Point *from = &kind->from[j], *to = &kind->to[j];
+        PatchState *from = &kind->from[j], *to = &kind->to[j];
         const double end = ELASTIC ? kind->patch_now[j] : kind->patch_start[j] - apart_at(data.patches[j], inputs);
         const double start = begun ? memory[AT_APPROACH + j] : end;
         if (kind->moved != FULL_STICK)
             lay_from(kind, j, memory, start);
         const Foundation *f = &kind->foundation[j];
         if (from->approach != start)
-            *from = to->approach == start ? *to : foundation_point(f, start, from->full);
+            *from = to->approach == start ? *to : patch_state(f, start, from->full);
         if (to->approach != end)
-            *to = from->approach == end ? *from : foundation_point(f, end, to->full);
+            *to = from->approach == end ? *from : patch_state(f, end, to->full);
     }
 }
 
-static inline PatchPath path_of(const Joint *joint, int j, const double *inputs, const double *memory)
+static inline PatchIncrement path_of(const Joint *joint, int j, const double *inputs, const double *memory)
 {
     const bool spread = joint->kind.moved != FULL_STICK && memory[AT_STATE] < (double)SLIP_1D;
     const double *patch = data.patches[j];
@@ -476,7 +476,7 @@ static inline PatchPath path_of(const Joint *joint, int j, const double *inputs,
     const double *bent = joint->kind.bent[j], *before = joint->kind.bent_before[j];
     const double u = inputs[S_REL] - memory[AT_RIGID] - turn * patch[PLACE_Y] + (bent[0] - before[0]);
     const double v = inputs[S_REL + 1] - memory[AT_RIGID + 1] + turn * patch[PLACE_X] + (bent[1] - before[1]);
-    return (PatchPath){.force = {force, force + FOUNDATION_SLIDERS},
+    return (PatchIncrement){.force = {force, force + FOUNDATION_SLIDERS},
                        .from = &joint->kind.from[j],
                        .to = &joint->kind.to[j],
                        .shift = {u, v, turn * patch[RADIUS] + (bent[2] - before[2])},
@@ -516,13 +516,13 @@ static inline double energy_near(const Joint *joint, double x, double *load)
 enum { L_MU, L_RATIO, L_SIZE, L_LOAD, L_THEN, L_ENERGY, N_LOOP, L_NOW = L_LOAD, L_THERE = L_NOW + 3, N_SHORT = L_THERE + 3 };
 
 /* As `short` of the package. */
-static inline bool is_short(const Point *at, double reach)
+static inline bool is_short(const PatchState *at, double reach)
 {
     return reach * at->y[1] < SMALL_CYCLE_RATIO * at->y[0];
 }
 
 /* Load with four derivatives at both ends of a reach. */
-static inline void both_ends(const Joint *joint, const Point *at, double reach, double now[5], double then[5])
+static inline void both_ends(const Joint *joint, const PatchState *at, double reach, double now[5], double then[5])
 {
     curve_at(&joint->curve, at->approach, 4, now);
     curve_at(&joint->curve, at->approach - reach, 4, then);
@@ -534,7 +534,7 @@ static void add_loops(const Joint *joint, const double *inputs, double *x)
     const double mu = joint->kind.mu, ratio = joint->kind.ratio, per_reach = ratio / mu;
     double works = 0.0, energies = 0.0;
     for (int j = 0; j < n_patches(); j++) {
-        const Point *at = &joint->kind.to[j];
+        const PatchState *at = &joint->kind.to[j];
         const double u = along_x(data.patches[j], inputs) + joint->kind.bent[j][0];
         const double v = along_y(data.patches[j], inputs) + joint->kind.bent[j][1];
         const double w = inputs[THETA + 2] * data.patches[j][RADIUS] + joint->kind.bent[j][2];
@@ -545,12 +545,12 @@ static void add_loops(const Joint *joint, const double *inputs, double *x)
             double now[5], then[5];
             both_ends(joint, at, reach, now, then);
             const double given[N_SHORT] = {mu, ratio, size, now[1], now[2], now[3], then[1], then[2], then[3]};
-            short_loop(given, NULL, y);
+            small_cycle_energies(given, NULL, y);
         } else {
             double then;
             const double energy = at->energy - energy_near(joint, at->approach - reach, &then);
             const double given[N_LOOP] = {mu, ratio, size, at->y[0], then, energy};
-            loop(given, NULL, y);
+            cycle_energies(given, NULL, y);
         }
         works += data.patches[j][SHARE] * y[0];
         energies += data.patches[j][SHARE] * y[1];
@@ -563,7 +563,7 @@ static void add_loops(const Joint *joint, const double *inputs, double *x)
 static void add_loop_rate(const Joint *joint, int j, const double *inputs, const double *rates, double *dx)
 {
     const double *patch = data.patches[j], *bent = joint->kind.bent[j];
-    const Point *at = &joint->kind.to[j];
+    const PatchState *at = &joint->kind.to[j];
     const double u = along_x(patch, inputs) + bent[0], v = along_y(patch, inputs) + bent[1];
     const double w = inputs[THETA + 2] * patch[RADIUS] + bent[2], size = sqrt(u * u + v * v + w * w);
     if (size == 0.0)
@@ -581,7 +581,7 @@ static void add_loop_rate(const Joint *joint, int j, const double *inputs, const
             rate[1 + d] = now[2 + d] * rates[0];
             rate[4 + d] = then[2 + d] * falls;
         }
-        short_loop_seed(x, NULL, y);
+        small_cycle_energies_seed(x, NULL, y);
     } else {
         double load[2];
         const double energy = at->energy - energy_at(joint, at->approach - size / reach, load);
@@ -591,7 +591,7 @@ static void add_loop_rate(const Joint *joint, int j, const double *inputs, const
         x[L_THEN] = then[0];
         x[L_ENERGY] = energy;
         memcpy(x + N_LOOP, rate, sizeof rate);
-        loop_seed(x, NULL, y);
+        cycle_energies_seed(x, NULL, y);
     }
     dx[SUM_LOOP_WORK] += patch[SHARE] * y[0];
     dx[SUM_LOOP_ENERGY] += patch[SHARE] * y[1];
@@ -616,7 +616,7 @@ static inline void resting_traction(const double *memory, int j, double traction
 }
 
 /* All patches after the way if they stay at rest; false: one moves more than hardly. */
-static bool rest_all(Joint *joint, const double *inputs, const double *memory, Shear *shears)
+static bool rest_all(Joint *joint, const double *inputs, const double *memory, SliderUpdate *shears)
 {
     bool rests = memory[AT_STATE] < (double)SLIP_1D;
     if (rests) {
@@ -624,16 +624,16 @@ static bool rest_all(Joint *joint, const double *inputs, const double *memory, S
         find_points(joint, inputs, memory);
     }
     for (int j = 0; j < n_patches() && rests; j++) {
-        const PatchPath path = path_of(joint, j, inputs, memory);
+        const PatchIncrement path = path_of(joint, j, inputs, memory);
         double before[3];
         resting_traction(memory, j, before);
-        rests = foundation_rest(&joint->kind.foundation[j], &path, before, &shears[j]);
+        rests = full_stick_update(&joint->kind.foundation[j], &path, before, &shears[j]);
     }
     return rests;
 }
 
 /* How all patches move, with the points of their paths; at rest with their sums. */
-static void move_all(Joint *joint, const double *inputs, const double *memory, Shear *shears)
+static void move_all(Joint *joint, const double *inputs, const double *memory, SliderUpdate *shears)
 {
     Kind *kind = &joint->kind;
     if (rest_all(joint, inputs, memory, shears))
@@ -643,23 +643,23 @@ static void move_all(Joint *joint, const double *inputs, const double *memory, S
     for (int j = 0; j < n_patches() && memory[AT_STATE] < (double)SLIP_1D; j++) {
         double *const spread[2] = {kind->spread[j][0], kind->spread[j][1]}, before[3];
         resting_traction(memory, j, before);
-        foundation_spread(&kind->foundation[j], &kind->from[j], before, spread);
+        distribute_stick_force(&kind->foundation[j], &kind->from[j], before, spread);
     }
 }
 
 /* A patch that is not at rest moves: its sums, and the forces of all its sliders, known after `foundations_end`. */
-static void slide(Joint *joint, int j, const double *inputs, const double *memory, double *const moved[2], Shear *shear)
+static void slide(Joint *joint, int j, const double *inputs, const double *memory, double *const moved[2], SliderUpdate *shear)
 {
     Kind *kind = &joint->kind;
-    const PatchPath path = path_of(joint, j, inputs, memory);
-    const int n = 2 * touched_on(&path), n_y = kind->moved < SLIP_2D ? 0 : n;
-    foundation_move(&kind->foundation[j], &path, moved, &kind->work, shear);
+    const PatchIncrement path = path_of(joint, j, inputs, memory);
+    const int n = 2 * touched_ranges_of(&path), n_y = kind->moved < SLIP_2D ? 0 : n;
+    foundation_advance(&kind->foundation[j], &path, moved, &kind->work, shear);
     memset(moved[0] + n, 0, (size_t)(FOUNDATION_SLIDERS - n) * sizeof *moved[0]);
     memset(moved[1] + n_y, 0, (size_t)(FOUNDATION_SLIDERS - n_y) * sizeof *moved[1]);
 }
 
 /* A patch at rest: its force stands in the place of the first slider, that around its centre in y of the second. */
-static void keep_at_rest(const Shear *shear, double *const moved[2])
+static void keep_at_rest(const SliderUpdate *shear, double *const moved[2])
 {
     for (int d = 0; d < 2; d++) {
         memset(moved[d], 0, FOUNDATION_SLIDERS * sizeof *moved[d]);
@@ -674,7 +674,7 @@ static void slide_all(Joint *joint, const double *inputs, const double *memory, 
     Kind *kind = &joint->kind;
     double heat = 0.0;
     Further sum = {.stick = {0.0}};
-    Shear shears[MOST_PATCHES];
+    SliderUpdate shears[MOST_PATCHES];
     if (remembers(joint)) {
         move_all(joint, inputs, memory, shears);
     } else {
@@ -688,11 +688,11 @@ static void slide_all(Joint *joint, const double *inputs, const double *memory, 
         else
             slide(joint, j, inputs, memory, moved, &shears[j]);
     }
-    foundations_end(&kind->work);
+    foundations_finish(&kind->work);
     for (int j = 0; j < n_patches() && remembers(joint); j++) {
-        const Shear shear = shears[j];
+        const SliderUpdate shear = shears[j];
         add_patch(x, data.patches[j], shear.traction);
-        add_further(&sum, data.patches[j], foundation_stick(&kind->foundation[j], &kind->to[j]), shear.tangent, shear.traction);
+        add_further(&sum, data.patches[j], stick_stiffness(&kind->foundation[j], &kind->to[j]), shear.tangent, shear.traction);
         memcpy(kind->traction[j], shear.traction, sizeof shear.traction);
         memcpy(kind->tangent[j], shear.tangent, sizeof shear.tangent);
         heat += data.patches[j][SHARE] * shear.loss;
@@ -751,16 +751,16 @@ bool joint_forces(Joint *joint, const double *inputs, const double *memory, Text
 {
     Kind *kind = &joint->kind;
     double *const moved[2] = {kind->tried[0], kind->tried[1]};
-    Shear shears[MOST_PATCHES];
+    SliderUpdate shears[MOST_PATCHES];
     if (!joint_press(joint, inputs, why))
         return false;
     move_all(joint, inputs, memory, shears);
     kind->work.forces = true;
     for (int j = 0; j < n_patches() && kind->moved != FULL_STICK; j++) {
-        const PatchPath path = path_of(joint, j, inputs, memory);
-        foundation_move(&kind->foundation[j], &path, moved, &kind->work, &shears[j]);
+        const PatchIncrement path = path_of(joint, j, inputs, memory);
+        foundation_advance(&kind->foundation[j], &path, moved, &kind->work, &shears[j]);
     }
-    foundations_end(&kind->work);
+    foundations_finish(&kind->work);
     for (int j = 0; j < n_patches(); j++) {
         memcpy(kind->traction[j], shears[j].traction, sizeof shears[j].traction);
         memcpy(kind->tangent[j], shears[j].tangent, sizeof shears[j].tangent);
@@ -879,26 +879,26 @@ static bool node_rates(Joint *joint, const double *inputs, const double *seed, c
     return true;
 }
 
-Shear patch_rate(Joint *joint, int j, const double *inputs, const double *memory, const double *after, double rate,
+SliderUpdate patch_rate(Joint *joint, int j, const double *inputs, const double *memory, const double *after, double rate,
                  const double shift[3])
 {
     Kind *kind = &joint->kind;
     const Foundation *f = &kind->foundation[j];
     const bool first = !after && memory[AT_STATE] == (double)UNKNOWN;
-    const PathRate rates = {{first ? rate : 0.0, rate}, {shift[0], shift[1], shift[2]}};
-    PathRate towards = kind->towards[j];
+    const IncrementRate rates = {{first ? rate : 0.0, rate}, {shift[0], shift[1], shift[2]}};
+    IncrementRate towards = kind->towards[j];
     towards.ends[0] = first ? towards.ends[1] : 0.0;
-    PatchPath path = path_of(joint, j, inputs, memory);
-    Shear shear;
+    PatchIncrement path = path_of(joint, j, inputs, memory);
+    SliderUpdate shear;
     bool corner;
     if (after) { /* a further motion from the place of the last evaluation */
         const double *force = after + AT_FORCE + j * 2 * FOUNDATION_SLIDERS;
-        path = (PatchPath){.force = {force, force + FOUNDATION_SLIDERS}, .from = &kind->to[j], .to = &kind->to[j]};
+        path = (PatchIncrement){.force = {force, force + FOUNDATION_SLIDERS}, .from = &kind->to[j], .to = &kind->to[j]};
     }
     if (kind->moved == FULL_STICK) {
         double before[3];
         resting_traction(after ? after : memory, j, before);
-        corner = foundation_rest_rates(f, &path, before, &towards, &rates, &shear);
+        corner = full_stick_rates(f, &path, before, &towards, &rates, &shear);
     } else {
         path.first = first;
         corner = foundation_rates(f, &path, &towards, &rates, &shear);
@@ -917,13 +917,13 @@ void patch_slopes(Joint *joint, const double *inputs, const double *memory, doub
         return;
     }
     for (int j = 0; j < n_patches(); j++) {
-        const PatchPath path = path_of(joint, j, inputs, memory);
-        foundation_slopes(&kind->foundation[j], &path, step, tried, &kind->work, slope[j]);
+        const PatchIncrement path = path_of(joint, j, inputs, memory);
+        foundation_traction_derivatives(&kind->foundation[j], &path, step, tried, &kind->work, slope[j]);
     }
 }
 
 /* Rates of approach and shift of the patches along a seed. */
-static void patch_motions(Joint *joint, const double *seed, const double *bolts, PathRate *motion)
+static void patch_motions(Joint *joint, const double *seed, const double *bolts, IncrementRate *motion)
 {
     Kind *kind = &joint->kind;
     double pressed[MOST_PATCHES];
@@ -934,14 +934,14 @@ static void patch_motions(Joint *joint, const double *seed, const double *bolts,
         const double rate = !ELASTIC          ? tightening_rate(joint, patch, bolts, kind->patch_start[j]) - apart_at(patch, seed)
                             : stiffness > 0.0 ? pressed[j] / stiffness
                                               : 0.0;
-        motion[j] = (PathRate){{0.0, rate},
+        motion[j] = (IncrementRate){{0.0, rate},
                                {along_x(patch, seed) + bent[0], along_y(patch, seed) + bent[1],
                                 patch[RADIUS] * seed[THETA + 2] + bent[2]}};
     }
 }
 
 /* Let the rates be those on the side to which the patches move. */
-static void point_side(Kind *kind, const PathRate *motion)
+static void point_side(Kind *kind, const IncrementRate *motion)
 {
     for (int j = 0; j < n_patches(); j++) {
         kind->towards[j].ends[1] = kind->side * motion[j].ends[1];
@@ -951,17 +951,17 @@ static void point_side(Kind *kind, const PathRate *motion)
 }
 
 static void patch_rates(Joint *joint, const double *inputs, const double *memory, const double *after,
-                        const PathRate *motion, double *dx)
+                        const IncrementRate *motion, double *dx)
 {
     Kind *kind = &joint->kind;
     Further sum = {.stick = {0.0}};
     for (int j = 0; j < n_patches(); j++) {
         const double *patch = data.patches[j], rate = motion[j].ends[1], *shift = motion[j].shift;
-        const double loop[4] = {rate, shift[0], shift[1], shift[2]};
-        add_loop_rate(joint, j, inputs, loop, dx);
+        const double cycle_energies[4] = {rate, shift[0], shift[1], shift[2]};
+        add_loop_rate(joint, j, inputs, cycle_energies, dx);
         if (!remembers(joint))
             continue;
-        const Shear shear = kind->shears[j] = patch_rate(joint, j, inputs, memory, after, rate, shift);
+        const SliderUpdate shear = kind->shears[j] = patch_rate(joint, j, inputs, memory, after, rate, shift);
         add_patch(dx, patch, shear.traction);
         add_further(&sum, patch, kind->ratio * kind->to[j].y[2] * rate, shear.tangent, kind->traction[j]);
         dx[SUM_LOSS] += patch[SHARE] * shear.loss;
@@ -978,7 +978,7 @@ static bool amplitude_rates(Joint *joint, const double *inputs, const double *me
 {
     Kind *kind = &joint->kind;
     double before[MODES];
-    PathRate motion[MOST_PATCHES];
+    IncrementRate motion[MOST_PATCHES];
     memset(kind->towards, 0, sizeof kind->towards);
     for (int n = 0; n < MAX_SIDE_ITERATIONS; n++) {
         double unused[N_X] = {0.0};
@@ -1009,7 +1009,7 @@ static bool side_derivative(Joint *joint, const double *inputs, const double *me
 {
     Kind *kind = &joint->kind;
     double x[2 * N_X] = {0.0}, *dx = x + N_X;
-    PathRate motion[MOST_PATCHES];
+    IncrementRate motion[MOST_PATCHES];
     Text ignored;
     text_clear(&ignored);
     memcpy(x, kind->known, sizeof kind->known);

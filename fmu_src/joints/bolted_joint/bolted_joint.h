@@ -6,7 +6,7 @@
 #include "approach.h"
 #include "data.h"
 #include "dense.h"
-#include "friction.h"
+#include "foundation.h"
 
 /* Arguments of `outputs`. */
 enum { X_S_REL = N_SUMS, X_THETA = X_S_REL + 3, X_RATES = X_THETA + 3, X_P_MAX = X_RATES + 6, N_X };
@@ -21,7 +21,7 @@ enum { FOLLOW_KEY = 5 + 3 + MODES + 6 * MOST_PATCHES };
 typedef struct {
     bool known;
     double key[FOLLOW_KEY], follow[6][MODES];
-    Factors factors; /* of the derivative by the amplitudes */
+    Factorization factors; /* of the derivative by the amplitudes */
 } Followed;
 
 typedef struct {
@@ -41,12 +41,12 @@ typedef struct {
     double sums[3];                  /* of the pressures at tightening: alone, times x, times y */
     bool pressed;                    /* the normal sums below are those at tightening and this displacement */
     double apart[3], normal[N_SUMS], p_max;
-    Point from[MOST_PATCHES], to[MOST_PATCHES]; /* of the last evaluation */
+    PatchState from[MOST_PATCHES], to[MOST_PATCHES]; /* of the last evaluation */
     int moved;                       /* how it has moved up to the last evaluation */
     double known[N_X];               /* arguments of `outputs` in it, for its derivative */
     double traction[MOST_PATCHES][3], along[3]; /* of the patches in it, and what `Further` has there */
     double spread[MOST_PATCHES][2][FOUNDATION_SLIDERS]; /* forces before it of sliders that were at rest */
-    Work work;
+    SliderWork work;
 
     /* Stiffness of a bolt, bolts at each place; of each place the force at tightening, whether the moment would have
      * made it negative, its rate along the last seed; in the last evaluation the gap under the head, the force, and
@@ -57,7 +57,7 @@ typedef struct {
 
     /* Elastic sides: stiffness of the modes; what modes and motions move, at points, patches (along x, y, around their centres and apart)
      * and bolts. */
-    double bodies[MODES], opening[MOST_OPENING][WIDE], patch[4][MOST_PATCH_X][WIDE], stretch[MOST_STRETCH][WIDE];
+    double bodies[MODES], opening[MOST_OPENING][N_COLUMNS], patch[4][MOST_PATCH_X][N_COLUMNS], stretch[MOST_STRETCH][N_COLUMNS];
     double presses[MOST_PRESSING]; /* pressure of a patch over that of a point, of the pairs in `data` */
     int press_end[MOST_PATCHES];   /* of the pairs of each patch */
     /* In the last evaluation, zero of rigid sides: amplitudes, what they open and shift; what they shifted before. */
@@ -69,17 +69,17 @@ typedef struct {
     /* Rates along the last seed, zero of rigid sides; of pressure less that at tightening, stiffness and patches. */
     double amplitude_rate[MODES], opened_rate[MOST_NODES], bent_rate[MOST_PATCHES][3];
     double pressing[MOST_NODES], p_rate[MOST_NODES], stiffening[MOST_NODES];
-    Shear shears[MOST_PATCHES];
+    SliderUpdate shears[MOST_PATCHES];
     double side; /* from which the rates are taken, 1 or -1 along the seed */
-    PathRate towards[MOST_PATCHES]; /* the way of the patches on that side */
+    IncrementRate towards[MOST_PATCHES]; /* the way of the patches on that side */
     bool corner; /* the other side has other rates */
     /* Room, as large frames need more on Windows: weights, weighted rows, stiffness by normal motions and shear beside
      * the modes, slopes of the patches, factors of a derivative by the amplitudes, forces of a patch that is tried, steps since it. */
     double by[MOST_OPENING + MOST_STRETCH];
-    double weighted[MOST_OPENING + MOST_PATCH_X + MOST_STRETCH][WIDE];
-    double by_normal[WIDE][WIDE], by_shear[WIDE][WIDE], tried[2][FOUNDATION_SLIDERS];
+    double weighted[MOST_OPENING + MOST_PATCH_X + MOST_STRETCH][N_COLUMNS];
+    double by_normal[N_COLUMNS][N_COLUMNS], by_shear[N_COLUMNS][N_COLUMNS], tried[2][FOUNDATION_SLIDERS];
     Slopes slope[MOST_PATCHES];
-    Factors factors;
+    Factorization factors;
     double steps[MAX_ITERATIONS][MODES], squares[MAX_ITERATIONS];
 } Kind;
 

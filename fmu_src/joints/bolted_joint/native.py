@@ -20,7 +20,7 @@ def _functions(g: Graph, model: Model) -> None:
     add_closing(g)
     head = [joint.memory, joint.mu, joint.shear_ratio(), joint.A_0, joint.bolt_stiffness, joint.damping]
     doc = "-> memory, mu, K_T/K_N, A_0, stiffness of a bolt, damping, number of bolts"
-    g.add("joint_head", doc, [], [*head, joint.n_bolts])
+    g.add("joint_constants", doc, [], [*head, joint.n_bolts])
     _tightening(g)
     _shear(g)
     sums = dict(zip(outputs.SUMS, symbols("sum", len(outputs.SUMS)), strict=True))
@@ -56,17 +56,17 @@ def _shear(g: Graph) -> None:
     doc = "load, stiffness, its slope, width -> stiffness, its slope, limits of the two"
     x = [ratio, friction, load, stiffness, bend, width]
     y = sliders.partial_contact(load, stiffness, bend, width, ratio, friction)
-    g.add_with_seed("touching", f"K_T/K_N, mu, {doc}", x, y, constant_count=2)
+    g.add_with_seed("partial_contact", f"K_T/K_N, mu, {doc}", x, y, constant_count=2)
     small, first, slope, last, then, change, rise = symbols("x", 7)
     doc = "whether small, stiffness and slope at both ends, change, rise -> part kept, gain"
     kept = sliders.retention_and_stiffness((first, slope), (last, then), change, rise, small)
-    g.add_with_seed("carrying", doc, [small, first, slope, last, then, change, rise], kept, constant_count=1)
+    g.add_with_seed("retention_and_stiffness", doc, [small, first, slope, last, then, change, rise], kept, constant_count=1)
     across, slip = symbols("x", 2)
     force, moved, shift, ends, middle = (symbols(name, 2) for name in "qfukm")
     doc = "whether across, force before, after, shift, stiffness at both ends, slip, middle -> loss"
     loss = sliders.varying_stiffness_loss(force, moved, shift, (ends[0], ends[1]), slip, across, middle)
     x = [across, *force, *moved, *shift, *ends, slip, *middle]
-    g.add_with_seed("changing_loss", doc, x, [loss], constant_count=3)
+    g.add_with_seed("varying_stiffness_loss", doc, x, [loss], constant_count=3)
 
 
 def _rest(g: Graph) -> None:
@@ -74,7 +74,7 @@ def _rest(g: Graph) -> None:
     stiff, now, falls = symbols("x", 3)
     doc = "whether the load falls; stiffness before and after -> part kept, gain"
     g.add_with_seed(
-        "rest_rule", doc, [falls, stiff, now], sliders.stick_retention(stiff, now, falls), constant_count=1
+        "stick_retention", doc, [falls, stiff, now], sliders.stick_retention(stiff, now, falls), constant_count=1
     )
 
 
@@ -82,11 +82,11 @@ def _loops(g: Graph) -> None:
     """Loss and energy of loops at constant load."""
     x = symbols("x", 6)
     doc = "mu, K_T/K_N, amplitude, loads now and where springs have slipped, energy between -> loss, energy"
-    g.add_with_seed("loop", doc, x, sliders.cycle_energies(*x), constant_count=2)
+    g.add_with_seed("cycle_energies", doc, x, sliders.cycle_energies(*x), constant_count=2)
     (mu, ratio, size), now, then = symbols("x", 3), symbols("n", 3), symbols("t", 3)
     doc = "mu, K_T/K_N, amplitude, three derivatives of the load now and there -> loss, energy"
     y = sliders.small_cycle_energies(mu, ratio, size, now, then)
-    g.add_with_seed("short_loop", doc, [mu, ratio, size, *now, *then], y, constant_count=2)
+    g.add_with_seed("small_cycle_energies", doc, [mu, ratio, size, *now, *then], y, constant_count=2)
 
 
 def _definitions(g: Graph, model: Model) -> Definitions:

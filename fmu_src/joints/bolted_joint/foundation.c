@@ -1,4 +1,4 @@
-#include "friction.h"
+#include "foundation.h"
 
 #include <float.h>
 #include <math.h>
@@ -10,10 +10,10 @@
 /* What each slider of a range has at a point, the early and the late one; or rates of it. */
 typedef struct {
     double K, slope, limit[2];
-} Pair;
-_Static_assert(sizeof(Pair) == 4 * sizeof(double), "results of touching");
+} SliderProperties;
+_Static_assert(sizeof(SliderProperties) == 4 * sizeof(double), "results of touching");
 
-static double inverse(const Foundation *f, double load)
+static double approach_at_load(const Foundation *f, double load)
 {
     int segment = 0;
     double carried;
@@ -23,7 +23,7 @@ static double inverse(const Foundation *f, double load)
 COLD
 
 /* As `around` of the package. */
-static void lay_heights(Foundation *f, double reference)
+static void slider_heights(Foundation *f, double reference)
 {
     const double end = f->curve->end.y;
     double y[2], *h = f->height;
@@ -33,12 +33,12 @@ static void lay_heights(Foundation *f, double reference)
     *h++ = f->curve->first.x;
     for (int k = N_BELOW - 1; k >= 0; k--) {
         const double part = (k + f->offset) / (double)N_BELOW, rest = (1.0 - part) * (1.0 - part);
-        *h++ = inverse(f, load * rest / (part * part + rest));
+        *h++ = approach_at_load(f, load * rest / (part * part + rest));
     }
-    *h++ = given ? reference : inverse(f, load);
+    *h++ = given ? reference : approach_at_load(f, load);
     for (int k = 0; k < N_ABOVE; k++) {
         const double part = (k + f->offset) / (double)N_ABOVE;
-        *h++ = inverse(f, load * same_exp(over * (part * part)));
+        *h++ = approach_at_load(f, load * same_exp(over * (part * part)));
     }
     *h = f->curve->end.x;
 }
@@ -46,7 +46,7 @@ static void lay_heights(Foundation *f, double reference)
 END_OF_COLD
 
 /* The sums over the springs of a range, and its sliders. */
-static void lay_range(Foundation *f, int i)
+static void set_range(Foundation *f, int i)
 {
     const double width = f->height[i + 1] - f->height[i];
     f->springs[i] = fmax(f->stiffness[i + 1] - f->stiffness[i], 0.0);
@@ -61,14 +61,14 @@ static void lay_range(Foundation *f, int i)
     }
 }
 
-static void sum_sticks(Foundation *f)
+static void sum_stick_stiffness(Foundation *f)
 {
-    for (int i = 0; i < HEIGHTS; i++)
+    for (int i = 0; i < N_RANGES; i++)
         f->stick[i] = f->ratio * f->springs[i] + (i > 0 ? f->stick[i - 1] : 0.0);
 }
 
 /* A height stands elsewhere. */
-static void put_height(Foundation *f, int i, double height)
+static void set_height(Foundation *f, int i, double height)
 {
     double y[2];
     curve_at(f->curve, height, 1, y);
@@ -77,43 +77,43 @@ static void put_height(Foundation *f, int i, double height)
     f->stiffness[i] = y[1];
 }
 
-void foundation_lay(Foundation *f, double reference)
+void foundation_set_heights(Foundation *f, double reference)
 {
     f->reference = reference;
     f->lowest = f->curve->end.x;
     f->lowered = 0;
-    lay_heights(f, reference);
+    slider_heights(f, reference);
     for (int i = 0; i < N_HEIGHTS; i++)
-        put_height(f, i, f->height[i]);
-    for (int i = 0; i < HEIGHTS; i++)
-        lay_range(f, i);
-    sum_sticks(f);
+        set_height(f, i, f->height[i]);
+    for (int i = 0; i < N_RANGES; i++)
+        set_range(f, i);
+    sum_stick_stiffness(f);
 }
 
 /* As `lowered` of the package. */
-void foundation_lower(Foundation *f, double lowest)
+void heights_after_liftoff(Foundation *f, double lowest)
 {
     const int before = f->lowered;
     int above = 0;
     if (before > 0)
-        put_height(f, before, f->laid);
-    while (above < HEIGHTS && f->height[above] < lowest)
+        set_height(f, before, f->laid);
+    while (above < N_RANGES && f->height[above] < lowest)
         above++;
     f->lowest = lowest;
-    f->lowered = above < HEIGHTS ? above : 0;
+    f->lowered = above < N_RANGES ? above : 0;
     if (f->lowered > 0) {
         f->laid = f->height[above];
-        put_height(f, above, lowest);
+        set_height(f, above, lowest);
     }
     for (int i = before - 1; i <= before && before > 0; i++)
-        lay_range(f, i);
+        set_range(f, i);
     for (int i = f->lowered - 1; i <= f->lowered && f->lowered > 0; i++)
-        lay_range(f, i);
-    sum_sticks(f);
+        set_range(f, i);
+    sum_stick_stiffness(f);
 }
 
 /* Place, load with two derivatives and energy where the curve goes on as its tangent, or before it begins. */
-static void point_beyond(const Curve *curve, const Energy *energy, Point *p)
+static void extrapolate_state(const Curve *curve, const Energy *energy, PatchState *p)
 {
     const bool after = p->approach >= curve->end.x;
     const double beyond = p->approach - (after ? curve->end.x : curve->first.x);
@@ -121,89 +121,89 @@ static void point_beyond(const Curve *curve, const Energy *energy, Point *p)
     p->energy = energy->at[after ? curve->n - 1 : 0] + beyond * (p->y[0] - 0.5 * beyond * p->y[1]);
 }
 
-void foundation_find(const Foundation *f, Point *p)
+void find_ranges(const Foundation *f, PatchState *p)
 {
     while (p->full > 0 && p->approach < f->height[p->full])
         p->full--;
-    while (p->full < HEIGHTS && p->approach >= f->height[p->full + 1])
+    while (p->full < N_RANGES && p->approach >= f->height[p->full + 1])
         p->full++;
-    p->touched = p->full + (p->full < HEIGHTS && p->approach > f->height[p->full]);
+    p->touched = p->full + (p->full < N_RANGES && p->approach > f->height[p->full]);
 }
 
-Point foundation_point(const Foundation *f, double approach, int near)
+PatchState patch_state(const Foundation *f, double approach, int near)
 {
     const Curve *curve = f->curve;
     const Energy *energy = f->energy;
-    Point p = {.approach = approach, .full = near};
+    PatchState p = {.approach = approach, .full = near};
     if (approach >= curve->first.x && approach < curve->end.x) {
         const int segment = curve_segment(curve, approach);
         const double t = (approach - curve->x[segment]) * curve->per[segment];
         curve_derivatives(curve, segment, t, 2, p.y);
         p.energy = energy_inside(energy, curve, segment, t);
     } else {
-        point_beyond(curve, energy, &p);
+        extrapolate_state(curve, energy, &p);
     }
-    foundation_find(f, &p);
+    find_ranges(f, &p);
     return p;
 }
 
 /* Arguments of `touching` for a range at a point. */
-enum { X_RATIO, X_MU, X_LOAD, X_STIFFNESS, X_BEND, X_WIDTH, N_TOUCHING };
+enum { X_RATIO, X_MU, X_LOAD, X_STIFFNESS, X_D2P, X_WIDTH, N_PARTIAL_CONTACT };
 
-static inline void entered(const Foundation *f, int i, const Point *p, double *x)
+static inline void partial_contact_arguments(const Foundation *f, int i, const PatchState *p, double *x)
 {
     x[X_RATIO] = f->ratio;
     x[X_MU] = f->mu;
     x[X_WIDTH] = p->approach - f->height[i];
     x[X_LOAD] = p->y[0] - f->load[i] - f->stiffness[i] * x[X_WIDTH];
     x[X_STIFFNESS] = p->y[1] - f->stiffness[i];
-    x[X_BEND] = p->y[2];
+    x[X_D2P] = p->y[2];
 }
 
 /* Those of a range at a point, see `Foundation.carried`. */
-static inline Pair pair_at(const Foundation *f, int i, const Point *p)
+static inline SliderProperties slider_properties(const Foundation *f, int i, const PatchState *p)
 {
-    double x[N_TOUCHING];
-    Pair pair = {.K = 0.0};
+    double x[N_PARTIAL_CONTACT];
+    SliderProperties pair = {.K = 0.0};
     if (p->approach < f->height[i])
         return pair;
     if (i < p->full) {
         const double *limit = f->limit + 2 * i, K = f->K[2 * i], to = f->mu / f->ratio * p->approach;
-        return (Pair){.K = K, .limit = {limit_at(limit[0], K, to), limit_at(limit[1], K, to)}};
+        return (SliderProperties){.K = K, .limit = {limit_at(limit[0], K, to), limit_at(limit[1], K, to)}};
     }
-    entered(f, i, p, x);
-    touching(x, NULL, &pair.K);
+    partial_contact_arguments(f, i, p, x);
+    partial_contact(x, NULL, &pair.K);
     return pair;
 }
 
 /* Whether all, some or none of the springs of a range touch at both points alike. */
-static bool stays(int i, const Point *from, const Point *to)
+static bool keeps_contact_state(int i, const PatchState *from, const PatchState *to)
 {
     return (i < from->touched) == (i < to->touched) && (i < from->full) == (i < to->full);
 }
 
 /* Whether the mean stiffness of a range on a way follows from its ends. */
-static inline bool small_on(const Foundation *f, int i, const Point *from, const Point *at)
+static inline bool is_small_change(const Foundation *f, int i, const PatchState *from, const PatchState *at)
 {
     const double change = at->approach - from->approach;
-    return change == 0.0 || (stays(i, from, at) && fabs(change) < SMALL_CHANGE_RATIO * (f->height[i + 1] - f->height[i]));
+    return change == 0.0 || (keeps_contact_state(i, from, at) && fabs(change) < SMALL_CHANGE_RATIO * (f->height[i + 1] - f->height[i]));
 }
 
 /* The middle of a way, looked up when it is first needed. */
 typedef struct {
     bool known;
-    Point at;
-} Middle;
+    PatchState at;
+} MiddleState;
 
-static const Point *middle_of(const Foundation *f, const PatchPath *path, Middle *middle)
+static const PatchState *middle_state(const Foundation *f, const PatchIncrement *path, MiddleState *middle)
 {
     if (!middle->known)
-        middle->at = foundation_point(f, 0.5 * (path->from->approach + path->to->approach), path->to->full);
+        middle->at = patch_state(f, 0.5 * (path->from->approach + path->to->approach), path->to->full);
     middle->known = true;
     return &middle->at;
 }
 
-static void add(const SliderSum *sum, Shear *shear)
+static void add_sum(const SliderSum *sum, SliderUpdate *shear)
 {
     for (int d = 0; d < 3; d++)
         shear->traction[d] += sum->force[d];
@@ -213,52 +213,52 @@ static void add(const SliderSum *sum, Shear *shear)
 }
 
 /* One slider by its force, tangent xx, xy, yy and heat, with the way around the centre of its patch. */
-static inline void add_one(const double *slid, double e_x, double e_y, Shear *shear)
+static inline void add_slider(const double *slid, double e_x, double e_y, SliderUpdate *shear)
 {
     const double x = slid[0], y = slid[1], xx = slid[2], xy = slid[3], yy = slid[4];
     const double x_t = xx * e_x + xy * e_y, y_t = xy * e_x + yy * e_y;
     const SliderSum one = {{x, y, x * e_x + y * e_y}, {xx, xy, yy, x_t, y_t, x_t * e_x + y_t * e_y}, slid[SLID_LOSS]};
-    add(&one, shear);
+    add_sum(&one, shear);
 }
 
 /* Sliders of all patches that may slip */
 
 /* Arguments of `changing_loss`. */
-enum { C_ACROSS, C_FORCE, C_MOVED = 3, C_SHIFT = 5, C_FIRST = 7, C_LAST, C_SLIP, C_MIDDLE, N_CHANGING = 12 };
+enum { C_CONTACT_CHANGES, C_FORCE, C_FORCE_END = 3, C_DISPLACEMENT = 5, C_STIFFNESS_START = 7, C_STIFFNESS_END, C_SLIP, C_MIDDLE, N_VARYING_LOSS = 12 };
 
 /* Heat of a slider of a range that changes. */
-static inline double changing(const Run *run, int k, const Abreast *all)
+static inline double varying_loss(const Run *run, int k, const SimdBatch *all)
 {
     const int at = run->at + k;
-    double x[N_CHANGING] = {run->across}, loss;
+    double x[N_VARYING_LOSS] = {run->contact_changes}, loss;
     for (int d = 0; d < 2; d++) {
         x[C_FORCE + d] = all->force[d][at];
-        x[C_MOVED + d] = all->slid[SLID_FORCE + d][at];
-        x[C_SHIFT + d] = all->shift[d][at];
-        x[C_MIDDLE + d] = run->across ? all->slid[SLID_FORCE + d][at + 2] : 0.0;
+        x[C_FORCE_END + d] = all->slid[SLID_FORCE + d][at];
+        x[C_DISPLACEMENT + d] = all->shift[d][at];
+        x[C_MIDDLE + d] = run->contact_changes ? all->slid[SLID_FORCE + d][at + 2] : 0.0;
     }
-    x[C_FIRST] = run->K;
-    x[C_LAST] = all->K[at];
+    x[C_STIFFNESS_START] = run->K;
+    x[C_STIFFNESS_END] = all->K[at];
     x[C_SLIP] = all->slid[SLID_SLIP][at];
-    changing_loss(x, NULL, &loss);
+    varying_stiffness_loss(x, NULL, &loss);
     return loss;
 }
 
-static inline void end_run(const Run *run, const Abreast *all)
+static inline void finish_run(const Run *run, const SimdBatch *all)
 {
     for (int k = 0; k < 2; k++) {
         double slid[N_SLID];
         for (int r = 0; r < N_SLID; r++)
             slid[r] = all->slid[r][run->at + k];
-        if (run->changes)
-            slid[SLID_LOSS] = changing(run, k, all);
-        add_one(slid, run->turning[0][k], run->turning[1][k], run->shear);
+        if (run->stiffness_changes)
+            slid[SLID_LOSS] = varying_loss(run, k, all);
+        add_slider(slid, run->turning[0][k], run->turning[1][k], run->shear);
         for (int d = 0; d < 2; d++)
             run->moved[d][k] = slid[d];
     }
 }
 
-static PlaneSliders abreast(const Abreast *all)
+static PlaneSliders batch(const SimdBatch *all)
 {
     return (PlaneSliders){.force = {all->force[0], all->force[1]},
                           .turning = {all->shift[0], all->shift[1]},
@@ -272,37 +272,37 @@ static PlaneSliders abreast(const Abreast *all)
 }
 
 /* All runs so far. */
-static void end_runs(Work *work)
+static void finish_runs(SliderWork *work)
 {
-    Abreast *all = &work->abreast;
-    const PlaneSliders s = abreast(all);
+    SimdBatch *all = &work->batch;
+    const PlaneSliders s = batch(all);
     double *slid[N_SLID];
     for (int r = 0; r < N_SLID; r++)
         slid[r] = all->slid[r];
-    sliders_slide(all->fours, 0, (all->n + 3) / 4 * 4, &s, slid, work->forces); /* the last beside old ones */
+    sliders_slide(all->use_avx, 0, (all->n + 3) / 4 * 4, &s, slid, work->forces); /* the last beside old ones */
     for (int i = 0; i < work->n; i++) {
         const Run *run = &work->runs[i];
         if (!work->forces)
-            end_run(run, all);
+            finish_run(run, all);
         else
             add_forces(2, slid[0] + run->at, slid[1] + run->at, run->turning[0], run->turning[1], run->shear->traction);
     }
     work->n = all->n = 0;
 }
 
-void foundations_end(Work *work)
+void foundations_finish(SliderWork *work)
 {
-    end_runs(work);
+    finish_runs(work);
     work->forces = false;
 }
 
 /* A run of up to so many sliders, from one on of its patch. */
-static Run *begin_run(Work *work, int most, int k, double *const moved[2], const double *const turning[2], Shear *shear)
+static Run *add_run(SliderWork *work, int most, int k, double *const moved[2], const double *const turning[2], SliderUpdate *shear)
 {
-    if (work->abreast.n + most > ABREAST)
-        end_runs(work);
+    if (work->batch.n + most > BATCH_SIZE)
+        finish_runs(work);
     Run *run = &work->runs[work->n++];
-    *run = (Run){.at = work->abreast.n,
+    *run = (Run){.at = work->batch.n,
                  .moved = {moved[0] + k, moved[1] + k},
                  .turning = {turning[0] + k, turning[1] + k},
                  .shear = shear};
@@ -310,7 +310,7 @@ static Run *begin_run(Work *work, int most, int k, double *const moved[2], const
 }
 
 /* The next pair. */
-static inline void add_pair(Abreast *all, const PlaneSliders *s, int first)
+static inline void add_pair(SimdBatch *all, const PlaneSliders *s, int first)
 {
     for (int k = first; k < first + 2; k++, all->n++) {
         for (int d = 0; d < 2; d++) {
@@ -327,58 +327,58 @@ static inline void add_pair(Abreast *all, const PlaneSliders *s, int first)
 }
 
 /* Sliders whose stiffness stays: `stick` is the sum of the stiffness of those before each second one. */
-static void move_steady(int n, const PlaneSliders *s, const double *stick, bool along, double *const moved[2],
-                        Work *work, Shear *shear)
+static void advance_constant_stiffness(int n, const PlaneSliders *s, const double *stick, bool along, double *const moved[2],
+                        SliderWork *work, SliderUpdate *shear)
 {
-    const bool fours = work->abreast.fours;
+    const bool use_avx = work->batch.use_avx;
     SliderSum sum = {.loss = 0.0};
-    const int first = along ? sliders_sticking(n, s, moved[0], &sum) : sliders_stick(fours, n, s, moved, sum.force);
+    const int first = along ? sliders_sticking(n, s, moved[0], &sum) : sliders_stick(use_avx, n, s, moved, sum.force);
     const int end = first + (n - first) / 4 * 4;
     const double K = first > 0 ? stick[first / 2 - 1] : 0.0;
     sum.tangent[0] += K;
     sum.tangent[2] += K;
     sum.tangent[5] += K;
-    add(&sum, shear);
+    add_sum(&sum, shear);
     if (along)
         return;
     if (end > first) {
         double rows[N_SLID - 2][FOUNDATION_SLIDERS], *slid[N_SLID] = {moved[0], moved[1]};
         for (int r = 2; r < N_SLID; r++)
             slid[r] = rows[r - 2];
-        sliders_slide(fours, first, end, s, slid, work->forces);
+        sliders_slide(use_avx, first, end, s, slid, work->forces);
         if (!work->forces) {
-            sliders_sum(fours, first, end, s, slid, &sum);
-            add(&sum, shear);
+            sliders_sum(use_avx, first, end, s, slid, &sum);
+            add_sum(&sum, shear);
         } else {
             add_forces(end - first, moved[0] + first, moved[1] + first, s->turning[0] + first, s->turning[1] + first,
                        shear->traction);
         }
     }
     if (n > end) {
-        begin_run(work, 2, end, moved, s->turning, shear);
-        add_pair(&work->abreast, s, end);
+        add_run(work, 2, end, moved, s->turning, shear);
+        add_pair(&work->batch, s, end);
     }
 }
 
 /* Parts kept of the force where the stiffness stays. */
-static const double all_kept[] = {
+static const double FULL_RETENTION[] = {
     1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0,
     1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
-_Static_assert(sizeof all_kept == FOUNDATION_SLIDERS * sizeof *all_kept, "of each");
+_Static_assert(sizeof FULL_RETENTION == FOUNDATION_SLIDERS * sizeof *FULL_RETENTION, "of each");
 
 /* Those from one on. */
-static inline PlaneSliders sliders_on(const Foundation *f, const PatchPath *path, int k)
+static inline PlaneSliders sliders_from(const Foundation *f, const PatchIncrement *path, int k)
 {
     return (PlaneSliders){.force = {path->force[0] + k, path->force[1] + k},
-                          .keeps = all_kept,
+                          .keeps = FULL_RETENTION,
                           .turning = {f->turning[0] + k, f->turning[1] + k},
                           .shift = {path->shift[0], path->shift[1], path->shift[2]}};
 }
 
 /* Those of ranges all in contact. */
-static PlaneSliders full_on(const Foundation *f, const PatchPath *path)
+static PlaneSliders full_range_sliders(const Foundation *f, const PatchIncrement *path)
 {
-    PlaneSliders s = sliders_on(f, path, 0);
+    PlaneSliders s = sliders_from(f, path, 0);
     s.K = s.carries = f->K;
     s.per_K = f->per_K;
     s.before = s.after = f->limit;
@@ -388,56 +388,56 @@ static PlaneSliders full_on(const Foundation *f, const PatchPath *path)
 }
 
 /* The first `n` sliders, of ranges all in contact. */
-static void move_full(const Foundation *f, int n, const PatchPath *path, bool along, double *const moved[2],
-                      Work *work, Shear *shear)
+static void advance_full_ranges(const Foundation *f, int n, const PatchIncrement *path, bool along, double *const moved[2],
+                      SliderWork *work, SliderUpdate *shear)
 {
-    const PlaneSliders s = full_on(f, path);
-    move_steady(n, &s, f->stick, along, moved, work, shear);
+    const PlaneSliders s = full_range_sliders(f, path);
+    advance_constant_stiffness(n, &s, f->stick, along, moved, work, shear);
 }
 
 /* The range in which springs begin to touch, while the load stays. */
-static void move_resting(const Foundation *f, int i, const PatchPath *path, bool along, double *const moved[2],
-                         Work *work, Shear *shear)
+static void advance_constant_approach(const Foundation *f, int i, const PatchIncrement *path, bool along, double *const moved[2],
+                         SliderWork *work, SliderUpdate *shear)
 {
-    const Pair here = pair_at(f, i, path->to);
+    const SliderProperties here = slider_properties(f, i, path->to);
     const double soft = here.K > 0.0 ? 1.0 / here.K : 0.0, K[2] = {here.K, here.K}, per_K[2] = {soft, soft};
     double *const to[2] = {moved[0] + 2 * i, moved[1] + 2 * i}, stick = 2.0 * here.K;
-    PlaneSliders s = sliders_on(f, path, 2 * i);
+    PlaneSliders s = sliders_from(f, path, 2 * i);
     s.K = s.carries = K;
     s.per_K = per_K;
     s.before = s.after = here.limit;
-    move_steady(2, &s, &stick, along, to, work, shear);
+    advance_constant_stiffness(2, &s, &stick, along, to, work, shear);
 }
 
 /* Arguments of `carrying`. */
-enum { X_SMALL, X_FIRST, X_SLOPE, X_LAST, X_THEN, X_CHANGE, X_RISE, N_CARRYING };
+enum { X_IS_SMALL, X_STIFFNESS_START, X_SLOPE_START, X_STIFFNESS_END, X_SLOPE_END, X_APPROACH_CHANGE, X_RISE, N_RETENTION };
 
-static inline double sum_of_limits(const Pair *pair)
+static inline double limit_sum(const SliderProperties *pair)
 {
     return pair->limit[0] + pair->limit[1];
 }
 
 /* Those that change: of a range from its start to a point, the part `part` of the way, or rates of them. */
-static inline void ends_of(const Foundation *f, const Pair *start, const Pair *end, double change, double *x)
+static inline void set_range_ends(const Foundation *f, const SliderProperties *start, const SliderProperties *end, double change, double *x)
 {
-    x[X_FIRST] = start->K;
-    x[X_SLOPE] = start->slope;
-    x[X_LAST] = end->K;
-    x[X_THEN] = end->slope;
-    x[X_CHANGE] = change;
-    x[X_RISE] = 0.5 * f->ratio / f->mu * (sum_of_limits(end) - sum_of_limits(start));
+    x[X_STIFFNESS_START] = start->K;
+    x[X_SLOPE_START] = start->slope;
+    x[X_STIFFNESS_END] = end->K;
+    x[X_SLOPE_END] = end->slope;
+    x[X_APPROACH_CHANGE] = change;
+    x[X_RISE] = 0.5 * f->ratio / f->mu * (limit_sum(end) - limit_sum(start));
 }
 
-static inline void gain(const Foundation *f, int i, const PatchPath *path, const Pair *start, const Pair *end,
-                        const Point *at, double *x)
+static inline void retention_arguments(const Foundation *f, int i, const PatchIncrement *path, const SliderProperties *start, const SliderProperties *end,
+                        const PatchState *at, double *x)
 {
     const double change = at->approach - path->from->approach;
-    ends_of(f, start, end, change, x);
-    x[X_SMALL] = small_on(f, i, path->from, at);
+    set_range_ends(f, start, end, change, x);
+    x[X_IS_SMALL] = is_small_change(f, i, path->from, at);
 }
 
 /* The next pair, that of a range which changes, from its start to an end; `gained` is of `carrying`. */
-static inline void add_range(PlaneSliders s, const Pair *start, const Pair *end, const double gained[2], Abreast *all)
+static inline void add_range_pair(PlaneSliders s, const SliderProperties *start, const SliderProperties *end, const double gained[2], SimdBatch *all)
 {
     const double soft = end->K > 0.0 ? 1.0 / end->K : 0.0, K[2] = {end->K, end->K}, per_K[2] = {soft, soft};
     const double keeps[2] = {gained[0], gained[0]}, carries[2] = {gained[1], gained[1]};
@@ -451,57 +451,57 @@ static inline void add_range(PlaneSliders s, const Pair *start, const Pair *end,
 }
 
 /* The sliders of a range that changes. */
-static void move_range(const Foundation *f, int i, const PatchPath *path, Middle *middle, double *const moved[2],
-                       Work *work, Shear *shear)
+static void advance_partial_range(const Foundation *f, int i, const PatchIncrement *path, MiddleState *middle, double *const moved[2],
+                       SliderWork *work, SliderUpdate *shear)
 {
-    const bool across = !work->forces && !stays(i, path->from, path->to);
-    const Point *half = across ? middle_of(f, path, middle) : path->to, *points[2] = {path->to, half};
-    const Pair start = pair_at(f, i, path->from), end = pair_at(f, i, path->to);
-    const Pair ends[2] = {end, across ? pair_at(f, i, half) : end};
-    const int n = across ? 2 : 1;
-    double x[N_CARRYING], gained[2];
-    PlaneSliders s = sliders_on(f, path, 2 * i);
-    Run *run = begin_run(work, 2 * n, 2 * i, moved, f->turning, shear);
-    run->across = across;
+    const bool contact_changes = !work->forces && !keeps_contact_state(i, path->from, path->to);
+    const PatchState *half = contact_changes ? middle_state(f, path, middle) : path->to, *points[2] = {path->to, half};
+    const SliderProperties start = slider_properties(f, i, path->from), end = slider_properties(f, i, path->to);
+    const SliderProperties ends[2] = {end, contact_changes ? slider_properties(f, i, half) : end};
+    const int n = contact_changes ? 2 : 1;
+    double x[N_RETENTION], gained[2];
+    PlaneSliders s = sliders_from(f, path, 2 * i);
+    Run *run = add_run(work, 2 * n, 2 * i, moved, f->turning, shear);
+    run->contact_changes = contact_changes;
     run->K = start.K;
-    run->changes = start.K != end.K;
+    run->stiffness_changes = start.K != end.K;
     for (int at = 0; at < n; at++) {
-        gain(f, i, path, &start, &ends[at], points[at], x);
-        carrying(x, NULL, gained);
-        add_range(s, &start, &ends[at], gained, &work->abreast);
+        retention_arguments(f, i, path, &start, &ends[at], points[at], x);
+        retention_and_stiffness(x, NULL, gained);
+        add_range_pair(s, &start, &ends[at], gained, &work->batch);
         for (int d = 0; d < 3; d++)
             s.shift[d] *= 0.5;
     }
 }
 
 /* Ranges whose springs all touch on the whole way. */
-static int full_on_way(const PatchPath *path)
+static int full_ranges_throughout(const PatchIncrement *path)
 {
     return path->from->full < path->to->full ? path->from->full : path->to->full;
 }
 
-void foundation_move(const Foundation *f, const PatchPath *path, double *const moved[2], Work *work, Shear *shear)
+void foundation_advance(const Foundation *f, const PatchIncrement *path, double *const moved[2], SliderWork *work, SliderUpdate *shear)
 {
-    const int full = full_on_way(path), touched = touched_on(path);
+    const int full = full_ranges_throughout(path), touched = touched_ranges_of(path);
     const bool rests = path->from->approach == path->to->approach, along = !ELASTIC && rests && path->straight;
-    Middle middle = {.known = false};
-    *shear = (Shear){.loss = 0.0};
-    move_full(f, 2 * full, path, along, moved, work, shear);
+    MiddleState middle = {.known = false};
+    *shear = (SliderUpdate){.loss = 0.0};
+    advance_full_ranges(f, 2 * full, path, along, moved, work, shear);
     for (int i = full; i < touched; i++) {
         if (rests)
-            move_resting(f, i, path, along, moved, work, shear);
+            advance_constant_approach(f, i, path, along, moved, work, shear);
         else
-            move_range(f, i, path, &middle, moved, work, shear);
+            advance_partial_range(f, i, path, &middle, moved, work, shear);
     }
 }
 
 /* Slopes */
 
 /* The next pair comes apart: without more as its limits grow with stiffnesses K. */
-static void part_pair(const Foundation *f, int first, double K, Work *work)
+static void add_opening_pair(const Foundation *f, int first, double K, SliderWork *work)
 {
     for (int k = 0; k < 2; k++) {
-        const int at = work->abreast.n + k;
+        const int at = work->batch.n + k;
         work->apart.limit[at] = -f->mu / f->ratio * K;
         for (int d = 0; d < 2; d++) {
             work->apart.turning[d][at] = f->turning[d][first + k];
@@ -511,107 +511,107 @@ static void part_pair(const Foundation *f, int first, double K, Work *work)
 }
 
 /* That of a range that changes, with what it gains where the patch comes apart by a step, by differences. */
-static void add_parting(const Foundation *f, int i, const PatchPath *path, const Point *apart, double step, Work *work)
+static void add_opening_range(const Foundation *f, int i, const PatchIncrement *path, const PatchState *apart, double step, SliderWork *work)
 {
-    const Point *at[2] = {path->to, apart};
-    const Pair start = pair_at(f, i, path->from);
-    const int first = work->abreast.n;
-    Pair end[2];
+    const PatchState *at[2] = {path->to, apart};
+    const SliderProperties start = slider_properties(f, i, path->from);
+    const int first = work->batch.n;
+    SliderProperties end[2];
     double gained[2][2];
     for (int k = 0; k < 2; k++) {
-        double x[N_CARRYING];
-        end[k] = pair_at(f, i, at[k]);
-        gain(f, i, path, &start, &end[k], at[k], x);
-        carrying(x, NULL, gained[k]);
+        double x[N_RETENTION];
+        end[k] = slider_properties(f, i, at[k]);
+        retention_arguments(f, i, path, &start, &end[k], at[k], x);
+        retention_and_stiffness(x, NULL, gained[k]);
     }
     const double per_gain = gained[0][1] > 0.0 ? 1.0 / (step * gained[0][1]) : 0.0;
-    part_pair(f, 2 * i, end->K, work);
-    add_range(sliders_on(f, path, 2 * i), &start, end, gained[0], &work->abreast);
+    add_opening_pair(f, 2 * i, end->K, work);
+    add_range_pair(sliders_from(f, path, 2 * i), &start, end, gained[0], &work->batch);
     for (int k = 0; k < 2; k++) {
         const int row = first + k;
         work->apart.limit[row] = (end[1].limit[k] - end[0].limit[k]) / step;
         for (int d = 0; d < 2; d++)
-            work->apart.shift[d][row] = per_gain * ((gained[1][0] - gained[0][0]) * work->abreast.force[d][row] +
-                                                    (gained[1][1] - gained[0][1]) * work->abreast.shift[d][row]);
+            work->apart.shift[d][row] = per_gain * ((gained[1][0] - gained[0][0]) * work->batch.force[d][row] +
+                                                    (gained[1][1] - gained[0][1]) * work->batch.shift[d][row]);
     }
 }
 
-void foundation_slopes(const Foundation *f, const PatchPath *path, double step, double *const tried[2], Work *work,
+void foundation_traction_derivatives(const Foundation *f, const PatchIncrement *path, double step, double *const tried[2], SliderWork *work,
                        double slope[4][3])
 {
-    const int full = full_on_way(path), touched = touched_on(path);
-    Abreast *all = &work->abreast;
+    const int full = full_ranges_throughout(path), touched = touched_ranges_of(path);
+    SimdBatch *all = &work->batch;
     double force[3];
-    PlaneSliders s = full_on(f, path);
-    const int first = sliders_stick(all->fours, 2 * full, &s, tried, force);
-    const Point apart = foundation_point(f, path->to->approach - step, path->to->full);
+    PlaneSliders s = full_range_sliders(f, path);
+    const int first = sliders_stick(all->use_avx, 2 * full, &s, tried, force);
+    const PatchState apart = patch_state(f, path->to->approach - step, path->to->full);
     for (int k = first; k < 2 * full; k += 2) {
-        part_pair(f, k, f->K[k], work);
+        add_opening_pair(f, k, f->K[k], work);
         add_pair(all, &s, k);
     }
     for (int i = full; i < touched; i++)
-        add_parting(f, i, path, &apart, step, work);
+        add_opening_range(f, i, path, &apart, step, work);
     if (all->n % 4 > 0) { /* two that have nothing */
         static const double none[2] = {0.0};
         s = (PlaneSliders){.force = {none, none}, .keeps = none, .turning = {none, none}, .K = none, .carries = none,
                            .per_K = none, .before = none, .after = none};
-        part_pair(f, 0, 0.0, work);
+        add_opening_pair(f, 0, 0.0, work);
         add_pair(all, &s, 0);
     }
     const SliderRates rates = {{work->apart.turning[0], work->apart.turning[1]},
                                work->apart.limit,
                                {work->apart.shift[0], work->apart.shift[1]}};
-    s = abreast(all);
-    sliders_slopes(all->fours, all->n, &s, &rates, slope);
+    s = batch(all);
+    sliders_slopes(all->use_avx, all->n, &s, &rates, slope);
     for (int d = 0; d < 3 && first > 0; d++)
         slope[d][d] += f->stick[first / 2 - 1];
     all->n = 0;
 }
 
-double foundation_stick(const Foundation *f, const Point *at)
+double stick_stiffness(const Foundation *f, const PatchState *at)
 {
     return f->ratio * fmax(at->y[1] - f->stiffness[0], 0.0);
 }
 
-enum { R_FALLS, R_BEFORE, R_AFTER, N_REST }; /* arguments of `rest_rule` */
+enum { R_IS_UNLOADING, R_STIFFNESS_START, R_STIFFNESS_END, N_STICK_RETENTION }; /* arguments of `rest_rule` */
 
 /* As `Foundation.rested` of the package. */
-bool foundation_rest(const Foundation *f, const PatchPath *path, const double before[3], Shear *shear)
+bool full_stick_update(const Foundation *f, const PatchIncrement *path, const double before[3], SliderUpdate *shear)
 {
-    const Point *from = path->from, *to = path->to;
-    const double x[N_REST] = {to->approach < from->approach, foundation_stick(f, from), foundation_stick(f, to)};
-    const double most = FULL_STICK_RATIO * f->mu / f->ratio * x[R_AFTER] * (to->approach - f->height[0]);
+    const PatchState *from = path->from, *to = path->to;
+    const double x[N_STICK_RETENTION] = {to->approach < from->approach, stick_stiffness(f, from), stick_stiffness(f, to)};
+    const double most = FULL_STICK_RATIO * f->mu / f->ratio * x[R_STIFFNESS_END] * (to->approach - f->height[0]);
     double rule[2], *t = shear->traction;
-    rest_rule(x, NULL, rule);
-    *shear = (Shear){.tangent = {x[R_AFTER], 0.0, x[R_AFTER], 0.0, 0.0, x[R_AFTER]}};
+    stick_retention(x, NULL, rule);
+    *shear = (SliderUpdate){.tangent = {x[R_STIFFNESS_END], 0.0, x[R_STIFFNESS_END], 0.0, 0.0, x[R_STIFFNESS_END]}};
     for (int d = 0; d < 3; d++)
         t[d] = rule[0] * before[d] + rule[1] * path->shift[d];
     return sqrt(t[0] * t[0] + t[1] * t[1] + t[2] * t[2]) <= most;
 }
 
-bool foundation_rest_rates(const Foundation *f, const PatchPath *path, const double before[3],
-                           const PathRate *towards, const PathRate *rates, Shear *rate)
+bool full_stick_rates(const Foundation *f, const PatchIncrement *path, const double before[3],
+                           const IncrementRate *direction, const IncrementRate *rates, SliderUpdate *rate)
 {
-    const Point *from = path->from, *to = path->to;
-    const double rises = towards->ends[1] - towards->ends[0];
+    const PatchState *from = path->from, *to = path->to;
+    const double rises = direction->ends[1] - direction->ends[0];
     const bool corner = to->approach == from->approach && rises != 0.0;
     const bool falls = to->approach < from->approach || (corner && rises < 0.0);
     const double first = f->ratio * from->y[2] * rates->ends[0], last = f->ratio * to->y[2] * rates->ends[1];
-    const double x[2 * N_REST - 1] = {falls, foundation_stick(f, from), foundation_stick(f, to), first, last};
+    const double x[2 * N_STICK_RETENTION - 1] = {falls, stick_stiffness(f, from), stick_stiffness(f, to), first, last};
     double rule[2], slopes[2];
-    rest_rule(x, NULL, rule);
-    rest_rule_seed(x, NULL, slopes);
-    *rate = (Shear){.tangent = {last, 0.0, last, 0.0, 0.0, last}};
+    stick_retention(x, NULL, rule);
+    stick_retention_seed(x, NULL, slopes);
+    *rate = (SliderUpdate){.tangent = {last, 0.0, last, 0.0, 0.0, last}};
     for (int d = 0; d < 3; d++)
         rate->traction[d] = slopes[0] * before[d] + slopes[1] * path->shift[d] + rule[1] * rates->shift[d];
     return corner;
 }
 
-void foundation_spread(const Foundation *f, const Point *at, const double traction[3], double *const force[2])
+void distribute_stick_force(const Foundation *f, const PatchState *at, const double traction[3], double *const force[2])
 {
-    const double stick = foundation_stick(f, at);
+    const double stick = stick_stiffness(f, at);
     for (int i = 0; i < at->touched; i++) {
-        const double part = stick > 0.0 ? pair_at(f, i, at).K / stick : 0.0;
+        const double part = stick > 0.0 ? slider_properties(f, i, at).K / stick : 0.0;
         for (int d = 0; d < 2; d++)
             for (int k = 2 * i; k < 2 * i + 2; k++)
                 force[d][k] = part * shift_of(f->turning, k, traction, d);
@@ -630,16 +630,16 @@ COLD
 
 /* A path, its rates, and the direction to which the side points on which they are taken. */
 typedef struct {
-    const PatchPath *path;
-    const PathRate *towards, *rates;
+    const PatchIncrement *path;
+    const IncrementRate *direction, *rates;
     bool *corner; /* set where the other side has other rates */
-} PathSide;
+} SideRates;
 
 /* A point that moves on, where it stands at a height: the ranges that touch are those just above or just below it. */
-static Point point_towards(const Foundation *f, const Point *at, double rises, bool *corner)
+static PatchState state_beside(const Foundation *f, const PatchState *at, double rises, bool *corner)
 {
-    Point p = *at;
-    if (p.full == 0 || p.full == HEIGHTS || p.approach != f->height[p.full] || rises == 0.0)
+    PatchState p = *at;
+    if (p.full == 0 || p.full == N_RANGES || p.approach != f->height[p.full] || rises == 0.0)
         return p;
     *corner = true;
     if (rises > 0.0)
@@ -651,17 +651,17 @@ static Point point_towards(const Foundation *f, const Point *at, double rises, b
 
 /* What sliders have, with its rates: a range at a point, or one of its sliders after a way. */
 typedef struct {
-    Pair at, rate;
-} Pairs;
+    SliderProperties at, rate;
+} PropertiesRate;
 typedef struct {
     double at[N_SLID], rate[N_SLID];
-} Slid;
+} MappingRate;
 
 /* The approach of the point and the stiffness' slope change with rates. */
-static Pairs pairs_at(const Foundation *f, int i, const Point *p, double rate, double bend)
+static PropertiesRate properties_rate(const Foundation *f, int i, const PatchState *p, double rate, double bend)
 {
-    Pairs pairs = {.at = pair_at(f, i, p)};
-    double x[2 * N_TOUCHING - X_LOAD];
+    PropertiesRate pairs = {.at = slider_properties(f, i, p)};
+    double x[2 * N_PARTIAL_CONTACT - X_LOAD];
     if (p->approach < f->height[i])
         return pairs;
     if (i < p->full) {
@@ -673,14 +673,14 @@ static Pairs pairs_at(const Foundation *f, int i, const Point *p, double rate, d
         pairs.rate.K = pairs.at.slope * rate;
         return pairs;
     }
-    entered(f, i, p, x);
+    partial_contact_arguments(f, i, p, x);
     const double rates[] = {(p->y[1] - f->stiffness[i]) * rate, p->y[2] * rate, bend * rate, rate};
-    memcpy(x + N_TOUCHING, rates, sizeof rates);
-    touching_seed(x, NULL, &pairs.rate.K);
+    memcpy(x + N_PARTIAL_CONTACT, rates, sizeof rates);
+    partial_contact_seed(x, NULL, &pairs.rate.K);
     if (p->approach == f->height[i + 1]) { /* all touch: the same numbers, whose rates are of one side */
-        Point all = *p;
+        PatchState all = *p;
         all.full = i + 1;
-        const Pair full = pair_at(f, i, &all);
+        const SliderProperties full = slider_properties(f, i, &all);
         pairs.at.K = full.K;
         memcpy(pairs.at.limit, full.limit, sizeof full.limit);
     }
@@ -688,54 +688,54 @@ static Pairs pairs_at(const Foundation *f, int i, const Point *p, double rate, d
 }
 
 /* Arguments of `slide_plane`; rates of those from P_KEEPS on follow them in its seed. */
-enum { P_FORCE, P_KEEPS = 2, P_CARRIES, P_SHIFT, P_BEFORE = 6, P_AFTER, P_K, P_PER_K, N_PLANE };
+enum { P_FORCE, P_RETENTION = 2, P_SECANT, P_DISPLACEMENT, P_LIMIT_START = 6, P_LIMIT_END, P_K, P_PER_K, N_PLANE };
 
 /* A trial force this near to its limit is at it [1]: limits of springs that touch late are small differences. */
-static const double NEAR_LIMIT = 1e-9;
+static const double LIMIT_TOLERANCE = 1e-9;
 /* By which a limit that begins to grow or to fall is another one before [1]: the rule of a slider has a corner there. */
-static const double OTHER_LIMIT = 1e-14;
+static const double LIMIT_PERTURBATION = 1e-14;
 
 /* The trial force of a slider, or its rate with rates of the arguments. */
-static inline double trial_force(const double *x, int d)
+static inline double elastic_predictor(const double *x, int d)
 {
-    return x[P_KEEPS] * x[P_FORCE + d] + x[P_CARRIES] * x[P_SHIFT + d];
+    return x[P_RETENTION] * x[P_FORCE + d] + x[P_SECANT] * x[P_DISPLACEMENT + d];
 }
 
-static inline double trial_rate(const double *x, const double rate[N_PLANE - P_KEEPS], int d)
+static inline double predictor_rate(const double *x, const double rate[N_PLANE - P_RETENTION], int d)
 {
-    return rate[0] * x[P_FORCE + d] + rate[P_CARRIES - P_KEEPS] * x[P_SHIFT + d] +
-           x[P_CARRIES] * rate[P_SHIFT - P_KEEPS + d];
+    return rate[0] * x[P_FORCE + d] + rate[P_SECANT - P_RETENTION] * x[P_DISPLACEMENT + d] +
+           x[P_SECANT] * rate[P_DISPLACEMENT - P_RETENTION + d];
 }
 
-static bool near_limit(const double x[N_PLANE])
+static bool is_at_limit(const double x[N_PLANE])
 {
-    const double u = trial_force(x, 0), v = trial_force(x, 1), limit = x[P_AFTER];
-    return fabs(sqrt(u * u + v * v) - limit) <= NEAR_LIMIT * limit;
+    const double u = elastic_predictor(x, 0), v = elastic_predictor(x, 1), limit = x[P_LIMIT_END];
+    return fabs(sqrt(u * u + v * v) - limit) <= LIMIT_TOLERANCE * limit;
 }
 
 /* Whether the rates of a slider can depend on the side. */
-static bool has_sides(const double x[N_PLANE])
+static bool has_two_sides(const double x[N_PLANE])
 {
-    return x[P_BEFORE] == x[P_AFTER] || near_limit(x);
+    return x[P_LIMIT_START] == x[P_LIMIT_END] || is_at_limit(x);
 }
 
 /* One slider with rates of its arguments, in the direction of others. */
-static Slid slide_towards(double x[2 * N_PLANE - P_KEEPS], const double towards[N_PLANE - P_KEEPS], bool *corner)
+static MappingRate return_map_rate(double x[2 * N_PLANE - P_RETENTION], const double direction[N_PLANE - P_RETENTION], bool *corner)
 {
-    Slid slid;
-    const double u = trial_force(x, 0), v = trial_force(x, 1), limit = x[P_AFTER];
-    const double own[2] = {trial_rate(x, x + N_PLANE, 0), trial_rate(x, x + N_PLANE, 1)};
-    const bool at_limit = near_limit(x);
-    const double beyond = u * trial_rate(x, towards, 0) + v * trial_rate(x, towards, 1) - limit * towards[P_AFTER - P_KEEPS];
-    const double least = at_limit ? 1.0 - 2.0 * NEAR_LIMIT : 1.0;
-    const double grows = towards[P_AFTER - P_KEEPS] - towards[P_BEFORE - P_KEEPS];
-    if (x[P_BEFORE] == limit && grows != 0.0) {
-        x[P_BEFORE] *= 1.0 - copysign(OTHER_LIMIT, grows);
+    MappingRate slid;
+    const double u = elastic_predictor(x, 0), v = elastic_predictor(x, 1), limit = x[P_LIMIT_END];
+    const double own[2] = {predictor_rate(x, x + N_PLANE, 0), predictor_rate(x, x + N_PLANE, 1)};
+    const bool at_limit = is_at_limit(x);
+    const double beyond = u * predictor_rate(x, direction, 0) + v * predictor_rate(x, direction, 1) - limit * direction[P_LIMIT_END - P_RETENTION];
+    const double least = at_limit ? 1.0 - 2.0 * LIMIT_TOLERANCE : 1.0;
+    const double grows = direction[P_LIMIT_END - P_RETENTION] - direction[P_LIMIT_START - P_RETENTION];
+    if (x[P_LIMIT_START] == limit && grows != 0.0) {
+        x[P_LIMIT_START] *= 1.0 - copysign(LIMIT_PERTURBATION, grows);
         *corner = *corner || u * u + v * v > limit * limit;
     }
-    for (int k = P_BEFORE; k <= P_AFTER; k++) {
+    for (int k = P_LIMIT_START; k <= P_LIMIT_END; k++) {
         x[k] *= least;
-        x[k + N_PLANE - P_KEEPS] *= least;
+        x[k + N_PLANE - P_RETENTION] *= least;
     }
     slide_plane(x, NULL, slid.at);
     slide_plane_seed(x, NULL, slid.rate);
@@ -750,8 +750,8 @@ static Slid slide_towards(double x[2 * N_PLANE - P_KEEPS], const double towards[
 
 /* Rates of the arguments of a slider k of a range: its stiffness and limits before and after have rates, the shift is
  * that of a part of the path. */
-static void slider_rates(const Foundation *f, int k, const double gains[2], const PathRate *rates, double part,
-                         const double limits[2], double K_rate, double per_K, double out[N_PLANE - P_KEEPS])
+static void argument_rates(const Foundation *f, int k, const double gains[2], const IncrementRate *rates, double part,
+                         const double limits[2], double K_rate, double per_K, double out[N_PLANE - P_RETENTION])
 {
     const double all[] = {gains[0], gains[1], part * shift_of(f->turning, k, rates->shift, 0),
                           part * shift_of(f->turning, k, rates->shift, 1), limits[0], limits[1], K_rate,
@@ -761,66 +761,66 @@ static void slider_rates(const Foundation *f, int k, const double gains[2], cons
 
 /* What a range gains on a part of a path. */
 typedef struct {
-    Pairs start, end;
+    PropertiesRate start, end;
     double gained[2], gains[2];
-} Gain;
+} SecantRate;
 
-static Gain gain_on(const Foundation *f, int i, const PathSide *c, const Point *from, const Point *at, double part,
-                    const PathRate *rates)
+static SecantRate secant_rate(const Foundation *f, int i, const SideRates *c, const PatchState *from, const PatchState *at, double part,
+                    const IncrementRate *rates)
 {
     const double change = at->approach - from->approach, turned = part * (rates->ends[1] - rates->ends[0]);
-    const double rises = c->towards->ends[1] - c->towards->ends[0];
+    const double rises = c->direction->ends[1] - c->direction->ends[0];
     const double bend = change != 0.0 ? (c->path->to->y[2] - c->path->from->y[2]) /
                                             (c->path->to->approach - c->path->from->approach)
                                       : 0.0;
-    double x[2 * N_CARRYING - 1];
-    Gain g = {.end = pairs_at(f, i, at, rates->ends[0] + turned, bend)};
-    g.start = change != 0.0 || c->path->first ? pairs_at(f, i, from, rates->ends[0], bend) : (Pairs){.at = g.end.at};
-    gain(f, i, c->path, &g.start.at, &g.end.at, at, x);
+    double x[2 * N_RETENTION - 1];
+    SecantRate g = {.end = properties_rate(f, i, at, rates->ends[0] + turned, bend)};
+    g.start = change != 0.0 || c->path->first ? properties_rate(f, i, from, rates->ends[0], bend) : (PropertiesRate){.at = g.end.at};
+    retention_arguments(f, i, c->path, &g.start.at, &g.end.at, at, x);
     if (change == 0.0 && rises != 0.0) { /* springs that lift off take their force with them */
-        x[X_CHANGE] = copysign(DBL_MIN, rises);
+        x[X_APPROACH_CHANGE] = copysign(DBL_MIN, rises);
         *c->corner = true;
     }
-    ends_of(f, &g.start.rate, &g.end.rate, turned, x + N_CARRYING - 1);
-    carrying(x, NULL, g.gained);
-    carrying_seed(x, NULL, g.gains);
+    set_range_ends(f, &g.start.rate, &g.end.rate, turned, x + N_RETENTION - 1);
+    retention_and_stiffness(x, NULL, g.gained);
+    retention_and_stiffness_seed(x, NULL, g.gains);
     return g;
 }
 
 /* One slider of a range on a part of a path. */
-static Slid slide_on(const Foundation *f, const PathSide *c, int i, const Point *from, const Point *at, double part, int late,
-                     const Gain *own)
+static MappingRate range_slider_rate(const Foundation *f, const SideRates *c, int i, const PatchState *from, const PatchState *at, double part, int late,
+                     const SecantRate *own)
 {
     const int k = 2 * i + late;
     const double K = own->end.at.K, per_K = K > 0.0 ? 1.0 / K : 0.0;
-    double x[2 * N_PLANE - P_KEEPS] = {c->path->force[0][k], c->path->force[1][k], own->gained[0], own->gained[1],
+    double x[2 * N_PLANE - P_RETENTION] = {c->path->force[0][k], c->path->force[1][k], own->gained[0], own->gained[1],
                                        part * shift_of(f->turning, k, c->path->shift, 0),
                                        part * shift_of(f->turning, k, c->path->shift, 1),
                                        own->start.at.limit[late], own->end.at.limit[late], K, per_K};
-    double direction[N_PLANE - P_KEEPS] = {0.0};
+    double ahead_rates[N_PLANE - P_RETENTION] = {0.0};
     const double limits[2] = {own->start.rate.limit[late], own->end.rate.limit[late]};
-    slider_rates(f, k, own->gains, c->rates, part, limits, own->end.rate.K, per_K, x + N_PLANE);
-    if (has_sides(x)) {
-        const Gain towards = gain_on(f, i, c, from, at, part, c->towards);
-        const double ahead[2] = {towards.start.rate.limit[late], towards.end.rate.limit[late]};
-        slider_rates(f, k, towards.gains, c->towards, part, ahead, towards.end.rate.K, per_K, direction);
+    argument_rates(f, k, own->gains, c->rates, part, limits, own->end.rate.K, per_K, x + N_PLANE);
+    if (has_two_sides(x)) {
+        const SecantRate direction = secant_rate(f, i, c, from, at, part, c->direction);
+        const double ahead[2] = {direction.start.rate.limit[late], direction.end.rate.limit[late]};
+        argument_rates(f, k, direction.gains, c->direction, part, ahead, direction.end.rate.K, per_K, ahead_rates);
     }
-    return slide_towards(x, direction, c->corner);
+    return return_map_rate(x, ahead_rates, c->corner);
 }
 
 /* Of the elastic energy before [1]. */
-static const double HEAT_ROUND_OFF = 1e-13;
+static const double LOSS_ROUND_OFF = 1e-13;
 
 /* Rate of the heat of a slider of a range that changes: where there is none, none can be lost on either side. */
-static double loss_rate(const PathSide *c, double x[2 * N_CHANGING - 3])
+static double loss_rate(const SideRates *c, double x[2 * N_VARYING_LOSS - 3])
 {
-    double loss, more, rate, along = c->rates->ends[1] * c->towards->ends[1];
+    double loss, more, rate, along = c->rates->ends[1] * c->direction->ends[1];
     for (int d = 0; d < 3; d++)
-        along += c->rates->shift[d] * c->towards->shift[d];
-    changing_loss(x, NULL, &loss);
-    x[C_FIRST] *= 1.0 - HEAT_ROUND_OFF; /* a little more energy before: the heat is round-off if it is less */
-    changing_loss(x, NULL, &more);
-    changing_loss_seed(x, NULL, &rate);
+        along += c->rates->shift[d] * c->direction->shift[d];
+    varying_stiffness_loss(x, NULL, &loss);
+    x[C_STIFFNESS_START] *= 1.0 - LOSS_ROUND_OFF; /* a little more energy before: the heat is round-off if it is less */
+    varying_stiffness_loss(x, NULL, &more);
+    varying_stiffness_loss_seed(x, NULL, &rate);
     if (loss > 0.5 * more)
         return rate;
     *c->corner = *c->corner || rate != 0.0;
@@ -828,27 +828,27 @@ static double loss_rate(const PathSide *c, double x[2 * N_CHANGING - 3])
 }
 
 /* Rates of the sliders of a range that is not all in contact, on one side of a path, whose points are given. */
-static void range_rate(const Foundation *f, int i, const PathSide *c, const Point *from, const Point *to,
-                       const Point *middle, Shear *rate)
+static void partial_range_rate(const Foundation *f, int i, const SideRates *c, const PatchState *from, const PatchState *to,
+                       const PatchState *middle, SliderUpdate *rate)
 {
-    const PatchPath *path = c->path;
-    const Point *points[2] = {to, middle};
-    const bool across = !stays(i, path->from, to);
-    Gain own[2];
-    Slid slid[2][2] = {{{{0.0}, {0.0}}}};
-    for (int at = 0; at < (across ? 2 : 1); at++) {
+    const PatchIncrement *path = c->path;
+    const PatchState *points[2] = {to, middle};
+    const bool contact_changes = !keeps_contact_state(i, path->from, to);
+    SecantRate own[2];
+    MappingRate slid[2][2] = {{{{0.0}, {0.0}}}};
+    for (int at = 0; at < (contact_changes ? 2 : 1); at++) {
         const double part = at > 0 ? 0.5 : 1.0;
-        own[at] = gain_on(f, i, c, from, points[at], part, c->rates);
+        own[at] = secant_rate(f, i, c, from, points[at], part, c->rates);
         for (int late = 0; late < 2; late++)
-            slid[at][late] = slide_on(f, c, i, from, points[at], part, late, &own[at]);
+            slid[at][late] = range_slider_rate(f, c, i, from, points[at], part, late, &own[at]);
     }
     if (to->approach == f->height[i]) { /* springs without load: no force is left, and it grows by second order */
         memset(slid[0], 0, sizeof slid[0]);
         own->end.rate.K = 0.0;
     }
-    const Pairs *start = &own->start, *last = &own->end;
+    const PropertiesRate *start = &own->start, *last = &own->end;
     for (int late = 0; late < 2; late++) {
-        const Slid *end = &slid[0][late], *half = &slid[1][late];
+        const MappingRate *end = &slid[0][late], *half = &slid[1][late];
         const double *moved = end->at;
         const int k = 2 * i + late;
         double shift[2], rated[2], dy[N_SLID];
@@ -857,13 +857,13 @@ static void range_rate(const Foundation *f, int i, const PathSide *c, const Poin
             shift[d] = shift_of(f->turning, k, path->shift, d);
             rated[d] = shift_of(f->turning, k, c->rates->shift, d);
         }
-        double x[] = {across, path->force[0][k], path->force[1][k], moved[0], moved[1],
+        double x[] = {contact_changes, path->force[0][k], path->force[1][k], moved[0], moved[1],
                             shift[0], shift[1], start->at.K, last->at.K, moved[SLID_SLIP], half->at[0], half->at[1],
                             dy[0], dy[1], rated[0], rated[1], start->rate.K, last->rate.K, dy[SLID_SLIP],
                             half->rate[0], half->rate[1]};
         if (start->at.K != last->at.K || start->rate.K != last->rate.K)
             dy[SLID_LOSS] = loss_rate(c, x);
-        add_one(dy, f->turning[0][k], f->turning[1][k], rate);
+        add_slider(dy, f->turning[0][k], f->turning[1][k], rate);
     }
 }
 
@@ -873,7 +873,7 @@ typedef struct {
 } SliderRate;
 
 /* Rates of the heights that are laid around an approach, see `lay_heights` and `foundation_lower`. */
-static void height_rates(const Foundation *f, double rate, double height[N_HEIGHTS])
+static void slider_height_rates(const Foundation *f, double rate, double height[N_HEIGHTS])
 {
     const double end = f->curve->end.y;
     double y[2];
@@ -892,10 +892,10 @@ static void height_rates(const Foundation *f, double rate, double height[N_HEIGH
 }
 
 /* Rates of the first `n` ranges, all in contact at the approach around which the heights are laid. */
-static void laid_rates(const Foundation *f, int n, double approach, double rate, SliderRate *out)
+static void full_range_rates(const Foundation *f, int n, double approach, double rate, SliderRate *out)
 {
     double height[N_HEIGHTS], stiffness[N_HEIGHTS];
-    height_rates(f, rate, height);
+    slider_height_rates(f, rate, height);
     for (int i = 0; i < N_HEIGHTS; i++) {
         double y[3];
         curve_at(f->curve, f->height[i], 2, y);
@@ -916,41 +916,41 @@ static void laid_rates(const Foundation *f, int n, double approach, double rate,
 }
 
 /* Rates of the first `n` sliders, of ranges all in contact. */
-static void full_rates(const Foundation *f, int n, const PathSide *c, Shear *rate)
+static void add_full_range_rates(const Foundation *f, int n, const SideRates *c, SliderUpdate *rate)
 {
-    const PatchPath *path = c->path;
+    const PatchIncrement *path = c->path;
     const double grown = f->mu / f->ratio, from = grown * path->from->approach, to = grown * path->to->approach;
-    const double *turn = c->rates->ends, *turned = c->towards->ends;
+    const double *turn = c->rates->ends, *turned = c->direction->ends;
     SliderRate own, ahead;
     bool found = false;
     if (path->first)
-        laid_rates(f, n / 2, path->to->approach, turn[1], &own);
+        full_range_rates(f, n / 2, path->to->approach, turn[1], &own);
     for (int k = 0; k < n; k++) {
         const double K = f->K[k], per_K = f->per_K[k], before = limit_at(f->limit[k], K, from), after = limit_at(f->limit[k], K, to);
-        double x[2 * N_PLANE - P_KEEPS] = {path->force[0][k], path->force[1][k], 1.0, K,
+        double x[2 * N_PLANE - P_RETENTION] = {path->force[0][k], path->force[1][k], 1.0, K,
                                            shift_of(f->turning, k, path->shift, 0), shift_of(f->turning, k, path->shift, 1),
                                            before, after, K, per_K};
-        double direction[N_PLANE - P_KEEPS] = {0.0};
+        double ahead_rates[N_PLANE - P_RETENTION] = {0.0};
         const double limits[2] = {path->first ? own.limit[k] : grown * K * turn[0], path->first ? own.limit[k] : grown * K * turn[1]};
         const double stiffer = path->first ? own.K[k] : 0.0, gains[2] = {0.0, stiffer};
-        slider_rates(f, k, gains, c->rates, 1.0, limits, stiffer, per_K, x + N_PLANE);
-        const double u = trial_force(x, 0), v = trial_force(x, 1), least = (1.0 - 2.0 * NEAR_LIMIT) * after;
-        double dy[N_SLID] = {K * x[N_PLANE + 2] + stiffer * x[P_SHIFT], K * x[N_PLANE + 3] + stiffer * x[P_SHIFT + 1],
+        argument_rates(f, k, gains, c->rates, 1.0, limits, stiffer, per_K, x + N_PLANE);
+        const double u = elastic_predictor(x, 0), v = elastic_predictor(x, 1), least = (1.0 - 2.0 * LIMIT_TOLERANCE) * after;
+        double dy[N_SLID] = {K * x[N_PLANE + 2] + stiffer * x[P_DISPLACEMENT], K * x[N_PLANE + 3] + stiffer * x[P_DISPLACEMENT + 1],
                                    stiffer, 0.0, stiffer};
         if (u * u + v * v >= least * least) {
-            const bool sides = path->first ? near_limit(x) : has_sides(x); /* both limits of a first path are the same */
+            const bool sides = path->first ? is_at_limit(x) : has_two_sides(x); /* both limits of a first path are the same */
             if (sides && path->first && !found)
-                laid_rates(f, n / 2, path->to->approach, turned[1], &ahead);
+                full_range_rates(f, n / 2, path->to->approach, turned[1], &ahead);
             found = found || sides;
             if (sides) {
                 const double next[2] = {path->first ? ahead.limit[k] : grown * K * turned[0], path->first ? ahead.limit[k] : grown * K * turned[1]};
                 const double stiff = path->first ? ahead.K[k] : 0.0, gain_ahead[2] = {0.0, stiff};
-                slider_rates(f, k, gain_ahead, c->towards, 1.0, next, stiff, per_K, direction);
+                argument_rates(f, k, gain_ahead, c->direction, 1.0, next, stiff, per_K, ahead_rates);
             }
-            const Slid slid = slide_towards(x, direction, c->corner);
+            const MappingRate slid = return_map_rate(x, ahead_rates, c->corner);
             memcpy(dy, slid.rate, sizeof dy);
         }
-        add_one(dy, f->turning[0][k], f->turning[1][k], rate);
+        add_slider(dy, f->turning[0][k], f->turning[1][k], rate);
     }
 }
 
@@ -958,18 +958,18 @@ static void full_rates(const Foundation *f, int n, const PathSide *c, Shear *rat
  * none of their force is left. They slip along the shift, and are stiff across it alone, where it is larger than what
  * the load rises by lets stick; where the load falls to the height, along the part of their force that they keep, and the
  * shift. Where nothing moves, each goes along as its neighbour below: it slips where that is at its limit. */
-static void touching_rate(const Foundation *f, int i, const PathSide *c, const Point *from, const Point *to, Shear *rate)
+static void add_contact_onset_rate(const Foundation *f, int i, const SideRates *c, const PatchState *from, const PatchState *to, SliderUpdate *rate)
 {
-    const PatchPath *path = c->path;
+    const PatchIncrement *path = c->path;
     const bool still = path->shift[0] == 0.0 && path->shift[1] == 0.0 && path->shift[2] == 0.0;
-    const double K = pairs_at(f, i, to, c->rates->ends[1], 0.0).rate.K;
+    const double K = properties_rate(f, i, to, c->rates->ends[1], 0.0).rate.K;
     const double change = to->approach - from->approach;
-    const Pair below = pair_at(f, i - 1, to), start = pair_at(f, i, from);
+    const SliderProperties below = slider_properties(f, i - 1, to), start = slider_properties(f, i, from);
     const bool lifts = change < 0.0 && start.K > 0.0, follows = still && !lifts;
     for (int late = 0; late < 2; late++) {
         const int at = 2 * i + late, k = follows ? at - 2 : at;
         const double sticks = f->mu / f->ratio * fmax(change, 0.0) * (late ? 1.0 + 2.0 * UNIFORM_DEVIATION : 1.0 - 2.0 * UNIFORM_DEVIATION);
-        const double least = follows ? (1.0 - 2.0 * NEAR_LIMIT) * below.limit[late] : sticks;
+        const double least = follows ? (1.0 - 2.0 * LIMIT_TOLERANCE) * below.limit[late] : sticks;
         double way[2];
         for (int d = 0; d < 2; d++) {
             const double shift = shift_of(f->turning, k, path->shift, d), force = path->force[d][k];
@@ -977,33 +977,33 @@ static void touching_rate(const Foundation *f, int i, const PathSide *c, const P
         }
         const double square = way[0] * way[0] + way[1] * way[1], per = square > least * least ? K / square : 0.0;
         const double dy[N_SLID] = {0.0, 0.0, K - per * way[0] * way[0], -per * way[0] * way[1], K - per * way[1] * way[1]};
-        add_one(dy, f->turning[0][at], f->turning[1][at], rate);
+        add_slider(dy, f->turning[0][at], f->turning[1][at], rate);
     }
 }
 
-bool foundation_rates(const Foundation *f, const PatchPath *path, const PathRate *towards, const PathRate *rates,
-                      Shear *rate)
+bool foundation_rates(const Foundation *f, const PatchIncrement *path, const IncrementRate *direction, const IncrementRate *rates,
+                      SliderUpdate *rate)
 {
     bool corner = false;
-    const PathSide path_side = {path, towards, rates, &corner};
+    const SideRates path_side = {path, direction, rates, &corner};
     const bool stays_there = path->from->approach == path->to->approach;
-    *rate = (Shear){.loss = 0.0};
-    const Point to = path->first ? *path->to : point_towards(f, path->to, towards->ends[1], &corner);
-    const Point from = stays_there ? to : *path->from;
+    *rate = (SliderUpdate){.loss = 0.0};
+    const PatchState to = path->first ? *path->to : state_beside(f, path->to, direction->ends[1], &corner);
+    const PatchState from = stays_there ? to : *path->from;
     const int full = from.full < to.full ? from.full : to.full;
     const bool enters = to.touched > to.full && to.approach == f->height[to.full];
     const int touched = from.touched > to.touched ? from.touched : to.touched;
-    full_rates(f, 2 * full, &path_side, rate);
+    add_full_range_rates(f, 2 * full, &path_side, rate);
     if (touched == full)
         return corner;
-    Middle found = {.known = false};
-    const Point middle = stays_there ? to : *middle_of(f, path, &found);
+    MiddleState found = {.known = false};
+    const PatchState middle = stays_there ? to : *middle_state(f, path, &found);
     for (int i = full; i < touched; i++) {
         const bool begins = to.approach == f->height[i];
         if (!begins || from.approach > to.approach)
-            range_rate(f, i, &path_side, &from, &to, &middle, rate);
+            partial_range_rate(f, i, &path_side, &from, &to, &middle, rate);
         if (begins && enters && i > 0)
-            touching_rate(f, i, &path_side, &from, &to, rate);
+            add_contact_onset_rate(f, i, &path_side, &from, &to, rate);
     }
     return corner;
 }

@@ -1,4 +1,4 @@
-#include "whole.h"
+#include "equilibrium.h"
 
 #include <math.h>
 #include <string.h>
@@ -14,11 +14,11 @@ static void open_patches(Kind *kind)
 {
     for (int j = 0, e = 0; j < (int)data.n_patches; j++) {
         const double stiffness = kind->to[j].y[1], per = stiffness > 0.0 ? 1.0 / stiffness : 0.0;
-        double sum[WIDE] = {0.0};
+        double sum[N_COLUMNS] = {0.0};
         for (; e < kind->press_end[j]; e++) {
             const int i = data.pressing[e][PAIR_POINT];
             const double by = kind->presses[e] * kind->k[i] * per;
-            for (int k = 0; k < WIDE; k++)
+            for (int k = 0; k < N_COLUMNS; k++)
                 sum[k] += by * kind->opening[i][k];
         }
         memcpy(kind->patch[3][j], sum, sizeof sum);
@@ -77,7 +77,7 @@ static inline int motion_of(int d)
 /* A row of what modes move, as numbers, and three motions beside them. */
 static void lay_row(const int16_t *digits, double first, double second, double third, double *row)
 {
-    const double motions[LANES_OF_MODES] = {first, second, third};
+    const double motions[LANES] = {first, second, third};
     for (int k = 0; k < (int)data.n_modes; k++)
         row[k] = digits[k] / MODE_DIGITS;
     memcpy(row + MODES, motions, sizeof motions);
@@ -116,51 +116,51 @@ void whole_deform(const double *amplitude, const Kind *kind, double *opened, dou
 {
     if (!ELASTIC)
         return;
-    const bool fours = kind->work.abreast.fours;
+    const bool use_avx = kind->work.batch.use_avx;
     const int patches = (int)data.n_patch_x;
     for (int d = 0; d < 3; d++)
-        dense_dots(fours, patches, kind->patch[d], amplitude, 3, &bent[0][d]);
+        dense_dots(use_avx, patches, kind->patch[d], amplitude, 3, &bent[0][d]);
     if (opened)
-        dense_dots(fours, (int)data.n_opening, kind->opening, amplitude, 1, opened);
+        dense_dots(use_avx, (int)data.n_opening, kind->opening, amplitude, 1, opened);
 }
 
 /* The stiffness by normal motions beside the modes, up to a size, of points and bolts. */
 static void press_all(Kind *kind, int size)
 {
-    const bool fours = kind->work.abreast.fours;
+    const bool use_avx = kind->work.batch.use_avx;
     const int sizes[2] = {(int)data.n_nodes, (int)data.n_stretch};
-    const double(*const rows[2])[WIDE] = {(const double(*)[WIDE])kind->opening, (const double(*)[WIDE])kind->stretch};
+    const double(*const rows[2])[N_COLUMNS] = {(const double(*)[N_COLUMNS])kind->opening, (const double(*)[N_COLUMNS])kind->stretch};
     memset(kind->by_normal, 0, sizeof kind->by_normal);
     for (int s = 0; s < 2; s++) {
         for (int i = 0; i < sizes[s]; i++)
             kind->by[i] = s == 0 ? kind->area * data.nodes[i][SHARE] * kind->k[i] : kind->bolt * kind->bolt_pulls[i];
-        dense_weigh(fours, sizes[s], kind->by, rows[s], kind->weighted);
-        dense_products(fours, sizes[s], (const double(*)[WIDE])kind->weighted, rows[s], size, false, kind->by_normal);
+        dense_weigh(use_avx, sizes[s], kind->by, rows[s], kind->weighted);
+        dense_products(use_avx, sizes[s], (const double(*)[N_COLUMNS])kind->weighted, rows[s], size, false, kind->by_normal);
     }
 }
 
 /* The same by shear in `by_shear`, of patches by their slopes; all of the matrix or its lower half. */
 static void shear_all(Kind *kind, int size, bool all)
 {
-    const bool fours = kind->work.abreast.fours;
+    const bool use_avx = kind->work.batch.use_avx;
     const int n = (int)data.n_patches;
-    const double(*rows[4])[WIDE];
+    const double(*rows[4])[N_COLUMNS];
     double by[MOST_PATCHES][4];
     for (int s = 0; s < 4; s++)
-        rows[s] = (const double(*)[WIDE])kind->patch[s];
+        rows[s] = (const double(*)[N_COLUMNS])kind->patch[s];
     memset(kind->by_shear, 0, sizeof kind->by_shear);
     for (int d = 0; d < 3; d++) {
         for (int j = 0; j < n; j++)
             for (int s = 0; s < 4; s++)
                 by[j][s] = kind->area * data.patches[j][SHARE] * kind->slope[j][s][d];
-        dense_combine(fours, n, (const double(*)[4])by, rows, kind->weighted);
-        dense_products(fours, n, (const double(*)[WIDE])kind->weighted, rows[d], size, all, kind->by_shear);
+        dense_combine(use_avx, n, (const double(*)[4])by, rows, kind->weighted);
+        dense_products(use_avx, n, (const double(*)[N_COLUMNS])kind->weighted, rows[d], size, all, kind->by_shear);
     }
 }
 
 /* Factors of the derivative of the residual by the amplitudes, and what acts beside it up to a size: from the slopes of
  * the patches; all of it or as if it were symmetric. */
-static void differentiate(Kind *kind, int size, bool all, Factors *factors)
+static void differentiate(Kind *kind, int size, bool all, Factorization *factors)
 {
     double(*a)[MODES] = factors->a;
     press_all(kind, size);
@@ -173,7 +173,7 @@ static void differentiate(Kind *kind, int size, bool all, Factors *factors)
         }
         a[r][r] += kind->bodies[r];
     }
-    dense_factor(kind->work.abreast.fours, factors);
+    dense_factor(kind->work.batch.use_avx, factors);
 }
 
 /* Equilibrium */
@@ -194,7 +194,7 @@ static void elongate_bolts(Kind *kind, const double *inputs, const double *ampli
 static double residual(const Joint *joint, const double *inputs, const double *amplitude, double *r)
 {
     const Kind *kind = &joint->kind;
-    const bool fours = kind->work.abreast.fours;
+    const bool use_avx = kind->work.batch.use_avx;
     double forces = 0.0, stiffness = 0.0, apart = 0.0;
     double normal[MOST_OPENING], shear[3][MOST_PATCHES], bolts[MOST_STRETCH];
     for (int k = 0; k < MODES; k++)
@@ -218,10 +218,10 @@ static double residual(const Joint *joint, const double *inputs, const double *a
         bolts[b] = kind->bolt * (stretched(kind, b, inputs, amplitude) + kind->bolt_gap[b]);
         forces += fabs(bolts[b]);
     }
-    dense_add_rows(fours, (int)data.n_nodes, normal, (const double(*)[WIDE])kind->opening, r);
+    dense_add_rows(use_avx, (int)data.n_nodes, normal, (const double(*)[N_COLUMNS])kind->opening, r);
     for (int d = 0; d < 3; d++)
-        dense_add_rows(fours, (int)data.n_patches, shear[d], (const double(*)[WIDE])kind->patch[d], r);
-    dense_add_rows(fours, (int)data.n_stretch, bolts, (const double(*)[WIDE])kind->stretch, r);
+        dense_add_rows(use_avx, (int)data.n_patches, shear[d], (const double(*)[N_COLUMNS])kind->patch[d], r);
+    dense_add_rows(use_avx, (int)data.n_stretch, bolts, (const double(*)[N_COLUMNS])kind->stretch, r);
     return RELATIVE_TOLERANCE * (forces + stiffness * apart * CANCELLATION_RATIO + kind->area * kind->approach.closed);
 }
 
@@ -232,7 +232,7 @@ static void exact(Joint *joint, const double *inputs, const double *memory, cons
     static const double units[4][4] = {{0.0, 1.0}, {0.0, 0.0, 1.0}, {0.0, 0.0, 0.0, 1.0}, {-1.0}};
     for (int j = 0; j < (int)data.n_patches; j++)
         for (int c = 0; c < 4; c++) {
-            const Shear rate = patch_rate(joint, j, inputs, memory, after, units[c][0], units[c] + 1);
+            const SliderUpdate rate = patch_rate(joint, j, inputs, memory, after, units[c][0], units[c] + 1);
             memcpy(kind->slope[j][c], rate.traction, sizeof kind->slope[j][c]);
         }
     open_patches(kind);
@@ -256,7 +256,7 @@ static void follow(Kind *kind, const double (*tangent)[6], Followed *followed)
 {
     for (int j = 0; j < (int)data.n_patches; j++)
         slopes_of(tangent[j], kind->slope[j]);
-    differentiate(kind, WIDE, false, &followed->factors);
+    differentiate(kind, N_COLUMNS, false, &followed->factors);
     for (int d = 0; d < MOTIONS; d++) {
         static const int beside[MOTIONS] = {0, 1, 0, 1, 2, 2};
         const int at = MODES + beside[d];
@@ -264,7 +264,7 @@ static void follow(Kind *kind, const double (*tangent)[6], Followed *followed)
         double *z = followed->follow[d];
         for (int k = 0; k < MODES; k++)
             z[k] = -h[k];
-        dense_solve(kind->work.abreast.fours, &followed->factors, z);
+        dense_solve(kind->work.batch.use_avx, &followed->factors, z);
         kind->whole[d] = fmax(h[at] + dense_dot(h, z), 0.0); /* not below by round-off */
     }
     followed->known = true;
@@ -312,8 +312,8 @@ static bool predict(Joint *joint, const double *inputs, const double *memory, do
             return false;
         memcpy(tangent, memory + AT_TANGENT, sizeof tangent);
         for (int j = 0; j < (int)data.n_patches && memory[AT_STATE] == (double)UNKNOWN; j++) {
-            const Point at = foundation_point(&kind->foundation[j], kind->patch_start[j], 0);
-            const double stick = foundation_stick(&kind->foundation[j], &at);
+            const PatchState at = patch_state(&kind->foundation[j], kind->patch_start[j], 0);
+            const double stick = stick_stiffness(&kind->foundation[j], &at);
             const double sticks[6] = {stick, 0.0, stick, 0.0, 0.0, stick};
             memcpy(tangent[j], sticks, sizeof sticks);
         }
@@ -377,7 +377,7 @@ static Newton newton(Joint *joint, Way *way, double part, double *amplitude, dou
     if (!try_at(joint, way, at, amplitude, false, why))
         return REFUSED;
     least = residual(joint, at, amplitude, r);
-    const Factors *with = &kind->begin.factors; /* of the derivative: at first that at the beginning of the way */
+    const Factorization *with = &kind->begin.factors; /* of the derivative: at first that at the beginning of the way */
     double before = INFINITY;
     bool own = false; /* the derivative is that at the amplitudes */
     for (int n = 0, kept = 0; n < MAX_ITERATIONS; n++) {
@@ -395,7 +395,7 @@ static Newton newton(Joint *joint, Way *way, double part, double *amplitude, dou
         double begin[MODES], size = 1.0, *step = kind->steps[kept];
         for (int k = 0; k < MODES; k++)
             step[k] = -r[k];
-        dense_solve(kind->work.abreast.fours, with, step);
+        dense_solve(kind->work.batch.use_avx, with, step);
         broyden(kind, kept++);
         memcpy(begin, amplitude, sizeof begin);
         const double falls = dense_dot(r, step);
@@ -541,7 +541,7 @@ void whole_rates(Joint *joint, const double *inputs, const double *memory, const
     for (int b = 0; b < (int)data.n_stretch; b++)
         add_scaled(-kind->bolt * (seat(b, seed) + bolt_gap_rate(kind, b, seat(b, seed))), kind->stretch[b], r);
     exact(joint, inputs, memory, after);
-    dense_solve(kind->work.abreast.fours, &kind->factors, r);
+    dense_solve(kind->work.batch.use_avx, &kind->factors, r);
     memcpy(kind->amplitude_rate, r, sizeof r);
     whole_deform(r, kind, kind->opened_rate, kind->bent_rate);
 }

@@ -1,6 +1,6 @@
 /* Repeats `Whole` of the package: bodies that give way, in equilibrium with the interface and the bolts. */
-#ifndef JOINTFMU_WHOLE_H
-#define JOINTFMU_WHOLE_H
+#ifndef JOINTFMU_EQUILIBRIUM_H
+#define JOINTFMU_EQUILIBRIUM_H
 
 #include <string.h>
 
@@ -39,7 +39,7 @@ void whole_bolt_rates(const Joint *joint, const double *seed, double *result);
 bool joint_forces(Joint *joint, const double *inputs, const double *memory, Text *why);
 bool joint_try(Joint *joint, const double *inputs, const double *memory, double *after, double *x, Text *why);
 bool joint_press(Joint *joint, const double *inputs, Text *why);
-Shear patch_rate(Joint *joint, int j, const double *inputs, const double *memory, const double *after, double rate,
+SliderUpdate patch_rate(Joint *joint, int j, const double *inputs, const double *memory, const double *after, double rate,
                  const double shift[3]);
 /* The slopes of a patch from its tangents xx, xy, yy, xt, yt, tt. */
 static inline void slopes_of(const double t[6], Slopes slope)
