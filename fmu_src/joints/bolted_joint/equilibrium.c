@@ -3,426 +3,370 @@
 #include <math.h>
 #include <string.h>
 
-#include "bolts.h"
 #include "cold.h"
-#include "tabulated.h"
-
-enum { MOTIONS = 6 };
-
-/* How far patches come apart by modes and motions in the last trial: as the points that press on them do. */
-static void open_patches(Kind *kind)
-{
-    for (int j = 0, e = 0; j < (int)data.n_patches; j++) {
-        const double stiffness = kind->to[j].y[1], per = stiffness > 0.0 ? 1.0 / stiffness : 0.0;
-        double sum[N_COLUMNS] = {0.0};
-        for (; e < kind->press_end[j]; e++) {
-            const int i = data.pressing[e][PAIR_POINT];
-            const double by = kind->presses[e] * kind->k[i] * per;
-            for (int k = 0; k < N_COLUMNS; k++)
-                sum[k] += by * kind->opening[i][k];
-        }
-        memcpy(kind->patch[3][j], sum, sizeof sum);
-    }
-}
-
-void whole_pressed(const Kind *kind, const double *points, double *patches)
-{
-    for (int j = 0, e = 0; j < (int)data.n_patches; j++) {
-        double even = 0.0, odd = 0.0;
-        for (; e + 1 < kind->press_end[j]; e += 2) {
-            even += kind->presses[e] * points[data.pressing[e][PAIR_POINT]];
-            odd += kind->presses[e + 1] * points[data.pressing[e + 1][PAIR_POINT]];
-        }
-        for (; e < kind->press_end[j]; e++)
-            even += kind->presses[e] * points[data.pressing[e][PAIR_POINT]];
-        patches[j] = even + odd;
-    }
-}
-
-/* The approach of a patch whose points are all open: that of the nearest one. */
-static double open_approach(const Joint *joint, int j, const double *inputs)
-{
-    const Kind *kind = &joint->kind;
-    double nearest = -INFINITY;
-    for (int e = 0; e < (int)data.n_pressing; e++) {
-        const int i = data.pressing[e][PAIR_POINT];
-        if (data.pressing[e][PAIR_PATCH] == j)
-            nearest = fmax(nearest, kind->start[i] - (apart_at(data.nodes[i], inputs) + kind->opened[i]));
-    }
-    return fmin(nearest, joint->curve.first.x);
-}
-
-void whole_approach(const Joint *joint, const double *pressure, const double *inputs, double *approach)
-{
-    double pressed[MOST_PATCHES], carried;
-    int segment[MOST_PATCHES];
-    whole_pressed(&joint->kind, pressure, pressed);
-    for (int j = 0; j < (int)data.n_patches; j++) /* first, so that one does not wait for another */
-        segment[j] = pressed[j] < joint->curve.end.y ? curve_segment_of_load(&joint->curve, pressed[j]) : 0;
-    for (int j = 0; j < (int)data.n_patches; j++)
-        approach[j] = !inputs || pressed[j] > 0.0 ? curve_inverse(&joint->curve, pressed[j], &segment[j], &carried)
-                                                  : open_approach(joint, j, inputs);
-}
 
 COLD
 
-/* Places of the motions of side 2 in the inputs: s_x, s_y, s_z, theta_x, theta_y, theta_z. */
-static inline int motion_of(int d)
-{
-    return d < 3 ? INPUT_S_REL_X + d : INPUT_THETA_X + d - 3;
-}
+_Static_assert((int)AT_AMPLITUDE == (int)AT_APART + 3 && (int)AT_TANGENT == (int)AT_AMPLITUDE + MODES &&
+                   (int)N_MEMORY == (int)AT_TANGENT + 6 * MOST_PATCHES,
+               "the end of a history, as in the key of a predictor");
 
-/* A joint with rigid sides has nothing of this: ELASTIC is a constant. */
+/* Line search: largest energy slope at the end of a correction over its size at the start [1], and smallest length of a
+ * correction over the length tried before [1]. */
+static const double MAX_ENERGY_SLOPE_RATIO = 0.5, MIN_LENGTH_RATIO = 0.1;
 
-/* A row of what modes move, as numbers, and three motions beside them. */
-static void lay_row(const int16_t *digits, double first, double second, double third, double *row)
-{
-    const double motions[LANES] = {first, second, third};
-    for (int k = 0; k < (int)data.n_modes; k++)
-        row[k] = digits[k] / MODE_DIGITS;
-    memcpy(row + MODES, motions, sizeof motions);
-}
+/* Straight path of q from the end of a history to the inputs. */
+typedef struct {
+    const double *inputs, *history;
+    double start[N_DISPLACEMENTS], end[N_DISPLACEMENTS];
+    double *after;    /* history at the end, if the last trial is complete */
+    bool is_complete; /* the last trial gave works, losses and history too */
+} LoadStep;
 
-void whole_begin(Kind *kind)
-{
-    if (!ELASTIC)
-        return;
-    for (int k = 0; k < MODES; k++)
-        kind->bodies[k] = k < (int)data.n_modes ? data.modes[k][0] : 1.0;
-    for (int i = 0; i < (int)data.n_opening; i++)
-        lay_row(data.opening[i], 1.0, data.nodes[i][PLACE_Y], -data.nodes[i][PLACE_X], kind->opening[i]);
-    for (int j = 0; j < (int)data.n_patch_x; j++) {
-        const double x = data.patches[j][PLACE_X], y = data.patches[j][PLACE_Y];
-        lay_row(data.patch_x[j], 1.0, 0.0, -y, kind->patch[0][j]);
-        lay_row(data.patch_y[j], 0.0, 1.0, x, kind->patch[1][j]);
-        lay_row(data.patch_around[j], 0.0, 0.0, data.patches[j][RADIUS], kind->patch[2][j]);
-    }
-    for (int b = 0; b < (int)data.n_stretch; b++)
-        lay_row(data.stretch[b], 1.0, data.bolts[b][BOLT_Y], -data.bolts[b][BOLT_X], kind->stretch[b]);
-    for (int e = 0; e < (int)data.n_pressing; e++) {
-        const int16_t *pair = data.pressing[e];
-        kind->presses[e] = pair[PAIR_PART] / TRANSFER_SCALE * data.nodes[pair[PAIR_POINT]][SHARE] / data.patches[pair[PAIR_PATCH]][SHARE];
-        kind->press_end[pair[PAIR_PATCH]] = e + 1;
-    }
-}
+typedef enum { CONVERGED, NOT_CONVERGED, REFUSED } NewtonResult;
 
-static inline void add_scaled(double by, const double *restrict row, double *restrict sum)
+/* Tangents */
+
+static inline void add_scaled(double factor, const double *restrict row, double *restrict sum)
 {
     for (int k = 0; k < MODES; k++)
-        sum[k] += by * row[k];
+        sum[k] += factor * row[k];
 }
 
-void whole_deform(const double *amplitude, const Kind *kind, double *opened, double (*bent)[3])
+/* Derivatives of the opening of the patches, as the points that transfer pressure to them open. */
+static void set_modal_opening(Equilibrium *e)
 {
-    if (!ELASTIC)
-        return;
-    const bool use_avx = kind->work.batch.use_avx;
-    const int patches = (int)data.n_patch_x;
-    for (int d = 0; d < 3; d++)
-        dense_dots(use_avx, patches, kind->patch[d], amplitude, 3, &bent[0][d]);
-    if (opened)
-        dense_dots(use_avx, (int)data.n_opening, kind->opening, amplitude, 1, opened);
+    const Contact *contact = e->assembly.contact;
+    for (int j = 0, row = 0; j < n_patches(); j++) {
+        const double stiffness = e->assembly.friction->end[j].y[1], compliance = stiffness > 0.0 ? 1.0 / stiffness : 0.0;
+        double sum[N_COLUMNS] = {0.0};
+        for (; row < contact->transfer_end[j]; row++) {
+            const int i = data.pressure_transfer[row][TRANSFER_POINT];
+            const double weight = contact->pressure_transfer[row] * contact->stiffness[i] * compliance;
+            for (int k = 0; k < N_COLUMNS; k++)
+                sum[k] += weight * e->assembly.bodies->opening_jacobian[i][k];
+        }
+        memcpy(e->modal_opening[j], sum, sizeof sum);
+    }
 }
 
-/* The stiffness by normal motions beside the modes, up to a size, of points and bolts. */
-static void press_all(Kind *kind, int size)
+/* Stiffness of points and bolts against modal coordinates and normal motions, up to a size. */
+static void assemble_normal_stiffness(Equilibrium *e, int size)
 {
-    const bool use_avx = kind->work.batch.use_avx;
-    const int sizes[2] = {(int)data.n_nodes, (int)data.n_stretch};
-    const double(*const rows[2])[N_COLUMNS] = {(const double(*)[N_COLUMNS])kind->opening, (const double(*)[N_COLUMNS])kind->stretch};
-    memset(kind->by_normal, 0, sizeof kind->by_normal);
+    const Bodies *bodies = e->assembly.bodies;
+    const Contact *contact = e->assembly.contact;
+    const Bolts *bolts = e->assembly.bolts;
+    const int sizes[2] = {n_points(), (int)data.n_bolt_elongation};
+    const double(*const rows[2])[N_COLUMNS] = {(const double(*)[N_COLUMNS])bodies->opening_jacobian,
+                                               (const double(*)[N_COLUMNS])bodies->elongation_jacobian};
+    memset(e->normal_stiffness, 0, sizeof e->normal_stiffness);
     for (int s = 0; s < 2; s++) {
         for (int i = 0; i < sizes[s]; i++)
-            kind->by[i] = s == 0 ? kind->area * data.nodes[i][SHARE] * kind->k[i] : kind->bolt * kind->bolt_pulls[i];
-        dense_weigh(use_avx, sizes[s], kind->by, rows[s], kind->weighted);
-        dense_products(use_avx, sizes[s], (const double(*)[N_COLUMNS])kind->weighted, rows[s], size, false, kind->by_normal);
+            e->weights[i] = s == 0 ? contact->area * data.points[i][SHARE] * contact->stiffness[i]
+                                   : bolts->stiffness * bolts->active_fraction[i];
+        dense_weigh(bodies->use_avx, sizes[s], e->weights, rows[s], e->weighted);
+        dense_products(bodies->use_avx, sizes[s], (const double(*)[N_COLUMNS])e->weighted, rows[s], size, false,
+                       e->normal_stiffness);
     }
 }
 
-/* The same by shear in `by_shear`, of patches by their slopes; all of the matrix or its lower half. */
-static void shear_all(Kind *kind, int size, bool all)
+/* Stiffness of the patches against modal coordinates and tangential motions, from the traction derivatives; all of it,
+ * or its lower half. */
+static void assemble_shear_stiffness(Equilibrium *e, int size, bool all)
 {
-    const bool use_avx = kind->work.batch.use_avx;
-    const int n = (int)data.n_patches;
-    const double(*rows[4])[N_COLUMNS];
-    double by[MOST_PATCHES][4];
-    for (int s = 0; s < 4; s++)
-        rows[s] = (const double(*)[N_COLUMNS])kind->patch[s];
-    memset(kind->by_shear, 0, sizeof kind->by_shear);
+    const Bodies *bodies = e->assembly.bodies;
+    const double area = e->assembly.contact->area;
+    const int n = n_patches();
+    const double(*rows[4])[N_COLUMNS] = {[3] = (const double(*)[N_COLUMNS])e->modal_opening};
+    double weights[MOST_PATCHES][4];
+    for (int s = 0; s < 3; s++)
+        rows[s] = (const double(*)[N_COLUMNS])bodies->patch_jacobian[s];
+    memset(e->shear_stiffness, 0, sizeof e->shear_stiffness);
     for (int d = 0; d < 3; d++) {
         for (int j = 0; j < n; j++)
             for (int s = 0; s < 4; s++)
-                by[j][s] = kind->area * data.patches[j][SHARE] * kind->slope[j][s][d];
-        dense_combine(use_avx, n, (const double(*)[4])by, rows, kind->weighted);
-        dense_products(use_avx, n, (const double(*)[N_COLUMNS])kind->weighted, rows[d], size, all, kind->by_shear);
+                weights[j][s] = area * data.patches[j][SHARE] * e->derivatives[j][s][d];
+        dense_combine(bodies->use_avx, n, (const double(*)[4])weights, rows, e->weighted);
+        dense_products(bodies->use_avx, n, (const double(*)[N_COLUMNS])e->weighted, rows[d], size, all,
+                       e->shear_stiffness);
     }
 }
 
-/* Factors of the derivative of the residual by the amplitudes, and what acts beside it up to a size: from the slopes of
- * the patches; all of it or as if it were symmetric. */
-static void differentiate(Kind *kind, int size, bool all, Factorization *factors)
+/* Factorize the modal tangent dr/da from the traction derivatives, up to a size with normal and tangential motions; as
+ * it is, or as if it were symmetric. */
+static void factorize_tangent(Equilibrium *e, int size, bool all, Factorization *factors)
 {
     double(*a)[MODES] = factors->a;
-    press_all(kind, size);
-    shear_all(kind, size, all);
+    assemble_normal_stiffness(e, size);
+    assemble_shear_stiffness(e, size, all);
     for (int r = 0; r < MODES; r++) {
         for (int k = 0; k <= r; k++) {
-            const double normal = kind->by_normal[r][k], shear = kind->by_shear[r][k];
+            const double normal = e->normal_stiffness[r][k], shear = e->shear_stiffness[r][k];
             a[r][k] = normal + shear;
-            a[k][r] = normal + (all ? kind->by_shear[k][r] : shear);
+            a[k][r] = normal + (all ? e->shear_stiffness[k][r] : shear);
         }
-        a[r][r] += kind->bodies[r];
+        a[r][r] += e->assembly.bodies->stiffness[r];
     }
-    dense_factor(kind->work.batch.use_avx, factors);
+    dense_factor(e->assembly.bodies->use_avx, factors);
 }
 
-/* Equilibrium */
-
-static inline double stretched(const Kind *kind, int b, const double *v, const double *amplitude)
+/* Modal tangent at the last trial; for ranges of sliders that change by differences. */
+static void modal_tangent(Equilibrium *e, const double *history)
 {
-    return seat(b, v) + dense_dot(kind->stretch[b], amplitude);
+    const Contact *contact = e->assembly.contact;
+    const double first = contact->curve->first.x;
+    double deepest = -first; /* where the contact is closed */
+    for (int j = 0; j < n_patches(); j++)
+        deepest = fmax(deepest, contact->preload.patch_approach[j] - first);
+    traction_derivatives(e->assembly.friction, DIFFERENCE_STEP * deepest, history, e->derivatives);
+    set_modal_opening(e);
+    factorize_tangent(e, MODES, true, &e->factors);
 }
 
-/* Gaps, forces and stiffness of the bolts at inputs and amplitudes. */
-static void elongate_bolts(Kind *kind, const double *inputs, const double *amplitude)
+/* The same by derivatives of the slider rules, on the side of `friction->direction`; of a further motion if the history
+ * after the load step is given. */
+static void modal_tangent_on_side(Equilibrium *e, const double *history, const double *after)
 {
-    for (int b = 0; b < (int)data.n_stretch; b++)
-        bolt_elongate(kind, b, stretched(kind, b, inputs, amplitude));
-}
-
-/* Residual of the amplitudes, and what of it is round-off. */
-static double residual(const Joint *joint, const double *inputs, const double *amplitude, double *r)
-{
-    const Kind *kind = &joint->kind;
-    const bool use_avx = kind->work.batch.use_avx;
-    double forces = 0.0, stiffness = 0.0, apart = 0.0;
-    double normal[MOST_OPENING], shear[3][MOST_PATCHES], bolts[MOST_STRETCH];
-    for (int k = 0; k < MODES; k++)
-        r[k] = kind->bodies[k] * amplitude[k];
-    for (int i = 0; i < (int)data.n_nodes; i++) {
-        const double weight = kind->area * data.nodes[i][SHARE], p = kind->p[i], tight = kind->tightened[i];
-        const double moved = fabs(apart_at(data.nodes[i], inputs));
-        normal[i] = -weight * (p - tight);
-        forces += weight * (p + tight);
-        stiffness += weight * kind->k[i];
-        apart = moved > apart ? moved : apart;
-    }
-    for (int j = 0; j < (int)data.n_patches; j++) {
-        const double weight = kind->area * data.patches[j][SHARE];
-        for (int d = 0; d < 3; d++) {
-            shear[d][j] = weight * kind->traction[j][d];
-            forces += fabs(shear[d][j]);
-        }
-    }
-    for (int b = 0; b < (int)data.n_stretch; b++) {
-        bolts[b] = kind->bolt * (stretched(kind, b, inputs, amplitude) + kind->bolt_gap[b]);
-        forces += fabs(bolts[b]);
-    }
-    dense_add_rows(use_avx, (int)data.n_nodes, normal, (const double(*)[N_COLUMNS])kind->opening, r);
-    for (int d = 0; d < 3; d++)
-        dense_add_rows(use_avx, (int)data.n_patches, shear[d], (const double(*)[N_COLUMNS])kind->patch[d], r);
-    dense_add_rows(use_avx, (int)data.n_stretch, bolts, (const double(*)[N_COLUMNS])kind->stretch, r);
-    return RELATIVE_TOLERANCE * (forces + stiffness * apart * CANCELLATION_RATIO + kind->area * kind->approach.closed);
-}
-
-/* The derivative by what the memory says; in a further motion where that after it is given. */
-static void exact(Joint *joint, const double *inputs, const double *memory, const double *after)
-{
-    Kind *kind = &joint->kind;
     static const double units[4][4] = {{0.0, 1.0}, {0.0, 0.0, 1.0}, {0.0, 0.0, 0.0, 1.0}, {-1.0}};
-    for (int j = 0; j < (int)data.n_patches; j++)
+    for (int j = 0; j < n_patches(); j++)
         for (int c = 0; c < 4; c++) {
-            const SliderUpdate rate = patch_rate(joint, j, inputs, memory, after, units[c][0], units[c] + 1);
-            memcpy(kind->slope[j][c], rate.traction, sizeof kind->slope[j][c]);
+            const SliderUpdate rate = update_rate(e->assembly.friction, j, history, after, units[c][0], units[c] + 1);
+            memcpy(e->derivatives[j][c], rate.traction, sizeof e->derivatives[j][c]);
         }
-    open_patches(kind);
-    differentiate(kind, MODES, true, &kind->factors);
+    set_modal_opening(e);
+    factorize_tangent(e, MODES, true, &e->factors);
 }
 
-/* The same at the last trial; what ranges of heights gain that change by differences. */
-static void jacobian(Joint *joint, const double *inputs, const double *memory)
+/* Static condensation: derivatives of the modal coordinates by q, and the stiffness that is left, from the tangents of
+ * points, bolts and patches (6 numbers each). */
+static void condense_stiffness(Equilibrium *e, const double *tangent, ModalPredictor *predictor)
 {
-    Kind *kind = &joint->kind;
-    double deepest = -joint->curve.first.x; /* where the contact has closed */
-    for (int j = 0; j < (int)data.n_patches; j++)
-        deepest = fmax(deepest, kind->patch_start[j] - joint->curve.first.x);
-    patch_slopes(joint, inputs, memory, DIFFERENCE_STEP * deepest, kind->slope);
-    open_patches(kind);
-    differentiate(kind, MODES, true, &kind->factors);
-}
-
-/* How the amplitudes follow the motions, in the tangents of points and patches, and the stiffnesses that are left. */
-static void follow(Kind *kind, const double (*tangent)[6], Followed *followed)
-{
-    for (int j = 0; j < (int)data.n_patches; j++)
-        slopes_of(tangent[j], kind->slope[j]);
-    differentiate(kind, N_COLUMNS, false, &followed->factors);
-    for (int d = 0; d < MOTIONS; d++) {
-        static const int beside[MOTIONS] = {0, 1, 0, 1, 2, 2};
-        const int at = MODES + beside[d];
-        const double *h = d < 2 || d == 5 ? kind->by_shear[at] : kind->by_normal[at];
-        double *z = followed->follow[d];
+    static const int columns[N_DISPLACEMENTS] = {0, 1, 0, 1, 2, 2}; /* of q in rows of the Jacobians */
+    for (int j = 0; j < n_patches(); j++)
+        derivatives_of_tangent(tangent + 6 * j, e->derivatives[j]);
+    factorize_tangent(e, N_COLUMNS, false, &predictor->factors);
+    for (int d = 0; d < N_DISPLACEMENTS; d++) {
+        const int at = MODES + columns[d];
+        const double *h = d == S_X || d == S_Y || d == THETA_Z ? e->shear_stiffness[at] : e->normal_stiffness[at];
+        double *z = predictor->modal_rates[d];
         for (int k = 0; k < MODES; k++)
             z[k] = -h[k];
-        dense_solve(kind->work.batch.use_avx, &followed->factors, z);
-        kind->whole[d] = fmax(h[at] + dense_dot(h, z), 0.0); /* not below by round-off */
+        dense_solve(e->assembly.bodies->use_avx, &predictor->factors, z);
+        e->condensed[d] = fmax(h[at] + dense_dot(h, z), 0.0); /* at least 0 despite round-off */
     }
-    followed->known = true;
+    predictor->is_known = true;
 }
 
-/* What decides how the amplitudes follow: preload, moment, shift, and the end of the memory. */
-static void key_of(const double *inputs, const double *memory, double key[FOLLOW_KEY])
+/* Trials */
+
+/* q at a load factor [1]. */
+static void displacement_at(const LoadStep *step, double load_factor, double q[N_DISPLACEMENTS])
 {
-    key[0] = inputs[INPUT_PRELOAD];
-    key[1] = inputs[INPUT_MOMENT];
-    memcpy(key + 2, memory + AT_RIGID, 3 * sizeof *key);
-    memcpy(key + 5, memory + AT_APART, (FOLLOW_KEY - 5) * sizeof *key);
+    memcpy(q, step->end, sizeof step->end);
+    for (int d = 0; d < N_DISPLACEMENTS && load_factor != 1.0; d++)
+        q[d] = step->start[d] + load_factor * (step->end[d] - step->start[d]);
 }
 
-/* The place after a part of the way from the memory to the inputs. */
-static void place(const double *inputs, const double *memory, double part, double *at)
+/* Deformation, bolt forces, pressures and patch approaches at q and modal coordinates; the works too if complete. */
+static bool evaluate_normal(Equilibrium *e, const double *q, const double *modal_coordinates, bool complete, Text *why)
 {
-    const double first[MOTIONS] = {memory[AT_RIGID], memory[AT_RIGID + 1], memory[AT_APART],
-                                   memory[AT_APART + 1], memory[AT_APART + 2], memory[AT_RIGID + 2]};
-    memcpy(at, inputs, N_INPUTS * sizeof *at);
-    for (int d = 0; d < MOTIONS && part != 1.0; d++)
-        at[motion_of(d)] = first[d] + part * (inputs[motion_of(d)] - first[d]);
-}
-
-/* The bodies at amplitudes, and the bolts at inputs. */
-static void deform(Kind *kind, const double *inputs, const double *amplitude)
-{
-    elongate_bolts(kind, inputs, amplitude);
-    memcpy(kind->amplitude, amplitude, sizeof kind->amplitude);
-    whole_deform(amplitude, kind, kind->opened, kind->bent);
-}
-
-/* Amplitudes at the end of the way in the tangent of its beginning; less those there are their rate. */
-static bool predict(Joint *joint, const double *inputs, const double *memory, double *rate, Text *why)
-{
-    Kind *kind = &joint->kind;
-    double key[FOLLOW_KEY], first[N_INPUTS], tangent[MOST_PATCHES][6];
-    key_of(inputs, memory, key);
-    place(inputs, memory, 0.0, first);
-    if (kind->end.known && memcmp(key, kind->end.key, sizeof key) == 0) {
-        kind->begin = kind->end;
-    } else if (!kind->begin.known || memcmp(key, kind->begin.key, sizeof key) != 0) {
-        deform(kind, first, memory + AT_AMPLITUDE);
-        if (!joint_press(joint, first, why))
-            return false;
-        memcpy(tangent, memory + AT_TANGENT, sizeof tangent);
-        for (int j = 0; j < (int)data.n_patches && memory[AT_STATE] == (double)UNKNOWN; j++) {
-            const PatchState at = patch_state(&kind->foundation[j], kind->patch_start[j], 0);
-            const double stick = stick_stiffness(&kind->foundation[j], &at);
-            const double sticks[6] = {stick, 0.0, stick, 0.0, 0.0, stick};
-            memcpy(tangent[j], sticks, sizeof sticks);
-        }
-        follow(kind, (const double(*)[6])tangent, &kind->begin);
-        memcpy(kind->begin.key, key, sizeof key);
-    }
-    memset(rate, 0, MODES * sizeof *rate);
-    for (int d = 0; d < MOTIONS; d++)
-        add_scaled(inputs[motion_of(d)] - first[motion_of(d)], kind->begin.follow[d], rate);
+    Bodies *bodies = e->assembly.bodies;
+    for (int b = 0; b < (int)data.n_bolt_elongation; b++)
+        elongate_bolt(e->assembly.bolts, b, bolt_elongation(bodies, b, q, modal_coordinates));
+    deform(bodies, modal_coordinates, &bodies->state);
+    if (!evaluate_points(e->assembly.contact, bodies->state.opening, q, complete, why))
+        return false;
+    evaluate_patches(e->assembly.contact, bodies->state.opening, q);
     return true;
 }
 
-typedef struct {
-    const double *inputs, *memory;
-    double *after, *x;
-    bool whole; /* the last trial gave sums and memory too */
-} Way;
-
-static bool try_at(Joint *joint, Way *way, const double *at, const double *amplitude, bool whole, Text *why)
+/* The same with friction; complete: with works, losses and history. */
+static bool evaluate_trial(Equilibrium *e, LoadStep *step, const double *q, const double *modal_coordinates,
+                           bool complete, Text *why)
 {
-    deform(&joint->kind, at, amplitude);
-    way->whole = whole;
-    if (!whole)
-        return joint_forces(joint, at, way->memory, why);
-    memset(way->x, 0, N_SUMS * sizeof *way->x);
-    return joint_try(joint, at, way->memory, way->after, way->x, why);
+    step->is_complete = complete;
+    if (!evaluate_normal(e, q, modal_coordinates, complete, why))
+        return false;
+    set_increments(e->assembly.friction, e->assembly.bodies, step->history, q);
+    if (complete)
+        update_friction(e->assembly.friction, e->assembly.contact, step->history, q, step->after);
+    else
+        update_traction(e->assembly.friction, e->assembly.contact, step->history, q);
+    return true;
 }
 
-static double largest(const double *r)
+/* Residual r [N] of the modal coordinates at the last trial; returns its tolerance [N]. */
+static double residual(const Equilibrium *e, const double *q, const double *modal_coordinates, double *r)
 {
-    double most = 0.0;
+    const Bodies *bodies = e->assembly.bodies;
+    const Contact *contact = e->assembly.contact;
+    const Bolts *bolts = e->assembly.bolts;
+    const bool use_avx = bodies->use_avx;
+    double forces = 0.0, stiffness = 0.0, opening = 0.0;
+    double normal[MOST_OPENING], shear[3][MOST_PATCHES], bolt_force[MOST_BOLT_ELONGATION];
     for (int k = 0; k < MODES; k++)
-        most = fabs(r[k]) > most || !(r[k] == r[k]) ? fabs(r[k]) : most;
-    return most;
-}
-
-typedef enum { FOUND, LOST, REFUSED } Newton;
-
-/* The newest of some steps since the last derivative as Broyden's (good) update of it has it. */
-static void broyden(Kind *kind, int kept)
-{
-    double(*steps)[MODES] = kind->steps, *squares = kind->squares;
-    double *step = steps[kept];
-    for (int i = 0; i + 1 < kept; i++)
-        add_scaled(dense_dot(steps[i], step) / squares[i], steps[i + 1], step);
-    if (kept > 0) {
-        const double by = 1.0 / (1.0 - dense_dot(steps[kept - 1], step) / squares[kept - 1]);
-        for (int k = 0; k < MODES; k++)
-            step[k] *= by;
+        r[k] = bodies->stiffness[k] * modal_coordinates[k];
+    for (int i = 0; i < n_points(); i++) {
+        const double area = contact->area * data.points[i][SHARE];
+        const double p = contact->pressure[i], preload = contact->preload.pressure[i];
+        const double rigid = fabs(opening_at(data.points[i], q));
+        normal[i] = -area * (p - preload);
+        forces += area * (p + preload);
+        stiffness += area * contact->stiffness[i];
+        opening = rigid > opening ? rigid : opening;
     }
-    squares[kept] = dense_dot(step, step);
+    for (int j = 0; j < n_patches(); j++) {
+        const double area = contact->area * data.patches[j][SHARE];
+        for (int d = 0; d < 3; d++) {
+            shear[d][j] = area * e->assembly.friction->update[j].traction[d];
+            forces += fabs(shear[d][j]);
+        }
+    }
+    for (int b = 0; b < (int)data.n_bolt_elongation; b++) {
+        bolt_force[b] = bolts->stiffness * (bolt_elongation(bodies, b, q, modal_coordinates) + bolts->gap[b]);
+        forces += fabs(bolt_force[b]);
+    }
+    dense_add_rows(use_avx, n_points(), normal, (const double(*)[N_COLUMNS])bodies->opening_jacobian, r);
+    for (int d = 0; d < 3; d++)
+        dense_add_rows(use_avx, n_patches(), shear[d], (const double(*)[N_COLUMNS])bodies->patch_jacobian[d], r);
+    dense_add_rows(use_avx, (int)data.n_bolt_elongation, bolt_force,
+                   (const double(*)[N_COLUMNS])bodies->elongation_jacobian, r);
+    return RELATIVE_TOLERANCE *
+           (forces + stiffness * opening * CANCELLATION_RATIO + contact->area * contact->law.closed);
 }
 
-/* As `Whole._newton` of the package; where nothing is found with the residual that is missed. */
-static Newton newton(Joint *joint, Way *way, double part, double *amplitude, double *missed, Text *why)
+/* Largest component [N], or a component that is not a number. */
+static double residual_norm(const double *r)
 {
-    Kind *kind = &joint->kind;
-    const double close = part == 1.0 ? 1.0 : INTERMEDIATE_TOLERANCE_FACTOR;
-    double at[N_INPUTS], r[MODES], least;
-    place(way->inputs, way->memory, part, at);
-    if (!try_at(joint, way, at, amplitude, false, why))
+    double largest = 0.0;
+    for (int k = 0; k < MODES; k++)
+        largest = fabs(r[k]) > largest || !(r[k] == r[k]) ? fabs(r[k]) : largest;
+    return largest;
+}
+
+/* Newton's method */
+
+/* What the predictor depends on: preload, moment, and a history. */
+static void predictor_key(const double *inputs, const double *history, double key[PREDICTOR_KEY])
+{
+    key[0] = inputs[INPUT_PRELOAD];
+    key[1] = inputs[INPUT_MOMENT];
+    memcpy(key + 2, history + AT_RIGID, 3 * sizeof *key);
+    memcpy(key + 5, history + AT_APART, (PREDICTOR_KEY - 5) * sizeof *key);
+}
+
+/* Change of the modal coordinates over a load step [m] by the tangent at its start. */
+static bool predict_by_tangent(Equilibrium *e, const LoadStep *step, double *rate, Text *why)
+{
+    const double *history = step->history;
+    double key[PREDICTOR_KEY], first[N_DISPLACEMENTS];
+    predictor_key(step->inputs, history, key);
+    displacement_at(step, 0.0, first);
+    if (e->end.is_known && memcmp(key, e->end.key, sizeof key) == 0) {
+        e->start = e->end;
+    } else if (!e->start.is_known || memcmp(key, e->start.key, sizeof key) != 0) {
+        double tangent[6 * MOST_PATCHES];
+        if (!evaluate_normal(e, first, history + AT_AMPLITUDE, false, why))
+            return false;
+        memcpy(tangent, history + AT_TANGENT, sizeof tangent);
+        for (int j = 0; j < n_patches() && history[AT_STATE] == (double)UNKNOWN; j++) {
+            const Foundation *f = &e->assembly.friction->foundation[j];
+            const PatchState state = patch_state(f, e->assembly.contact->preload.patch_approach[j], 0);
+            stick_tangent(stick_stiffness(f, &state), tangent + 6 * j);
+        }
+        condense_stiffness(e, tangent, &e->start);
+        memcpy(e->start.key, key, sizeof key);
+    }
+    memset(rate, 0, MODES * sizeof *rate);
+    for (int d = 0; d < N_DISPLACEMENTS; d++)
+        add_scaled(step->end[d] - first[d], e->start.modal_rates[d], rate);
+    return true;
+}
+
+/* Apply Broyden's good update by the corrections since the tangent to the newest one. */
+static void apply_broyden(Equilibrium *e, int newest)
+{
+    double(*corrections)[MODES] = e->corrections, *squares = e->squares;
+    double *correction = corrections[newest];
+    for (int i = 0; i + 1 < newest; i++)
+        add_scaled(dense_dot(corrections[i], correction) / squares[i], corrections[i + 1], correction);
+    if (newest > 0) {
+        const double factor = 1.0 / (1.0 - dense_dot(corrections[newest - 1], correction) / squares[newest - 1]);
+        for (int k = 0; k < MODES; k++)
+            correction[k] *= factor;
+    }
+    squares[newest] = dense_dot(correction, correction);
+}
+
+/* Trial after a correction of the modal coordinates: shortened while the energy slope at its end is too large, or dropped
+ * if the tangent is that of an earlier trial. false: refused. */
+static bool search_line(Equilibrium *e, LoadStep *step, const double *q, const double *correction, bool tangent_is_current,
+                        bool complete, double *modal_coordinates, double *r, double *tolerance, bool *is_full, Text *why)
+{
+    double start[MODES], length = 1.0;
+    const double slope_0 = dense_dot(r, correction);
+    memcpy(start, modal_coordinates, sizeof start);
+    *is_full = true;
+    for (int trial = 0; trial < MAX_LINE_SEARCH; trial++) {
+        for (int k = 0; k < MODES; k++)
+            modal_coordinates[k] = start[k] + length * correction[k];
+        if (!evaluate_trial(e, step, q, modal_coordinates, complete, why))
+            return false;
+        *tolerance = residual(e, q, modal_coordinates, r);
+        const double slope_1 = dense_dot(r, correction);
+        if (length == 0.0 || !(slope_1 > MAX_ENERGY_SLOPE_RATIO * fabs(slope_0)))
+            return true;
+        length *= tangent_is_current ? fmax(slope_0 / (slope_0 - slope_1), MIN_LENGTH_RATIO) : 0.0;
+        *is_full = false;
+    }
+    return true;
+}
+
+/* Equilibrium at a load factor, from modal coordinates on; if it is not found, the residual that is left [N]. */
+static NewtonResult solve_newton(Equilibrium *e, LoadStep *step, double load_factor, double *modal_coordinates,
+                                 double *left, Text *why)
+{
+    const double tolerance_factor = load_factor == 1.0 ? 1.0 : INTERMEDIATE_TOLERANCE_FACTOR;
+    const Factorization *factors = &e->start.factors; /* of the tangent: first that at the start of the load step */
+    double q[N_DISPLACEMENTS], r[MODES], tolerance, last_norm = INFINITY;
+    bool tangent_is_current = false, is_full;
+    displacement_at(step, load_factor, q);
+    if (!evaluate_trial(e, step, q, modal_coordinates, false, why))
         return REFUSED;
-    least = residual(joint, at, amplitude, r);
-    const Factorization *with = &kind->begin.factors; /* of the derivative: at first that at the beginning of the way */
-    double before = INFINITY;
-    bool own = false; /* the derivative is that at the amplitudes */
-    for (int n = 0, kept = 0; n < MAX_ITERATIONS; n++) {
-        const double left = largest(r);
-        if (left <= close * least)
-            return FOUND;
-        if (!(left < TANGENT_REUSE_RATIO * before)) { /* else the last derivative is still good */
-            jacobian(joint, at, way->memory);
-            with = &kind->factors;
-            kept = 0;
-            own = true;
+    tolerance = residual(e, q, modal_coordinates, r);
+    for (int n = 0, corrections = 0; n < MAX_ITERATIONS; n++) {
+        const double norm = residual_norm(r);
+        if (norm <= tolerance_factor * tolerance)
+            return CONVERGED;
+        if (!(norm < TANGENT_REUSE_RATIO * last_norm)) {
+            modal_tangent(e, step->history);
+            factors = &e->factors;
+            corrections = 0;
+            tangent_is_current = true;
         }
-        const bool last = part == 1.0 && n > 0 && left < TANGENT_REUSE_RATIO * before && left * left < before * least;
-        before = left;
-        double begin[MODES], size = 1.0, *step = kind->steps[kept];
+        const bool is_last = load_factor == 1.0 && n > 0 && norm < TANGENT_REUSE_RATIO * last_norm &&
+                             norm * norm < last_norm * tolerance; /* by its order of convergence */
+        double *correction = e->corrections[corrections];
         for (int k = 0; k < MODES; k++)
-            step[k] = -r[k];
-        dense_solve(kind->work.batch.use_avx, with, step);
-        broyden(kind, kept++);
-        memcpy(begin, amplitude, sizeof begin);
-        const double falls = dense_dot(r, step);
-        for (int p = 0; p < MAX_LINE_SEARCH; p++) {
-            for (int k = 0; k < MODES; k++)
-                amplitude[k] = begin[k] + size * step[k];
-            if (!try_at(joint, way, at, amplitude, last, why))
-                return REFUSED;
-            least = residual(joint, at, amplitude, r);
-            const double rises = dense_dot(r, step);
-            if (size == 0.0 || !(rises > 0.5 * fabs(falls)))
-                break;
-            size *= own ? fmax(falls / (falls - rises), 0.1) : 0.0;
-            before = 0.0;
-        }
-        own = false;
+            correction[k] = -r[k];
+        dense_solve(e->assembly.bodies->use_avx, factors, correction);
+        apply_broyden(e, corrections++);
+        if (!search_line(e, step, q, correction, tangent_is_current, is_last, modal_coordinates, r, &tolerance, &is_full,
+                         why))
+            return REFUSED;
+        last_norm = is_full ? norm : 0.0; /* 0: the next iteration computes the tangent */
+        tangent_is_current = false;
     }
-    *missed = largest(r);
-    return *missed <= close * least ? FOUND : LOST;
+    *left = residual_norm(r);
+    return *left <= tolerance_factor * tolerance ? CONVERGED : NOT_CONVERGED;
 }
 
-static void tell(const double *inputs, double done, double missed, Text *why)
+/* Say that there is no equilibrium, with the inputs that are not zero. */
+static void explain_failure(const double *inputs, double load_factor, double left, Text *why)
 {
-    static const int told[] = {INPUT_PRELOAD, INPUT_MOMENT};
     text_clear(why);
-    for (int v = 0; v < 2 + MOTIONS; v++) {
-        const int at = v < 2 ? told[v] : motion_of(v - 2);
+    for (int v = 0; v < 2 + N_DISPLACEMENTS; v++) {
+        const int at = v == 0 ? INPUT_PRELOAD : (v == 1 ? INPUT_MOMENT : input_of(v - 2));
         if (inputs[at] == 0.0)
             continue;
         text_add(why, why->length > 0 ? ", " : "");
@@ -431,169 +375,92 @@ static void tell(const double *inputs, double done, double missed, Text *why)
         text_number(why, inputs[at], 6);
     }
     text_add(why, ": the sides find no equilibrium beyond ");
-    text_number(why, done, 3);
+    text_number(why, load_factor, 3);
     text_add(why, " of the way, the residual is ");
-    text_number(why, missed, 2);
+    text_number(why, left, 2);
     text_add(why, " N");
 }
 
-bool whole_evaluate(Joint *joint, const double *inputs, const double *memory, double *after, double *x, Text *why)
+/* Modal coordinates in equilibrium at the end of a load step, which is divided where Newton's method fails. */
+static bool solve_load_step(Equilibrium *e, LoadStep *step, double *modal_coordinates, Text *why)
 {
-    if (!ELASTIC)
-        return false;
-    Kind *kind = &joint->kind;
-    Way way = {inputs, memory, after, x, false};
-    double done = 0.0, step = 1.0, missed = 0.0, amplitude[MODES], rate[MODES], trial[MODES];
-    memcpy(amplitude, memory + AT_AMPLITUDE, sizeof amplitude);
-    whole_deform(amplitude, kind, NULL, kind->bent_before);
-    if (!predict(joint, inputs, memory, rate, why))
+    double load_factor = 0.0, increment = 1.0, left = 0.0, reached[MODES], rate[MODES];
+    memcpy(reached, step->history + AT_AMPLITUDE, sizeof reached);
+    modal_displacement(e->assembly.bodies, reached, e->assembly.bodies->start_displacement);
+    if (!predict_by_tangent(e, step, rate, why))
         return false;
     for (;;) {
-        const double part = fmin(done + step, 1.0);
+        const double target = fmin(load_factor + increment, 1.0);
         for (int k = 0; k < MODES; k++)
-            trial[k] = amplitude[k] + (part - done) * rate[k];
-        const Newton found = newton(joint, &way, part, trial, &missed, why);
-        if (found == REFUSED)
+            modal_coordinates[k] = reached[k] + (target - load_factor) * rate[k];
+        const NewtonResult result = solve_newton(e, step, target, modal_coordinates, &left, why);
+        if (result == REFUSED)
             return false;
-        if (found == LOST) {
-            step *= 0.5;
-            if (step < MIN_LOAD_STEP) {
-                tell(inputs, done, missed, why);
+        if (result == NOT_CONVERGED) {
+            increment *= 0.5;
+            if (increment < MIN_LOAD_STEP) {
+                explain_failure(step->inputs, load_factor, left, why);
                 return false;
             }
             continue;
         }
-        if (part == 1.0)
-            break;
+        if (target == 1.0)
+            return step->is_complete || evaluate_trial(e, step, step->end, modal_coordinates, true, why);
         for (int k = 0; k < MODES; k++)
-            rate[k] = (trial[k] - amplitude[k]) / (part - done);
-        memcpy(amplitude, trial, sizeof amplitude);
-        done = part;
-        step *= 2.0;
+            rate[k] = (modal_coordinates[k] - reached[k]) / (target - load_factor);
+        memcpy(reached, modal_coordinates, sizeof reached);
+        load_factor = target;
+        increment *= 2.0;
     }
-    if (!way.whole && !try_at(joint, &way, inputs, trial, true, why))
+}
+
+bool solve_equilibrium(Equilibrium *e, const double *inputs, const double *history, double *after, Text *why)
+{
+    if (!ELASTIC)
         return false;
-    for (int d = 0; d < 3; d++)
-        after[AT_APART + d] = inputs[motion_of(2 + d)];
-    memcpy(after + AT_AMPLITUDE, trial, sizeof trial);
+    LoadStep step = {.inputs = inputs,
+                     .history = history,
+                     .start = {history[AT_RIGID], history[AT_RIGID + 1], history[AT_APART], history[AT_APART + 1],
+                               history[AT_APART + 2], history[AT_RIGID + 2]},
+                     .after = after};
+    double modal_coordinates[MODES];
+    relative_displacement(inputs, step.end);
+    if (!solve_load_step(e, &step, modal_coordinates, why))
+        return false;
+    memcpy(after + AT_APART, step.end + S_Z, 3 * sizeof *after);
+    memcpy(after + AT_AMPLITUDE, modal_coordinates, sizeof modal_coordinates);
     memset(after + AT_TANGENT, 0, 6 * MOST_PATCHES * sizeof *after);
-    memcpy(after + AT_TANGENT, kind->tangent, 6 * (size_t)data.n_patches * sizeof *after);
-    follow(kind, (const double(*)[6])kind->tangent, &kind->end);
-    key_of(inputs, after, kind->end.key);
+    for (int j = 0; j < n_patches(); j++)
+        memcpy(after + AT_TANGENT + 6 * j, e->assembly.friction->update[j].tangent, 6 * sizeof *after);
+    condense_stiffness(e, after + AT_TANGENT, &e->end);
+    predictor_key(inputs, after, e->end.key);
     return true;
 }
 
-/* Sums and forces */
-
-/* Stiffnesses of the whole less what the bolts have between rigid sides, over the area, where the sums have them. */
-static void tell_whole(const Kind *kind, const double stiffness[MOTIONS], double own, double *x)
-{
-    static const int sums[MOTIONS] = {SUM_TANGENT_X, SUM_TANGENT_Y, SUM_NORMAL_STIFFNESS,
-                                      SUM_NORMAL_ABOUT_X, SUM_NORMAL_ABOUT_Y, SUM_TANGENT_Z};
-    double bolts[MOTIONS] = {0.0};
-    for (int b = 0; b < (int)data.n_stretch; b++) {
-        bolts[2] += own;
-        bolts[3] += own * data.bolts[b][BOLT_Y] * data.bolts[b][BOLT_Y];
-        bolts[4] += own * data.bolts[b][BOLT_X] * data.bolts[b][BOLT_X];
-    }
-    for (int d = 0; d < MOTIONS; d++)
-        x[sums[d]] = (stiffness[d] - bolts[d]) / kind->area;
-}
-
-static void tell_stretch(const Kind *kind, const double *amplitude, const double *gaps, double *x)
-{
-    for (int b = 0; b < (int)data.n_stretch; b++) {
-        const double stretch = dense_dot(kind->stretch[b], amplitude) + gaps[b];
-        x[SUM_STRETCH] += stretch;
-        x[SUM_STRETCH_X] += stretch * data.bolts[b][BOLT_X];
-        x[SUM_STRETCH_Y] += stretch * data.bolts[b][BOLT_Y];
-    }
-}
-
-void whole_sums(Joint *joint, const double *inputs, double *x)
+void solve_modal_rates(Equilibrium *e, const double *q_rate, const double *history, const double *after)
 {
     if (!ELASTIC)
         return;
-    const Kind *kind = &joint->kind;
-    double energy = 0.0;
-    tell_whole(kind, kind->whole, kind->bolt, x);
-    tell_stretch(kind, kind->amplitude, kind->bolt_gap, x);
-    for (int k = 0; k < MODES; k++)
-        energy += kind->bodies[k] * kind->amplitude[k] * kind->amplitude[k];
-    for (int b = 0; b < (int)data.n_stretch; b++) {
-        const double stretch = stretched(kind, b, inputs, kind->amplitude), gap = kind->bolt_gap[b];
-        energy += kind->bolt * stretch * stretch - kind->bolt * gap * gap;
-    }
-    x[SUM_LOOP_ENERGY] += 0.5 * energy / kind->area;
-}
-
-void whole_rates(Joint *joint, const double *inputs, const double *memory, const double *after, const double *seed)
-{
-    if (!ELASTIC)
-        return;
-    Kind *kind = &joint->kind;
+    const Contact *contact = e->assembly.contact;
+    const Bolts *bolts = e->assembly.bolts;
+    Bodies *bodies = e->assembly.bodies;
     double r[MODES] = {0.0};
-    for (int i = 0; i < (int)data.n_nodes; i++)
-        add_scaled(kind->area * data.nodes[i][SHARE] * kind->pressing[i], kind->opening[i], r);
-    for (int j = 0; j < (int)data.n_patches; j++)
+    for (int i = 0; i < n_points(); i++) {
+        const PointRate *rate = &contact->rate[i];
+        const double pressure = rate->derivatives[1] * rate->approach - rate->preload_stiffness * rate->preload_approach;
+        add_scaled(contact->area * data.points[i][SHARE] * pressure, bodies->opening_jacobian[i], r);
+    }
+    for (int j = 0; j < n_patches(); j++)
         for (int d = 0; d < 3; d++)
-            add_scaled(-kind->area * data.patches[j][SHARE] * kind->shears[j].traction[d], kind->patch[d][j], r);
-    for (int b = 0; b < (int)data.n_stretch; b++)
-        add_scaled(-kind->bolt * (seat(b, seed) + bolt_gap_rate(kind, b, seat(b, seed))), kind->stretch[b], r);
-    exact(joint, inputs, memory, after);
-    dense_solve(kind->work.batch.use_avx, &kind->factors, r);
-    memcpy(kind->amplitude_rate, r, sizeof r);
-    whole_deform(r, kind, kind->opened_rate, kind->bent_rate);
-}
-
-void whole_sum_rates(const Joint *joint, const double *inputs, const double *seed, double *dx)
-{
-    if (!ELASTIC)
-        return;
-    const Kind *kind = &joint->kind;
-    double rates[MOTIONS], energy = 0.0;
-    for (int d = 0; d < MOTIONS; d++) { /* the motion with what follows is stationary: only tangents change it */
-        const double *z = kind->end.follow[d];
-        double sum = 0.0;
-        for (int i = 0; i < (int)data.n_nodes; i++) {
-            const double normal[MOTIONS] = {0.0, 0.0, 1.0, data.nodes[i][PLACE_Y], -data.nodes[i][PLACE_X], 0.0};
-            const double u = normal[d] + dense_dot(kind->opening[i], z);
-            sum += data.nodes[i][SHARE] * kind->stiffening[i] * u * u;
-        }
-        for (int j = 0; j < (int)data.n_patches; j++) {
-            const double along[MOTIONS] = {1.0, 0.0, 0.0, 0.0, 0.0, -data.patches[j][PLACE_Y]};
-            const double across[MOTIONS] = {0.0, 1.0, 0.0, 0.0, 0.0, data.patches[j][PLACE_X]};
-            const double u = along[d] + dense_dot(kind->patch[0][j], z), v = across[d] + dense_dot(kind->patch[1][j], z);
-            const double *t = kind->shears[j].tangent;
-            const double w = (d == MOTIONS - 1 ? data.patches[j][RADIUS] : 0.0) + dense_dot(kind->patch[2][j], z);
-            sum += data.patches[j][SHARE] * (t[0] * u * u + t[2] * v * v + t[5] * w * w +
-                                             2.0 * (t[1] * u * v + t[3] * u * w + t[4] * v * w));
-        }
-        rates[d] = kind->area * sum;
+            add_scaled(-contact->area * data.patches[j][SHARE] * e->assembly.friction->rate[j].traction[d],
+                       bodies->patch_jacobian[d][j], r);
+    for (int b = 0; b < (int)data.n_bolt_elongation; b++) {
+        const double rate = rigid_elongation(b, q_rate);
+        add_scaled(-bolts->stiffness * (rate + bolt_gap_rate(bolts, b, rate)), bodies->elongation_jacobian[b], r);
     }
-    tell_whole(kind, rates, 0.0, dx);
-    double gap_rates[MOST_STRETCH];
-    for (int b = 0; b < (int)data.n_stretch; b++)
-        gap_rates[b] = bolt_gap_rate(kind, b, stretched(kind, b, seed, kind->amplitude_rate));
-    tell_stretch(kind, kind->amplitude_rate, gap_rates, dx);
-    for (int k = 0; k < MODES; k++)
-        energy += kind->bodies[k] * kind->amplitude[k] * kind->amplitude_rate[k];
-    for (int b = 0; b < (int)data.n_stretch; b++)
-        energy += kind->bolt * stretched(kind, b, inputs, kind->amplitude) *
-                      stretched(kind, b, seed, kind->amplitude_rate) -
-                  kind->bolt * kind->bolt_gap[b] * gap_rates[b];
-    dx[SUM_LOOP_ENERGY] += energy / kind->area;
-}
-
-void whole_bolt_rates(const Joint *joint, const double *seed, double *result)
-{
-    if (!ELASTIC)
-        return;
-    const Kind *kind = &joint->kind;
-    for (int b = 0; b < (int)data.n_stretch; b++) {
-        const double rate = stretched(kind, b, seed, kind->amplitude_rate);
-        result[b] = kind->bolt_tightening[b] + kind->bolt * (rate + bolt_gap_rate(kind, b, rate));
-    }
+    modal_tangent_on_side(e, history, after);
+    dense_solve(bodies->use_avx, &e->factors, r);
+    deform(bodies, r, &bodies->rate);
 }
 
 END_OF_COLD

@@ -1,53 +1,58 @@
-/* Repeats `Whole` of the package: bodies that give way, in equilibrium with the interface and the bolts. */
+/* Repeats equilibrium.py of the package: static equilibrium of elastic bodies, contact, friction and bolts. */
 #ifndef JOINTFMU_EQUILIBRIUM_H
 #define JOINTFMU_EQUILIBRIUM_H
 
-#include <string.h>
+#include <stdbool.h>
 
-#include "bolted_joint.h"
-#include "joint.h"
-#include "variables.h"
+#include "bodies.h"
+#include "bolts.h"
+#include "contact.h"
+#include "dense.h"
+#include "friction.h"
+#include "kinematics.h"
+#include "text.h"
 
-enum { PAIR_PATCH, PAIR_POINT, PAIR_PART }; /* of `data.pressing` */
+/* Preload, moment, rigid displacement, and the end of a history. */
+enum { PREDICTOR_KEY = 5 + 3 + MODES + 6 * MOST_PATCHES };
 
-/* How far a point comes apart by motions alone: those of the inputs, or of a seed. */
-static inline double apart_at(const double *point, const double *v)
+/* Derivatives of the modal coordinates by q at the start of a load step, by its tangent; and what they depend on. */
+typedef struct {
+    bool is_known;
+    double key[PREDICTOR_KEY], modal_rates[N_DISPLACEMENTS][MODES];
+    Factorization factors; /* of the modal tangent */
+} ModalPredictor;
+
+typedef struct {
+    Contact *contact;
+    Bodies *bodies;
+    Bolts *bolts;
+    Friction *friction;
+} JointAssembly;
+
+typedef struct {
+    JointAssembly assembly;
+    ModalPredictor start, end;         /* at both ends of the last load step */
+    double condensed[N_DISPLACEMENTS]; /* diagonal of the condensed stiffness at its end [N/m, N.m] */
+    /* Work arrays, as Windows does not allow them on the stack. */
+    double modal_opening[MOST_PATCH_DISPLACEMENT_X][N_COLUMNS]; /* derivatives of the opening of the patches */
+    double weights[MOST_OPENING + MOST_BOLT_ELONGATION];
+    double weighted[MOST_OPENING + MOST_PATCH_DISPLACEMENT_X + MOST_BOLT_ELONGATION][N_COLUMNS];
+    double normal_stiffness[N_COLUMNS][N_COLUMNS], shear_stiffness[N_COLUMNS][N_COLUMNS];
+    TractionDerivatives derivatives[MOST_PATCHES];
+    Factorization factors; /* of the modal tangent in Newton's method */
+    double corrections[MAX_ITERATIONS][MODES], squares[MAX_ITERATIONS]; /* since then [m], and their squares [m2] */
+} Equilibrium;
+
+/* Elongation [m] of bolt b at q and modal coordinates, or its rate. */
+static inline double bolt_elongation(const Bodies *bodies, int b, const double *q, const double *modal_coordinates)
 {
-    return v[INPUT_S_REL_X + 2] + v[INPUT_THETA_X] * point[PLACE_Y] - v[INPUT_THETA_X + 1] * point[PLACE_X];
+    return rigid_elongation(b, q) + dense_dot(bodies->elongation_jacobian[b], modal_coordinates);
 }
 
-/* The modes as numbers, once for a parameter set. */
-void whole_begin(Kind *kind);
-/* What amplitudes (n_modes) move: openings of points, shifts of patches. */
-void whole_deform(const double *amplitude, const Kind *kind, double *opened, double (*bent)[3]);
-/* Sums over what presses on the patches of values at the points. */
-void whole_pressed(const Kind *kind, const double *points, double *patches);
-/* Approaches of the patches under pressures of the points, at inputs and what the modes open or, NULL, tightened. */
-void whole_approach(const Joint *joint, const double *pressure, const double *inputs, double *approach);
-/* Amplitudes in equilibrium at the inputs, with the sums and the memory there; false: refused, with the reason. */
-bool whole_evaluate(Joint *joint, const double *inputs, const double *memory, double *after, double *x, Text *why);
-/* Sums that elastic sides change. */
-void whole_sums(Joint *joint, const double *inputs, double *x);
-/* Rates of the amplitudes along a seed, given those of pressures and tractions while they stay. */
-void whole_rates(Joint *joint, const double *inputs, const double *memory, const double *after, const double *seed);
-/* Rates of what `whole_sums` gives, and of the forces of the bolts. */
-void whole_sum_rates(const Joint *joint, const double *inputs, const double *seed, double *dx);
-void whole_bolt_rates(const Joint *joint, const double *seed, double *result);
-
-/* In bolted_joint.c: the joint at given amplitudes, its pressures and tractions alone, or pressures, and derivatives
- * of a patch's traction. */
-bool joint_forces(Joint *joint, const double *inputs, const double *memory, Text *why);
-bool joint_try(Joint *joint, const double *inputs, const double *memory, double *after, double *x, Text *why);
-bool joint_press(Joint *joint, const double *inputs, Text *why);
-SliderUpdate patch_rate(Joint *joint, int j, const double *inputs, const double *memory, const double *after, double rate,
-                 const double shift[3]);
-/* The slopes of a patch from its tangents xx, xy, yy, xt, yt, tt. */
-static inline void slopes_of(const double t[6], Slopes slope)
-{
-    const Slopes rows = {{t[0], t[1], t[3]}, {t[1], t[2], t[4]}, {t[3], t[4], t[5]}};
-    memcpy(slope, rows, sizeof rows);
-}
-/* Those of the last trial at its end: `Trials.slopes` of the package, which takes differences. */
-void patch_slopes(Joint *joint, const double *inputs, const double *memory, double step, Slopes *slope);
+/* Equilibrium at the end of the load step from a history to the inputs, and the history there. Contact, bodies, bolts
+ * and friction are then those of the equilibrium. false: refused, with the reason. */
+bool solve_equilibrium(Equilibrium *equilibrium, const double *inputs, const double *history, double *after, Text *why);
+/* Rates of the deformation along a seed, from those of points, patches and bolts at constant modal coordinates. */
+void solve_modal_rates(Equilibrium *equilibrium, const double *q_rate, const double *history, const double *after);
 
 #endif

@@ -49,22 +49,22 @@ END_OF_COLD
 static void set_range(Foundation *f, int i)
 {
     const double width = f->height[i + 1] - f->height[i];
-    f->springs[i] = fmax(f->stiffness[i + 1] - f->stiffness[i], 0.0);
-    f->normal[i] = fmax(f->load[i + 1] - f->load[i] - f->stiffness[i] * width, 0.0);
-    f->apart[i] = fmin(f->springs[i] * (UNIFORM_DEVIATION * width), f->normal[i]);
+    f->normal_stiffness[i] = fmax(f->stiffness[i + 1] - f->stiffness[i], 0.0);
+    f->normal_force[i] = fmax(f->load[i + 1] - f->load[i] - f->stiffness[i] * width, 0.0);
+    f->force_deviation[i] = fmin(f->normal_stiffness[i] * (UNIFORM_DEVIATION * width), f->normal_force[i]);
     for (int late = 0; late < 2; late++) {
         const int k = 2 * i + late;
-        const double first = f->normal[i] + (late ? f->apart[i] : -f->apart[i]);
-        f->K[k] = 0.5 * f->ratio * f->springs[i];
+        const double first = f->normal_force[i] + (late ? f->force_deviation[i] : -f->force_deviation[i]);
+        f->K[k] = 0.5 * f->ratio * f->normal_stiffness[i];
         f->per_K[k] = f->K[k] > 0.0 ? 1.0 / f->K[k] : 0.0;
-        f->limit[k] = 0.5 * f->mu * (first - f->springs[i] * f->height[i + 1]);
+        f->limit[k] = 0.5 * f->mu * (first - f->normal_stiffness[i] * f->height[i + 1]);
     }
 }
 
 static void sum_stick_stiffness(Foundation *f)
 {
     for (int i = 0; i < N_RANGES; i++)
-        f->stick[i] = f->ratio * f->springs[i] + (i > 0 ? f->stick[i - 1] : 0.0);
+        f->stick_stiffness[i] = f->ratio * f->normal_stiffness[i] + (i > 0 ? f->stick_stiffness[i - 1] : 0.0);
 }
 
 /* A height stands elsewhere. */
@@ -79,9 +79,9 @@ static void set_height(Foundation *f, int i, double height)
 
 void foundation_set_heights(Foundation *f, double reference)
 {
-    f->reference = reference;
-    f->lowest = f->curve->end.x;
-    f->lowered = 0;
+    f->onset_approach = reference;
+    f->min_approach = f->curve->end.x;
+    f->liftoff_height = 0;
     slider_heights(f, reference);
     for (int i = 0; i < N_HEIGHTS; i++)
         set_height(f, i, f->height[i]);
@@ -93,21 +93,21 @@ void foundation_set_heights(Foundation *f, double reference)
 /* As `lowered` of the package. */
 void heights_after_liftoff(Foundation *f, double lowest)
 {
-    const int before = f->lowered;
+    const int before = f->liftoff_height;
     int above = 0;
     if (before > 0)
-        set_height(f, before, f->laid);
+        set_height(f, before, f->replaced_height);
     while (above < N_RANGES && f->height[above] < lowest)
         above++;
-    f->lowest = lowest;
-    f->lowered = above < N_RANGES ? above : 0;
-    if (f->lowered > 0) {
-        f->laid = f->height[above];
+    f->min_approach = lowest;
+    f->liftoff_height = above < N_RANGES ? above : 0;
+    if (f->liftoff_height > 0) {
+        f->replaced_height = f->height[above];
         set_height(f, above, lowest);
     }
     for (int i = before - 1; i <= before && before > 0; i++)
         set_range(f, i);
-    for (int i = f->lowered - 1; i <= f->lowered && f->lowered > 0; i++)
+    for (int i = f->liftoff_height - 1; i <= f->liftoff_height && f->liftoff_height > 0; i++)
         set_range(f, i);
     sum_stick_stiffness(f);
 }
@@ -123,18 +123,18 @@ static void extrapolate_state(const Curve *curve, const Energy *energy, PatchSta
 
 void find_ranges(const Foundation *f, PatchState *p)
 {
-    while (p->full > 0 && p->approach < f->height[p->full])
-        p->full--;
-    while (p->full < N_RANGES && p->approach >= f->height[p->full + 1])
-        p->full++;
-    p->touched = p->full + (p->full < N_RANGES && p->approach > f->height[p->full]);
+    while (p->full_ranges > 0 && p->approach < f->height[p->full_ranges])
+        p->full_ranges--;
+    while (p->full_ranges < N_RANGES && p->approach >= f->height[p->full_ranges + 1])
+        p->full_ranges++;
+    p->touched_ranges = p->full_ranges + (p->full_ranges < N_RANGES && p->approach > f->height[p->full_ranges]);
 }
 
 PatchState patch_state(const Foundation *f, double approach, int near)
 {
     const Curve *curve = f->curve;
     const Energy *energy = f->energy;
-    PatchState p = {.approach = approach, .full = near};
+    PatchState p = {.approach = approach, .full_ranges = near};
     if (approach >= curve->first.x && approach < curve->end.x) {
         const int segment = curve_segment(curve, approach);
         const double t = (approach - curve->x[segment]) * curve->per[segment];
@@ -167,7 +167,7 @@ static inline SliderProperties slider_properties(const Foundation *f, int i, con
     SliderProperties pair = {.K = 0.0};
     if (p->approach < f->height[i])
         return pair;
-    if (i < p->full) {
+    if (i < p->full_ranges) {
         const double *limit = f->limit + 2 * i, K = f->K[2 * i], to = f->mu / f->ratio * p->approach;
         return (SliderProperties){.K = K, .limit = {limit_at(limit[0], K, to), limit_at(limit[1], K, to)}};
     }
@@ -179,7 +179,7 @@ static inline SliderProperties slider_properties(const Foundation *f, int i, con
 /* Whether all, some or none of the springs of a range touch at both points alike. */
 static bool keeps_contact_state(int i, const PatchState *from, const PatchState *to)
 {
-    return (i < from->touched) == (i < to->touched) && (i < from->full) == (i < to->full);
+    return (i < from->touched_ranges) == (i < to->touched_ranges) && (i < from->full_ranges) == (i < to->full_ranges);
 }
 
 /* Whether the mean stiffness of a range on a way follows from its ends. */
@@ -198,7 +198,7 @@ typedef struct {
 static const PatchState *middle_state(const Foundation *f, const PatchIncrement *path, MiddleState *middle)
 {
     if (!middle->known)
-        middle->at = patch_state(f, 0.5 * (path->from->approach + path->to->approach), path->to->full);
+        middle->at = patch_state(f, 0.5 * (path->start->approach + path->end->approach), path->end->full_ranges);
     middle->known = true;
     return &middle->at;
 }
@@ -233,13 +233,13 @@ static inline double varying_loss(const Run *run, int k, const SimdBatch *all)
     double x[N_VARYING_LOSS] = {run->contact_changes}, loss;
     for (int d = 0; d < 2; d++) {
         x[C_FORCE + d] = all->force[d][at];
-        x[C_FORCE_END + d] = all->slid[SLID_FORCE + d][at];
-        x[C_DISPLACEMENT + d] = all->shift[d][at];
-        x[C_MIDDLE + d] = run->contact_changes ? all->slid[SLID_FORCE + d][at + 2] : 0.0;
+        x[C_FORCE_END + d] = all->results[SLID_FORCE + d][at];
+        x[C_DISPLACEMENT + d] = all->displacement[d][at];
+        x[C_MIDDLE + d] = run->contact_changes ? all->results[SLID_FORCE + d][at + 2] : 0.0;
     }
     x[C_STIFFNESS_START] = run->K;
     x[C_STIFFNESS_END] = all->K[at];
-    x[C_SLIP] = all->slid[SLID_SLIP][at];
+    x[C_SLIP] = all->results[SLID_SLIP][at];
     varying_stiffness_loss(x, NULL, &loss);
     return loss;
 }
@@ -249,26 +249,26 @@ static inline void finish_run(const Run *run, const SimdBatch *all)
     for (int k = 0; k < 2; k++) {
         double slid[N_SLID];
         for (int r = 0; r < N_SLID; r++)
-            slid[r] = all->slid[r][run->at + k];
+            slid[r] = all->results[r][run->at + k];
         if (run->stiffness_changes)
             slid[SLID_LOSS] = varying_loss(run, k, all);
-        add_slider(slid, run->turning[0][k], run->turning[1][k], run->shear);
+        add_slider(slid, run->torsion_directions[0][k], run->torsion_directions[1][k], run->update);
         for (int d = 0; d < 2; d++)
-            run->moved[d][k] = slid[d];
+            run->force_end[d][k] = slid[d];
     }
 }
 
 static PlaneSliders batch(const SimdBatch *all)
 {
     return (PlaneSliders){.force = {all->force[0], all->force[1]},
-                          .turning = {all->shift[0], all->shift[1]},
+                          .turning = {all->displacement[0], all->displacement[1]},
                           .shift = {0.0, 0.0, 1.0},
-                          .keeps = all->keeps,
-                          .carries = all->carries,
+                          .keeps = all->retention,
+                          .carries = all->secant_stiffness,
                           .K = all->K,
                           .per_K = all->per_K,
-                          .before = all->before,
-                          .after = all->after};
+                          .before = all->limit_start,
+                          .after = all->limit_end};
 }
 
 /* All runs so far. */
@@ -278,14 +278,14 @@ static void finish_runs(SliderWork *work)
     const PlaneSliders s = batch(all);
     double *slid[N_SLID];
     for (int r = 0; r < N_SLID; r++)
-        slid[r] = all->slid[r];
-    sliders_slide(all->use_avx, 0, (all->n + 3) / 4 * 4, &s, slid, work->forces); /* the last beside old ones */
+        slid[r] = all->results[r];
+    sliders_slide(all->use_avx, 0, (all->n + 3) / 4 * 4, &s, slid, work->forces_only); /* the last beside old ones */
     for (int i = 0; i < work->n; i++) {
         const Run *run = &work->runs[i];
-        if (!work->forces)
+        if (!work->forces_only)
             finish_run(run, all);
         else
-            add_forces(2, slid[0] + run->at, slid[1] + run->at, run->turning[0], run->turning[1], run->shear->traction);
+            add_forces(2, slid[0] + run->at, slid[1] + run->at, run->torsion_directions[0], run->torsion_directions[1], run->update->traction);
     }
     work->n = all->n = 0;
 }
@@ -293,7 +293,7 @@ static void finish_runs(SliderWork *work)
 void foundations_finish(SliderWork *work)
 {
     finish_runs(work);
-    work->forces = false;
+    work->forces_only = false;
 }
 
 /* A run of up to so many sliders, from one on of its patch. */
@@ -303,9 +303,9 @@ static Run *add_run(SliderWork *work, int most, int k, double *const moved[2], c
         finish_runs(work);
     Run *run = &work->runs[work->n++];
     *run = (Run){.at = work->batch.n,
-                 .moved = {moved[0] + k, moved[1] + k},
-                 .turning = {turning[0] + k, turning[1] + k},
-                 .shear = shear};
+                 .force_end = {moved[0] + k, moved[1] + k},
+                 .torsion_directions = {turning[0] + k, turning[1] + k},
+                 .update = shear};
     return run;
 }
 
@@ -315,14 +315,14 @@ static inline void add_pair(SimdBatch *all, const PlaneSliders *s, int first)
     for (int k = first; k < first + 2; k++, all->n++) {
         for (int d = 0; d < 2; d++) {
             all->force[d][all->n] = s->force[d][k];
-            all->shift[d][all->n] = shift_of(s->turning, k, s->shift, d);
+            all->displacement[d][all->n] = shift_of(s->turning, k, s->shift, d);
         }
-        all->keeps[all->n] = s->keeps[k];
-        all->carries[all->n] = s->carries[k];
+        all->retention[all->n] = s->keeps[k];
+        all->secant_stiffness[all->n] = s->carries[k];
         all->K[all->n] = s->K[k];
         all->per_K[all->n] = s->per_K[k];
-        all->before[all->n] = limit_at(s->before[k], s->K[k], s->from);
-        all->after[all->n] = limit_at(s->after[k], s->K[k], s->to);
+        all->limit_start[all->n] = limit_at(s->before[k], s->K[k], s->from);
+        all->limit_end[all->n] = limit_at(s->after[k], s->K[k], s->to);
     }
 }
 
@@ -345,8 +345,8 @@ static void advance_constant_stiffness(int n, const PlaneSliders *s, const doubl
         double rows[N_SLID - 2][FOUNDATION_SLIDERS], *slid[N_SLID] = {moved[0], moved[1]};
         for (int r = 2; r < N_SLID; r++)
             slid[r] = rows[r - 2];
-        sliders_slide(use_avx, first, end, s, slid, work->forces);
-        if (!work->forces) {
+        sliders_slide(use_avx, first, end, s, slid, work->forces_only);
+        if (!work->forces_only) {
             sliders_sum(use_avx, first, end, s, slid, &sum);
             add_sum(&sum, shear);
         } else {
@@ -371,8 +371,8 @@ static inline PlaneSliders sliders_from(const Foundation *f, const PatchIncremen
 {
     return (PlaneSliders){.force = {path->force[0] + k, path->force[1] + k},
                           .keeps = FULL_RETENTION,
-                          .turning = {f->turning[0] + k, f->turning[1] + k},
-                          .shift = {path->shift[0], path->shift[1], path->shift[2]}};
+                          .turning = {f->torsion_directions[0] + k, f->torsion_directions[1] + k},
+                          .shift = {path->displacement[0], path->displacement[1], path->displacement[2]}};
 }
 
 /* Those of ranges all in contact. */
@@ -382,8 +382,8 @@ static PlaneSliders full_range_sliders(const Foundation *f, const PatchIncrement
     s.K = s.carries = f->K;
     s.per_K = f->per_K;
     s.before = s.after = f->limit;
-    s.from = f->mu / f->ratio * path->from->approach;
-    s.to = f->mu / f->ratio * path->to->approach;
+    s.from = f->mu / f->ratio * path->start->approach;
+    s.to = f->mu / f->ratio * path->end->approach;
     return s;
 }
 
@@ -392,14 +392,14 @@ static void advance_full_ranges(const Foundation *f, int n, const PatchIncrement
                       SliderWork *work, SliderUpdate *shear)
 {
     const PlaneSliders s = full_range_sliders(f, path);
-    advance_constant_stiffness(n, &s, f->stick, along, moved, work, shear);
+    advance_constant_stiffness(n, &s, f->stick_stiffness, along, moved, work, shear);
 }
 
 /* The range in which springs begin to touch, while the load stays. */
 static void advance_constant_approach(const Foundation *f, int i, const PatchIncrement *path, bool along, double *const moved[2],
                          SliderWork *work, SliderUpdate *shear)
 {
-    const SliderProperties here = slider_properties(f, i, path->to);
+    const SliderProperties here = slider_properties(f, i, path->end);
     const double soft = here.K > 0.0 ? 1.0 / here.K : 0.0, K[2] = {here.K, here.K}, per_K[2] = {soft, soft};
     double *const to[2] = {moved[0] + 2 * i, moved[1] + 2 * i}, stick = 2.0 * here.K;
     PlaneSliders s = sliders_from(f, path, 2 * i);
@@ -431,9 +431,9 @@ static inline void set_range_ends(const Foundation *f, const SliderProperties *s
 static inline void retention_arguments(const Foundation *f, int i, const PatchIncrement *path, const SliderProperties *start, const SliderProperties *end,
                         const PatchState *at, double *x)
 {
-    const double change = at->approach - path->from->approach;
+    const double change = at->approach - path->start->approach;
     set_range_ends(f, start, end, change, x);
-    x[X_IS_SMALL] = is_small_change(f, i, path->from, at);
+    x[X_IS_SMALL] = is_small_change(f, i, path->start, at);
 }
 
 /* The next pair, that of a range which changes, from its start to an end; `gained` is of `carrying`. */
@@ -454,14 +454,14 @@ static inline void add_range_pair(PlaneSliders s, const SliderProperties *start,
 static void advance_partial_range(const Foundation *f, int i, const PatchIncrement *path, MiddleState *middle, double *const moved[2],
                        SliderWork *work, SliderUpdate *shear)
 {
-    const bool contact_changes = !work->forces && !keeps_contact_state(i, path->from, path->to);
-    const PatchState *half = contact_changes ? middle_state(f, path, middle) : path->to, *points[2] = {path->to, half};
-    const SliderProperties start = slider_properties(f, i, path->from), end = slider_properties(f, i, path->to);
+    const bool contact_changes = !work->forces_only && !keeps_contact_state(i, path->start, path->end);
+    const PatchState *half = contact_changes ? middle_state(f, path, middle) : path->end, *points[2] = {path->end, half};
+    const SliderProperties start = slider_properties(f, i, path->start), end = slider_properties(f, i, path->end);
     const SliderProperties ends[2] = {end, contact_changes ? slider_properties(f, i, half) : end};
     const int n = contact_changes ? 2 : 1;
     double x[N_RETENTION], gained[2];
     PlaneSliders s = sliders_from(f, path, 2 * i);
-    Run *run = add_run(work, 2 * n, 2 * i, moved, f->turning, shear);
+    Run *run = add_run(work, 2 * n, 2 * i, moved, f->torsion_directions, shear);
     run->contact_changes = contact_changes;
     run->K = start.K;
     run->stiffness_changes = start.K != end.K;
@@ -477,13 +477,13 @@ static void advance_partial_range(const Foundation *f, int i, const PatchIncreme
 /* Ranges whose springs all touch on the whole way. */
 static int full_ranges_throughout(const PatchIncrement *path)
 {
-    return path->from->full < path->to->full ? path->from->full : path->to->full;
+    return path->start->full_ranges < path->end->full_ranges ? path->start->full_ranges : path->end->full_ranges;
 }
 
 void foundation_advance(const Foundation *f, const PatchIncrement *path, double *const moved[2], SliderWork *work, SliderUpdate *shear)
 {
     const int full = full_ranges_throughout(path), touched = touched_ranges_of(path);
-    const bool rests = path->from->approach == path->to->approach, along = !ELASTIC && rests && path->straight;
+    const bool rests = path->start->approach == path->end->approach, along = !ELASTIC && rests && path->is_1d;
     MiddleState middle = {.known = false};
     *shear = (SliderUpdate){.loss = 0.0};
     advance_full_ranges(f, 2 * full, path, along, moved, work, shear);
@@ -502,10 +502,10 @@ static void add_opening_pair(const Foundation *f, int first, double K, SliderWor
 {
     for (int k = 0; k < 2; k++) {
         const int at = work->batch.n + k;
-        work->apart.limit[at] = -f->mu / f->ratio * K;
+        work->opening.limit_rate[at] = -f->mu / f->ratio * K;
         for (int d = 0; d < 2; d++) {
-            work->apart.turning[d][at] = f->turning[d][first + k];
-            work->apart.shift[d][at] = 0.0;
+            work->opening.torsion_directions[d][at] = f->torsion_directions[d][first + k];
+            work->opening.displacement_rate[d][at] = 0.0;
         }
     }
 }
@@ -513,8 +513,8 @@ static void add_opening_pair(const Foundation *f, int first, double K, SliderWor
 /* That of a range that changes, with what it gains where the patch comes apart by a step, by differences. */
 static void add_opening_range(const Foundation *f, int i, const PatchIncrement *path, const PatchState *apart, double step, SliderWork *work)
 {
-    const PatchState *at[2] = {path->to, apart};
-    const SliderProperties start = slider_properties(f, i, path->from);
+    const PatchState *at[2] = {path->end, apart};
+    const SliderProperties start = slider_properties(f, i, path->start);
     const int first = work->batch.n;
     SliderProperties end[2];
     double gained[2][2];
@@ -529,10 +529,10 @@ static void add_opening_range(const Foundation *f, int i, const PatchIncrement *
     add_range_pair(sliders_from(f, path, 2 * i), &start, end, gained[0], &work->batch);
     for (int k = 0; k < 2; k++) {
         const int row = first + k;
-        work->apart.limit[row] = (end[1].limit[k] - end[0].limit[k]) / step;
+        work->opening.limit_rate[row] = (end[1].limit[k] - end[0].limit[k]) / step;
         for (int d = 0; d < 2; d++)
-            work->apart.shift[d][row] = per_gain * ((gained[1][0] - gained[0][0]) * work->batch.force[d][row] +
-                                                    (gained[1][1] - gained[0][1]) * work->batch.shift[d][row]);
+            work->opening.displacement_rate[d][row] = per_gain * ((gained[1][0] - gained[0][0]) * work->batch.force[d][row] +
+                                                    (gained[1][1] - gained[0][1]) * work->batch.displacement[d][row]);
     }
 }
 
@@ -544,7 +544,7 @@ void foundation_traction_derivatives(const Foundation *f, const PatchIncrement *
     double force[3];
     PlaneSliders s = full_range_sliders(f, path);
     const int first = sliders_stick(all->use_avx, 2 * full, &s, tried, force);
-    const PatchState apart = patch_state(f, path->to->approach - step, path->to->full);
+    const PatchState apart = patch_state(f, path->end->approach - step, path->end->full_ranges);
     for (int k = first; k < 2 * full; k += 2) {
         add_opening_pair(f, k, f->K[k], work);
         add_pair(all, &s, k);
@@ -558,13 +558,13 @@ void foundation_traction_derivatives(const Foundation *f, const PatchIncrement *
         add_opening_pair(f, 0, 0.0, work);
         add_pair(all, &s, 0);
     }
-    const SliderRates rates = {{work->apart.turning[0], work->apart.turning[1]},
-                               work->apart.limit,
-                               {work->apart.shift[0], work->apart.shift[1]}};
+    const SliderRates rates = {{work->opening.torsion_directions[0], work->opening.torsion_directions[1]},
+                               work->opening.limit_rate,
+                               {work->opening.displacement_rate[0], work->opening.displacement_rate[1]}};
     s = batch(all);
     sliders_slopes(all->use_avx, all->n, &s, &rates, slope);
     for (int d = 0; d < 3 && first > 0; d++)
-        slope[d][d] += f->stick[first / 2 - 1];
+        slope[d][d] += f->stick_stiffness[first / 2 - 1];
     all->n = 0;
 }
 
@@ -578,21 +578,21 @@ enum { R_IS_UNLOADING, R_STIFFNESS_START, R_STIFFNESS_END, N_STICK_RETENTION }; 
 /* As `Foundation.rested` of the package. */
 bool full_stick_update(const Foundation *f, const PatchIncrement *path, const double before[3], SliderUpdate *shear)
 {
-    const PatchState *from = path->from, *to = path->to;
+    const PatchState *from = path->start, *to = path->end;
     const double x[N_STICK_RETENTION] = {to->approach < from->approach, stick_stiffness(f, from), stick_stiffness(f, to)};
     const double most = FULL_STICK_RATIO * f->mu / f->ratio * x[R_STIFFNESS_END] * (to->approach - f->height[0]);
     double rule[2], *t = shear->traction;
     stick_retention(x, NULL, rule);
     *shear = (SliderUpdate){.tangent = {x[R_STIFFNESS_END], 0.0, x[R_STIFFNESS_END], 0.0, 0.0, x[R_STIFFNESS_END]}};
     for (int d = 0; d < 3; d++)
-        t[d] = rule[0] * before[d] + rule[1] * path->shift[d];
+        t[d] = rule[0] * before[d] + rule[1] * path->displacement[d];
     return sqrt(t[0] * t[0] + t[1] * t[1] + t[2] * t[2]) <= most;
 }
 
 bool full_stick_rates(const Foundation *f, const PatchIncrement *path, const double before[3],
                            const IncrementRate *direction, const IncrementRate *rates, SliderUpdate *rate)
 {
-    const PatchState *from = path->from, *to = path->to;
+    const PatchState *from = path->start, *to = path->end;
     const double rises = direction->ends[1] - direction->ends[0];
     const bool corner = to->approach == from->approach && rises != 0.0;
     const bool falls = to->approach < from->approach || (corner && rises < 0.0);
@@ -603,21 +603,21 @@ bool full_stick_rates(const Foundation *f, const PatchIncrement *path, const dou
     stick_retention_seed(x, NULL, slopes);
     *rate = (SliderUpdate){.tangent = {last, 0.0, last, 0.0, 0.0, last}};
     for (int d = 0; d < 3; d++)
-        rate->traction[d] = slopes[0] * before[d] + slopes[1] * path->shift[d] + rule[1] * rates->shift[d];
+        rate->traction[d] = slopes[0] * before[d] + slopes[1] * path->displacement[d] + rule[1] * rates->displacement[d];
     return corner;
 }
 
 void distribute_stick_force(const Foundation *f, const PatchState *at, const double traction[3], double *const force[2])
 {
     const double stick = stick_stiffness(f, at);
-    for (int i = 0; i < at->touched; i++) {
+    for (int i = 0; i < at->touched_ranges; i++) {
         const double part = stick > 0.0 ? slider_properties(f, i, at).K / stick : 0.0;
         for (int d = 0; d < 2; d++)
             for (int k = 2 * i; k < 2 * i + 2; k++)
-                force[d][k] = part * shift_of(f->turning, k, traction, d);
+                force[d][k] = part * shift_of(f->torsion_directions, k, traction, d);
     }
     for (int d = 0; d < 2; d++)
-        memset(force[d] + 2 * at->touched, 0, (size_t)(FOUNDATION_SLIDERS - 2 * at->touched) * sizeof *force[d]);
+        memset(force[d] + 2 * at->touched_ranges, 0, (size_t)(FOUNDATION_SLIDERS - 2 * at->touched_ranges) * sizeof *force[d]);
 }
 
 COLD
@@ -639,13 +639,13 @@ typedef struct {
 static PatchState state_beside(const Foundation *f, const PatchState *at, double rises, bool *corner)
 {
     PatchState p = *at;
-    if (p.full == 0 || p.full == N_RANGES || p.approach != f->height[p.full] || rises == 0.0)
+    if (p.full_ranges == 0 || p.full_ranges == N_RANGES || p.approach != f->height[p.full_ranges] || rises == 0.0)
         return p;
     *corner = true;
     if (rises > 0.0)
-        p.touched = p.full + 1;
+        p.touched_ranges = p.full_ranges + 1;
     else
-        p.full--;
+        p.full_ranges--;
     return p;
 }
 
@@ -664,7 +664,7 @@ static PropertiesRate properties_rate(const Foundation *f, int i, const PatchSta
     double x[2 * N_PARTIAL_CONTACT - X_LOAD];
     if (p->approach < f->height[i])
         return pairs;
-    if (i < p->full) {
+    if (i < p->full_ranges) {
         for (int late = 0; late < 2; late++)
             pairs.rate.limit[late] = f->mu / f->ratio * pairs.at.K * rate;
         return pairs;
@@ -679,7 +679,7 @@ static PropertiesRate properties_rate(const Foundation *f, int i, const PatchSta
     partial_contact_seed(x, NULL, &pairs.rate.K);
     if (p->approach == f->height[i + 1]) { /* all touch: the same numbers, whose rates are of one side */
         PatchState all = *p;
-        all.full = i + 1;
+        all.full_ranges = i + 1;
         const SliderProperties full = slider_properties(f, i, &all);
         pairs.at.K = full.K;
         memcpy(pairs.at.limit, full.limit, sizeof full.limit);
@@ -753,8 +753,8 @@ static MappingRate return_map_rate(double x[2 * N_PLANE - P_RETENTION], const do
 static void argument_rates(const Foundation *f, int k, const double gains[2], const IncrementRate *rates, double part,
                          const double limits[2], double K_rate, double per_K, double out[N_PLANE - P_RETENTION])
 {
-    const double all[] = {gains[0], gains[1], part * shift_of(f->turning, k, rates->shift, 0),
-                          part * shift_of(f->turning, k, rates->shift, 1), limits[0], limits[1], K_rate,
+    const double all[] = {gains[0], gains[1], part * shift_of(f->torsion_directions, k, rates->displacement, 0),
+                          part * shift_of(f->torsion_directions, k, rates->displacement, 1), limits[0], limits[1], K_rate,
                           -K_rate * per_K * per_K};
     memcpy(out, all, sizeof all);
 }
@@ -770,12 +770,12 @@ static SecantRate secant_rate(const Foundation *f, int i, const SideRates *c, co
 {
     const double change = at->approach - from->approach, turned = part * (rates->ends[1] - rates->ends[0]);
     const double rises = c->direction->ends[1] - c->direction->ends[0];
-    const double bend = change != 0.0 ? (c->path->to->y[2] - c->path->from->y[2]) /
-                                            (c->path->to->approach - c->path->from->approach)
+    const double bend = change != 0.0 ? (c->path->end->y[2] - c->path->start->y[2]) /
+                                            (c->path->end->approach - c->path->start->approach)
                                       : 0.0;
     double x[2 * N_RETENTION - 1];
     SecantRate g = {.end = properties_rate(f, i, at, rates->ends[0] + turned, bend)};
-    g.start = change != 0.0 || c->path->first ? properties_rate(f, i, from, rates->ends[0], bend) : (PropertiesRate){.at = g.end.at};
+    g.start = change != 0.0 || c->path->is_first ? properties_rate(f, i, from, rates->ends[0], bend) : (PropertiesRate){.at = g.end.at};
     retention_arguments(f, i, c->path, &g.start.at, &g.end.at, at, x);
     if (change == 0.0 && rises != 0.0) { /* springs that lift off take their force with them */
         x[X_APPROACH_CHANGE] = copysign(DBL_MIN, rises);
@@ -794,8 +794,8 @@ static MappingRate range_slider_rate(const Foundation *f, const SideRates *c, in
     const int k = 2 * i + late;
     const double K = own->end.at.K, per_K = K > 0.0 ? 1.0 / K : 0.0;
     double x[2 * N_PLANE - P_RETENTION] = {c->path->force[0][k], c->path->force[1][k], own->gained[0], own->gained[1],
-                                       part * shift_of(f->turning, k, c->path->shift, 0),
-                                       part * shift_of(f->turning, k, c->path->shift, 1),
+                                       part * shift_of(f->torsion_directions, k, c->path->displacement, 0),
+                                       part * shift_of(f->torsion_directions, k, c->path->displacement, 1),
                                        own->start.at.limit[late], own->end.at.limit[late], K, per_K};
     double ahead_rates[N_PLANE - P_RETENTION] = {0.0};
     const double limits[2] = {own->start.rate.limit[late], own->end.rate.limit[late]};
@@ -816,7 +816,7 @@ static double loss_rate(const SideRates *c, double x[2 * N_VARYING_LOSS - 3])
 {
     double loss, more, rate, along = c->rates->ends[1] * c->direction->ends[1];
     for (int d = 0; d < 3; d++)
-        along += c->rates->shift[d] * c->direction->shift[d];
+        along += c->rates->displacement[d] * c->direction->displacement[d];
     varying_stiffness_loss(x, NULL, &loss);
     x[C_STIFFNESS_START] *= 1.0 - LOSS_ROUND_OFF; /* a little more energy before: the heat is round-off if it is less */
     varying_stiffness_loss(x, NULL, &more);
@@ -833,7 +833,7 @@ static void partial_range_rate(const Foundation *f, int i, const SideRates *c, c
 {
     const PatchIncrement *path = c->path;
     const PatchState *points[2] = {to, middle};
-    const bool contact_changes = !keeps_contact_state(i, path->from, to);
+    const bool contact_changes = !keeps_contact_state(i, path->start, to);
     SecantRate own[2];
     MappingRate slid[2][2] = {{{{0.0}, {0.0}}}};
     for (int at = 0; at < (contact_changes ? 2 : 1); at++) {
@@ -854,8 +854,8 @@ static void partial_range_rate(const Foundation *f, int i, const SideRates *c, c
         double shift[2], rated[2], dy[N_SLID];
         memcpy(dy, end->rate, sizeof dy);
         for (int d = 0; d < 2; d++) {
-            shift[d] = shift_of(f->turning, k, path->shift, d);
-            rated[d] = shift_of(f->turning, k, c->rates->shift, d);
+            shift[d] = shift_of(f->torsion_directions, k, path->displacement, d);
+            rated[d] = shift_of(f->torsion_directions, k, c->rates->displacement, d);
         }
         double x[] = {contact_changes, path->force[0][k], path->force[1][k], moved[0], moved[1],
                             shift[0], shift[1], start->at.K, last->at.K, moved[SLID_SLIP], half->at[0], half->at[1],
@@ -863,7 +863,7 @@ static void partial_range_rate(const Foundation *f, int i, const SideRates *c, c
                             half->rate[0], half->rate[1]};
         if (start->at.K != last->at.K || start->rate.K != last->rate.K)
             dy[SLID_LOSS] = loss_rate(c, x);
-        add_slider(dy, f->turning[0][k], f->turning[1][k], rate);
+        add_slider(dy, f->torsion_directions[0][k], f->torsion_directions[1][k], rate);
     }
 }
 
@@ -877,7 +877,7 @@ static void slider_height_rates(const Foundation *f, double rate, double height[
 {
     const double end = f->curve->end.y;
     double y[2];
-    curve_at(f->curve, f->reference, 1, y);
+    curve_at(f->curve, f->onset_approach, 1, y);
     const bool follow = y[0] > MIN_REFERENCE_RATIO * end && y[0] < MAX_REFERENCE_RATIO * end;
     memset(height, 0, N_HEIGHTS * sizeof *height);
     for (int i = 1; i < N_HEIGHTS - 1 && follow; i++) { /* loads in proportion below, in that of their logarithm above */
@@ -887,8 +887,8 @@ static void slider_height_rates(const Foundation *f, double rate, double height[
     }
     if (follow)
         height[N_BELOW + 1] = rate;
-    if (f->lowered > 0)
-        height[f->lowered] = rate;
+    if (f->liftoff_height > 0)
+        height[f->liftoff_height] = rate;
 }
 
 /* Rates of the first `n` ranges, all in contact at the approach around which the heights are laid. */
@@ -905,12 +905,12 @@ static void full_range_rates(const Foundation *f, int n, double approach, double
         const double width = f->height[i + 1] - f->height[i], left = f->height[i + 1] - approach;
         const double springs = stiffness[i + 1] - stiffness[i];
         const double normal = (f->stiffness[i + 1] - f->stiffness[i]) * height[i + 1] - stiffness[i] * width;
-        const double apart = f->apart[i] < f->normal[i] ? UNIFORM_DEVIATION * (springs * width + f->springs[i] * (height[i + 1] - height[i]))
+        const double apart = f->force_deviation[i] < f->normal_force[i] ? UNIFORM_DEVIATION * (springs * width + f->normal_stiffness[i] * (height[i + 1] - height[i]))
                                                         : normal;
         for (int late = 0; late < 2; late++) {
             out->K[2 * i + late] = 0.5 * f->ratio * springs;
             out->limit[2 * i + late] = 0.5 * f->mu * (normal + (late ? apart : -apart) - springs * left -
-                                                      f->springs[i] * (height[i + 1] - rate));
+                                                      f->normal_stiffness[i] * (height[i + 1] - rate));
         }
     }
 }
@@ -919,38 +919,38 @@ static void full_range_rates(const Foundation *f, int n, double approach, double
 static void add_full_range_rates(const Foundation *f, int n, const SideRates *c, SliderUpdate *rate)
 {
     const PatchIncrement *path = c->path;
-    const double grown = f->mu / f->ratio, from = grown * path->from->approach, to = grown * path->to->approach;
+    const double grown = f->mu / f->ratio, from = grown * path->start->approach, to = grown * path->end->approach;
     const double *turn = c->rates->ends, *turned = c->direction->ends;
     SliderRate own, ahead;
     bool found = false;
-    if (path->first)
-        full_range_rates(f, n / 2, path->to->approach, turn[1], &own);
+    if (path->is_first)
+        full_range_rates(f, n / 2, path->end->approach, turn[1], &own);
     for (int k = 0; k < n; k++) {
         const double K = f->K[k], per_K = f->per_K[k], before = limit_at(f->limit[k], K, from), after = limit_at(f->limit[k], K, to);
         double x[2 * N_PLANE - P_RETENTION] = {path->force[0][k], path->force[1][k], 1.0, K,
-                                           shift_of(f->turning, k, path->shift, 0), shift_of(f->turning, k, path->shift, 1),
+                                           shift_of(f->torsion_directions, k, path->displacement, 0), shift_of(f->torsion_directions, k, path->displacement, 1),
                                            before, after, K, per_K};
         double ahead_rates[N_PLANE - P_RETENTION] = {0.0};
-        const double limits[2] = {path->first ? own.limit[k] : grown * K * turn[0], path->first ? own.limit[k] : grown * K * turn[1]};
-        const double stiffer = path->first ? own.K[k] : 0.0, gains[2] = {0.0, stiffer};
+        const double limits[2] = {path->is_first ? own.limit[k] : grown * K * turn[0], path->is_first ? own.limit[k] : grown * K * turn[1]};
+        const double stiffer = path->is_first ? own.K[k] : 0.0, gains[2] = {0.0, stiffer};
         argument_rates(f, k, gains, c->rates, 1.0, limits, stiffer, per_K, x + N_PLANE);
         const double u = elastic_predictor(x, 0), v = elastic_predictor(x, 1), least = (1.0 - 2.0 * LIMIT_TOLERANCE) * after;
         double dy[N_SLID] = {K * x[N_PLANE + 2] + stiffer * x[P_DISPLACEMENT], K * x[N_PLANE + 3] + stiffer * x[P_DISPLACEMENT + 1],
                                    stiffer, 0.0, stiffer};
         if (u * u + v * v >= least * least) {
-            const bool sides = path->first ? is_at_limit(x) : has_two_sides(x); /* both limits of a first path are the same */
-            if (sides && path->first && !found)
-                full_range_rates(f, n / 2, path->to->approach, turned[1], &ahead);
+            const bool sides = path->is_first ? is_at_limit(x) : has_two_sides(x); /* both limits of a first path are the same */
+            if (sides && path->is_first && !found)
+                full_range_rates(f, n / 2, path->end->approach, turned[1], &ahead);
             found = found || sides;
             if (sides) {
-                const double next[2] = {path->first ? ahead.limit[k] : grown * K * turned[0], path->first ? ahead.limit[k] : grown * K * turned[1]};
-                const double stiff = path->first ? ahead.K[k] : 0.0, gain_ahead[2] = {0.0, stiff};
+                const double next[2] = {path->is_first ? ahead.limit[k] : grown * K * turned[0], path->is_first ? ahead.limit[k] : grown * K * turned[1]};
+                const double stiff = path->is_first ? ahead.K[k] : 0.0, gain_ahead[2] = {0.0, stiff};
                 argument_rates(f, k, gain_ahead, c->direction, 1.0, next, stiff, per_K, ahead_rates);
             }
             const MappingRate slid = return_map_rate(x, ahead_rates, c->corner);
             memcpy(dy, slid.rate, sizeof dy);
         }
-        add_slider(dy, f->turning[0][k], f->turning[1][k], rate);
+        add_slider(dy, f->torsion_directions[0][k], f->torsion_directions[1][k], rate);
     }
 }
 
@@ -961,7 +961,7 @@ static void add_full_range_rates(const Foundation *f, int n, const SideRates *c,
 static void add_contact_onset_rate(const Foundation *f, int i, const SideRates *c, const PatchState *from, const PatchState *to, SliderUpdate *rate)
 {
     const PatchIncrement *path = c->path;
-    const bool still = path->shift[0] == 0.0 && path->shift[1] == 0.0 && path->shift[2] == 0.0;
+    const bool still = path->displacement[0] == 0.0 && path->displacement[1] == 0.0 && path->displacement[2] == 0.0;
     const double K = properties_rate(f, i, to, c->rates->ends[1], 0.0).rate.K;
     const double change = to->approach - from->approach;
     const SliderProperties below = slider_properties(f, i - 1, to), start = slider_properties(f, i, from);
@@ -972,12 +972,12 @@ static void add_contact_onset_rate(const Foundation *f, int i, const SideRates *
         const double least = follows ? (1.0 - 2.0 * LIMIT_TOLERANCE) * below.limit[late] : sticks;
         double way[2];
         for (int d = 0; d < 2; d++) {
-            const double shift = shift_of(f->turning, k, path->shift, d), force = path->force[d][k];
+            const double shift = shift_of(f->torsion_directions, k, path->displacement, d), force = path->force[d][k];
             way[d] = lifts ? force / start.K + shift : follows ? force : shift;
         }
         const double square = way[0] * way[0] + way[1] * way[1], per = square > least * least ? K / square : 0.0;
         const double dy[N_SLID] = {0.0, 0.0, K - per * way[0] * way[0], -per * way[0] * way[1], K - per * way[1] * way[1]};
-        add_slider(dy, f->turning[0][at], f->turning[1][at], rate);
+        add_slider(dy, f->torsion_directions[0][at], f->torsion_directions[1][at], rate);
     }
 }
 
@@ -986,13 +986,13 @@ bool foundation_rates(const Foundation *f, const PatchIncrement *path, const Inc
 {
     bool corner = false;
     const SideRates path_side = {path, direction, rates, &corner};
-    const bool stays_there = path->from->approach == path->to->approach;
+    const bool stays_there = path->start->approach == path->end->approach;
     *rate = (SliderUpdate){.loss = 0.0};
-    const PatchState to = path->first ? *path->to : state_beside(f, path->to, direction->ends[1], &corner);
-    const PatchState from = stays_there ? to : *path->from;
-    const int full = from.full < to.full ? from.full : to.full;
-    const bool enters = to.touched > to.full && to.approach == f->height[to.full];
-    const int touched = from.touched > to.touched ? from.touched : to.touched;
+    const PatchState to = path->is_first ? *path->end : state_beside(f, path->end, direction->ends[1], &corner);
+    const PatchState from = stays_there ? to : *path->start;
+    const int full = from.full_ranges < to.full_ranges ? from.full_ranges : to.full_ranges;
+    const bool enters = to.touched_ranges > to.full_ranges && to.approach == f->height[to.full_ranges];
+    const int touched = from.touched_ranges > to.touched_ranges ? from.touched_ranges : to.touched_ranges;
     add_full_range_rates(f, 2 * full, &path_side, rate);
     if (touched == full)
         return corner;

@@ -1,4 +1,5 @@
-/* Repeats `Foundation` of the package: friction with memory, by sliders that follow from the normal law. */
+/* Repeats `Foundation` in sliders.py of the package: the friction sliders of one patch, which follow from the normal
+ * law. Forces and stiffnesses are per area. */
 #ifndef JOINTFMU_FOUNDATION_H
 #define JOINTFMU_FOUNDATION_H
 
@@ -7,127 +8,132 @@
 
 enum {
     N_HEIGHTS = N_BELOW + N_ABOVE + 3,
-    N_RANGES = N_HEIGHTS - 1, /* ranges of heights, whose springs two sliders stand for */
-    FOUNDATION_SLIDERS = 2 * N_RANGES   /* from the lowest heights on, of each range first the one that slips earlier */
+    N_RANGES = N_HEIGHTS - 1,         /* of springs between two heights; each has two sliders */
+    FOUNDATION_SLIDERS = 2 * N_RANGES /* in the order of the heights, of each range first the one that slips earlier */
 };
 
 _Static_assert((int)FOUNDATION_SLIDERS <= (int)MOST_SLIDERS, "in one call");
 
 typedef struct {
     const Curve *curve;
-    const Energy *energy; /* its integral */
-    double mu, ratio;
-    const double *turning[2]; /* shifts of the sliders in a turn about the centre, over its way */
-    double offset;    /* of the heights, see `around` */
-    double reference; /* approach around which they lie */
-    double lowest;    /* the least one since then, at which the height `lowered` stands that lay at `laid`; 0: none */
-    double laid;
-    int lowered;
-    double height[N_HEIGHTS], load[N_HEIGHTS], stiffness[N_HEIGHTS];
-    double springs[N_RANGES]; /* normal stiffness of all springs of a range */
-    double normal[N_RANGES];  /* their normal force when the last one touches */
-    double apart[N_RANGES];   /* normal force by which the two sliders differ from then on */
-    /* Of the sliders of ranges whose springs all touch: K, 1/K, and the limit at no approach, from which it grows
-     * by K mu/ratio. */
+    const Energy *energy; /* integral of the curve */
+    double mu, ratio;     /* friction coefficient, stiffness ratio K_T/K_N [1] */
+    const double *torsion_directions[2]; /* unit vectors of the sliders on the circle of the patch */
+    double offset;         /* of the heights [1], see `slider_heights` */
+    double onset_approach; /* reference approach of the heights [m] */
+    double min_approach;   /* smallest approach since then [m] */
+    int liftoff_height;    /* the height that moved down to it from `replaced_height` [m]; 0: none */
+    double replaced_height;
+    double height[N_HEIGHTS], load[N_HEIGHTS], stiffness[N_HEIGHTS]; /* [m], [Pa] and [Pa/m] of the curve there */
+    double normal_stiffness[N_RANGES]; /* of all springs of a range [Pa/m] */
+    double normal_force[N_RANGES];     /* of a range when its last spring touches [Pa] */
+    double force_deviation[N_RANGES];  /* of each slider from their mean normal force, from then on [Pa] */
+    /* Sliders of ranges in full contact: tangential stiffness K, 1/K, and the limit at zero approach, from which it
+     * increases by K mu/ratio. */
     double K[FOUNDATION_SLIDERS], per_K[FOUNDATION_SLIDERS], limit[FOUNDATION_SLIDERS];
-    double stick[N_RANGES]; /* sum of K of all sliders up to a range */
+    double stick_stiffness[N_RANGES]; /* sum of K of all sliders up to a range */
 } Foundation;
 
-/* Where a patch is on the curve: approach, the load with its derivatives there, its integral up to there. */
+/* A patch on the curve: approach [m], pressure [Pa] with two derivatives there, energy [J/m2]. */
 typedef struct {
     double approach, y[3], energy;
-    int full, touched; /* ranges whose springs all, or some, touch */
+    int full_ranges, touched_ranges; /* numbers of ranges of which all, or some, springs touch */
 } PatchState;
 
-/* A straight path of a patch: force of the sliders before, where it begins and ends, the shift along x, y and around
+/* Increment of a patch: slider forces at the start, states at both ends, displacement [m] along x, along y and around
  * the centre. */
 typedef struct {
     const double *force[2];
-    const PatchState *from, *to;
-    double shift[3];
-    bool straight; /* no force and no shift along y and around the centre */
-    bool first;    /* for rates: the first path, whose heights are laid around the approach at its end */
+    const PatchState *start, *end;
+    double displacement[3];
+    bool is_1d;    /* all forces and displacements are along x */
+    bool is_first; /* for rates: the heights are set at its end */
 } PatchIncrement;
 
-/* Rates of a path: of the approaches at its ends [m], of the shift [m]. */
+/* Rates of an increment: of the approaches at both ends [m], of the displacement [m]. */
 typedef struct {
-    double ends[2], shift[3];
+    double ends[2], displacement[3];
 } IncrementRate;
 
-/* Ranges of which some springs touch on the way. */
+/* Number of ranges of which some springs touch during an increment. */
 static inline int touched_ranges_of(const PatchIncrement *path)
 {
-    return path->from->touched > path->to->touched ? path->from->touched : path->to->touched;
+    const int start = path->start->touched_ranges, end = path->end->touched_ranges;
+    return start > end ? start : end;
 }
 
-/* What the sliders of a patch give together, per area, as SliderSum; a rate is its derivative along a seed. */
+/* Update of a patch: traction against the displacement along x, along y and around the centre [Pa]; tangent xx, xy, yy,
+ * xt, yt, tt for a further increment [Pa/m], t around the centre; heat [J/m2]. Or its rate. */
 typedef struct {
-    double traction[3], tangent[6], loss; /* the tangent of a further motion */
+    double traction[3], tangent[6], loss;
 } SliderUpdate;
 
-/* Two sliders of a range that stand abreast of others; of one that changes with its stiffness before, and beside them
- * the same half way where it is `across`. */
+/* Both sliders of a range in the batch, from row `at` on. If the contact state of the range changes, two rows with half
+ * of the increment follow. */
 typedef struct {
     int at;
     bool stiffness_changes, contact_changes;
-    double K;
-    const double *turning[2];
-    double *moved[2];
-    SliderUpdate *shear;
+    double K; /* at the start */
+    const double *torsion_directions[2];
+    double *force_end[2];
+    SliderUpdate *update;
 } Run;
 
-/* Sliders of all patches side by side, with their shifts. */
+/* Arguments and results of the return mapping of sliders of several patches. */
 enum { BATCH_SIZE = 64 };
 typedef struct {
-    bool use_avx; /* the processor has vectors_of_four */
+    bool use_avx; /* the processor has vectors of four */
     int n;
-    double force[2][BATCH_SIZE], shift[2][BATCH_SIZE], keeps[BATCH_SIZE], carries[BATCH_SIZE], K[BATCH_SIZE], per_K[BATCH_SIZE];
-    double before[BATCH_SIZE], after[BATCH_SIZE], slid[N_SLID][BATCH_SIZE];
+    double force[2][BATCH_SIZE], displacement[2][BATCH_SIZE], retention[BATCH_SIZE], secant_stiffness[BATCH_SIZE];
+    double K[BATCH_SIZE], per_K[BATCH_SIZE], limit_start[BATCH_SIZE], limit_end[BATCH_SIZE];
+    double results[N_SLID][BATCH_SIZE];
 } SimdBatch;
 
-/* Beside them, for slopes: shifts in a turn, and what coming apart is as a change of limit and shift. */
+/* Derivatives of these arguments: of the displacement by one around the centre, of limit and displacement by opening. */
 typedef struct {
-    double turning[2][BATCH_SIZE], limit[BATCH_SIZE], shift[2][BATCH_SIZE];
+    double torsion_directions[2][BATCH_SIZE], limit_rate[BATCH_SIZE], displacement_rate[2][BATCH_SIZE];
 } OpeningBatch;
 
-/* Pairs that may slip, of all patches. */
+/* Sliders whose return mapping is not yet computed. */
 typedef struct {
     SimdBatch batch;
-    OpeningBatch apart;
-    bool forces; /* alone, up to the next end */
+    OpeningBatch opening;
+    bool forces_only; /* up to the next `foundations_finish`: tractions, without tangents and losses */
     int n;
     Run runs[BATCH_SIZE / 2];
 } SliderWork;
 
-/* Lay the heights around an approach; curve, energy, mu, ratio, turning and offset are given. */
-void foundation_set_heights(Foundation *foundation, double reference);
-/* Put the next height above the lowest approach so far there. */
-void heights_after_liftoff(Foundation *foundation, double lowest);
-/* The ranges that a point touches. */
-void find_ranges(const Foundation *foundation, PatchState *point);
-/* The search begins at a number of ranges that are near to be full. */
+/* Set all heights for an onset approach; curve, energy, mu, ratio, directions and offset are given. */
+void foundation_set_heights(Foundation *foundation, double onset_approach);
+/* Move the first height above the smallest approach so far down to it. */
+void heights_after_liftoff(Foundation *foundation, double min_approach);
+/* Find the numbers of ranges in contact. */
+void find_ranges(const Foundation *foundation, PatchState *state);
+/* State at an approach; the search starts with a number of ranges in full contact. */
 PatchState patch_state(const Foundation *foundation, double approach, int near);
-/* Carry the sliders along a path; `moved` are the forces after it, along x and y, of those that
- * touch on it; along y they are left out where the path is straight and the load rests. What slips is known after
- * `foundations_end`. */
-void foundation_advance(const Foundation *foundation, const PatchIncrement *path, double *const moved[2], SliderWork *work,
-                     SliderUpdate *shear);
+/* Return-map all sliders for one increment. `force_end` gets the forces along x and along y of the sliders that touch
+ * during it; those along y are left out if it is along x under constant load. Results of sliders that slip are known
+ * after `foundations_finish`. */
+void foundation_advance(const Foundation *foundation, const PatchIncrement *path, double *const force_end[2],
+                        SliderWork *work, SliderUpdate *update);
 void foundations_finish(SliderWork *work);
-/* Derivatives of the traction of a patch after a path by shifts along x, y and around the centre, and by coming apart;
- * what ranges that change gain by differences over a step. `tried` is room for the forces. */
-void foundation_traction_derivatives(const Foundation *f, const PatchIncrement *path, double step, double *const tried[2], SliderWork *work,
-                       double slope[4][3]);
-/* Stiffness of all sliders that touch at a point. */
-double stick_stiffness(const Foundation *foundation, const PatchState *at);
-/* A patch after a path on which all sliders stick, from a traction before; false: it moves more than hardly. */
-bool full_stick_update(const Foundation *foundation, const PatchIncrement *path, const double before[3], SliderUpdate *shear);
-/* Derivative of what it gives by the approach at both ends and the shift, on the side to which `towards` points; true:
- * the path ends at a corner, whose other side has another one. */
-bool full_stick_rates(const Foundation *foundation, const PatchIncrement *path, const double before[3],
-                           const IncrementRate *direction, const IncrementRate *rates, SliderUpdate *rate);
-/* Forces of sliders that have stuck so far with a traction together. */
-void distribute_stick_force(const Foundation *foundation, const PatchState *at, const double traction[3], double *const force[2]);
-/* The same of what `foundation_move` gives. */
+/* Derivatives of the traction after an increment by displacements along x, along y and around the centre, and by
+ * opening; those of ranges that change by differences over a step [m]. `trial_force` is room for slider forces. */
+void foundation_traction_derivatives(const Foundation *f, const PatchIncrement *path, double step,
+                                     double *const trial_force[2], SliderWork *work, double derivatives[4][3]);
+/* Tangential stiffness in full stick. */
+double stick_stiffness(const Foundation *foundation, const PatchState *state);
+/* Update in full stick from a traction; false: it exceeds what FULL_STICK_RATIO allows. */
+bool full_stick_update(const Foundation *foundation, const PatchIncrement *path, const double traction[3],
+                       SliderUpdate *update);
+/* Its rate, from rates of the increment, on the side to which `direction` points; true: the increment ends at a corner,
+ * where the other side has another rate. */
+bool full_stick_rates(const Foundation *foundation, const PatchIncrement *path, const double traction[3],
+                      const IncrementRate *direction, const IncrementRate *rates, SliderUpdate *rate);
+/* Distribute a traction of full stick to the sliders, by stiffness. */
+void distribute_stick_force(const Foundation *foundation, const PatchState *state, const double traction[3],
+                            double *const force[2]);
+/* Rate of `foundation_advance`, as `full_stick_rates`. */
 bool foundation_rates(const Foundation *foundation, const PatchIncrement *path, const IncrementRate *direction,
                       const IncrementRate *rates, SliderUpdate *rate);
 

@@ -91,7 +91,7 @@ def _loops(g: Graph) -> None:
 
 def _definitions(g: Graph, model: Model) -> Definitions:
     counts = {f"SUM_{name.upper()}": k for k, name in enumerate(outputs.SUMS)} | {"N_SUMS": len(outputs.SUMS)}
-    counts |= {name: k for k, name in enumerate(("SHARE", "PLACE_X", "PLACE_Y", "EQUAL", "TILT", "RADIUS"))}
+    counts |= {name: k for k, name in enumerate(("SHARE", "POSITION_X", "POSITION_Y", "PRELOAD_SHAPE", "MOMENT_SHAPE", "RADIUS"))}
     names = (
         "SMALL_CHANGE_RATIO",
         "SMALL_CYCLE_RATIO",

@@ -1,0 +1,90 @@
+/* Repeats friction.py of the package: friction of all patches with its history variables.
+ *
+ * Histories are arrays of N_MEMORY numbers, whose parts begin at AT_STATE, ... While all patches are in full stick, the
+ * history has their tractions in place of slider forces: in the first slider along x and along y, and around the centre
+ * of the patch in the second one along y. */
+#ifndef JOINTFMU_FRICTION_H
+#define JOINTFMU_FRICTION_H
+
+#include <stdbool.h>
+#include <string.h>
+
+#include "bodies.h"
+#include "contact.h"
+#include "data.h"
+#include "foundation.h"
+#include "kinematics.h"
+
+/* Derivatives of the traction of a patch by displacements along x, along y and around its centre, and by opening. */
+typedef double TractionDerivatives[4][3];
+
+typedef struct {
+    Foundation foundation[MOST_PATCHES];
+    bool has_history;
+    double mu, stiffness_ratio;
+    SliderWork work;
+    double trial_force[2][FOUNDATION_SLIDERS];                /* room for slider forces that are not kept */
+    double stick_force[MOST_PATCHES][2][FOUNDATION_SLIDERS];  /* slider forces at the end of full stick */
+    /* The last update: FULL_STICK, SLIP_1D or SLIP_2D; states at both ends, increments [m], results. */
+    int state;
+    PatchState start[MOST_PATCHES], end[MOST_PATCHES];
+    double increment[MOST_PATCHES][3];
+    SliderUpdate update[MOST_PATCHES];
+    double traction_sum[3]; /* of `consistent_tangent`: its signs are the directions in which more patches slip */
+    /* Rates along the last seed, on the side 1 or -1 along it; rates of the increments that point to this side. */
+    double side;
+    IncrementRate direction[MOST_PATCHES];
+    bool is_corner; /* the other side has other rates */
+    SliderUpdate rate[MOST_PATCHES];
+} Friction;
+
+/* Sliders of all patches, once for a parameter set; `use_avx`: the processor has vectors of four. */
+void friction_tabulate(Friction *friction, const Contact *contact, bool use_avx);
+/* Increments of the patches [m] from the history to q and the deformation of the bodies. */
+void set_increments(Friction *friction, const Bodies *bodies, const double *history, const double *q);
+/* Tractions and tangents of the patches after their increments to the patch approaches, without losses. */
+void update_traction(Friction *friction, const Contact *contact, const double *history, const double *q);
+/* The same with losses, and the history after it. */
+void update_friction(Friction *friction, const Contact *contact, const double *history, const double *q, double *after);
+/* Without history: the states of the patches at their approaches, and a history that stays as it is. */
+void update_without_history(Friction *friction, const Contact *contact, const double *history, double *after);
+
+/* Derivatives of the tractions after the last increments; those of ranges that change by differences over an opening
+ * `step` [m]. */
+void traction_derivatives(Friction *friction, double step, const double *history, TractionDerivatives *derivatives);
+/* The same from a tangent xx, xy, yy, xt, yt, tt, with the opening left out. */
+void derivatives_of_tangent(const double tangent[6], TractionDerivatives derivatives);
+/* Tangent while all sliders of a patch stick, from their stiffness. */
+static inline void stick_tangent(double stiffness, double tangent[6])
+{
+    const double all[6] = {stiffness, 0.0, stiffness, 0.0, 0.0, stiffness};
+    memcpy(tangent, all, sizeof all);
+}
+/* Stiffness of all patches against a further S_X, S_Y, THETA_Z, each in the direction in which more sliders slip. */
+void consistent_tangent(Friction *friction, double stiffness[3]);
+/* Stiffness of a point against S_X, S_Y, THETA_Z, times its share, from its tangent xx, xy, yy. */
+static inline void point_stiffness(const double *point, const double *tangent, double *stiffness)
+{
+    const double share = point[SHARE], x = point[POSITION_X], y = point[POSITION_Y];
+    stiffness[0] = share * tangent[0];
+    stiffness[1] = share * tangent[2];
+    stiffness[2] = share * (y * y * tangent[0] - 2.0 * x * y * tangent[1] + x * x * tangent[2]);
+}
+
+/* Heights of the sliders as the next update from a history sets them. */
+void set_heights_from(Friction *friction, const double *history);
+/* Rates of the increments along a seed, from those of the points and of the bodies. */
+void increment_rates(const Friction *friction, const Contact *contact, const Bodies *bodies, const double *q_rate,
+                     const double bolts[4], IncrementRate *rates);
+/* Take rates on the side to which the patches move. */
+void set_direction(Friction *friction, const IncrementRate *rates);
+/* Rate of the update of patch j, from rates of its approach and displacement [m]. `after`: NULL, or the history after
+ * the last update, from which a further motion starts. */
+SliderUpdate update_rate(Friction *friction, int j, const double *history, const double *after, double approach_rate,
+                         const double displacement_rate[3]);
+/* The same of all patches, in `friction->rate`. */
+void update_rates(Friction *friction, const double *history, const double *after, const IncrementRate *rates);
+/* Rate of `consistent_tangent`. */
+void consistent_tangent_rate(const Friction *friction, const IncrementRate *rates, double stiffness[3]);
+
+#endif
