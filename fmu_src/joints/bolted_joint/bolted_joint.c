@@ -7,6 +7,8 @@
 #include "cold.h"
 #include "tabulated.h"
 
+COLD
+
 /* Tables */
 
 static bool tabulate(Joint *joint, int steps, Text *why)
@@ -52,6 +54,8 @@ bool kind_tabulate(Joint *joint, Text *why)
     return true;
 }
 
+END_OF_COLD
+
 /* Evaluation */
 
 /* Preload state and preload forces of the bolts. */
@@ -89,7 +93,7 @@ static bool evaluate_rigid(Kind *kind, const double *q, const double *history, d
     Friction *friction = &kind->friction;
     const bool accepted =
         friction->has_history ? evaluate_point_sums(&kind->sums, &kind->contact, &kind->bodies, q, why)
-                              : evaluate_elastic_shear(&kind->sums, &kind->contact, &kind->bodies, friction->mu, q, why);
+                              : evaluate_elastic_shear(&kind->sums, &kind->contact, friction->mu, q, why);
     if (!accepted)
         return false;
     evaluate_patches(&kind->contact, kind->bodies.state.opening, q);
@@ -226,7 +230,7 @@ void joint_derivative(Joint *joint, const double *inputs, const double *history,
     set_preload_rate(&kind->bolts, joint->c, preload[0], preload[2], preload[3]);
     if (after && kind->friction.state != FULL_STICK && kind->friction.has_history)
         set_heights_from(&kind->friction, after); /* as the next update sets them */
-    if (!evaluate_derivatives(&kind->contact, kind->bodies.state.opening, along.q, 4, &ignored))
+    if (!evaluate_derivatives(&kind->contact, kind->bodies.state.opening, along.q, &ignored))
         return;
     if (!side_derivative(joint, &along, 1.0, result))
         return;

@@ -11,12 +11,12 @@
 #include "outputs.h"
 
 typedef struct {
+    OutputSums sums;
     Bodies bodies;
     Bolts bolts;
     Contact contact;
     Friction friction;
     Equilibrium equilibrium; /* of elastic bodies */
-    OutputSums sums;
 } Kind;
 
 #endif

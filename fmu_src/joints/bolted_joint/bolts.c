@@ -2,6 +2,27 @@
 
 #include <math.h>
 
+#include "cold.h"
+
+void elongate_bolt(Bolts *bolts, int b, double elongation)
+{
+    const double force = bolts->preload_force[b] + bolts->stiffness * elongation;
+    bolts->gap[b] = bolts->stiffness == 0.0 ? 0.0 : fmax(-force, 0.0) / bolts->stiffness;
+    bolts->force[b] = fmax(force, 0.0);
+    bolts->active_fraction[b] = force > bolts->lift_off ? 1.0 : (force < -bolts->lift_off ? 0.0 : BOLT_AT_LIFT_OFF);
+}
+
+double bolt_gap_rate(const Bolts *bolts, int b, double elongation_rate)
+{
+    const double active = bolts->active_fraction[b];
+    if (bolts->stiffness == 0.0 || active == 1.0)
+        return 0.0;
+    /* a bolt at lift-off in the preloaded state: its preload can only increase, which leaves no gap */
+    return -(1.0 - active) * elongation_rate - (active == 0.0 ? bolts->preload_rate[b] / bolts->stiffness : 0.0);
+}
+
+COLD
+
 void set_preload_force(Bolts *bolts, const double *c, double preload, double moment)
 {
     double working;
@@ -22,19 +43,4 @@ void set_preload_rate(Bolts *bolts, const double *c, double preload, double prel
             bolts->is_unloaded[b] ? 0.0 : working + moment_rate * (data.bolts[b][BOLT_LEVER] / bolts->count);
 }
 
-void elongate_bolt(Bolts *bolts, int b, double elongation)
-{
-    const double force = bolts->preload_force[b] + bolts->stiffness * elongation;
-    bolts->gap[b] = bolts->stiffness == 0.0 ? 0.0 : fmax(-force, 0.0) / bolts->stiffness;
-    bolts->force[b] = fmax(force, 0.0);
-    bolts->active_fraction[b] = force > bolts->lift_off ? 1.0 : (force < -bolts->lift_off ? 0.0 : BOLT_AT_LIFT_OFF);
-}
-
-double bolt_gap_rate(const Bolts *bolts, int b, double elongation_rate)
-{
-    const double active = bolts->active_fraction[b];
-    if (bolts->stiffness == 0.0 || active == 1.0)
-        return 0.0;
-    /* a bolt at lift-off in the preloaded state: its preload can only increase, which leaves no gap */
-    return -(1.0 - active) * elongation_rate - (active == 0.0 ? bolts->preload_rate[b] / bolts->stiffness : 0.0);
-}
+END_OF_COLD

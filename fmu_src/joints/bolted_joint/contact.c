@@ -3,26 +3,9 @@
 #include <math.h>
 
 #include "cold.h"
+#include "dense.h"
 
 _Static_assert(N_LAW_STATE == 2, "plastic and elastic work");
-
-void contact_tabulate(Contact *contact)
-{
-    contact->preload.is_current = false;
-    energy_tabulate(&contact->energy, contact->curve);
-    for (int i = 0; i < n_points(); i++) {
-        const double share = data.points[i][SHARE], x = data.points[i][POSITION_X], y = data.points[i][POSITION_Y];
-        const double weight[6] = {share, share * x, share * y, share * y * y, share * x * x, share * x * y};
-        memcpy(contact->weight[i], weight, sizeof weight);
-    }
-    for (int e = 0; e < (int)data.n_pressure_transfer && ELASTIC; e++) {
-        const int16_t *row = data.pressure_transfer[e];
-        const int j = row[TRANSFER_PATCH], i = row[TRANSFER_POINT];
-        contact->pressure_transfer[e] =
-            row[TRANSFER_SHARE] / TRANSFER_SCALE * data.points[i][SHARE] / data.patches[j][SHARE];
-        contact->transfer_end[j] = e + 1;
-    }
-}
 
 /* Pressure transfer */
 
@@ -56,40 +39,45 @@ static double open_approach(const Contact *contact, const double *modal_opening,
     return fmin(nearest, contact->curve->first.x);
 }
 
-/* Patch approaches at pressures of the points; in the preload state q is NULL, and no patch is open. */
-static void set_patch_approach(const Contact *contact, const double *pressure, const double *modal_opening,
-                               const double *q, double *approach)
+/* Approaches at pressures, which become those that the approaches have; open patches are left out. */
+static void invert_curve(const Curve *curve, int n, bool leave_out_open, double *pressure, double *approach)
 {
-    const Curve *curve = contact->curve;
-    double transferred[MOST_PATCHES], carried;
-    int segment[MOST_PATCHES];
-    transfer_pressure(contact, pressure, transferred);
-    for (int j = 0; j < n_patches(); j++) /* in a loop of its own: no search waits for another */
-        segment[j] = transferred[j] < curve->end.y ? curve_segment_of_load(curve, transferred[j]) : 0;
-    for (int j = 0; j < n_patches(); j++)
-        approach[j] = !q || transferred[j] > 0.0 ? curve_inverse(curve, transferred[j], &segment[j], &carried)
-                                                 : open_approach(contact, modal_opening, j, q);
+    int segment[MOST_POINTS > MOST_PATCHES ? MOST_POINTS : MOST_PATCHES] = {0};
+    for (int i = 0; i < n && ELASTIC; i++) /* in a loop of its own: no search waits for another */
+        segment[i] = pressure[i] < curve->end.y ? curve_segment_of_load(curve, pressure[i]) : 0;
+    for (int i = 0; i < n; i++)
+        if (!leave_out_open || pressure[i] > 0.0)
+            approach[i] = curve_inverse(curve, pressure[i], &segment[ELASTIC ? i : 0], &pressure[i]);
 }
 
 void evaluate_patches(Contact *contact, const double *modal_opening, const double *q)
 {
     if (ELASTIC) {
-        set_patch_approach(contact, contact->pressure, modal_opening, q, contact->patch_approach);
+        double transferred[MOST_PATCHES];
+        transfer_pressure(contact, contact->pressure, transferred);
+        for (int j = 0; j < n_patches(); j++)
+            if (!(transferred[j] > 0.0))
+                contact->patch_approach[j] = open_approach(contact, modal_opening, j, q);
+        invert_curve(contact->curve, n_patches(), true, transferred, contact->patch_approach);
         return;
     }
+    NOT_VECTORIZED
     for (int j = 0; j < n_patches(); j++)
         contact->patch_approach[j] = contact->preload.patch_approach[j] - opening_at(data.patches[j], q);
 }
 
 /* Preload state */
 
-static double preload_approach(const Contact *contact, const double *point, const double bolts[2], int *segment,
-                               double *p)
+/* Approaches and pressures of n points or patches, from the bolt pressures. */
+static void preload_rows(const Contact *contact, int n, const double *points, int columns, const double bolts[2],
+                         double *approach, double *pressure)
 {
-    const double x[4] = {point[PRELOAD_SHAPE], point[MOMENT_SHAPE], bolts[0], bolts[1]};
-    double pressure;
-    shaped_pressure(x, contact->c, &pressure);
-    return curve_inverse(contact->curve, pressure, segment, p);
+    for (int i = 0; i < n; i++) {
+        const double *point = points + i * columns;
+        const double x[4] = {point[PRELOAD_SHAPE], point[MOMENT_SHAPE], bolts[0], bolts[1]};
+        shaped_pressure(x, contact->c, &pressure[i]);
+    }
+    invert_curve(contact->curve, n, false, pressure, approach);
 }
 
 bool set_preload_state(Contact *contact, double preload, double moment)
@@ -97,19 +85,21 @@ bool set_preload_state(Contact *contact, double preload, double moment)
     PreloadState *state = &contact->preload;
     if (state->is_current && state->preload == preload && state->moment == moment)
         return false;
-    double bolts[2], carried;
-    int segment = 0;
+    double bolts[2], patch_pressure[MOST_PATCHES];
     bolt_pressures((const double[]){preload, moment}, contact->c, bolts);
+    preload_rows(contact, n_points(), data.points[0], sizeof data.points[0] / sizeof(double), bolts, state->approach,
+                 state->pressure);
+    if (ELASTIC) {
+        transfer_pressure(contact, state->pressure, patch_pressure);
+        invert_curve(contact->curve, n_patches(), false, patch_pressure, state->patch_approach);
+    } else {
+        preload_rows(contact, n_patches(), data.patches[0], sizeof data.patches[0] / sizeof(double), bolts,
+                     state->patch_approach, patch_pressure);
+    }
     memset(state->sums, 0, sizeof state->sums);
-    for (int i = 0; i < n_points(); i++) {
-        state->approach[i] = preload_approach(contact, data.points[i], bolts, &segment, &state->pressure[i]);
+    for (int i = 0; i < n_points(); i++)
         for (int d = 0; d < 3; d++)
             state->sums[d] += contact->weight[i][d] * state->pressure[i];
-    }
-    for (int j = 0; j < n_patches() && !ELASTIC; j++)
-        state->patch_approach[j] = preload_approach(contact, data.patches[j], bolts, &segment, &carried);
-    if (ELASTIC)
-        set_patch_approach(contact, state->pressure, NULL, NULL, state->patch_approach);
     state->preload = preload;
     state->moment = moment;
     state->is_current = true;
@@ -118,42 +108,22 @@ bool set_preload_state(Contact *contact, double preload, double moment)
 
 /* Points */
 
-/* Pressure with derivatives up to an order at an approach, works of first loading [J] and their derivatives [J/m]. */
-static bool point_state(const Contact *contact, double approach, int order, double *y, double *works,
-                               double *slopes, Text *why)
+bool state_outside(const Contact *contact, double approach, int order, double *y, double *works, double *slopes,
+                   Text *why)
 {
     const Curve *curve = contact->curve;
-    if (approach >= curve->first.x && approach < curve->end.x) {
-        const int segment = curve_segment(curve, approach);
-        const double t = (approach - curve->x[segment]) * curve->per[segment];
-        curve_derivatives(curve, segment, t, order, y);
-        approach_state(&contact->law, curve, segment, t, works, slopes);
-        return true;
-    }
     curve_at(curve, approach, order, y);
     if (approach >= curve->end.x) {
         if (!approach_exact(&contact->spots, contact->c, y[0], contact->law.last, works, slopes, why))
             return false;
-        for (int q = 0; q < N_LAW_STATE; q++)
-            slopes[q] *= y[1];
+        for (int w = 0; w < N_LAW_STATE; w++)
+            slopes[w] *= y[1];
         return true;
     }
-    for (int q = 0; q < N_LAW_STATE; q++) {
-        works[q] = contact->law.state[0][q][0];
-        slopes[q] = 0.0;
+    for (int w = 0; w < N_LAW_STATE; w++) {
+        works[w] = contact->law.state[0][w][0];
+        slopes[w] = 0.0;
     }
-    return true;
-}
-
-/* Pressure, stiffness and works of a point beyond the ends of the table. */
-static bool point_outside(const Contact *contact, double approach, double *p, double *k, double *works, Text *why)
-{
-    double y[2], all[N_LAW_STATE], slopes[N_LAW_STATE];
-    if (!point_state(contact, approach, 1, y, all, slopes, why))
-        return false;
-    *p = y[0];
-    *k = y[1];
-    memcpy(works, all, sizeof all);
     return true;
 }
 
@@ -185,10 +155,15 @@ static inline bool evaluate_batch(const Contact *contact, const double *modal_op
         for (int w = 0; w < N_LAW_STATE && with_work; w++)
             batch->works[i][w] = curve_value(contact->law.state[k][w], t);
     }
-    for (int i = 0; i < n; i++)
-        if (!(approach[i] >= begin && approach[i] < end) &&
-            !point_outside(contact, approach[i], &batch->p[i], &batch->k[i], batch->works[i], why))
+    for (int i = 0; i < n; i++) {
+        double y[2], slopes[N_LAW_STATE];
+        if (approach[i] >= begin && approach[i] < end)
+            continue;
+        if (!state_outside(contact, approach[i], 1, y, batch->works[i], slopes, why))
             return false;
+        batch->p[i] = y[0];
+        batch->k[i] = y[1];
+    }
     return true;
 }
 
@@ -207,18 +182,25 @@ bool evaluate_points(Contact *contact, const double *modal_opening, const double
     return true;
 }
 
-bool evaluate_derivatives(Contact *contact, const double *modal_opening, const double *q, int order, Text *why)
-{
-    for (int i = 0; i < n_points(); i++) {
-        PointRate *rate = &contact->rate[i];
-        const double approach = point_approach(contact, modal_opening, i, q);
-        if (!point_state(contact, approach, order, rate->derivatives, rate->work, rate->work_slope, why))
-            return false;
-    }
-    return true;
-}
-
 COLD
+
+void contact_tabulate(Contact *contact)
+{
+    contact->preload.is_current = false;
+    energy_tabulate(&contact->energy, contact->curve);
+    for (int i = 0; i < n_points(); i++) {
+        const double share = data.points[i][SHARE], x = data.points[i][POSITION_X], y = data.points[i][POSITION_Y];
+        const double weight[6] = {share, share * x, share * y, share * y * y, share * x * x, share * x * y};
+        memcpy(contact->weight[i], weight, sizeof weight);
+    }
+    for (int e = 0; e < (int)data.n_pressure_transfer && ELASTIC; e++) {
+        const int16_t *row = data.pressure_transfer[e];
+        const int j = row[TRANSFER_PATCH], i = row[TRANSFER_POINT];
+        contact->pressure_transfer[e] =
+            row[TRANSFER_SHARE] / TRANSFER_SCALE * data.points[i][SHARE] / data.patches[j][SHARE];
+        contact->transfer_end[j] = e + 1;
+    }
+}
 
 /* Rates */
 
@@ -234,6 +216,18 @@ double preload_approach_rate(const Contact *contact, const double *point, const 
     curve_at(contact->curve, approach, 1, y);
     *stiffness = y[1];
     return y[1] > 0.0 ? rate / y[1] : 0.0;
+}
+
+bool evaluate_derivatives(Contact *contact, const double *modal_opening, const double *q, Text *why)
+{
+    for (int i = 0; i < n_points(); i++) {
+        PointRate *rate = &contact->rate[i];
+        const double approach = point_approach(contact, modal_opening, i, q);
+        double works[N_LAW_STATE];
+        if (!point_state(contact, approach, 4, rate->derivatives, works, rate->work_slope, why))
+            return false;
+    }
+    return true;
 }
 
 void set_point_rates(Contact *contact, const double *modal_opening_rate, const double *q_rate, const double bolts[4])

@@ -23,10 +23,10 @@ typedef struct {
     double sums[3];                                      /* sum of the pressure [Pa], times x, times y [N/m] */
 } PreloadState;
 
-/* A point with derivatives by its approach: pressure with up to four, works [J] and their slopes [J/m]. Along a seed of
- * preload, moment and q: rate of the approach [m]; stiffness [Pa/m] and rate of the approach [m] in the preload state. */
+/* A point: pressure with four derivatives by the approach, derivatives of its works [J/m]. Along a seed of preload,
+ * moment and q: rate of the approach [m]; stiffness [Pa/m] and rate of the approach [m] in the preload state. */
 typedef struct {
-    double derivatives[5], work[N_LAW_STATE], work_slope[N_LAW_STATE];
+    double derivatives[5], work_slope[N_LAW_STATE];
     double approach, preload_stiffness, preload_approach;
 } PointRate;
 
@@ -56,15 +56,33 @@ void transfer_pressure(const Contact *contact, const double *points, double *pat
 /* Pressure and stiffness of the points at q and a modal opening (n) [m], their work too if `with_work`.
  * false: refused, with the reason. */
 bool evaluate_points(Contact *contact, const double *modal_opening, const double *q, bool with_work, Text *why);
-/* Pressure with derivatives up to an order (1 to 4), works and their slopes of all points, in `contact->rate`. */
-bool evaluate_derivatives(Contact *contact, const double *modal_opening, const double *q, int order, Text *why);
 /* Patch approach [m] that gives the transferred pressure. If all points of a patch are open: the approach of the nearest
  * point. Between rigid bodies it follows from q. */
 void evaluate_patches(Contact *contact, const double *modal_opening, const double *q);
+/* Derivatives of all points by their approaches, in `contact->rate`. */
+bool evaluate_derivatives(Contact *contact, const double *modal_opening, const double *q, Text *why);
 /* Rates of the points along a seed; bolt pressures as `bolt_pressures` gives them, with their rates. */
 void set_point_rates(Contact *contact, const double *modal_opening_rate, const double *q_rate, const double bolts[4]);
 /* Rate of the approach [m] of a point or patch in the preload state; and the stiffness [Pa/m] there. */
 double preload_approach_rate(const Contact *contact, const double *point, const double bolts[4], double approach,
                              double *stiffness);
+
+/* `point_state` beyond the ends of the table. */
+bool state_outside(const Contact *contact, double approach, int order, double *y, double *works, double *slopes,
+                   Text *why);
+
+/* Pressure with derivatives up to an order (1 to 4) at an approach, works [J] and their slopes [J/m]. */
+static inline bool point_state(const Contact *contact, double approach, int order, double *y, double *works,
+                               double *slopes, Text *why)
+{
+    const Curve *curve = contact->curve;
+    if (!(approach >= curve->first.x && approach < curve->end.x))
+        return state_outside(contact, approach, order, y, works, slopes, why);
+    const int segment = curve_segment(curve, approach);
+    const double t = (approach - curve->x[segment]) * curve->per[segment];
+    curve_derivatives(curve, segment, t, order, y);
+    approach_state(&contact->law, curve, segment, t, works, slopes);
+    return true;
+}
 
 #endif

@@ -158,20 +158,13 @@ void dense_add_rows(bool use_avx, int n, const double *by, const double (*row)[N
     (use_avx ? add_rows_fours : add_rows_any)(n, by, row, sum);
 }
 
-/* The lanes of a row side by side, not those of two rows. */
-#ifdef __clang__
-#define ROW_BY_ROW _Pragma("clang loop vectorize(disable)")
-#else
-#define ROW_BY_ROW
-#endif
-
 WITHIN void dots(int n, const double (*row)[N_COLUMNS], const double *x, int stride, double *result)
 {
     enum { ROWS = 32 }; /* at a time: first all lanes, then their sums */
     double sum[ROWS][L];
     for (int first = 0; first < n; first += ROWS) {
         const int rows = n - first < ROWS ? n - first : ROWS;
-        ROW_BY_ROW
+        NOT_VECTORIZED /* the lanes of a row side by side, not those of two rows */
         for (int i = 0; i < rows; i++) {
             double lane[L] = {0.0};
             for (int k = 0; k < MODES; k += L)

@@ -6,6 +6,13 @@
 
 #include "law.h"
 
+/* Before a loop whose iterations shall not run side by side. */
+#ifdef __clang__
+#define NOT_VECTORIZED _Pragma("clang loop vectorize(disable)")
+#else
+#define NOT_VECTORIZED
+#endif
+
 /* A row of modes and of the three motions that act with them, in fours. */
 enum { LANES = 4, N_COLUMNS = MODES + LANES };
 _Static_assert(MODES % LANES == 0, "rows in fours");

@@ -5,8 +5,6 @@
 
 #include "cold.h"
 
-COLD
-
 _Static_assert((int)AT_AMPLITUDE == (int)AT_APART + 3 && (int)AT_TANGENT == (int)AT_AMPLITUDE + MODES &&
                    (int)N_MEMORY == (int)AT_TANGENT + 6 * MOST_PATCHES,
                "the end of a history, as in the key of a predictor");
@@ -14,6 +12,25 @@ _Static_assert((int)AT_AMPLITUDE == (int)AT_APART + 3 && (int)AT_TANGENT == (int
 /* Line search: largest energy slope at the end of a correction over its size at the start [1], and smallest length of a
  * correction over the length tried before [1]. */
 static const double MAX_ENERGY_SLOPE_RATIO = 0.5, MIN_LENGTH_RATIO = 0.1;
+
+/* Derivatives of the opening of the patches, as the points that transfer pressure to them open. */
+static void set_modal_opening(Equilibrium *e)
+{
+    const Contact *contact = e->assembly.contact;
+    for (int j = 0, row = 0; j < n_patches(); j++) {
+        const double stiffness = e->assembly.friction->end[j].y[1], compliance = stiffness > 0.0 ? 1.0 / stiffness : 0.0;
+        double sum[N_COLUMNS] = {0.0};
+        for (; row < contact->transfer_end[j]; row++) {
+            const int i = data.pressure_transfer[row][TRANSFER_POINT];
+            const double weight = contact->pressure_transfer[row] * contact->stiffness[i] * compliance;
+            for (int k = 0; k < N_COLUMNS; k++)
+                sum[k] += weight * e->assembly.bodies->opening_jacobian[i][k];
+        }
+        memcpy(e->modal_opening[j], sum, sizeof sum);
+    }
+}
+
+COLD
 
 /* Straight path of q from the end of a history to the inputs. */
 typedef struct {
@@ -31,23 +48,6 @@ static inline void add_scaled(double factor, const double *restrict row, double 
 {
     for (int k = 0; k < MODES; k++)
         sum[k] += factor * row[k];
-}
-
-/* Derivatives of the opening of the patches, as the points that transfer pressure to them open. */
-static void set_modal_opening(Equilibrium *e)
-{
-    const Contact *contact = e->assembly.contact;
-    for (int j = 0, row = 0; j < n_patches(); j++) {
-        const double stiffness = e->assembly.friction->end[j].y[1], compliance = stiffness > 0.0 ? 1.0 / stiffness : 0.0;
-        double sum[N_COLUMNS] = {0.0};
-        for (; row < contact->transfer_end[j]; row++) {
-            const int i = data.pressure_transfer[row][TRANSFER_POINT];
-            const double weight = contact->pressure_transfer[row] * contact->stiffness[i] * compliance;
-            for (int k = 0; k < N_COLUMNS; k++)
-                sum[k] += weight * e->assembly.bodies->opening_jacobian[i][k];
-        }
-        memcpy(e->modal_opening[j], sum, sizeof sum);
-    }
 }
 
 /* Stiffness of points and bolts against modal coordinates and normal motions, up to a size. */

@@ -15,23 +15,6 @@ static inline const double *forces_of(const double *history, int j)
     return history + AT_FORCE + j * PATCH_FORCES;
 }
 
-void friction_tabulate(Friction *friction, const Contact *contact, bool use_avx)
-{
-    friction->work.batch.use_avx = use_avx;
-    for (int j = 0; j < n_patches(); j++) {
-        Foundation *f = &friction->foundation[j];
-        f->curve = contact->curve;
-        f->energy = &contact->energy;
-        f->mu = friction->mu;
-        f->ratio = friction->stiffness_ratio;
-        f->torsion_directions[0] = data.torsion_directions[0];
-        f->torsion_directions[1] = data.torsion_directions[1];
-        f->offset = data.height_offsets[j][0];
-        foundation_set_heights(f, 0.0);
-        friction->start[j] = friction->end[j] = patch_state(f, f->curve->end.x, 0);
-    }
-}
-
 /* Set the heights of a patch, unless they are these; the ranges of its states are found again. */
 static void set_heights(Friction *friction, int j, double onset_approach, double min_approach)
 {
@@ -71,6 +54,20 @@ static void find_states(Friction *friction, const Contact *contact, const double
             *first = last->approach == start ? *last : patch_state(f, start, first->full_ranges);
         if (last->approach != end)
             *last = first->approach == end ? *first : patch_state(f, end, last->full_ranges);
+    }
+}
+
+void set_increments(Friction *friction, const Bodies *bodies, const double *history, const double *q)
+{
+    const double rotation = q[THETA_Z] - history[AT_RIGID + 2];
+    NOT_VECTORIZED
+    for (int j = 0; j < n_patches(); j++) {
+        const double *patch = data.patches[j];
+        const double *modal = bodies->state.patch_displacement[j], *before = bodies->start_displacement[j];
+        double *u = friction->increment[j];
+        u[0] = q[S_X] - history[AT_RIGID] - rotation * patch[POSITION_Y] + (modal[0] - before[0]);
+        u[1] = q[S_Y] - history[AT_RIGID + 1] + rotation * patch[POSITION_X] + (modal[1] - before[1]);
+        u[2] = rotation * patch[RADIUS] + (modal[2] - before[2]);
     }
 }
 
@@ -263,6 +260,7 @@ static void weaker_direction(const TangentSums *sums, const double *traction_sum
 void consistent_tangent(Friction *friction, double stiffness[3])
 {
     double stick[MOST_PATCHES];
+    NOT_VECTORIZED
     for (int j = 0; j < n_patches(); j++)
         stick[j] = stick_stiffness(&friction->foundation[j], &friction->end[j]);
     const TangentSums sums = sum_tangents(friction, stick, friction->update);
@@ -272,16 +270,20 @@ void consistent_tangent(Friction *friction, double stiffness[3])
 
 COLD
 
-void set_increments(Friction *friction, const Bodies *bodies, const double *history, const double *q)
+void friction_tabulate(Friction *friction, const Contact *contact, bool use_avx)
 {
-    const double rotation = q[THETA_Z] - history[AT_RIGID + 2];
+    friction->work.batch.use_avx = use_avx;
     for (int j = 0; j < n_patches(); j++) {
-        const double *patch = data.patches[j];
-        const double *modal = bodies->state.patch_displacement[j], *before = bodies->start_displacement[j];
-        double *u = friction->increment[j];
-        u[0] = q[S_X] - history[AT_RIGID] - rotation * patch[POSITION_Y] + (modal[0] - before[0]);
-        u[1] = q[S_Y] - history[AT_RIGID + 1] + rotation * patch[POSITION_X] + (modal[1] - before[1]);
-        u[2] = rotation * patch[RADIUS] + (modal[2] - before[2]);
+        Foundation *f = &friction->foundation[j];
+        f->curve = contact->curve;
+        f->energy = &contact->energy;
+        f->mu = friction->mu;
+        f->ratio = friction->stiffness_ratio;
+        f->torsion_directions[0] = data.torsion_directions[0];
+        f->torsion_directions[1] = data.torsion_directions[1];
+        f->offset = data.height_offsets[j][0];
+        foundation_set_heights(f, 0.0);
+        friction->start[j] = friction->end[j] = patch_state(f, f->curve->end.x, 0);
     }
 }
 

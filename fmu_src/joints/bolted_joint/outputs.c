@@ -107,21 +107,21 @@ static inline void set_shear_arguments(double limit, const double *derivatives, 
     x[E_DISPLACEMENT + 1] = tangential_y(point, q);
 }
 
-bool evaluate_elastic_shear(OutputSums *sums, Contact *contact, const Bodies *bodies, double mu, const double *q,
-                            Text *why)
+bool evaluate_elastic_shear(OutputSums *sums, const Contact *contact, double mu, const double *q, Text *why)
 {
-    double arguments[N_E], shear[N_ELASTIC], *x = sums->x;
-    if (!evaluate_derivatives(contact, bodies->state.opening, q, 3, why))
-        return false;
+    double y[4], works[N_LAW_STATE], slopes[N_LAW_STATE], arguments[N_E], shear[N_ELASTIC], *x = sums->x;
     sums->p_max = 0.0;
     for (int i = 0; i < n_points(); i++) {
-        const double *point = data.points[i], *y = contact->rate[i].derivatives;
+        const double *point = data.points[i];
+        const double approach = contact->preload.approach[i] - opening_at(point, q);
+        if (!point_state(contact, approach, 3, y, works, slopes, why))
+            return false;
         set_shear_arguments(mu * contact->preload.pressure[i], y, point, q, arguments);
         elastic_shear(arguments, contact->c, shear);
         add_normal(x, point, y[0], y[1], shear[E_ADDED_PRESSURE], shear[E_ADDED_STIFFNESS]);
         add_elastic_shear(x, point, shear);
         for (int w = 0; w < N_LAW_STATE; w++)
-            x[SUM_PLASTIC + w] += point[SHARE] * contact->rate[i].work[w];
+            x[SUM_PLASTIC + w] += point[SHARE] * works[w];
         sums->p_max = y[0] > sums->p_max ? y[0] : sums->p_max;
     }
     return true;

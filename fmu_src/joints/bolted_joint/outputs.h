@@ -26,8 +26,7 @@ void sum_points(OutputSums *sums, const Contact *contact);
 /* The same between rigid bodies, where the points are evaluated first, unless q has the same normal components. */
 bool evaluate_point_sums(OutputSums *sums, Contact *contact, const Bodies *bodies, const double *q, Text *why);
 /* Sums over the points with elastic shear, without history. */
-bool evaluate_elastic_shear(OutputSums *sums, Contact *contact, const Bodies *bodies, double mu, const double *q,
-                            Text *why);
+bool evaluate_elastic_shear(OutputSums *sums, const Contact *contact, double mu, const double *q, Text *why);
 /* The sums of the preload state in place of normal sums, which have other round-off. */
 void use_preload_sums(OutputSums *sums, const Contact *contact);
 /* Sums over the patches after an update of friction. */
