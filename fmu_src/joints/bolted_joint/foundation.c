@@ -7,11 +7,12 @@
 #include "cold.h"
 #include "vectors.h"
 
-/* What each slider of a range has at a point, the early and the late one; or rates of it. */
+/* Properties of both sliders of a range at an approach: stiffness, its slope, limits of the early and the late one; or
+ * their rates. */
 typedef struct {
     double K, slope, limit[2];
 } SliderProperties;
-_Static_assert(sizeof(SliderProperties) == 4 * sizeof(double), "results of touching");
+_Static_assert(sizeof(SliderProperties) == 4 * sizeof(double), "results of partial_contact");
 
 static double approach_at_load(const Foundation *f, double load)
 {
@@ -22,7 +23,7 @@ static double approach_at_load(const Foundation *f, double load)
 
 COLD
 
-/* As `around` of the package. */
+/* Repeats `slider_heights` of sliders.py. */
 static void slider_heights(Foundation *f, double reference)
 {
     const double end = f->curve->end.y;
@@ -45,7 +46,7 @@ static void slider_heights(Foundation *f, double reference)
 
 END_OF_COLD
 
-/* The sums over the springs of a range, and its sliders. */
+/* Sums over the springs of a range, and its sliders. */
 static void set_range(Foundation *f, int i)
 {
     const double width = f->height[i + 1] - f->height[i];
@@ -67,7 +68,7 @@ static void sum_stick_stiffness(Foundation *f)
         f->stick_stiffness[i] = f->ratio * f->normal_stiffness[i] + (i > 0 ? f->stick_stiffness[i - 1] : 0.0);
 }
 
-/* A height stands elsewhere. */
+/* Set a height, with load and stiffness of the curve. */
 static void set_height(Foundation *f, int i, double height)
 {
     double y[2];
@@ -90,7 +91,7 @@ void foundation_set_heights(Foundation *f, double reference)
     sum_stick_stiffness(f);
 }
 
-/* As `lowered` of the package. */
+/* Repeats `heights_after_liftoff` of sliders.py. */
 void heights_after_liftoff(Foundation *f, double lowest)
 {
     const int before = f->liftoff_height;
@@ -112,7 +113,7 @@ void heights_after_liftoff(Foundation *f, double lowest)
     sum_stick_stiffness(f);
 }
 
-/* Place, load with two derivatives and energy where the curve goes on as its tangent, or before it begins. */
+/* Load with two derivatives and energy beyond the ends of the curve. */
 static void extrapolate_state(const Curve *curve, const Energy *energy, PatchState *p)
 {
     const bool after = p->approach >= curve->end.x;
@@ -147,7 +148,7 @@ PatchState patch_state(const Foundation *f, double approach, int near)
     return p;
 }
 
-/* Arguments of `touching` for a range at a point. */
+/* Arguments of `partial_contact`. */
 enum { X_RATIO, X_MU, X_LOAD, X_STIFFNESS, X_D2P, X_WIDTH, N_PARTIAL_CONTACT };
 
 static inline void partial_contact_arguments(const Foundation *f, int i, const PatchState *p, double *x)
@@ -160,7 +161,7 @@ static inline void partial_contact_arguments(const Foundation *f, int i, const P
     x[X_D2P] = p->y[2];
 }
 
-/* Those of a range at a point, see `Foundation.carried`. */
+/* Repeats `Foundation.slider_properties`, for one range. */
 static inline SliderProperties slider_properties(const Foundation *f, int i, const PatchState *p)
 {
     double x[N_PARTIAL_CONTACT];
@@ -176,20 +177,20 @@ static inline SliderProperties slider_properties(const Foundation *f, int i, con
     return pair;
 }
 
-/* Whether all, some or none of the springs of a range touch at both points alike. */
+/* Whether a range is in full, partial or no contact at both ends. */
 static bool keeps_contact_state(int i, const PatchState *from, const PatchState *to)
 {
     return (i < from->touched_ranges) == (i < to->touched_ranges) && (i < from->full_ranges) == (i < to->full_ranges);
 }
 
-/* Whether the mean stiffness of a range on a way follows from its ends. */
+/* Whether the mean stiffness of a range is computed from derivatives at both ends. */
 static inline bool is_small_change(const Foundation *f, int i, const PatchState *from, const PatchState *at)
 {
     const double change = at->approach - from->approach;
     return change == 0.0 || (keeps_contact_state(i, from, at) && fabs(change) < SMALL_CHANGE_RATIO * (f->height[i + 1] - f->height[i]));
 }
 
-/* The middle of a way, looked up when it is first needed. */
+/* State in the middle of an increment, found when it is first needed. */
 typedef struct {
     bool known;
     PatchState at;
@@ -203,30 +204,30 @@ static const PatchState *middle_state(const Foundation *f, const PatchIncrement 
     return &middle->at;
 }
 
-static void add_sum(const SliderSum *sum, SliderUpdate *shear)
+static void add_sum(const SliderSum *sum, SliderUpdate *update)
 {
     for (int d = 0; d < 3; d++)
-        shear->traction[d] += sum->force[d];
+        update->traction[d] += sum->force[d];
     for (int d = 0; d < 6; d++)
-        shear->tangent[d] += sum->tangent[d];
-    shear->loss += sum->loss;
+        update->tangent[d] += sum->tangent[d];
+    update->loss += sum->loss;
 }
 
-/* One slider by its force, tangent xx, xy, yy and heat, with the way around the centre of its patch. */
-static inline void add_slider(const double *slid, double e_x, double e_y, SliderUpdate *shear)
+/* Add one slider: force, tangent xx, xy, yy and heat; e_x, e_y: its torsion direction. */
+static inline void add_slider(const double *slid, double e_x, double e_y, SliderUpdate *update)
 {
     const double x = slid[0], y = slid[1], xx = slid[2], xy = slid[3], yy = slid[4];
     const double x_t = xx * e_x + xy * e_y, y_t = xy * e_x + yy * e_y;
     const SliderSum one = {{x, y, x * e_x + y * e_y}, {xx, xy, yy, x_t, y_t, x_t * e_x + y_t * e_y}, slid[SLID_LOSS]};
-    add_sum(&one, shear);
+    add_sum(&one, update);
 }
 
-/* Sliders of all patches that may slip */
+/* Return mapping of sliders that may slip */
 
-/* Arguments of `changing_loss`. */
+/* Arguments of `varying_stiffness_loss`. */
 enum { C_CONTACT_CHANGES, C_FORCE, C_FORCE_END = 3, C_DISPLACEMENT = 5, C_STIFFNESS_START = 7, C_STIFFNESS_END, C_SLIP, C_MIDDLE, N_VARYING_LOSS = 12 };
 
-/* Heat of a slider of a range that changes. */
+/* Heat of a slider whose stiffness changes. */
 static inline double varying_loss(const Run *run, int k, const SimdBatch *all)
 {
     const int at = run->at + k;
@@ -271,7 +272,7 @@ static PlaneSliders batch(const SimdBatch *all)
                           .after = all->limit_end};
 }
 
-/* All runs so far. */
+/* Return-map all sliders in the batch. */
 static void finish_runs(SliderWork *work)
 {
     SimdBatch *all = &work->batch;
@@ -279,7 +280,7 @@ static void finish_runs(SliderWork *work)
     double *slid[N_SLID];
     for (int r = 0; r < N_SLID; r++)
         slid[r] = all->results[r];
-    sliders_slide(all->use_avx, 0, (all->n + 3) / 4 * 4, &s, slid, work->forces_only); /* the last beside old ones */
+    sliders_slide(all->use_avx, 0, (all->n + 3) / 4 * 4, &s, slid, work->forces_only); /* up to a multiple of four: old rows follow */
     for (int i = 0; i < work->n; i++) {
         const Run *run = &work->runs[i];
         if (!work->forces_only)
@@ -296,20 +297,20 @@ void foundations_finish(SliderWork *work)
     work->forces_only = false;
 }
 
-/* A run of up to so many sliders, from one on of its patch. */
-static Run *add_run(SliderWork *work, int most, int k, double *const moved[2], const double *const turning[2], SliderUpdate *shear)
+/* Start a run of up to `most` rows for the sliders from k on of a patch. */
+static Run *add_run(SliderWork *work, int most, int k, double *const force_end[2], const double *const turning[2], SliderUpdate *update)
 {
     if (work->batch.n + most > BATCH_SIZE)
         finish_runs(work);
     Run *run = &work->runs[work->n++];
     *run = (Run){.at = work->batch.n,
-                 .force_end = {moved[0] + k, moved[1] + k},
+                 .force_end = {force_end[0] + k, force_end[1] + k},
                  .torsion_directions = {turning[0] + k, turning[1] + k},
-                 .update = shear};
+                 .update = update};
     return run;
 }
 
-/* The next pair. */
+/* Add a pair of sliders to the batch. */
 static inline void add_pair(SimdBatch *all, const PlaneSliders *s, int first)
 {
     for (int k = first; k < first + 2; k++, all->n++) {
@@ -326,47 +327,47 @@ static inline void add_pair(SimdBatch *all, const PlaneSliders *s, int first)
     }
 }
 
-/* Sliders whose stiffness stays: `stick` is the sum of the stiffness of those before each second one. */
-static void advance_constant_stiffness(int n, const PlaneSliders *s, const double *stick, bool along, double *const moved[2],
-                        SliderWork *work, SliderUpdate *shear)
+/* Sliders of constant stiffness; `stick` is the sum of the stiffnesses up to each pair. */
+static void advance_constant_stiffness(int n, const PlaneSliders *s, const double *stick, bool is_along_x, double *const force_end[2],
+                        SliderWork *work, SliderUpdate *update)
 {
     const bool use_avx = work->batch.use_avx;
     SliderSum sum = {.loss = 0.0};
-    const int first = along ? sliders_sticking(n, s, moved[0], &sum) : sliders_stick(use_avx, n, s, moved, sum.force);
+    const int first = is_along_x ? sliders_sticking(n, s, force_end[0], &sum) : sliders_stick(use_avx, n, s, force_end, sum.force);
     const int end = first + (n - first) / 4 * 4;
     const double K = first > 0 ? stick[first / 2 - 1] : 0.0;
     sum.tangent[0] += K;
     sum.tangent[2] += K;
     sum.tangent[5] += K;
-    add_sum(&sum, shear);
-    if (along)
+    add_sum(&sum, update);
+    if (is_along_x)
         return;
     if (end > first) {
-        double rows[N_SLID - 2][FOUNDATION_SLIDERS], *slid[N_SLID] = {moved[0], moved[1]};
+        double rows[N_SLID - 2][FOUNDATION_SLIDERS], *slid[N_SLID] = {force_end[0], force_end[1]};
         for (int r = 2; r < N_SLID; r++)
             slid[r] = rows[r - 2];
         sliders_slide(use_avx, first, end, s, slid, work->forces_only);
         if (!work->forces_only) {
             sliders_sum(use_avx, first, end, s, slid, &sum);
-            add_sum(&sum, shear);
+            add_sum(&sum, update);
         } else {
-            add_forces(end - first, moved[0] + first, moved[1] + first, s->turning[0] + first, s->turning[1] + first,
-                       shear->traction);
+            add_forces(end - first, force_end[0] + first, force_end[1] + first, s->turning[0] + first, s->turning[1] + first,
+                       update->traction);
         }
     }
     if (n > end) {
-        add_run(work, 2, end, moved, s->turning, shear);
+        add_run(work, 2, end, force_end, s->turning, update);
         add_pair(&work->batch, s, end);
     }
 }
 
-/* Parts kept of the force where the stiffness stays. */
+/* Retention of sliders of constant stiffness. */
 static const double FULL_RETENTION[] = {
     1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0,
     1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
 _Static_assert(sizeof FULL_RETENTION == FOUNDATION_SLIDERS * sizeof *FULL_RETENTION, "of each");
 
-/* Those from one on. */
+/* Sliders from k on, without stiffness and limits. */
 static inline PlaneSliders sliders_from(const Foundation *f, const PatchIncrement *path, int k)
 {
     return (PlaneSliders){.force = {path->force[0] + k, path->force[1] + k},
@@ -375,7 +376,7 @@ static inline PlaneSliders sliders_from(const Foundation *f, const PatchIncremen
                           .shift = {path->displacement[0], path->displacement[1], path->displacement[2]}};
 }
 
-/* Those of ranges all in contact. */
+/* Sliders of ranges in full contact. */
 static PlaneSliders full_range_sliders(const Foundation *f, const PatchIncrement *path)
 {
     PlaneSliders s = sliders_from(f, path, 0);
@@ -387,29 +388,29 @@ static PlaneSliders full_range_sliders(const Foundation *f, const PatchIncrement
     return s;
 }
 
-/* The first `n` sliders, of ranges all in contact. */
-static void advance_full_ranges(const Foundation *f, int n, const PatchIncrement *path, bool along, double *const moved[2],
-                      SliderWork *work, SliderUpdate *shear)
+/* Advance the first n sliders, of ranges in full contact. */
+static void advance_full_ranges(const Foundation *f, int n, const PatchIncrement *path, bool is_along_x, double *const force_end[2],
+                      SliderWork *work, SliderUpdate *update)
 {
     const PlaneSliders s = full_range_sliders(f, path);
-    advance_constant_stiffness(n, &s, f->stick_stiffness, along, moved, work, shear);
+    advance_constant_stiffness(n, &s, f->stick_stiffness, is_along_x, force_end, work, update);
 }
 
-/* The range in which springs begin to touch, while the load stays. */
-static void advance_constant_approach(const Foundation *f, int i, const PatchIncrement *path, bool along, double *const moved[2],
-                         SliderWork *work, SliderUpdate *shear)
+/* Advance the range in partial contact at constant approach. */
+static void advance_constant_approach(const Foundation *f, int i, const PatchIncrement *path, bool is_along_x, double *const force_end[2],
+                         SliderWork *work, SliderUpdate *update)
 {
     const SliderProperties here = slider_properties(f, i, path->end);
     const double soft = here.K > 0.0 ? 1.0 / here.K : 0.0, K[2] = {here.K, here.K}, per_K[2] = {soft, soft};
-    double *const to[2] = {moved[0] + 2 * i, moved[1] + 2 * i}, stick = 2.0 * here.K;
+    double *const to[2] = {force_end[0] + 2 * i, force_end[1] + 2 * i}, stick = 2.0 * here.K;
     PlaneSliders s = sliders_from(f, path, 2 * i);
     s.K = s.carries = K;
     s.per_K = per_K;
     s.before = s.after = here.limit;
-    advance_constant_stiffness(2, &s, &stick, along, to, work, shear);
+    advance_constant_stiffness(2, &s, &stick, is_along_x, to, work, update);
 }
 
-/* Arguments of `carrying`. */
+/* Arguments of `retention_and_stiffness`. */
 enum { X_IS_SMALL, X_STIFFNESS_START, X_SLOPE_START, X_STIFFNESS_END, X_SLOPE_END, X_APPROACH_CHANGE, X_RISE, N_RETENTION };
 
 static inline double limit_sum(const SliderProperties *pair)
@@ -417,7 +418,7 @@ static inline double limit_sum(const SliderProperties *pair)
     return pair->limit[0] + pair->limit[1];
 }
 
-/* Those that change: of a range from its start to a point, the part `part` of the way, or rates of them. */
+/* Its arguments at both ends of an increment, or their rates. */
 static inline void set_range_ends(const Foundation *f, const SliderProperties *start, const SliderProperties *end, double change, double *x)
 {
     x[X_STIFFNESS_START] = start->K;
@@ -436,7 +437,7 @@ static inline void retention_arguments(const Foundation *f, int i, const PatchIn
     x[X_IS_SMALL] = is_small_change(f, i, path->start, at);
 }
 
-/* The next pair, that of a range which changes, from its start to an end; `gained` is of `carrying`. */
+/* Add the pair of a range that changes; `gained` is the result of `retention_and_stiffness`. */
 static inline void add_range_pair(PlaneSliders s, const SliderProperties *start, const SliderProperties *end, const double gained[2], SimdBatch *all)
 {
     const double soft = end->K > 0.0 ? 1.0 / end->K : 0.0, K[2] = {end->K, end->K}, per_K[2] = {soft, soft};
@@ -450,9 +451,9 @@ static inline void add_range_pair(PlaneSliders s, const SliderProperties *start,
     add_pair(all, &s, 0);
 }
 
-/* The sliders of a range that changes. */
-static void advance_partial_range(const Foundation *f, int i, const PatchIncrement *path, MiddleState *middle, double *const moved[2],
-                       SliderWork *work, SliderUpdate *shear)
+/* Advance a range that changes. */
+static void advance_partial_range(const Foundation *f, int i, const PatchIncrement *path, MiddleState *middle, double *const force_end[2],
+                       SliderWork *work, SliderUpdate *update)
 {
     const bool contact_changes = !work->forces_only && !keeps_contact_state(i, path->start, path->end);
     const PatchState *half = contact_changes ? middle_state(f, path, middle) : path->end, *points[2] = {path->end, half};
@@ -461,7 +462,7 @@ static void advance_partial_range(const Foundation *f, int i, const PatchIncreme
     const int n = contact_changes ? 2 : 1;
     double x[N_RETENTION], gained[2];
     PlaneSliders s = sliders_from(f, path, 2 * i);
-    Run *run = add_run(work, 2 * n, 2 * i, moved, f->torsion_directions, shear);
+    Run *run = add_run(work, 2 * n, 2 * i, force_end, f->torsion_directions, update);
     run->contact_changes = contact_changes;
     run->K = start.K;
     run->stiffness_changes = start.K != end.K;
@@ -474,30 +475,30 @@ static void advance_partial_range(const Foundation *f, int i, const PatchIncreme
     }
 }
 
-/* Ranges whose springs all touch on the whole way. */
+/* Number of ranges in full contact during the whole increment. */
 static int full_ranges_throughout(const PatchIncrement *path)
 {
     return path->start->full_ranges < path->end->full_ranges ? path->start->full_ranges : path->end->full_ranges;
 }
 
-void foundation_advance(const Foundation *f, const PatchIncrement *path, double *const moved[2], SliderWork *work, SliderUpdate *shear)
+void foundation_advance(const Foundation *f, const PatchIncrement *path, double *const force_end[2], SliderWork *work, SliderUpdate *update)
 {
     const int full = full_ranges_throughout(path), touched = touched_ranges_of(path);
-    const bool rests = path->start->approach == path->end->approach, along = !ELASTIC && rests && path->is_1d;
+    const bool is_constant = path->start->approach == path->end->approach, is_along_x = !ELASTIC && is_constant && path->is_1d;
     MiddleState middle = {.known = false};
-    *shear = (SliderUpdate){.loss = 0.0};
-    advance_full_ranges(f, 2 * full, path, along, moved, work, shear);
+    *update = (SliderUpdate){.loss = 0.0};
+    advance_full_ranges(f, 2 * full, path, is_along_x, force_end, work, update);
     for (int i = full; i < touched; i++) {
-        if (rests)
-            advance_constant_approach(f, i, path, along, moved, work, shear);
+        if (is_constant)
+            advance_constant_approach(f, i, path, is_along_x, force_end, work, update);
         else
-            advance_partial_range(f, i, path, &middle, moved, work, shear);
+            advance_partial_range(f, i, path, &middle, force_end, work, update);
     }
 }
 
-/* Slopes */
+/* Traction derivatives */
 
-/* The next pair comes apart: without more as its limits grow with stiffnesses K. */
+/* Derivatives of the next pair by opening: its limits decrease with K. */
 static void add_opening_pair(const Foundation *f, int first, double K, SliderWork *work)
 {
     for (int k = 0; k < 2; k++) {
@@ -510,10 +511,10 @@ static void add_opening_pair(const Foundation *f, int first, double K, SliderWor
     }
 }
 
-/* That of a range that changes, with what it gains where the patch comes apart by a step, by differences. */
-static void add_opening_range(const Foundation *f, int i, const PatchIncrement *path, const PatchState *apart, double step, SliderWork *work)
+/* Add a range that changes; its derivatives by opening are differences over a step. */
+static void add_opening_range(const Foundation *f, int i, const PatchIncrement *path, const PatchState *opened, double step, SliderWork *work)
 {
-    const PatchState *at[2] = {path->end, apart};
+    const PatchState *at[2] = {path->end, opened};
     const SliderProperties start = slider_properties(f, i, path->start);
     const int first = work->batch.n;
     SliderProperties end[2];
@@ -536,22 +537,22 @@ static void add_opening_range(const Foundation *f, int i, const PatchIncrement *
     }
 }
 
-void foundation_traction_derivatives(const Foundation *f, const PatchIncrement *path, double step, double *const tried[2], SliderWork *work,
+void foundation_traction_derivatives(const Foundation *f, const PatchIncrement *path, double step, double *const trial_force[2], SliderWork *work,
                        double slope[4][3])
 {
     const int full = full_ranges_throughout(path), touched = touched_ranges_of(path);
     SimdBatch *all = &work->batch;
     double force[3];
     PlaneSliders s = full_range_sliders(f, path);
-    const int first = sliders_stick(all->use_avx, 2 * full, &s, tried, force);
-    const PatchState apart = patch_state(f, path->end->approach - step, path->end->full_ranges);
+    const int first = sliders_stick(all->use_avx, 2 * full, &s, trial_force, force);
+    const PatchState opened = patch_state(f, path->end->approach - step, path->end->full_ranges);
     for (int k = first; k < 2 * full; k += 2) {
         add_opening_pair(f, k, f->K[k], work);
         add_pair(all, &s, k);
     }
     for (int i = full; i < touched; i++)
-        add_opening_range(f, i, path, &apart, step, work);
-    if (all->n % 4 > 0) { /* two that have nothing */
+        add_opening_range(f, i, path, &opened, step, work);
+    if (all->n % 4 > 0) { /* a pair of zeros */
         static const double none[2] = {0.0};
         s = (PlaneSliders){.force = {none, none}, .keeps = none, .turning = {none, none}, .K = none, .carries = none,
                            .per_K = none, .before = none, .after = none};
@@ -573,17 +574,17 @@ double stick_stiffness(const Foundation *f, const PatchState *at)
     return f->ratio * fmax(at->y[1] - f->stiffness[0], 0.0);
 }
 
-enum { R_IS_UNLOADING, R_STIFFNESS_START, R_STIFFNESS_END, N_STICK_RETENTION }; /* arguments of `rest_rule` */
+enum { R_IS_UNLOADING, R_STIFFNESS_START, R_STIFFNESS_END, N_STICK_RETENTION }; /* arguments of `stick_retention` */
 
-/* As `Foundation.rested` of the package. */
-bool full_stick_update(const Foundation *f, const PatchIncrement *path, const double before[3], SliderUpdate *shear)
+/* Repeats `Foundation.full_stick_update` of sliders.py. */
+bool full_stick_update(const Foundation *f, const PatchIncrement *path, const double before[3], SliderUpdate *update)
 {
     const PatchState *from = path->start, *to = path->end;
     const double x[N_STICK_RETENTION] = {to->approach < from->approach, stick_stiffness(f, from), stick_stiffness(f, to)};
     const double most = FULL_STICK_RATIO * f->mu / f->ratio * x[R_STIFFNESS_END] * (to->approach - f->height[0]);
-    double rule[2], *t = shear->traction;
+    double rule[2], *t = update->traction;
     stick_retention(x, NULL, rule);
-    *shear = (SliderUpdate){.tangent = {x[R_STIFFNESS_END], 0.0, x[R_STIFFNESS_END], 0.0, 0.0, x[R_STIFFNESS_END]}};
+    *update = (SliderUpdate){.tangent = {x[R_STIFFNESS_END], 0.0, x[R_STIFFNESS_END], 0.0, 0.0, x[R_STIFFNESS_END]}};
     for (int d = 0; d < 3; d++)
         t[d] = rule[0] * before[d] + rule[1] * path->displacement[d];
     return sqrt(t[0] * t[0] + t[1] * t[1] + t[2] * t[2]) <= most;
@@ -628,14 +629,14 @@ COLD
  * a height, and where the load of springs stays on it, as those that lift off take their force with them. Each rate is
  * that on the side to which a direction points. */
 
-/* A path, its rates, and the direction to which the side points on which they are taken. */
+/* An increment, its rates, and the rates that point to the side on which they are taken. */
 typedef struct {
     const PatchIncrement *path;
     const IncrementRate *direction, *rates;
     bool *corner; /* set where the other side has other rates */
 } SideRates;
 
-/* A point that moves on, where it stands at a height: the ranges that touch are those just above or just below it. */
+/* State at a height that moves on: the ranges in contact are those just above or just below the height. */
 static PatchState state_beside(const Foundation *f, const PatchState *at, double rises, bool *corner)
 {
     PatchState p = *at;
@@ -649,7 +650,7 @@ static PatchState state_beside(const Foundation *f, const PatchState *at, double
     return p;
 }
 
-/* What sliders have, with its rates: a range at a point, or one of its sliders after a way. */
+/* Values with rates: properties of a range, and the return mapping of one slider. */
 typedef struct {
     SliderProperties at, rate;
 } PropertiesRate;
@@ -657,7 +658,7 @@ typedef struct {
     double at[N_SLID], rate[N_SLID];
 } MappingRate;
 
-/* The approach of the point and the stiffness' slope change with rates. */
+/* Properties with rates; `rate` of the approach, `bend` derivative of the slope. */
 static PropertiesRate properties_rate(const Foundation *f, int i, const PatchState *p, double rate, double bend)
 {
     PropertiesRate pairs = {.at = slider_properties(f, i, p)};
@@ -687,15 +688,15 @@ static PropertiesRate properties_rate(const Foundation *f, int i, const PatchSta
     return pairs;
 }
 
-/* Arguments of `slide_plane`; rates of those from P_KEEPS on follow them in its seed. */
+/* Arguments of `slide_plane`; in its seed rates of those from P_RETENTION on follow. */
 enum { P_FORCE, P_RETENTION = 2, P_SECANT, P_DISPLACEMENT, P_LIMIT_START = 6, P_LIMIT_END, P_K, P_PER_K, N_PLANE };
 
-/* A trial force this near to its limit is at it [1]: limits of springs that touch late are small differences. */
+/* Relative distance of an elastic predictor from its limit [1] up to which it is at the limit. */
 static const double LIMIT_TOLERANCE = 1e-9;
-/* By which a limit that begins to grow or to fall is another one before [1]: the rule of a slider has a corner there. */
+/* Relative change of the limit at the start [1] that selects the side of a growing or shrinking limit. */
 static const double LIMIT_PERTURBATION = 1e-14;
 
-/* The trial force of a slider, or its rate with rates of the arguments. */
+/* Elastic predictor of a slider, and its rate. */
 static inline double elastic_predictor(const double *x, int d)
 {
     return x[P_RETENTION] * x[P_FORCE + d] + x[P_SECANT] * x[P_DISPLACEMENT + d];
@@ -713,13 +714,13 @@ static bool is_at_limit(const double x[N_PLANE])
     return fabs(sqrt(u * u + v * v) - limit) <= LIMIT_TOLERANCE * limit;
 }
 
-/* Whether the rates of a slider can depend on the side. */
+/* Whether the rates of a slider may depend on the side. */
 static bool has_two_sides(const double x[N_PLANE])
 {
     return x[P_LIMIT_START] == x[P_LIMIT_END] || is_at_limit(x);
 }
 
-/* One slider with rates of its arguments, in the direction of others. */
+/* Return mapping of one slider with its rate, on the side to which `direction` points. */
 static MappingRate return_map_rate(double x[2 * N_PLANE - P_RETENTION], const double direction[N_PLANE - P_RETENTION], bool *corner)
 {
     MappingRate slid;
@@ -759,7 +760,7 @@ static void argument_rates(const Foundation *f, int k, const double gains[2], co
     memcpy(out, all, sizeof all);
 }
 
-/* What a range gains on a part of a path. */
+/* Retention and secant stiffness of a range over a part of an increment, with rates. */
 typedef struct {
     PropertiesRate start, end;
     double gained[2], gains[2];
@@ -787,7 +788,7 @@ static SecantRate secant_rate(const Foundation *f, int i, const SideRates *c, co
     return g;
 }
 
-/* One slider of a range on a part of a path. */
+/* Return mapping of one slider of a range over a part of an increment, with its rate. */
 static MappingRate range_slider_rate(const Foundation *f, const SideRates *c, int i, const PatchState *from, const PatchState *at, double part, int late,
                      const SecantRate *own)
 {
@@ -808,15 +809,15 @@ static MappingRate range_slider_rate(const Foundation *f, const SideRates *c, in
     return return_map_rate(x, ahead_rates, c->corner);
 }
 
-/* Of the elastic energy before [1]. */
+/* Heat over the elastic energy at the start [1] below which it is round-off. */
 static const double LOSS_ROUND_OFF = 1e-13;
 
-/* Rate of the heat of a slider of a range that changes: where there is none, none can be lost on either side. */
+/* Rate of the heat of a slider whose stiffness changes; without heat the rate cannot be negative. */
 static double loss_rate(const SideRates *c, double x[2 * N_VARYING_LOSS - 3])
 {
-    double loss, more, rate, along = c->rates->ends[1] * c->direction->ends[1];
+    double loss, more, rate, is_along_x = c->rates->ends[1] * c->direction->ends[1];
     for (int d = 0; d < 3; d++)
-        along += c->rates->displacement[d] * c->direction->displacement[d];
+        is_along_x += c->rates->displacement[d] * c->direction->displacement[d];
     varying_stiffness_loss(x, NULL, &loss);
     x[C_STIFFNESS_START] *= 1.0 - LOSS_ROUND_OFF; /* a little more energy before: the heat is round-off if it is less */
     varying_stiffness_loss(x, NULL, &more);
@@ -824,7 +825,7 @@ static double loss_rate(const SideRates *c, double x[2 * N_VARYING_LOSS - 3])
     if (loss > 0.5 * more)
         return rate;
     *c->corner = *c->corner || rate != 0.0;
-    return along < 0.0 ? fmin(rate, 0.0) : fmax(rate, 0.0);
+    return is_along_x < 0.0 ? fmin(rate, 0.0) : fmax(rate, 0.0);
 }
 
 /* Rates of the sliders of a range that is not all in contact, on one side of a path, whose points are given. */
@@ -849,7 +850,7 @@ static void partial_range_rate(const Foundation *f, int i, const SideRates *c, c
     const PropertiesRate *start = &own->start, *last = &own->end;
     for (int late = 0; late < 2; late++) {
         const MappingRate *end = &slid[0][late], *half = &slid[1][late];
-        const double *moved = end->at;
+        const double *force_end = end->at;
         const int k = 2 * i + late;
         double shift[2], rated[2], dy[N_SLID];
         memcpy(dy, end->rate, sizeof dy);
@@ -857,8 +858,8 @@ static void partial_range_rate(const Foundation *f, int i, const SideRates *c, c
             shift[d] = shift_of(f->torsion_directions, k, path->displacement, d);
             rated[d] = shift_of(f->torsion_directions, k, c->rates->displacement, d);
         }
-        double x[] = {contact_changes, path->force[0][k], path->force[1][k], moved[0], moved[1],
-                            shift[0], shift[1], start->at.K, last->at.K, moved[SLID_SLIP], half->at[0], half->at[1],
+        double x[] = {contact_changes, path->force[0][k], path->force[1][k], force_end[0], force_end[1],
+                            shift[0], shift[1], start->at.K, last->at.K, force_end[SLID_SLIP], half->at[0], half->at[1],
                             dy[0], dy[1], rated[0], rated[1], start->rate.K, last->rate.K, dy[SLID_SLIP],
                             half->rate[0], half->rate[1]};
         if (start->at.K != last->at.K || start->rate.K != last->rate.K)
@@ -867,12 +868,12 @@ static void partial_range_rate(const Foundation *f, int i, const SideRates *c, c
     }
 }
 
-/* How stiffness and limit of a slider change with the approach, where the heights stay, or are laid around it. */
+/* Rates of stiffness and limit of the sliders. */
 typedef struct {
     double K[FOUNDATION_SLIDERS], limit[FOUNDATION_SLIDERS];
 } SliderRate;
 
-/* Rates of the heights that are laid around an approach, see `lay_heights` and `foundation_lower`. */
+/* Rates of the heights with the onset approach, see `slider_heights` and `heights_after_liftoff`. */
 static void slider_height_rates(const Foundation *f, double rate, double height[N_HEIGHTS])
 {
     const double end = f->curve->end.y;
@@ -891,7 +892,7 @@ static void slider_height_rates(const Foundation *f, double rate, double height[
         height[f->liftoff_height] = rate;
 }
 
-/* Rates of the first `n` ranges, all in contact at the approach around which the heights are laid. */
+/* Rates of the first n ranges, in full contact at the onset approach. */
 static void full_range_rates(const Foundation *f, int n, double approach, double rate, SliderRate *out)
 {
     double height[N_HEIGHTS], stiffness[N_HEIGHTS];
@@ -905,17 +906,17 @@ static void full_range_rates(const Foundation *f, int n, double approach, double
         const double width = f->height[i + 1] - f->height[i], left = f->height[i + 1] - approach;
         const double springs = stiffness[i + 1] - stiffness[i];
         const double normal = (f->stiffness[i + 1] - f->stiffness[i]) * height[i + 1] - stiffness[i] * width;
-        const double apart = f->force_deviation[i] < f->normal_force[i] ? UNIFORM_DEVIATION * (springs * width + f->normal_stiffness[i] * (height[i + 1] - height[i]))
+        const double opened = f->force_deviation[i] < f->normal_force[i] ? UNIFORM_DEVIATION * (springs * width + f->normal_stiffness[i] * (height[i + 1] - height[i]))
                                                         : normal;
         for (int late = 0; late < 2; late++) {
             out->K[2 * i + late] = 0.5 * f->ratio * springs;
-            out->limit[2 * i + late] = 0.5 * f->mu * (normal + (late ? apart : -apart) - springs * left -
+            out->limit[2 * i + late] = 0.5 * f->mu * (normal + (late ? opened : -opened) - springs * left -
                                                       f->normal_stiffness[i] * (height[i + 1] - rate));
         }
     }
 }
 
-/* Rates of the first `n` sliders, of ranges all in contact. */
+/* Add rates of the first n sliders, of ranges in full contact. */
 static void add_full_range_rates(const Foundation *f, int n, const SideRates *c, SliderUpdate *rate)
 {
     const PatchIncrement *path = c->path;
@@ -938,7 +939,7 @@ static void add_full_range_rates(const Foundation *f, int n, const SideRates *c,
         double dy[N_SLID] = {K * x[N_PLANE + 2] + stiffer * x[P_DISPLACEMENT], K * x[N_PLANE + 3] + stiffer * x[P_DISPLACEMENT + 1],
                                    stiffer, 0.0, stiffer};
         if (u * u + v * v >= least * least) {
-            const bool sides = path->is_first ? is_at_limit(x) : has_two_sides(x); /* both limits of a first path are the same */
+            const bool sides = path->is_first ? is_at_limit(x) : has_two_sides(x); /* both limits of a first increment are equal */
             if (sides && path->is_first && !found)
                 full_range_rates(f, n / 2, path->end->approach, turned[1], &ahead);
             found = found || sides;
@@ -999,10 +1000,10 @@ bool foundation_rates(const Foundation *f, const PatchIncrement *path, const Inc
     MiddleState found = {.known = false};
     const PatchState middle = stays_there ? to : *middle_state(f, path, &found);
     for (int i = full; i < touched; i++) {
-        const bool begins = to.approach == f->height[i];
-        if (!begins || from.approach > to.approach)
+        const bool is_onset = to.approach == f->height[i];
+        if (!is_onset || from.approach > to.approach)
             partial_range_rate(f, i, &path_side, &from, &to, &middle, rate);
-        if (begins && enters && i > 0)
+        if (is_onset && enters && i > 0)
             add_contact_onset_rate(f, i, &path_side, &from, &to, rate);
     }
     return corner;

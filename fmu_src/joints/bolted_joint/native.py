@@ -60,7 +60,8 @@ def _shear(g: Graph) -> None:
     small, first, slope, last, then, change, rise = symbols("x", 7)
     doc = "whether small, stiffness and slope at both ends, change, rise -> part kept, gain"
     kept = sliders.retention_and_stiffness((first, slope), (last, then), change, rise, small)
-    g.add_with_seed("retention_and_stiffness", doc, [small, first, slope, last, then, change, rise], kept, constant_count=1)
+    x = [small, first, slope, last, then, change, rise]
+    g.add_with_seed("retention_and_stiffness", doc, x, kept, constant_count=1)
     across, slip = symbols("x", 2)
     force, moved, shift, ends, middle = (symbols(name, 2) for name in "qfukm")
     doc = "whether across, force before, after, shift, stiffness at both ends, slip, middle -> loss"
@@ -73,9 +74,8 @@ def _rest(g: Graph) -> None:
     """A foundation at rest."""
     stiff, now, falls = symbols("x", 3)
     doc = "whether the load falls; stiffness before and after -> part kept, gain"
-    g.add_with_seed(
-        "stick_retention", doc, [falls, stiff, now], sliders.stick_retention(stiff, now, falls), constant_count=1
-    )
+    y = sliders.stick_retention(stiff, now, falls)
+    g.add_with_seed("stick_retention", doc, [falls, stiff, now], y, constant_count=1)
 
 
 def _loops(g: Graph) -> None:
@@ -91,7 +91,8 @@ def _loops(g: Graph) -> None:
 
 def _definitions(g: Graph, model: Model) -> Definitions:
     counts = {f"SUM_{name.upper()}": k for k, name in enumerate(outputs.SUMS)} | {"N_SUMS": len(outputs.SUMS)}
-    counts |= {name: k for k, name in enumerate(("SHARE", "POSITION_X", "POSITION_Y", "PRELOAD_SHAPE", "MOMENT_SHAPE", "RADIUS"))}
+    columns = ("SHARE", "POSITION_X", "POSITION_Y", "PRELOAD_SHAPE", "MOMENT_SHAPE", "RADIUS")
+    counts |= {name: k for k, name in enumerate(columns)}
     names = (
         "SMALL_CHANGE_RATIO",
         "SMALL_CYCLE_RATIO",
