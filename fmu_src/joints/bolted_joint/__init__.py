@@ -52,10 +52,10 @@ def _one_mode(bolts: int) -> dict[str, object]:
 def _tables(joint: Bolted) -> Mapping[str, DataTable]:
     patches = friction_patches_of(joint.pattern)
     return {
-        "nodes": DataTable(_rows(contact_points(joint.pattern)), MAX_POINTS),
+        "points": DataTable(_rows(contact_points(joint.pattern)), MAX_POINTS),
         "patches": DataTable(np.column_stack([_rows(patches), patches.radius]), MAX_PATCHES),
-        "turning": DataTable(torsion_directions(FOUNDATION_SLIDERS), 2),
-        "offsets": DataTable(height_offsets(patches.preload_shape)[:, None], MAX_PATCHES),
+        "torsion_directions": DataTable(torsion_directions(FOUNDATION_SLIDERS), 2),
+        "height_offsets": DataTable(height_offsets(patches.preload_shape)[:, None], MAX_PATCHES),
         **_bodies(joint),
     }
 
@@ -75,17 +75,18 @@ def _bodies(joint: Bolted) -> Mapping[str, DataTable]:
         pressing = _pressure_transfer_table(force_transfer(points, patches))
         pairs = MAX_PATCHES_PER_POINT * MAX_POINTS + MAX_PATCHES
         most = MAX_MODES, MAX_POINTS, MAX_PATCHES, len(bolts)
-    patch = dict(zip(("patch_x", "patch_y", "patch_around"), modes.patch_displacement, strict=True))
-    moved = {"opening": modes.opening, **patch, "stretch": modes.bolt_elongation}
+    axes = (f"patch_displacement_{axis}" for axis in ("x", "y", "around"))
+    patch = dict(zip(axes, modes.patch_displacement, strict=True))
+    moved = {"opening": modes.opening, **patch, "bolt_elongation": modes.bolt_elongation}
     room = dict(zip(moved, (most[1], *(most[2],) * 3, most[3]), strict=True))
     return {
-        "modes": DataTable(modes.stiffness[:, None], most[0]),
+        "modal_stiffness": DataTable(modes.stiffness[:, None], most[0]),
         "bolts": DataTable(
             np.column_stack([bolts, moment_lever(bolts)]),
             len(bolts) if joint.elastic else max(len(bolts), BOLTS),
         ),
         **{name: DataTable(_padded(rows), room[name], is_integer=True) for name, rows in moved.items()},
-        "pressing": DataTable(pressing, pairs, is_integer=True),
+        "pressure_transfer": DataTable(pressing, pairs, is_integer=True),
     }
 
 

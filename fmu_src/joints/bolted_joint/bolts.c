@@ -2,76 +2,45 @@
 
 #include <math.h>
 
-#include "tabulated.h"
+#include "cold.h"
 
-void bolts_tighten(Joint *joint, const double *inputs)
+void elongate_bolt(Bolts *bolts, int b, double elongation)
 {
-    Kind *kind = &joint->kind;
-    double left;
-    working_preload(inputs + INPUT_PRELOAD, joint->c, &left);
-    for (int b = 0; b < (int)data.n_bolts; b++) {
-        const double force = left + inputs[INPUT_MOMENT] * (data.bolts[b][BOLT_LEVER] / kind->bolt_count);
-        kind->bolt_tightened[b] = fmax(force, 0.0);
-        kind->bolt_unloaded[b] = force < 0.0;
-    }
+    const double force = bolts->preload_force[b] + bolts->stiffness * elongation;
+    bolts->gap[b] = bolts->stiffness == 0.0 ? 0.0 : fmax(-force, 0.0) / bolts->stiffness;
+    bolts->force[b] = fmax(force, 0.0);
+    bolts->active_fraction[b] = force > bolts->lift_off ? 1.0 : (force < -bolts->lift_off ? 0.0 : BOLT_AT_LIFT_OFF);
 }
 
-void bolts_tighten_rates(Joint *joint, const double *inputs, const double *seed)
+double bolt_gap_rate(const Bolts *bolts, int b, double elongation_rate)
 {
-    Kind *kind = &joint->kind;
-    double left;
-    working_preload_seed((const double[]){inputs[INPUT_PRELOAD], seed[INPUT_PRELOAD]}, joint->c, &left);
-    for (int b = 0; b < (int)data.n_bolts; b++)
-        kind->bolt_tightening[b] =
-            kind->bolt_unloaded[b] ? 0.0 : left + seed[INPUT_MOMENT] * (data.bolts[b][BOLT_LEVER] / kind->bolt_count);
-}
-
-void bolt_elongate(Kind *kind, int b, double elongation)
-{
-    const double force = kind->bolt_tightened[b] + kind->bolt * elongation;
-    const double lift_off = BOLT_LIFT_OFF_RATIO * kind->approach.closed * kind->area;
-    kind->bolt_gap[b] = kind->bolt == 0.0 ? 0.0 : fmax(-force, 0.0) / kind->bolt;
-    kind->bolt_force[b] = fmax(force, 0.0);
-    kind->bolt_pulls[b] = force > lift_off ? 1.0 : (force < -lift_off ? 0.0 : BOLT_AT_LIFT_OFF);
-}
-
-double bolt_gap_rate(const Kind *kind, int b, double rate)
-{
-    const double pulls = kind->bolt_pulls[b];
-    if (kind->bolt == 0.0 || pulls == 1.0)
+    const double active = bolts->active_fraction[b];
+    if (bolts->stiffness == 0.0 || active == 1.0)
         return 0.0;
-    /* at lift-off without motion the preload only grows, and leaves no gap */
-    return -(1.0 - pulls) * rate - (pulls == 0.0 ? kind->bolt_tightening[b] / kind->bolt : 0.0);
+    /* a bolt at lift-off in the preloaded state: its preload can only increase, which leaves no gap */
+    return -(1.0 - active) * elongation_rate - (active == 0.0 ? bolts->preload_rate[b] / bolts->stiffness : 0.0);
 }
 
-static void add_gap(const double *bolt, double gap, double *x)
-{
-    x[SUM_STRETCH] += gap;
-    x[SUM_STRETCH_X] += gap * bolt[BOLT_X];
-    x[SUM_STRETCH_Y] += gap * bolt[BOLT_Y];
-}
+COLD
 
-void bolts_sums(Joint *joint, const double *inputs, double *x)
+void set_preload_force(Bolts *bolts, const double *c, double preload, double moment)
 {
-    Kind *kind = &joint->kind;
-    double missing = 0.0, about_x = 0.0, about_y = 0.0;
+    double working;
+    working_preload(&preload, c, &working);
     for (int b = 0; b < (int)data.n_bolts; b++) {
-        const double *bolt = data.bolts[b];
-        bolt_elongate(kind, b, seat(b, inputs));
-        add_gap(bolt, kind->bolt_count * kind->bolt_gap[b], x);
-        const double lost = kind->bolt_count * (kind->bolt - kind->bolt * kind->bolt_pulls[b]);
-        missing += lost;
-        about_x += lost * (bolt[BOLT_Y] * bolt[BOLT_Y]);
-        about_y += lost * (bolt[BOLT_X] * bolt[BOLT_X]);
+        const double force = working + moment * (data.bolts[b][BOLT_LEVER] / bolts->count);
+        bolts->preload_force[b] = fmax(force, 0.0);
+        bolts->is_unloaded[b] = force < 0.0;
     }
-    x[SUM_NORMAL_STIFFNESS] -= missing / kind->area;
-    x[SUM_NORMAL_ABOUT_X] -= about_x / kind->area;
-    x[SUM_NORMAL_ABOUT_Y] -= about_y / kind->area;
 }
 
-void bolts_sum_rates(const Joint *joint, const double *seed, double *dx)
+void set_preload_rate(Bolts *bolts, const double *c, double preload, double preload_rate, double moment_rate)
 {
-    const Kind *kind = &joint->kind;
+    double working;
+    working_preload_seed((const double[]){preload, preload_rate}, c, &working);
     for (int b = 0; b < (int)data.n_bolts; b++)
-        add_gap(data.bolts[b], kind->bolt_count * bolt_gap_rate(kind, b, seat(b, seed)), dx);
+        bolts->preload_rate[b] =
+            bolts->is_unloaded[b] ? 0.0 : working + moment_rate * (data.bolts[b][BOLT_LEVER] / bolts->count);
 }
+
+END_OF_COLD

@@ -5,10 +5,10 @@
 
 #include "vectors.h"
 
-enum { L = LANES_OF_MODES };
+enum { L = LANES };
 
 /* x less a multiple of a column, in fours from a row on. */
-static inline void take_fours(double by, const double *restrict column, int first, double *restrict x)
+static inline void subtract_column(double by, const double *restrict column, int first, double *restrict x)
 {
     for (int r = first; r < MODES; r += L)
         for (int l = 0; l < L; l++)
@@ -36,14 +36,14 @@ WITHIN void factor(double (*a)[MODES], int *pivots)
         for (int r = 0; r < MODES; r++)
             column[r] = r > c ? a[c][r] : 0.0;
         for (int k = c + 1; k < MODES; k++)
-            take_fours(a[k][c], column, (c + 1) / L * L, a[k]);
+            subtract_column(a[k][c], column, (c + 1) / L * L, a[k]);
     }
 }
 COMPILED_TWICE(factor, (double (*a)[MODES], int *pivots), (a, pivots))
 
-void dense_factor(bool fours, Factors *factors)
+void dense_factor(bool use_avx, Factorization *factors)
 {
-    (fours ? factor_fours : factor_any)(factors->a, factors->pivots);
+    (use_avx ? factor_fours : factor_any)(factors->a, factors->pivots);
 }
 
 /* Four columns at a time: the rows beside their own four side by side. */
@@ -59,7 +59,7 @@ WITHIN void solve(const double (*a)[MODES], const int *pivots, double *x)
             for (int r = c + 1; r < b + L; r++)
                 x[r] -= x[c] * a[c][r];
         for (int c = b; c < b + L; c++)
-            take_fours(x[c], a[c], b + L, x);
+            subtract_column(x[c], a[c], b + L, x);
     }
     for (int b = MODES - L; b >= 0; b -= L) {
         for (int c = b + L - 1; c >= b; c--) {
@@ -75,47 +75,47 @@ WITHIN void solve(const double (*a)[MODES], const int *pivots, double *x)
 }
 COMPILED_TWICE(solve, (const double (*a)[MODES], const int *pivots, double *x), (a, pivots, x))
 
-void dense_solve(bool fours, const Factors *factors, double *x)
+void dense_solve(bool use_avx, const Factorization *factors, double *x)
 {
-    (fours ? solve_fours : solve_any)((const double(*)[MODES])factors->a, factors->pivots, x);
+    (use_avx ? solve_fours : solve_any)((const double(*)[MODES])factors->a, factors->pivots, x);
 }
 
-WITHIN void weigh(int n, const double *by, const double (*restrict row)[WIDE], double (*restrict result)[WIDE])
+WITHIN void weigh(int n, const double *by, const double (*restrict row)[N_COLUMNS], double (*restrict result)[N_COLUMNS])
 {
     for (int i = 0; i < n; i++)
-        for (int k = 0; k < WIDE; k++)
+        for (int k = 0; k < N_COLUMNS; k++)
             result[i][k] = by[i] * row[i][k];
 }
-COMPILED_TWICE(weigh, (int n, const double *by, const double (*restrict row)[WIDE], double (*restrict result)[WIDE]),
+COMPILED_TWICE(weigh, (int n, const double *by, const double (*restrict row)[N_COLUMNS], double (*restrict result)[N_COLUMNS]),
                (n, by, row, result))
 
-void dense_weigh(bool fours, int n, const double *by, const double (*row)[WIDE], double (*result)[WIDE])
+void dense_weigh(bool use_avx, int n, const double *by, const double (*row)[N_COLUMNS], double (*result)[N_COLUMNS])
 {
-    (fours ? weigh_fours : weigh_any)(n, by, row, result);
+    (use_avx ? weigh_fours : weigh_any)(n, by, row, result);
 }
 
-WITHIN void combine(int n, const double (*by)[4], const double (*restrict x)[WIDE], const double (*restrict y)[WIDE],
-                    const double (*restrict t)[WIDE], const double (*restrict z)[WIDE], double (*restrict result)[WIDE])
+WITHIN void combine(int n, const double (*by)[4], const double (*restrict x)[N_COLUMNS], const double (*restrict y)[N_COLUMNS],
+                    const double (*restrict t)[N_COLUMNS], const double (*restrict z)[N_COLUMNS], double (*restrict result)[N_COLUMNS])
 {
     for (int i = 0; i < n; i++)
-        for (int k = 0; k < WIDE; k++)
+        for (int k = 0; k < N_COLUMNS; k++)
             result[i][k] = by[i][0] * x[i][k] + by[i][1] * y[i][k] + by[i][2] * t[i][k] + by[i][3] * z[i][k];
 }
 COMPILED_TWICE(combine,
-               (int n, const double (*by)[4], const double (*restrict x)[WIDE], const double (*restrict y)[WIDE],
-                const double (*restrict t)[WIDE], const double (*restrict z)[WIDE], double (*restrict result)[WIDE]),
+               (int n, const double (*by)[4], const double (*restrict x)[N_COLUMNS], const double (*restrict y)[N_COLUMNS],
+                const double (*restrict t)[N_COLUMNS], const double (*restrict z)[N_COLUMNS], double (*restrict result)[N_COLUMNS]),
                (n, by, x, y, t, z, result))
 
-void dense_combine(bool fours, int n, const double (*by)[4], const double (*const rows[4])[WIDE],
-                   double (*result)[WIDE])
+void dense_combine(bool use_avx, int n, const double (*by)[4], const double (*const rows[4])[N_COLUMNS],
+                   double (*result)[N_COLUMNS])
 {
-    (fours ? combine_fours : combine_any)(n, by, rows[0], rows[1], rows[2], rows[3], result);
+    (use_avx ? combine_fours : combine_any)(n, by, rows[0], rows[1], rows[2], rows[3], result);
 }
 
 /* Sums go in lanes, which a processor adds side by side. */
 
-WITHIN void products(int n, const double (*restrict weighted)[WIDE], const double (*restrict rows)[WIDE], int size,
-                     bool all, double (*restrict h)[WIDE])
+WITHIN void products(int n, const double (*restrict weighted)[N_COLUMNS], const double (*restrict rows)[N_COLUMNS], int size,
+                     bool all, double (*restrict h)[N_COLUMNS])
 {
     for (int r = 0; r < size; r += L) /* in blocks, whose sums stay in registers */
         for (int c = 0; c <= (all ? size - L : r); c += L) {
@@ -130,17 +130,17 @@ WITHIN void products(int n, const double (*restrict weighted)[WIDE], const doubl
         }
 }
 COMPILED_TWICE(products,
-               (int n, const double (*restrict weighted)[WIDE], const double (*restrict rows)[WIDE], int size,
-                bool all, double (*restrict h)[WIDE]),
+               (int n, const double (*restrict weighted)[N_COLUMNS], const double (*restrict rows)[N_COLUMNS], int size,
+                bool all, double (*restrict h)[N_COLUMNS]),
                (n, weighted, rows, size, all, h))
 
-void dense_products(bool fours, int n, const double (*restrict weighted)[WIDE], const double (*restrict rows)[WIDE],
-                    int size, bool all, double (*restrict h)[WIDE])
+void dense_products(bool use_avx, int n, const double (*restrict weighted)[N_COLUMNS], const double (*restrict rows)[N_COLUMNS],
+                    int size, bool all, double (*restrict h)[N_COLUMNS])
 {
-    (fours ? products_fours : products_any)(n, weighted, rows, size, all, h);
+    (use_avx ? products_fours : products_any)(n, weighted, rows, size, all, h);
 }
 
-WITHIN void add_rows(int n, const double *by, const double (*row)[WIDE], double *restrict sum)
+WITHIN void add_rows(int n, const double *by, const double (*row)[N_COLUMNS], double *restrict sum)
 {
     int i = 0;
     for (; i + 4 <= n; i += 4)
@@ -151,27 +151,20 @@ WITHIN void add_rows(int n, const double *by, const double (*row)[WIDE], double 
         for (int k = 0; k < MODES; k++)
             sum[k] += by[i] * row[i][k];
 }
-COMPILED_TWICE(add_rows, (int n, const double *by, const double (*row)[WIDE], double *restrict sum), (n, by, row, sum))
+COMPILED_TWICE(add_rows, (int n, const double *by, const double (*row)[N_COLUMNS], double *restrict sum), (n, by, row, sum))
 
-void dense_add_rows(bool fours, int n, const double *by, const double (*row)[WIDE], double *sum)
+void dense_add_rows(bool use_avx, int n, const double *by, const double (*row)[N_COLUMNS], double *sum)
 {
-    (fours ? add_rows_fours : add_rows_any)(n, by, row, sum);
+    (use_avx ? add_rows_fours : add_rows_any)(n, by, row, sum);
 }
 
-/* The lanes of a row side by side, not those of two rows. */
-#ifdef __clang__
-#define ROW_BY_ROW _Pragma("clang loop vectorize(disable)")
-#else
-#define ROW_BY_ROW
-#endif
-
-WITHIN void dots(int n, const double (*row)[WIDE], const double *x, int stride, double *result)
+WITHIN void dots(int n, const double (*row)[N_COLUMNS], const double *x, int stride, double *result)
 {
     enum { ROWS = 32 }; /* at a time: first all lanes, then their sums */
     double sum[ROWS][L];
     for (int first = 0; first < n; first += ROWS) {
         const int rows = n - first < ROWS ? n - first : ROWS;
-        ROW_BY_ROW
+        NOT_VECTORIZED /* the lanes of a row side by side, not those of two rows */
         for (int i = 0; i < rows; i++) {
             double lane[L] = {0.0};
             for (int k = 0; k < MODES; k += L)
@@ -183,10 +176,10 @@ WITHIN void dots(int n, const double (*row)[WIDE], const double *x, int stride, 
             result[stride * (first + i)] = (sum[i][0] + sum[i][2]) + (sum[i][1] + sum[i][3]);
     }
 }
-COMPILED_TWICE(dots, (int n, const double (*row)[WIDE], const double *x, int stride, double *result),
+COMPILED_TWICE(dots, (int n, const double (*row)[N_COLUMNS], const double *x, int stride, double *result),
                (n, row, x, stride, result))
 
-void dense_dots(bool fours, int n, const double (*row)[WIDE], const double *x, int stride, double *result)
+void dense_dots(bool use_avx, int n, const double (*row)[N_COLUMNS], const double *x, int stride, double *result)
 {
-    (fours ? dots_fours : dots_any)(n, row, x, stride, result);
+    (use_avx ? dots_fours : dots_any)(n, row, x, stride, result);
 }

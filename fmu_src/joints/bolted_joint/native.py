@@ -19,9 +19,9 @@ def _functions(g: Graph, model: Model) -> None:
         g, joint, ("normal",), lambda s, u: [s.total("plastic_work", u), s.total("elastic_work", u)]
     )
     add_closing_function(g)
-    head = [joint.memory, joint.mu, joint.shear_ratio(), joint.A_0, joint.bolt_stiffness, joint.damping]
+    head = [joint.memory, joint.mu, joint.shear_stiffness_ratio(), joint.A_0, joint.bolt_stiffness, joint.damping]
     doc = "-> memory, mu, K_T/K_N, A_0, stiffness of a bolt, damping, number of bolts"
-    g.add_function("joint_head", doc, [], [*head, joint.n_bolts])
+    g.add_function("joint_constants", doc, [], [*head, joint.n_bolts])
     _tightening(g)
     _shear(g)
     sums = dict(zip(outputs.SUMS, make_symbols("sum", len(outputs.SUMS)), strict=True))
@@ -50,7 +50,7 @@ def _tightening(g: Graph) -> None:
 def _shear(g: Graph) -> None:
     x = make_symbols("x", 7)
     doc = "limit, pressure and its derivatives, shift -> traction, tangent xx, xy, yy, lifted, stiffer"
-    y = contact.elastic_shear(x[0], g.joint.shear_ratio(), x[1:5], x[5], x[6])
+    y = contact.elastic_shear(x[0], g.joint.shear_stiffness_ratio(), x[1:5], x[5], x[6])
     g.add_with_derivative("elastic_shear", doc, x, y)
     add_slider_functions(g)
     _loops(g)
@@ -59,44 +59,43 @@ def _shear(g: Graph) -> None:
     doc = "load, stiffness, its slope, width -> stiffness, its slope, limits of the two"
     x = [ratio, friction, load, stiffness, bend, width]
     y = sliders.partial_contact(load, stiffness, bend, width, ratio, friction)
-    g.add_with_derivative("touching", f"K_T/K_N, mu, {doc}", x, y, constant_count=2)
+    g.add_with_derivative("partial_contact", f"K_T/K_N, mu, {doc}", x, y, constant_count=2)
     small, first, slope, last, then, change, rise = make_symbols("x", 7)
     doc = "whether small, stiffness and slope at both ends, change, rise -> part kept, gain"
     kept = sliders.retention_and_stiffness((first, slope), (last, then), change, rise, small)
-    g.add_with_derivative(
-        "carrying", doc, [small, first, slope, last, then, change, rise], kept, constant_count=1
-    )
+    x = [small, first, slope, last, then, change, rise]
+    g.add_with_derivative("retention_and_stiffness", doc, x, kept, constant_count=1)
     across, slip = make_symbols("x", 2)
     force, moved, shift, ends, middle = (make_symbols(name, 2) for name in "qfukm")
     doc = "whether across, force before, after, shift, stiffness at both ends, slip, middle -> loss"
     loss = sliders.varying_stiffness_loss(force, moved, shift, (ends[0], ends[1]), slip, across, middle)
     x = [across, *force, *moved, *shift, *ends, slip, *middle]
-    g.add_with_derivative("changing_loss", doc, x, [loss], constant_count=3)
+    g.add_with_derivative("varying_stiffness_loss", doc, x, [loss], constant_count=3)
 
 
 def _rest(g: Graph) -> None:
     """A foundation at rest."""
     stiff, now, falls = make_symbols("x", 3)
     doc = "whether the load falls; stiffness before and after -> part kept, gain"
-    g.add_with_derivative(
-        "rest_rule", doc, [falls, stiff, now], sliders.stick_retention(stiff, now, falls), constant_count=1
-    )
+    y = sliders.stick_retention(stiff, now, falls)
+    g.add_with_derivative("stick_retention", doc, [falls, stiff, now], y, constant_count=1)
 
 
 def _loops(g: Graph) -> None:
     """Loss and energy of loops at constant load."""
     x = make_symbols("x", 6)
     doc = "mu, K_T/K_N, amplitude, loads now and where springs have slipped, energy between -> loss, energy"
-    g.add_with_derivative("loop", doc, x, sliders.cycle_energies(*x), constant_count=2)
+    g.add_with_derivative("cycle_energies", doc, x, sliders.cycle_energies(*x), constant_count=2)
     (mu, ratio, size), now, then = make_symbols("x", 3), make_symbols("n", 3), make_symbols("t", 3)
     doc = "mu, K_T/K_N, amplitude, three derivatives of the load now and there -> loss, energy"
     y = sliders.small_cycle_energies(mu, ratio, size, now, then)
-    g.add_with_derivative("short_loop", doc, [mu, ratio, size, *now, *then], y, constant_count=2)
+    g.add_with_derivative("small_cycle_energies", doc, [mu, ratio, size, *now, *then], y, constant_count=2)
 
 
 def _definitions(g: Graph, model: Model) -> Definitions:
     counts = {f"SUM_{name.upper()}": k for k, name in enumerate(outputs.SUMS)} | {"N_SUMS": len(outputs.SUMS)}
-    counts |= {name: k for k, name in enumerate(("SHARE", "PLACE_X", "PLACE_Y", "EQUAL", "TILT", "RADIUS"))}
+    columns = ("SHARE", "POSITION_X", "POSITION_Y", "PRELOAD_SHAPE", "MOMENT_SHAPE", "RADIUS")
+    counts |= {name: k for k, name in enumerate(columns)}
     names = (
         "SMALL_CHANGE_RATIO",
         "SMALL_CYCLE_RATIO",
