@@ -48,10 +48,10 @@ inline int long register restrict return short signed sizeof static struct switc
 volatile while"""
 _C_KEYWORDS = frozenset(_C_KEYWORD_TEXT.split())
 _MODELICA_KEYWORD_TEXT = """algorithm and annotation block break class connect connector constant
-constrainedby der discrete each else elseif elsewhen encapsulated end enumeration equation expandable
-extends external false final flow for function if import impure in initial inner input loop model not operator or outer
-output package parameter partial protected public pure record redeclare replaceable return stream
-then time true type when while within"""
+constrainedby der discrete each else elseif elsewhen encapsulated end enumeration equation expandable extends
+external false final flow for function if import impure in initial inner input loop model not operator or
+outer output package parameter partial protected public pure record redeclare replaceable return stream then
+time true type when while within"""
 _MODELICA_KEYWORDS = frozenset(_MODELICA_KEYWORD_TEXT.split())
 _WINDOWS_DEVICES = frozenset(
     ["con", "prn", "aux", "nul", *(f"{port}{i}" for port in ("com", "lpt") for i in range(10))]

@@ -41,7 +41,7 @@ def test_first_loading_is_the_normal_curve_once_more():
         return spring.evaluate(PRELOAD, 0.0, (0.0, 0.0, apart), (0.0, 0.0, 0.0))
 
     rest = state(0.0)
-    kappa = float(joint.shear_ratio())
+    kappa = float(joint.shear_stiffness_ratio())
     motion = np.array([1e-8, 1e-7, 1e-6, 5e-6, 9e-6])
     expected = [-joint.mu * state(kappa * u / joint.mu)["f_z"] for u in motion]
     np.testing.assert_allclose(law.friction(motion), expected, rtol=3e-6)  # the table of 48 steps

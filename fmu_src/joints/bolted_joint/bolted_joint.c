@@ -103,7 +103,7 @@ static bool evaluate_rigid(Kind *kind, const double *q, const double *history, d
     } else {
         update_without_history(friction, &kind->contact, history, after);
     }
-    memset(after + AT_APART, 0, (N_MEMORY - AT_APART) * sizeof *after);
+    memset(after + AT_NORMAL, 0, (N_MEMORY - AT_NORMAL) * sizeof *after);
     return true;
 }
 

@@ -5,7 +5,7 @@
 
 #include "cold.h"
 
-_Static_assert((int)AT_AMPLITUDE == (int)AT_APART + 3 && (int)AT_TANGENT == (int)AT_AMPLITUDE + MODES &&
+_Static_assert((int)AT_MODAL_COORDINATES == (int)AT_NORMAL + 3 && (int)AT_TANGENT == (int)AT_MODAL_COORDINATES + MODES &&
                    (int)N_MEMORY == (int)AT_TANGENT + 6 * MOST_PATCHES,
                "the end of a history, as in the key of a predictor");
 
@@ -251,8 +251,8 @@ static void predictor_key(const double *inputs, const double *history, double ke
 {
     key[0] = inputs[INPUT_PRELOAD];
     key[1] = inputs[INPUT_MOMENT];
-    memcpy(key + 2, history + AT_RIGID, 3 * sizeof *key);
-    memcpy(key + 5, history + AT_APART, (PREDICTOR_KEY - 5) * sizeof *key);
+    memcpy(key + 2, history + AT_TANGENTIAL, 3 * sizeof *key);
+    memcpy(key + 5, history + AT_NORMAL, (PREDICTOR_KEY - 5) * sizeof *key);
 }
 
 /* Change of the modal coordinates over a load step [m] by the tangent at its start. */
@@ -266,7 +266,7 @@ static bool predict_by_tangent(Equilibrium *e, const LoadStep *step, double *rat
         e->start = e->end;
     } else if (!e->start.is_known || memcmp(key, e->start.key, sizeof key) != 0) {
         double tangent[6 * MOST_PATCHES];
-        if (!evaluate_normal(e, first, history + AT_AMPLITUDE, false, why))
+        if (!evaluate_normal(e, first, history + AT_MODAL_COORDINATES, false, why))
             return false;
         memcpy(tangent, history + AT_TANGENT, sizeof tangent);
         for (int j = 0; j < n_patches() && history[AT_STATE] == (double)UNKNOWN; j++) {
@@ -385,7 +385,7 @@ static void explain_failure(const double *inputs, double load_factor, double lef
 static bool solve_load_step(Equilibrium *e, LoadStep *step, double *modal_coordinates, Text *why)
 {
     double load_factor = 0.0, increment = 1.0, left = 0.0, reached[MODES], rate[MODES];
-    memcpy(reached, step->history + AT_AMPLITUDE, sizeof reached);
+    memcpy(reached, step->history + AT_MODAL_COORDINATES, sizeof reached);
     modal_displacement(e->assembly.bodies, reached, e->assembly.bodies->start_displacement);
     if (!predict_by_tangent(e, step, rate, why))
         return false;
@@ -420,15 +420,15 @@ bool solve_equilibrium(Equilibrium *e, const double *inputs, const double *histo
         return false;
     LoadStep step = {.inputs = inputs,
                      .history = history,
-                     .start = {history[AT_RIGID], history[AT_RIGID + 1], history[AT_APART], history[AT_APART + 1],
-                               history[AT_APART + 2], history[AT_RIGID + 2]},
+                     .start = {history[AT_TANGENTIAL], history[AT_TANGENTIAL + 1], history[AT_NORMAL], history[AT_NORMAL + 1],
+                               history[AT_NORMAL + 2], history[AT_TANGENTIAL + 2]},
                      .after = after};
     double modal_coordinates[MODES];
     relative_displacement(inputs, step.end);
     if (!solve_load_step(e, &step, modal_coordinates, why))
         return false;
-    memcpy(after + AT_APART, step.end + S_Z, 3 * sizeof *after);
-    memcpy(after + AT_AMPLITUDE, modal_coordinates, sizeof modal_coordinates);
+    memcpy(after + AT_NORMAL, step.end + S_Z, 3 * sizeof *after);
+    memcpy(after + AT_MODAL_COORDINATES, modal_coordinates, sizeof modal_coordinates);
     memset(after + AT_TANGENT, 0, 6 * MOST_PATCHES * sizeof *after);
     for (int j = 0; j < n_patches(); j++)
         memcpy(after + AT_TANGENT + 6 * j, e->assembly.friction->update[j].tangent, 6 * sizeof *after);

@@ -5,7 +5,7 @@
 
 #include "cold.h"
 
-_Static_assert((int)AT_APART == (int)AT_FORCE + MOST_PATCHES * 2 * FOUNDATION_SLIDERS, "room for all patches");
+_Static_assert((int)AT_NORMAL == (int)AT_FORCE + MOST_PATCHES * 2 * FOUNDATION_SLIDERS, "room for all patches");
 
 /* Slider forces of patch j along x in a history; those along y follow. */
 enum { PATCH_FORCES = 2 * FOUNDATION_SLIDERS };
@@ -32,9 +32,9 @@ static void set_heights(Friction *friction, int j, double onset_approach, double
 static void set_patch_heights(Friction *friction, int j, const double *history, double start)
 {
     const bool is_onset = history[AT_STATE] < (double)SLIP_1D;
-    const double min_approach = history[AT_LOWEST + j];
+    const double min_approach = history[AT_MIN_APPROACH + j];
     const bool was_open = min_approach < friction->foundation[j].curve->first.x;
-    set_heights(friction, j, is_onset ? start : history[AT_REFERENCE + j],
+    set_heights(friction, j, is_onset ? start : history[AT_ONSET_APPROACH + j],
                 is_onset || was_open ? start : fmin(min_approach, start));
 }
 
@@ -59,14 +59,14 @@ static void find_states(Friction *friction, const Contact *contact, const double
 
 void set_increments(Friction *friction, const Bodies *bodies, const double *history, const double *q)
 {
-    const double rotation = q[THETA_Z] - history[AT_RIGID + 2];
+    const double rotation = q[THETA_Z] - history[AT_TANGENTIAL + 2];
     NOT_VECTORIZED
     for (int j = 0; j < n_patches(); j++) {
         const double *patch = data.patches[j];
         const double *modal = bodies->state.patch_displacement[j], *before = bodies->start_displacement[j];
         double *u = friction->increment[j];
-        u[0] = q[S_X] - history[AT_RIGID] - rotation * patch[POSITION_Y] + (modal[0] - before[0]);
-        u[1] = q[S_Y] - history[AT_RIGID + 1] + rotation * patch[POSITION_X] + (modal[1] - before[1]);
+        u[0] = q[S_X] - history[AT_TANGENTIAL] - rotation * patch[POSITION_Y] + (modal[0] - before[0]);
+        u[1] = q[S_Y] - history[AT_TANGENTIAL + 1] + rotation * patch[POSITION_X] + (modal[1] - before[1]);
         u[2] = rotation * patch[RADIUS] + (modal[2] - before[2]);
     }
 }
@@ -86,8 +86,8 @@ static inline PatchIncrement increment_of(const Friction *friction, int j, const
 /* State after an increment that leaves full stick: SLIP_1D as long as all moves and forces are along x. */
 static int slip_state(const double *history, const double *q)
 {
-    bool is_1d = !ELASTIC && history[AT_STATE] != (double)SLIP_2D && q[S_Y] == history[AT_RIGID + 1] &&
-                 q[THETA_Z] == history[AT_RIGID + 2];
+    bool is_1d = !ELASTIC && history[AT_STATE] != (double)SLIP_2D && q[S_Y] == history[AT_TANGENTIAL + 1] &&
+                 q[THETA_Z] == history[AT_TANGENTIAL + 2];
     for (int j = 0; j < n_patches() && is_1d; j++) {
         const double *force_y = forces_of(history, j) + FOUNDATION_SLIDERS;
         is_1d = force_y[0] == 0.0 && force_y[1] == 0.0;
@@ -171,7 +171,7 @@ static void set_history(int state, double loss, const double rigid[3], double *a
 {
     after[AT_STATE] = state;
     after[AT_LOSS] = loss;
-    memcpy(after + AT_RIGID, rigid, 3 * sizeof *rigid);
+    memcpy(after + AT_TANGENTIAL, rigid, 3 * sizeof *rigid);
 }
 
 void update_friction(Friction *friction, const Contact *contact, const double *history, const double *q, double *after)
@@ -192,8 +192,8 @@ void update_friction(Friction *friction, const Contact *contact, const double *h
         const double approach = friction->end[j].approach;
         const Foundation *f = &friction->foundation[j];
         heat += data.patches[j][SHARE] * friction->update[j].loss;
-        after[AT_REFERENCE + j] = sticks ? approach : f->onset_approach;
-        after[AT_LOWEST + j] = sticks ? approach : f->min_approach;
+        after[AT_ONSET_APPROACH + j] = sticks ? approach : f->onset_approach;
+        after[AT_MIN_APPROACH + j] = sticks ? approach : f->min_approach;
         after[AT_APPROACH + j] = approach;
     }
     const double rigid[3] = {q[S_X], q[S_Y], q[THETA_Z]};

@@ -6,7 +6,6 @@ from jointfmu.joints.bolted_joint import bodies, bolts, contact, equilibrium, fr
 from jointfmu.joints.model import Model
 from jointfmu.mechanics import jenkins, sliders
 from jointfmu.mechanics.footprint.distribution import MAX_PATCHES
-from jointfmu.mechanics.history_layout import HistoryLayout
 
 from ...joint_parts.graph import Graph, add_closing_function, add_law_functions, make_symbols
 from ...joint_parts.native import APPROACH_FILES, Definitions, NativeDefinition
@@ -19,7 +18,14 @@ def _functions(g: Graph, model: Model) -> None:
         g, joint, ("normal",), lambda s, u: [s.total("plastic_work", u), s.total("elastic_work", u)]
     )
     add_closing_function(g)
-    head = [joint.memory, joint.mu, joint.shear_stiffness_ratio(), joint.A_0, joint.bolt_stiffness, joint.damping]
+    head = [
+        joint.memory,
+        joint.mu,
+        joint.shear_stiffness_ratio(),
+        joint.A_0,
+        joint.bolt_stiffness,
+        joint.damping,
+    ]
     doc = "-> memory, mu, K_T/K_N, A_0, stiffness of a bolt, damping, number of bolts"
     g.add_function("joint_constants", doc, [], [*head, joint.n_bolts])
     _tightening(g)
@@ -135,17 +141,6 @@ def _definitions(g: Graph, model: Model) -> Definitions:
     return Definitions(counts, numbers)
 
 
-_C_NAMES = {
-    "tangential": "rigid", "onset_approach": "reference", "min_approach": "lowest",
-    "normal": "apart", "modal_coordinates": "amplitude",
-}  # fmt: skip
-"""{history variable: its name in C}, where they differ."""
-
-
-def _history_layout() -> HistoryLayout:
-    """Layout of the history variables with the names of C."""
-    shapes = friction.history_layout(MAX_PATCHES).shapes
-    return HistoryLayout({_C_NAMES.get(name, name): shape for name, shape in shapes.items()})
-
-
-NATIVE_PART = NativeDefinition(_functions, (*APPROACH_FILES, *SLIDER_FILES), _definitions, _history_layout())
+NATIVE_PART = NativeDefinition(
+    _functions, (*APPROACH_FILES, *SLIDER_FILES), _definitions, friction.history_layout(MAX_PATCHES)
+)

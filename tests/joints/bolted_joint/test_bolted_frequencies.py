@@ -51,7 +51,7 @@ def all_nodes(preload: float, moment: float) -> Array:
     none, one = np.zeros_like(x), np.ones_like(x)
     normal = np.array([none, none, one, y, -x, none])
     along = [np.array([one, none, none, none, none, -y]), np.array([none, one, none, none, none, x])]
-    ratio = JOINT.shear_ratio()
+    ratio = JOINT.shear_stiffness_ratio()
     return np.asarray((normal * k) @ normal.T + ratio * sum((row * k) @ row.T for row in along))
 
 

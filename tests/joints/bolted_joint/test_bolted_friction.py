@@ -130,7 +130,7 @@ def test_first_shear_follows_the_normal_curve(spring, preload, moment, s_z):
     loads = {"preload": preload, "moment": moment}
     tight = rest(spring, np.zeros(6), **loads)
     kappa = tight["K_xx"] / tight["K_zz"]
-    assert kappa == pytest.approx(float(JOINT.shear_ratio()), rel=2e-3)  # patches beside all points
+    assert kappa == pytest.approx(float(JOINT.shear_stiffness_ratio()), rel=2e-3)  # patches beside all points
 
     def normal(z):
         return rest(spring, np.array([0, 0, z, 0, 0, 0]), **loads)["f_z"] + JOINT.n_bolts * preload
@@ -171,7 +171,7 @@ def test_the_loss_factor_falls_with_the_amplitude_down_to_none(spring):
     """
     approach = spring.curve.inverse(preload_pressure(JOINT, spring.patches, 9e3, 0.0))
     _, k, bend = (spring.patches.share @ each for each in spring.curve.derivatives(approach, 2))
-    slope = 2.0 / (3.0 * np.pi) * JOINT.shear_ratio() * bend / (JOINT.mu * k)
+    slope = 2.0 / (3.0 * np.pi) * JOINT.shear_stiffness_ratio() * bend / (JOINT.mu * k)
     for u in (1e-9, 1e-10, 1e-12, 1e-14, 1e-16, 1e-18, -1e-16):
         out = rest(spring, u * np.eye(6)[0])
         assert out["eta_loop"] == pytest.approx(slope * abs(u), rel=2e-3)

@@ -135,7 +135,7 @@ def forces(spring, load, s):
 
 def potential(spring, load, s):
     """U(s) of the class: V is the exact integral of the table, piece by piece."""
-    curve, area, rho = spring.curve, JOINT.A_0 * spring.points.share, JOINT.shear_ratio()
+    curve, area, rho = spring.curve, JOINT.A_0 * spring.points.share, JOINT.shear_stiffness_ratio()
     start = spring.preloaded_approach(*load)
     a, h = curve._coefficients, np.diff(curve.displacement)
     whole = np.concatenate([[0.0], np.cumsum(h * (a / np.arange(1.0, 7.0)[:, None]).sum(axis=0))])

@@ -126,7 +126,7 @@ def _joint_facts(file: ParameterFile, preload: float) -> dict[str, tuple[float, 
 
 FIELD = FieldAdapter(
     nodal_pressures=_field_pressures,
-    tangential_stiffness_ratio=lambda joint: joint.shear_ratio(),
+    tangential_stiffness_ratio=lambda joint: joint.shear_stiffness_ratio(),
     bolt_layout=PlaneLayout.from_joint,
     insert_elastic_bodies=_with_elastic_sides,
     describe_joint=_joint_facts,

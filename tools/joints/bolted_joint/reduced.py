@@ -165,7 +165,7 @@ def _evaluate(
     force = joint.A_0 * mean * np.exp(places.force)
     compliance = force / (joint.A_0 * (scaled["k"] @ to_force))
     K = joint.A_0 * total("k")
-    rho = joint.shear_ratio()
+    rho = joint.shear_stiffness_ratio()
     C = 0.0 * K
     if works:
         C = mindlin.equivalent_damping(total(works[0]) / total(works[1]), joint.mass, K)

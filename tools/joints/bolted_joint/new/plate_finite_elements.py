@@ -200,7 +200,7 @@ def _interface_stiffness(
     normal = normal * (
         values.A_0 * (pressure_shape.area_share @ nodal) / (interface.quadrature_area @ normal)
     )
-    ratio = float(values.shear_ratio())
+    ratio = float(values.shear_stiffness_ratio())
     return np.stack([ratio * normal, ratio * normal, normal], axis=1)
 
 
