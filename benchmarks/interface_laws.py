@@ -119,10 +119,12 @@ def law_state(case, side):
     s, state = law.spots(), evaluate_at_pressure(law, case.pressures)
     if "elastic_fraction" in state:
         elastic = state["elastic_fraction"]
-    elif "elastic_area" in s.terms:
+    elif "elastic_area" in s.regime_terms:
         elastic = s.total("elastic_area", u) / s.total("area", u)
     else:  # Zhao: the second term of the area is that of the elastic spots
-        elastic = replace(s, terms={"area": s.terms["area"][1:]}).total("area", u) / s.total("area", u)
+        elastic = replace(s, regime_terms={"area": s.regime_terms["area"][1:]}).total("area", u) / s.total(
+            "area", u
+        )
     return {
         "k": stiffness_curve(law, case.pressures)[0],
         "area": state["A_r"] / law.A_0,

@@ -36,8 +36,8 @@ def sizes():
             row(name, f"{p / 1e6:.3g}", f"{level:.2g}", *(f"{h:.2g}" for h in heights))
     zhao = compare.cases()["zhao2018"].law
     s, u = zhao.spots(), solve_largest_spot(zhao, 1e6)
-    term = replace(s.terms["normal"][0], upper=np.log(10.0))
-    share = float(replace(s, terms={"normal": (term,)}).total("normal", u) / s.total("normal", u))
+    term = replace(s.regime_terms["normal"][0], upper=np.log(10.0))
+    share = float(replace(s, regime_terms={"normal": (term,)}).total("normal", u) / s.total("normal", u))
     print(f"\nzhao2018 at 1 MPa: {share:.0%} of k in spots of one to ten critical areas")
 
 

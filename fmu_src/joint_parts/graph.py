@@ -246,7 +246,7 @@ def add_law_functions(
     function_graph.add_function(
         "law_ends", "-> log-areas where a regime of the stiffness ends", [], spots.regime_end_log_areas
     )
-    head = [law.A_0, law.hardness, spots.reference, spots.m, spots.stiffness_onset_log_area]
+    head = [law.A_0, law.hardness, spots.reference_area, spots.size_exponent, spots.stiffness_onset_log_area]
     function_graph.add_function(
         "law_head",
         "-> A_0 [m2], hardness [Pa], reference area [m2], m, log-area of first stiffness",

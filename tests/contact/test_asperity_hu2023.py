@@ -109,7 +109,7 @@ def test_totals_are_sums_over_spots(case):
         "area": paper.total(lambda a: a, s_l, power=1.0),
         "elastic_area": paper.total(lambda a: a, s_l, paper.s_ec, power=1.0),
     }
-    assert set(s.terms) == set(expected)
+    assert set(s.regime_terms) == set(expected)
     for name, value in expected.items():
         assert s.total(name, u) == pytest.approx(value, rel=QUAD), name
     state = law.state(u)

@@ -108,7 +108,7 @@ class Paper:
 @given(law=yu_laws, u=log_areas)
 def test_totals_are_sums_over_spots(law, u):
     paper, s = Paper(law), law.spots()
-    assert s.reference == pytest.approx(paper.a_nec, rel=1e-11)  # brentq: 1e-13 in ln a
+    assert s.reference_area == pytest.approx(paper.a_nec, rel=1e-11)  # brentq: 1e-13 in ln a
     a_l = paper.a_nec * exp(u)
     # closer to an edge than 1 % the quadrature's own difference of logarithms is lost
     assume(all(abs(log(a_l / edge)) > 0.01 for edge in (paper.a_npc, paper.a_nepc, paper.a_nec)))
@@ -118,7 +118,7 @@ def test_totals_are_sums_over_spots(law, u):
         "area": paper.total(lambda a: a, a_l),
         "elastic_area": paper.total(lambda a: a, a_l, paper.a_nec),
     }
-    assert set(s.terms) == set(expected)
+    assert set(s.regime_terms) == set(expected)
     for name, value in expected.items():
         assert s.total(name, u) == pytest.approx(value, rel=QUAD), name
     state = law.state(u)
@@ -131,7 +131,7 @@ def test_totals_are_sums_over_spots(law, u):
 def test_order_of_the_regimes(law):
     """a_npc < a_nepc < a_nec: small spots are plastic."""
     paper, s = Paper(law), law.spots()
-    plastic, second, first, *elastic = s.terms["load"]
+    plastic, second, first, *elastic = s.regime_terms["load"]
     assert plastic.upper < second.upper < 0.0
     assert plastic.lower is None
     assert (second.lower, first.lower, first.upper) == (plastic.upper, second.upper, 0.0)
@@ -238,7 +238,7 @@ def test_elastic_load(law, u):
         power = (3 - z - D) / 2
         expected += law.lambda_ * c * a_l ** (z / 2) * (a_l**power - paper.a_nec**power)
     s = law.spots()
-    elastic = sum(term.integral(s.m, u) for term in s.terms["load"][3:])
+    elastic = sum(term.integral(s.m, u) for term in s.regime_terms["load"][3:])
     # difference of powers: 1e-11 of a_nec over 0.1 * 0.025
     assert s.m * s.weight * np.exp(s.m * u) * elastic == pytest.approx(expected, rel=1e-8)
 
@@ -300,4 +300,4 @@ def test_singular_cases_are_singular():
     for name, values in SINGULAR.items():
         s = changed(YU, values).spots()
         terms = s.regime_terms["normal"][2:] if "stiffness" in name else s.regime_terms["load"][3:]
-        assert min(abs(term.p - s.size_exponent) for term in terms) < 4 * EPS, name
+        assert min(abs(term.exponent - s.size_exponent) for term in terms) < 4 * EPS, name

@@ -96,8 +96,8 @@ def test_totals_are_sums_over_spots(law, u):
         "area": (lambda a: a, x),
         "plastic_work": (lambda a: paper.H * a * paper.delta(a), 2 - D),  # Eq. 15
     }
-    assert set(s.terms) == set(elastic) | set(plastic)
-    for name in s.terms:
+    assert set(s.regime_terms) == set(elastic) | set(plastic)
+    for name in s.regime_terms:
         expected = paper.elastic(elastic[name], largest) if name in elastic else 0.0
         if name in plastic:
             expected += paper.plastic(plastic[name][0], largest, plastic[name][1])

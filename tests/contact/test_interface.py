@@ -51,7 +51,7 @@ def test_newton_step(kind, data, v):
         return spots.log_total("load", v)[0]
 
     h = 1e-4
-    ends = {end for term in spots.terms["load"] for end in (term.lower, term.upper)} - {None}
+    ends = {end for term in spots.regime_terms["load"] for end in (term.lower, term.upper)} - {None}
     assume(all(abs(v - end) > 2 * h for end in ends))
     slope = (log_load(v + h) - log_load(v - h)) / (2 * h)
     assert 0.5 * spots.m < slope < 2.5
@@ -226,7 +226,7 @@ def test_round_trip(kind, data):
     law = data.draw(RANDOM[kind])
     spots = law.spots()
     u = data.draw(st.floats(-20.0, 20.0))
-    area = spots.reference * np.exp(u)
+    area = spots.reference_area * np.exp(u)
     there = evaluate_at_largest_spot(law, area)
     back = evaluate_at_pressure(law, there["pressure"])
     # the residual divided by the smallest slope d ln F/du = m (0.06 for Yu at e = 0.95), and eps ln(a)
@@ -256,7 +256,11 @@ def test_everything_grows_with_the_pressure(kind, data):
 def test_no_jump_across_the_regimes(law):
     """The single spot may jump at an edge of the fits, the sum over all spots may not."""
     s = law.spots()
-    ends = {end for term in (*s.terms["load"], *s.terms["normal"]) for end in (term.lower, term.upper)}
+    ends = {
+        end
+        for term in (*s.regime_terms["load"], *s.regime_terms["normal"])
+        for end in (term.lower, term.upper)
+    }
     edges = np.array([end for end in ends if end is not None])
     assert edges.size
     h = 1e-9
@@ -404,13 +408,13 @@ def test_derivatives_with_respect_to_parameters(kind):
     law = LAWS[kind]
     clone, symbols = symbolic(law)
     u = 3.0 + (10.0 if law is HU else 0.0)
-    reference = law.spots().reference
+    reference = law.spots().reference_area
     for name in ("surface.gamma", "side1.E", "side1.nu"):
         symbol, value = symbols[name]
         # at one largest spot, not at one ratio to a reference area that moves with the parameter
         area = reference * np.exp(u)
         spots = clone.spots()
-        total = spots.total("load", np.log(area / spots.reference))
+        total = spots.total("load", np.log(area / spots.reference_area))
         inputs = [s for s, _ in symbols.values()]
         slope = casadi.Function("slope", inputs, [casadi.gradient(total, symbol)])
         exact = float(slope(*(v for _, v in symbols.values())))

@@ -58,7 +58,7 @@ LINEAR = ShearStates(np.eye(3), np.array([[0.7, 0.0], [0.0, 0.7], [0.0, 0.0]]))
 def tightened(disc) -> LinearContact:
     """A joint twice as stiff as its contact against shifts."""
     law, points, rows = disc[:3]
-    full = stick_stiffness_matrix(evaluate_friction(law, LINEAR, points, rows)[1], points.area)
+    full = stick_stiffness_matrix(evaluate_friction(law, LINEAR, points, rows)[1], points.point_area)
     return LinearContact(LINEAR, full, 2.0 * full.diagonal())
 
 

@@ -156,7 +156,7 @@ def swung(law, turns):
 def test_the_place_of_rest_is_found_in_loops(middle):
     """Of a spring that stiffens, wherever the motion has its zero, also where it is loaded to one side."""
     hardening = NonlinearSpring(lambda u: K * u + 1e20 * u**3, lambda u: 0.5 * K * u**2 + 2.5e19 * u**4)
-    law = replace(PARABOLA, elastic=hardening)
+    law = replace(PARABOLA, elastic_spring=hardening)
     motion, force = swung(law, [middle + a for a in (5e-6, -5e-6, 5e-6, -5e-6)])
     found = branches.cut_branches([("", motion + 3e-5, force - 7e3)])
     rest = found.rest_position(law, found.residual_scale)
@@ -168,7 +168,7 @@ def test_the_place_of_rest_is_found_in_loops(middle):
 
 
 def test_a_linear_spring_has_no_place_of_rest():
-    law = replace(PARABOLA, elastic=SPRING)
+    law = replace(PARABOLA, elastic_spring=SPRING)
     motion, force = swung(law, [5e-6, -5e-6, 5e-6, -5e-6])
     found = branches.cut_branches([("", motion + 3e-5, force - 7e3)])
     assert found.rest_position(law, found.residual_scale) in (0.0, pytest.approx(3e-5, rel=2e-3))
@@ -453,7 +453,7 @@ def test_runs_of_their_own_size_have_their_own_noise():
     found = branches.cut_branches([("", motion[run == k], force[run == k]) for k in (1.0, 2.0)])
     rest = found.fit_turning_points(measurements.joint_law(), found.residual_scale)[2]
     assert np.std(rest[found.run_index == 1]) > 20.0 * np.std(rest[found.run_index == 0])
-    assert replace(found, areas=()).noise_groups is found.run_index
+    assert replace(found, widest_loops=()).noise_groups is found.run_index
 
 
 @pytest.mark.slow

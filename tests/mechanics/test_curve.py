@@ -116,10 +116,10 @@ def test_nodes_are_met(curves):
         right = curve.derivatives(x[:-1] + inner, 2)[2]
         left = curve.derivatives(x[1:] - inner, 2)[2]
         # 1e-9 of a segment away: the third derivative moves the bend by at most 1e-9 * 60 times its size
-        size = np.maximum(np.abs(curve.slope_start), np.abs(curve.slope_end))
+        size = np.maximum(np.abs(curve.stiffness_slope_start), np.abs(curve.stiffness_slope_end))
         size = size + curve.stiffness[1:] / np.diff(x)
-        assert np.all(np.abs(right - curve.slope_start) <= 1e-7 * size)
-        assert np.all(np.abs(left - curve.slope_end) <= 1e-7 * size)
+        assert np.all(np.abs(right - curve.stiffness_slope_start) <= 1e-7 * size)
+        assert np.all(np.abs(left - curve.stiffness_slope_end) <= 1e-7 * size)
 
 
 def test_load_and_stiffness_have_no_jump_at_nodes(curves):
@@ -132,7 +132,7 @@ def test_load_and_stiffness_have_no_jump_at_nodes(curves):
         # 10 + 15 + 6 times two loads, count k times in the stiffness, 3 10 + 4 15 + 5 6 times two, for each
         assert np.all(np.abs(high[0] - low[0]) <= high[1] * gap + 1.3e2 * EPS * high[0])
         h = np.minimum(np.diff(curve.displacement)[:-1], np.diff(curve.displacement)[1:])
-        bend = np.maximum(np.abs(curve.slope_end[:-1]), np.abs(curve.slope_start[1:]))
+        bend = np.maximum(np.abs(curve.stiffness_slope_end[:-1]), np.abs(curve.stiffness_slope_start[1:]))
         assert np.all(np.abs(high[1] - low[1]) <= bend * gap + 4.8e2 * EPS * (high[1] + high[0] / h))
 
 
@@ -347,7 +347,7 @@ def test_closing_begins_at_nothing_and_joins_smoothly(law):
     # the closing takes over the very same numbers; its last polynomial sums three of them
     assert curve.stiffness_slope_end[i - 1] == pytest.approx(curve.stiffness_slope_start[i], rel=1e-12)
     state = evaluate_at_largest_spot(
-        law, law.spots().reference * np.exp(law.spots().stiffness_onset_log_area) * CLOSING_AREA_RATIO
+        law, law.spots().reference_area * np.exp(law.spots().stiffness_onset_log_area) * CLOSING_AREA_RATIO
     )
     assert p == pytest.approx(float(state["pressure"]), rel=1e-12)  # round-off of exp and log
     slope = stiffness_curve(law, p)[1]

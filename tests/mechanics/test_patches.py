@@ -162,7 +162,7 @@ def test_a_turn_about_any_pole_slips_as_all_nodes_do(spring, name):
         p = spring.curve.derivatives(start - largest * (points.position @ turn), 0)[0]
         places = points.position[:, None] + points.radius[:, None, None] * circle
         arm = np.mean(np.hypot(*np.moveaxis(places - pole, -1, 0)), axis=1)
-        return points.share @ (p * arm), points.share @ p
+        return points.area_share @ (p * arm), points.area_share @ p
 
     off = []
     for _ in range(400):

@@ -79,7 +79,7 @@ def test_points_and_patches_are_those_of_inputs_a_bit_off(name, searched):
             (point_reduction.reduce_points(other, 120), reduction.reduce_patches(other, 22)),
             strict=True,
         ):
-            np.testing.assert_allclose(few.area_share, one.share, rtol=AGREE)
+            np.testing.assert_allclose(few.area_share, one.area_share, rtol=AGREE)
             for number in NUMBERS[1:]:
                 was, now = getattr(one, number), getattr(few, number)
                 np.testing.assert_allclose(now, was, rtol=AGREE, atol=AGREE * np.max(np.abs(was)))

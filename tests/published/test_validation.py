@@ -59,7 +59,7 @@ def rows():
 @pytest.mark.parametrize("point", ALL, ids=[f"{p.paper}-{p.id}" for p in ALL])
 def test_published_point_is_met(rows, point):
     row = next(r for r in rows if r.point == point)
-    assert row.passed, (row.point.id, row.computed, row.point.value, row.error)
+    assert row.has_passed, (row.point.id, row.computed_value, row.point.value, row.error)
 
 
 def test_every_point_is_compared_once(rows):
@@ -126,7 +126,7 @@ def test_table_3_is_divided_by_the_experiment(rows):
     for row in rows:
         if row.point.quantity == "frequency_error":
             given = row.point.where
-            assert row.computed == pytest.approx(
+            assert row.computed_value == pytest.approx(
                 100 * (given["predicted"] / given["measured"] - 1), rel=1e-12
             )
 
@@ -313,7 +313,7 @@ def test_counts(rows):
     assert found.printed == len(PRINTED)
     assert found.guessed == {role: n if role in GUESS_ROLES else 0 for role, n in found.roles.items()}
     assert found.nearer == {
-        role: sum(r.nearer == "law" and r.point.role == role for r in rows) for role in ROLES
+        role: sum(r.nearer_estimate == "law" and r.point.role == role for r in rows) for role in ROLES
     }
     assert len(found.contradictions) == 3
     assert found.missed == []
@@ -351,7 +351,7 @@ def test_summary(rows):
         "(prediction); "
         f"text against its own equations: {', '.join(found.contradictions)}; missed: none"
     )
-    off = [replace(row, passed=False) if row.point.id == "p_max.9kN" else row for row in rows]
+    off = [replace(row, has_passed=False) if row.point.id == "p_max.9kN" else row for row in rows]
     assert (
         f"{found.roles['calibration']} calibration ({found.roles['calibration'] - 1} met)"
         in format_summary(off)
@@ -412,7 +412,9 @@ def test_fitted_values_are_marked_in_the_code_and_in_the_file(joint):
 def refitted(monkeypatch, fits):
     """Let the calibration use other fits."""
     monkeypatch.setattr(
-        calibration, "published_numbers", lambda kind: replace(load_published_numbers(kind), calibration=fits)
+        calibration,
+        "load_published_numbers",
+        lambda kind: replace(load_published_numbers(kind), calibration=fits),
     )
 
 
@@ -486,7 +488,7 @@ def test_computed_values_follow_the_calibrated_ones(rows, joint, name):
     for row in rows:
         if row.point.paper == paper:
             computed = OBSERVABLES[row.point.quantity](changed.values, **row.point.where)
-            if computed != pytest.approx(row.computed, rel=1e-6):  # far above round-off, far below 1e-3
+            if computed != pytest.approx(row.computed_value, rel=1e-6):  # far above round-off, far below 1e-3
                 moved.add(row.point.role)
     assert "calibration" in moved
     assert (
@@ -504,6 +506,6 @@ def test_validation_reads_nothing_but_the_parameter_set(rows, monkeypatch):
     }
     monkeypatch.setattr(comparison, "read_points", shifted.__getitem__)
     for row, again in zip(rows, validate(), strict=True):
-        assert again.computed_value == row.computed
+        assert again.computed_value == row.computed_value
         if not isinstance(row.point.value, bool):
             assert not again.has_passed

@@ -67,11 +67,11 @@ def export_springs(
         f"units: {units.name}",
         f"pairs: {len(field.nodes)}, left out because they are open: {field.open_pairs}",
         f"sums over the pairs, SI: {sums}",
-        f"stiffness multiplied by {field.correction:.9g} to add up to the joint's",
+        f"stiffness multiplied by {field.stiffness_correction:.9g} to add up to the joint's",
         f"the joint's normal is the model's {placement.normal}",
     ]
     write, notes = _SPRING_WRITERS[file_format]
-    facts = {"pairs": len(field.nodes), "open": field.open_pairs, "correction": field.correction}
+    facts = {"pairs": len(field.nodes), "open": field.open_pairs, "correction": field.stiffness_correction}
     facts |= field.totals
     return ExportedFile(write(field, placement, [*about, *notes]), facts)
 

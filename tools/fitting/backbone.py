@@ -93,7 +93,7 @@ def find_backbone(torque: Array, angle: Array) -> Backbone:
         return _check_monotone(Backbone(*line, len(branches), None, None, None))
     low, high = (
         inner(outer(getattr(b, name) for b in branches if b.rising is rising) for rising in (True, False))
-        for inner, outer, name in ((max, min, "low"), (min, max, "high"))
+        for inner, outer, name in ((max, min, "min_torque"), (min, max, "max_torque"))
     )
     if not high - low >= 0.5 * np.ptp(torque):
         raise ValueError(

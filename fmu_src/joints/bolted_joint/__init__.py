@@ -119,7 +119,7 @@ def _loops(spring: Any, end: float) -> list[chart.Panel]:
     left = spring.joint.embedding
     preload = left + LOOP_PRELOAD_RATIO * (end - left)
     approach = spring.preloaded_approach(preload, 0.0)
-    foundation, share = spring.friction.foundation(), spring.points.share
+    foundation, share = spring.friction.foundation(), spring.points.area_share
     mean = share @ np.maximum(approach - spring.curve.displacement[0], 0.0)
     slips = foundation.friction_coefficient / foundation.stiffness_ratio * float(mean)
 

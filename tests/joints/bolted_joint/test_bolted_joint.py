@@ -104,8 +104,8 @@ def test_stiffness_is_the_sum_of_the_nodes_own_laws(spring, preload, moment):
     )  # outside the closing
     law = evaluate_at_pressure(JOINT, p)
     out = spring.evaluate(preload, moment, STILL, STILL)
-    assert out["K_zz"] == pytest.approx(spring.points.share @ law["K_N"], rel=MAX_ERROR)
-    assert out["K_xx"] == pytest.approx(spring.points.share @ law["K_T"], rel=MAX_ERROR)
+    assert out["K_zz"] == pytest.approx(spring.points.area_share @ law["K_N"], rel=MAX_ERROR)
+    assert out["K_xx"] == pytest.approx(spring.points.area_share @ law["K_T"], rel=MAX_ERROR)
 
 
 def test_uneven_pressure_is_softer_than_even(spring, even):
@@ -135,7 +135,7 @@ def forces(spring, load, s):
 
 def potential(spring, load, s):
     """U(s) of the class: V is the exact integral of the table, piece by piece."""
-    curve, area, rho = spring.curve, JOINT.A_0 * spring.points.share, JOINT.shear_stiffness_ratio()
+    curve, area, rho = spring.curve, JOINT.A_0 * spring.points.area_share, JOINT.shear_stiffness_ratio()
     start = spring.preloaded_approach(*load)
     a, h = curve._coefficients, np.diff(curve.displacement)
     whole = np.concatenate([[0.0], np.cumsum(h * (a / np.arange(1.0, 7.0)[:, None]).sum(axis=0))])
@@ -268,7 +268,7 @@ def test_loss_factors_and_damping(plastic, preload, moment):
     spring = plastic
     out = spring.evaluate(preload, moment, STILL, STILL)
     law = evaluate_at_pressure(JOINT, preload_pressure(JOINT, spring.points, preload, moment))
-    plastic, elastic = (spring.points.share @ law[name] for name in ("W_NP", "W_NE"))
+    plastic, elastic = (spring.points.area_share @ law[name] for name in ("W_NP", "W_NE"))
     assert out["eta_n"] == pytest.approx(plastic / elastic, rel=MAX_ERROR)
     ratio = 12.0 * mindlin.dissipation_function(0.1) / (5.0 * np.pi * mindlin.storage_function(0.1))
     assert out["eta_t"] == pytest.approx(ratio / (1.0 - ratio), rel=1e-13)  # round-off
@@ -319,7 +319,7 @@ def test_rotational_stiffness_about_the_centroid(spring, preload, moment):
     out = spring.evaluate(preload, moment, STILL, STILL)
     law = evaluate_at_pressure(JOINT, preload_pressure(JOINT, spring.points, preload, moment))
     x, y = spring.points.position.T
-    share = spring.points.share
+    share = spring.points.area_share
     assert share @ x == pytest.approx(0.0, abs=1e-15)  # m, the origin is the centroid
     assert share @ y == pytest.approx(0.0, abs=1e-15)
     assert out["K_rx"] == pytest.approx(share @ (law["K_N"] * y**2), rel=MAX_ERROR)

@@ -354,7 +354,7 @@ def test_the_picture_shows_pressure_and_bolts_where_they_are() -> None:
     drawn = ElementTree.fromstring(draw_plan(joint, 9e3, 0.0))
     cells = [rect for rect in drawn.iter(f"{SVG}rect") if rect.get("fill") not in ("#fff", "none", None)]
     sides = [[float(rect.get(side)) - CELL_OVERLAP for side in ("width", "height")] for rect in cells]
-    area = np.sum(np.prod(sides[: len(shape.share)], axis=1))
+    area = np.sum(np.prod(sides[: len(shape.area_share)], axis=1))
     outer = next(rect for rect in drawn.iter(f"{SVG}rect") if rect.get("fill") == "none")
     scale = float(outer.get("width")) / (joint.pattern.column_spacing + joint.pattern.flange_width)
     assert area / scale**2 == pytest.approx(joint.A_0, rel=0.03)  # drawn to tenths of 5 px
@@ -384,7 +384,7 @@ def test_the_picture_of_points_without_an_outline() -> None:
     shape = file.values.pattern.pressure_distribution()
     half = np.flatnonzero(shape.position[:, 1] > 0.0)
     some = shape.select_nodes(half)
-    share = some.share / some.share.sum()
+    share = some.area_share / some.area_share.sum()
     moved = replace(some, share=share, position=some.position - share @ some.position)
     moved = replace(moved, equal=some.equal / (share @ some.equal), tilt=some.tilt - share @ some.tilt)
     joint = replace(file.values, pattern=NodalField(**nodal_field_entries(moved)))

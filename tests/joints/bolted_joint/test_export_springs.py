@@ -99,7 +99,7 @@ def test_state_outside_the_law_is_refused(joint, state):
 
 
 def test_the_joints_own_nodes_as_a_mesh_give_the_same(joint, found):
-    area = joint.points.share * joint.joint.A_0
+    area = joint.points.area_share * joint.joint.A_0
     mesh = NodePairs("own.csv", found.nodes, joint.points.position, area, None)
     same = springs_on_mesh(joint, mesh, 15e3, 4500.0)
     np.testing.assert_allclose(same.K_n, found.K_n, rtol=1e-9)  # the triangulation's round-off

@@ -96,14 +96,16 @@ def test_points_keep_the_sums(reduced):
 def test_points_balance(reduced):
     _, shape, found = reduced
     points = found.shape
-    assert np.all(points.share > 0.0)
+    assert np.all(points.area_share > 0.0)
     for one in (shape, points):
-        assert one.share.sum() == pytest.approx(1.0, rel=1e-12)
-        assert one.share @ one.preload_shape == pytest.approx(1.0, rel=1e-12)
-        assert one.share @ one.tilt == pytest.approx(0.0, abs=1e-12)
-        np.testing.assert_allclose(one.share @ one.position, 0.0, atol=1e-14)
+        assert one.area_share.sum() == pytest.approx(1.0, rel=1e-12)
+        assert one.area_share @ one.preload_shape == pytest.approx(1.0, rel=1e-12)
+        assert one.area_share @ one.moment_shape == pytest.approx(0.0, abs=1e-12)
+        np.testing.assert_allclose(one.area_share @ one.position, 0.0, atol=1e-14)
         # a moment M shifts M/L_a from row to row: the pressures balance it if this is L_a
-        assert one.share @ (one.tilt * one.position[:, 1]) == pytest.approx(JOINT.row_distance, rel=1e-6)
+        assert one.area_share @ (one.moment_shape * one.position[:, 1]) == pytest.approx(
+            JOINT.row_distance, rel=1e-6
+        )
 
 
 def test_a_field_that_is_a_bit_off_is_the_same():

@@ -125,18 +125,18 @@ def test_real_area_and_its_elastic_part(spring):
     out = spring.evaluate(f)
     law = evaluate_at_pressure(spring.joint, f / spring.joint.A_0)
     np.testing.assert_allclose(out["A_r"], law["A_r"], rtol=4 * EPS)
-    m, spots = spring.joint.spots().m, spring.joint.spots()
+    m, spots = spring.joint.spots().size_exponent, spring.joint.spots()
     largest = law["largest_spot"]
     # exp and log of areas over tens of decades lose 1e-14
     np.testing.assert_allclose(out["A_r"], spring.joint.lambda_ * m / (1 - m) * largest, rtol=1e-12)
-    part = np.maximum(1.0 - (spots.reference / largest) ** (1.0 - m), 0.0)
+    part = np.maximum(1.0 - (spots.reference_area / largest) ** (1.0 - m), 0.0)
     np.testing.assert_allclose(out["elastic_fraction"], part, rtol=1e-11, atol=1e-14)
     assert np.ptp(part) > 0.01  # the range includes a change of it
 
 
 def test_zeta_is_the_exponent():
     """m = sqrt(1 - e^2) (D1 + D2)/4 for Table 1 of Yu 2022, and the table's end."""
-    assert CONTACT.spots().m == pytest.approx(np.sqrt(1 - 0.2**2) * 2 * 1.46 / 4, rel=1e-15)
+    assert CONTACT.spots().size_exponent == pytest.approx(np.sqrt(1 - 0.2**2) * 2 * 1.46 / 4, rel=1e-15)
     assert SPRINGS["default"].max_force == pytest.approx(2.8 * 235e6 * 1e-4, rel=1e-12)  # H A_0
 
 
@@ -146,7 +146,7 @@ def test_the_closing_is_short(spring):
     force, _ = closing_end(spring)
     spots = spring.joint.spots()
     largest = float(evaluate_at_pressure(spring.joint, force / spring.joint.A_0)["largest_spot"])
-    plastic = spots.reference * np.exp(spots.stiffness_onset_log_area)
+    plastic = spots.reference_area * np.exp(spots.stiffness_onset_log_area)
     assert largest == pytest.approx(CLOSING_AREA_RATIO * plastic, rel=1e-10)  # 1e-12 of the load, steep
     assert force < spring.max_force
 

@@ -46,7 +46,7 @@ def check_friction(found, undetermined=frozenset()):
     assert found.rejection_reason() is None
     assert not any("--motor-inertia" in note for note in found.notes)
     assert found.facts["held_out"][0] < 0.1 * found.facts["held_out_constant"][0]
-    for label, deviation in found.solution.deviations.items():
+    for label, deviation in found.solution.relative_deviations.items():
         assert abs(math.log(found.parameters.values_by_name[label] / TRUE[label])) < 4.0 * deviation
         if label in undetermined:
             assert label not in found.intervals

@@ -68,7 +68,7 @@ def test_every_row_keeps_its_angles(row):
         )
     T = np.linspace(0.0, 1.5 * d.max_torque, 3001)[1:]
     phi = lines(T, **K)
-    away = np.all([np.abs(phi / corner - 1.0) > d.corner for corner in d.corners], axis=0)
+    away = np.all([np.abs(phi / corner - 1.0) > d.corner for corner in d.corner_angles], axis=0)
     state = spring.evaluate_torque(T)
     np.testing.assert_allclose(state["phi_rel"], phi, rtol=STATED)
     np.testing.assert_allclose(state["phi_rel"][away], phi[away], rtol=SAME)

@@ -203,7 +203,7 @@ def test_windup_is_the_integral_of_dT_over_K(it, springs):
 @each_drive
 def test_table_follows_the_law_between_its_nodes(it, springs):
     curve = next(spring.curve for spring in springs.values() if spring.joint is it)
-    assert curve.error <= MAX_ERROR
+    assert curve.interpolation_error <= MAX_ERROR
     x = curve.displacement
     T, K = curve.derivatives((x[:-1] + np.linspace(0.0, 1.0, 8)[:, None] * np.diff(x)).ravel(), 1)
     np.testing.assert_allclose(K, drive_stiffness(it, T)[0], rtol=MAX_ERROR)
