@@ -62,7 +62,7 @@ def decay(law, inertia, amplitude, periods=60, steps=500, kept=25):
 
     def rate(x, v):
         pull = memory(x) + np.copysign(np.interp(abs(x), grid, elastic), x)
-        return -(pull + law.viscous * v) / inertia
+        return -(pull + law.viscous_damping * v) / inertia
 
     x, v, a, motion = amplitude, 0.0, rate(amplitude, 0.0), [amplitude]
     for k in range(1, periods * steps + 1):

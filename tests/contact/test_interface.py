@@ -54,7 +54,7 @@ def test_newton_step(kind, data, v):
     ends = {end for term in spots.regime_terms["load"] for end in (term.lower, term.upper)} - {None}
     assume(all(abs(v - end) > 2 * h for end in ends))
     slope = (log_load(v + h) - log_load(v - h)) / (2 * h)
-    assert 0.5 * spots.m < slope < 2.5
+    assert 0.5 * spots.size_exponent < slope < 2.5
     aim = log_load(v) + 1e-3
     step, lower, upper, residual = newton_step(spots, v, aim)
     assert residual == pytest.approx(1e-3, rel=1e-9)  # a difference of logarithms of order 100
@@ -230,7 +230,7 @@ def test_round_trip(kind, data):
     there = evaluate_at_largest_spot(law, area)
     back = evaluate_at_pressure(law, there["pressure"])
     # the residual divided by the smallest slope d ln F/du = m (0.06 for Yu at e = 0.95), and eps ln(a)
-    assert back["largest_spot"] == pytest.approx(area, rel=RESIDUAL / spots.m + 100 * EPS)
+    assert back["largest_spot"] == pytest.approx(area, rel=RESIDUAL / spots.size_exponent + 100 * EPS)
     assert there["largest_spot"] == pytest.approx(area, rel=100 * EPS)
     assert back["F"] == pytest.approx(there["F"], rel=RESIDUAL)
     assert there["pressure"] == there["F"] / law.A_0

@@ -96,7 +96,7 @@ def test_the_tightened_joint_stays_as_stiff(disc):
     working, full = fit(disc), tightened(disc).contact_stiffness
     fitted = working.fit(means)
     found = [
-        stick_stiffness_matrix(evaluate_friction(law, LINEAR, few, each)[1], few.area)
+        stick_stiffness_matrix(evaluate_friction(law, LINEAR, few, each)[1], few.point_area)
         for each in (means, fitted)
     ]
     missed = [np.max(np.abs(each - full)[:2]) / np.max(np.abs(full)) for each in found]

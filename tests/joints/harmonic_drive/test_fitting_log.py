@@ -49,9 +49,9 @@ def check_friction(found, undetermined=frozenset()):
     for label, deviation in found.solution.relative_deviations.items():
         assert abs(math.log(found.parameters.values_by_name[label] / TRUE[label])) < 4.0 * deviation
         if label in undetermined:
-            assert label not in found.intervals
+            assert label not in found.confidence_intervals
             continue
-        low, high = found.intervals[label]
+        low, high = found.confidence_intervals[label]
         assert low < found.parameters.values_by_name[label] < high
         assert f"95 % interval {low:.4g} to {high:.4g}" in found.parameters.sources[label]
 
