@@ -84,8 +84,8 @@ def folder(tmp_path_factory, native):
     joint = load_default("bolted_joint").values
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(bolts, "CELLS_ACROSS", 3)  # few nodes are read as many are
-        shape, mean = joint.pattern.shape(), 9e3 * joint.n_bolts / joint.A_0
-    field = ContactField(joint.A_0 * shape.share, shape.position, mean * shape.equal)
+        shape, mean = joint.pattern.pressure_distribution(), 9e3 * joint.n_bolts / joint.A_0
+    field = ContactField(joint.A_0 * shape.share, shape.position, mean * shape.preload_shape)
     (place / "my_field.csv").write_text(nodal_result.csv_text(field))
     (place / "models/robots").mkdir()
     shutil.copy(ROOT / "models/robots/six_axis.xml", place / "models/robots")
