@@ -13,7 +13,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.optimize
 
 from jointfmu.quantity import Array
 
@@ -136,11 +135,11 @@ def _fit_window(first: Array, t: Array, u: Array) -> Array:
     Times t (n) and all results are made dimensionless with the length of the window. w and s are first fitted
     with zero rates, then all four together.
     """
-    constant = scipy.optimize.least_squares(
-        lambda x: _window_residual(np.append(x, [0.0, 0.0]), t, u), first
-    ).x
+    from scipy.optimize import least_squares  # slow to import, and most commands import this module
+
+    constant = least_squares(lambda x: _window_residual(np.append(x, [0.0, 0.0]), t, u), first).x
     start = np.append(constant, [0.0, 0.0])
-    return np.asarray(scipy.optimize.least_squares(lambda x: _window_residual(x, t, u), start).x)
+    return np.asarray(least_squares(lambda x: _window_residual(x, t, u), start).x)
 
 
 def _window_residual(shape: Array, t: Array, u: Array) -> Array:
