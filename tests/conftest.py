@@ -48,7 +48,7 @@ HERE = Path(__file__).parent
 RELEASED = ("-target", TARGETS[platform_tuple], "-O2", "-s")
 """Options of zig as FMUs are linked here. Others let it compile its part of the C runtime first, 4 s with
 optimization, 20 s without."""
-SLOW_FIXTURES = frozenset({"fmus", "native", "elastic_joint", "tutorial", "site"})
+SLOW_FIXTURES = frozenset({"fmus", "native", "system_files", "elastic_joint", "tutorial", "site"})
 """Fixtures that build FMUs or run commands; `fmu`, `host` and others stand on them."""
 
 
@@ -281,12 +281,15 @@ def few_points(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture(scope="session", autouse=True)
 def solved_once(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
-    """Bodies of equal plates, of elements twice as large but with `fine_elements`, and patches of equal
-    contacts are found once for all processes that share the tests."""
+    """Bodies of equal plates, of elements twice as large but with `fine_elements`, patches of equal contacts
+    and experiments of equal FMUs are computed once for all processes that share the tests."""
+    from jointfmu_fmu_src.proof import members
     from jointfmu_tools.fields import joint_parameters
     from jointfmu_tools.joints.bolted_joint.new import plate_finite_elements
 
     from jointfmu.joints.bolted_joint import joint
+    from jointfmu.joints.model import Model
+    from jointfmu.parameters import ParameterFile, format_parameter_file
 
     def once(what: str, real: Callable[..., Any]) -> Callable[..., Any]:
         @wraps(real)
@@ -322,10 +325,22 @@ def solved_once(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
             )
             return compiled_models(*asked)
 
+    def experiments_of(model: Model, parameters: ParameterFile) -> Any:
+        text = f"{model.name}\n{format_parameter_file(parameters)}"  # what the product keeps them by
+
+        def make(out: Path) -> None:
+            out.mkdir()
+            (out / "found").write_bytes(pickle.dumps(tuple(compute_experiments(model, parameters))))
+
+        name = f"experiments-{sha256(text.encode()).hexdigest()[:16]}"
+        return pickle.loads((made_once(tmp_path_factory, name, make) / "found").read_bytes())
+
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(plate_finite_elements, "compute_joint", whole)
         for module in (joint, joint_parameters):
             patch.setattr(module, "reduce_patches", once("patches", module.reduce_patches))
+        compute_experiments = members.compute_experiments
+        patch.setattr(members, "compute_experiments", experiments_of)
         yield
 
 
@@ -343,6 +358,19 @@ def native(tmp_path_factory: pytest.TempPathFactory) -> Path:
     from jointfmu_fmu_src.building import build
 
     return made_once(tmp_path_factory, "native", lambda out: build([], ["fmi2", "fmi3"], None, out))
+
+
+@pytest.fixture(scope="session")
+def system_files(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Folder with what `jointfmu build --systems` makes, and the drive with torque in."""
+    from jointfmu_fmu_src.building import build
+    from jointfmu_tools import cli
+
+    def make(out: Path) -> None:
+        build(["HarmonicDriveCompliance"], ["fmi2"], None, out)
+        assert cli.main(["build", "--systems", "--out", str(out)]) == 0
+
+    return made_once(tmp_path_factory, "systems", make)
 
 
 @pytest.fixture(scope="session")

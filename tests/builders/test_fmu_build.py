@@ -10,14 +10,15 @@ import subprocess
 import sys
 import time
 import zipfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import Executor
 from contextlib import redirect_stdout, suppress
 from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
-from shutil import copytree, ignore_patterns
+from shutil import copy, copytree, ignore_patterns
 from subprocess import PIPE
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import pytest
 import pythonfmu
@@ -392,15 +393,35 @@ class Job(NamedTuple):
 
 
 @pytest.fixture(scope="module")
-def job(tmp_path_factory: pytest.TempPathFactory) -> Job:
-    """The one main job of these tests."""
+def job(tmp_path_factory: pytest.TempPathFactory, fmus: Path, native: Path, system_files: Path) -> Job:
+    """The one main job of these tests. It builds all FMUs and systems, as the fixtures of all tests have: it
+    gets copies of theirs."""
     folder, found, run = tmp_path_factory.mktemp("job"), [], pipeline.run_job
+
+    def copied(sources: Iterable[Path], out: Path) -> list[Path]:
+        files = [(path, out / path.parent.name / path.name) for path in sources]
+        new = [(path, target) for path, target in files if not target.exists()]
+        for path, target in new:
+            target.parent.mkdir(parents=True, exist_ok=True)
+            copy(path, target)
+        return [target for _, target in new]
+
+    def built(names: Sequence[str], flavours: Sequence[str], file: object, out: Path, pool: Executor) -> Any:
+        assert (names, flavours, file) == ([], [*FLAVOURS], None)
+        folders = {"python": fmus} | {version: native / version for version in VERSIONS}
+        return copied((folders[f] / f"{name}.fmu" for f in flavours for name in NAMES), out)
+
+    def built_systems(out: Path, joints: bool, pool: Executor) -> list[Path]:
+        assert not joints
+        return [made for suffix in ("fmu", "ssp") for made in copied(system_files.glob(f"*/*.{suffix}"), out)]
 
     def watched(out: Path) -> pipeline.JobResult:
         found.append(run(out))
         return found[0]
 
     with pytest.MonkeyPatch.context() as patch, redirect_stdout(io.StringIO()) as out:
+        patch.setattr(pipeline, "build", built)
+        patch.setattr(pipeline, "build_systems", built_systems)
         patch.setattr(pipeline, "run_job", watched)
         assert pipeline.main(folder) == 0, out.getvalue()
     return Job(folder, out.getvalue(), found[0])

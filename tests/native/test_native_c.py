@@ -29,6 +29,7 @@ from jointfmu_fmu_src.native.code.generate import (
     read_token,
 )
 from jointfmu_fmu_src.native.compiled.compiler import TARGETS
+from jointfmu_fmu_src.native.compiled.compiler import _folder as source_folder
 from jointfmu_fmu_src.partners import PARTNERS
 from jointfmu_fmu_src.partners import load_partner_parameters as partner_parameters
 from jointfmu_tools.systems.fmu.assembly import assemble_system
@@ -162,17 +163,20 @@ class Builder:
         self.objects, self.host, self.program = map(cache, (self._objects, self._host, self._program))
 
     def _objects(self, compiler: str, name: str, *options: str) -> list[Path]:
-        """Object files of a joint, warnings being errors."""
-        folder = self.work / f"{compiler}-{name}-{abs(hash(options))}"
-        folder.mkdir()
+        """Object files of a joint, warnings being errors.
+
+        Zig keeps what it compiles without a warning, for later runs too, if equal sources have equal paths.
+        """
         files = c_of(name).files
-        for file, text in files.items():
-            (folder / file).write_text(text)
         units = [file for file in files if file.endswith(".c")]
         command = (*COMPILERS[compiler], *STRICT, *options, "-isystem", str(FMI_HEADERS))
+        folder = self.work / f"{compiler}-{name}-{abs(hash(options))}"
+        folder.mkdir()
         if compiler == "zig":  # which compiles several files at a time into one only
-            self.call(folder, *command, "-r", *units, "-o", "merged.o")
+            self.call(source_folder(files), *command, "-r", *units, "-o", str(folder / "merged.o"))
             return [folder / "merged.o"]
+        for file, text in files.items():
+            (folder / file).write_text(text)
         self.call(folder, *command, "-c", *units)
         return [folder / f"{Path(unit).stem}.o" for unit in units]
 

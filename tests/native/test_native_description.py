@@ -474,7 +474,8 @@ from jointfmu.joints import MODELS
 for model in MODELS.values():
     file = load_default(model.joint)
     files = make_documentation(model, file) | terminal_files(model)
-    files |= {"2": format_fmi2_description(model, file, "{}", ["a.c"]), "3": format_fmi3_description(model, file, "{}")}
+    files |= {"2": format_fmi2_description(model, file, "{}", ["a.c"])}
+    files |= {"3": format_fmi3_description(model, file, "{}")}
     files |= {"build": format_build_description(model, ["a.c"])}
     for text in files.values():
         print(hashlib.sha256(text).hexdigest())

@@ -21,12 +21,11 @@ import fmpy
 import numpy as np
 import pytest
 from clients import needs
-from conftest import Fmu, made_once, refused_line
+from conftest import Fmu, refused_line
 from fmpy import read_model_description, simulate_fmu
 from fmpy.ssp.simulation import simulate_ssp
 from fmpy.ssp.ssd import read_ssd, read_ssv
 from fmpy.validation import validate_fmu
-from jointfmu_fmu_src.building import build
 from jointfmu_fmu_src.native.terminals import find_terminals
 from jointfmu_fmu_src.partners import PARTNERS
 from jointfmu_fmu_src.partners.laws import (
@@ -83,14 +82,9 @@ def bolted() -> BoltedJointSpring:
 
 
 @pytest.fixture(scope="session")
-def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """What `jointfmu build --systems` makes, and the drive with torque in."""
-
-    def make(out: Path) -> None:
-        build(["HarmonicDriveCompliance"], ["fmi2"], None, out)
-        assert cli.main(["build", "--systems", "--out", str(out)]) == 0
-
-    return made_once(tmp_path_factory, "systems", make)
+def built(system_files: Path) -> Path:
+    """The same under a shorter name."""
+    return system_files
 
 
 @pytest.fixture

@@ -79,7 +79,8 @@ def run(args: argparse.Namespace) -> CommandResult:
     from ..robots.transmission import make_transmission
 
     spec = elastic.read_robot(args.robot)
-    files = {joint: load(name).file for joint, name in names.items()}
+    loaded = {name: load(name).file for name in dict.fromkeys(names.values())}  # axes may share a drive
+    files = {joint: loaded[name] for joint, name in names.items()}
     if args.plugin or args.fmu:
         check_names(files)
     if args.fmu:
@@ -90,7 +91,8 @@ def run(args: argparse.Namespace) -> CommandResult:
         for path in (args.out / f"{name}.toml" for name in outputs):
             check_input_overwrite([path], args, ("out",))
             check_output(path, PARAMETER_FILE, args.force)
-    axes = elastic.make_axes(spec, {joint: make_transmission(file) for joint, file in files.items()})
+    drives = {name: make_transmission(file) for name, file in loaded.items()}
+    axes = elastic.make_axes(spec, {joint: drives[name] for joint, name in names.items()})
     model = spec.compile()
     pose, tip = elastic.joint_positions(model, angles), elastic.find_body(model, args.tip, axes)
     made = elastic.add_drives(spec, axes)

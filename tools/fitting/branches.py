@@ -11,8 +11,6 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.integrate import trapezoid
-from scipy.signal import find_peaks
 
 from jointfmu.quantity import Array
 
@@ -237,6 +235,8 @@ def find_turning_points(motion: Array) -> NDArray[np.int64]:
 
 def find_reversals(signal: Array, prominence: float) -> NDArray[np.int64]:
     """Find the indices at which a signal reverses by at least `prominence`."""
+    from scipy.signal import find_peaks  # slow to import, and most commands import this module
+
     return np.sort(
         np.concatenate([find_peaks(sign * signal, prominence=prominence)[0] for sign in (1.0, -1.0)])
     )
@@ -329,7 +329,7 @@ def _area_between_branches(
         return None
     grid = np.linspace(low, high, _GRID_POINTS)
     up, down = (np.interp(grid, *sort_points(x, y)) for x, y in ((u, F), (v, G)))
-    return float(trapezoid(up - down, grid)), float(high - low), float(max(np.ptp(u), np.ptp(v)))
+    return float(np.trapezoid(up - down, grid)), float(high - low), float(max(np.ptp(u), np.ptp(v)))
 
 
 def sort_points(x: Array, y: Array) -> tuple[Array, Array]:

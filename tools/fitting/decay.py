@@ -13,7 +13,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.optimize
 
 from jointfmu.quantity import Array
 
@@ -140,13 +139,13 @@ def _fit_window(start_values: Array, window_time: Array, signal: Array) -> Array
     `window_time` (n) and all results are made dimensionless with the length of the window. w and s are first
     fitted with zero rates, then all four together.
     """
-    constant = scipy.optimize.least_squares(
+    from scipy.optimize import least_squares  # slow to import, and most commands import this module
+
+    constant = least_squares(
         lambda x: _window_residual(np.append(x, [0.0, 0.0]), window_time, signal), start_values
     ).x
     start = np.append(constant, [0.0, 0.0])
-    return np.asarray(
-        scipy.optimize.least_squares(lambda x: _window_residual(x, window_time, signal), start).x
-    )
+    return np.asarray(least_squares(lambda x: _window_residual(x, window_time, signal), start).x)
 
 
 def _window_residual(window_parameters: Array, window_time: Array, signal: Array) -> Array:

@@ -23,7 +23,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 
 from jointfmu.quantity import Array
 
@@ -207,6 +206,8 @@ class Oscillator:
 
         measured_amplitude : amplitudes; the result is searched within a factor of AMPLITUDE_SEARCH_FACTOR
         """
+        from scipy.interpolate import CubicSpline  # slow to import, and most commands import this module
+
         ends = (
             float(np.log(measured_amplitude.min() / AMPLITUDE_SEARCH_FACTOR)),
             float(np.log(measured_amplitude.max() * AMPLITUDE_SEARCH_FACTOR)),

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -93,6 +94,7 @@ def make_axes(spec: Any, drives: Mapping[str, Transmission]) -> list[ElasticAxis
                 f"{name!r} is no hinge of the robot; allowed are {', '.join(filter(None, known))}"
             )
     matrix = compute_mass_matrix(model, model.qpos0)
+    fit_drive = cache(fit_spring)  # axes may share a drive
     elastic_axes = []
     for joint in hinges:
         if joint.name in drives:
@@ -109,9 +111,8 @@ def make_axes(spec: Any, drives: Mapping[str, Transmission]) -> list[ElasticAxis
                         f"{drive.presliding_angle:g} rad in the FMU"
                     )
             lines = tuple(f"{joint.name}: {line}" for line in notes)
-            elastic_axes.append(
-                ElasticAxis(joint.name, drive, fit_spring(drive, drive.rated_torque), rotor, lines)
-            )
+            spring = fit_drive(drive, drive.rated_torque)
+            elastic_axes.append(ElasticAxis(joint.name, drive, spring, rotor, lines))
     return elastic_axes
 
 

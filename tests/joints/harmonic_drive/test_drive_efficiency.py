@@ -278,7 +278,7 @@ def test_the_law_is_the_stated_one():
         for D, R in ((14, 50), (20, 100), (25, 80))
     ]
     drives += [PublishedFriction(D, 100.0, 2e-6 * D**2.5, 1.5e-5 * D**3, 0.1, 0.05) for D in (17.0, 32.0)]
-    law = scale_friction(40.0, 50.0, drives)
+    law = scale_friction(40.0, 50.0, tuple(drives))
     assert law.starting_torque.value == pytest.approx(2.0 * 2e-6 * 40.0**2.5, rel=1e-9)
     assert law.viscous_torque.value == pytest.approx(1.5e-5 * 40.0**3 - 2e-6 * 40.0**2.5, rel=1e-9)
     assert (law.starting_torque.low, law.viscous_torque.high) == (

@@ -7,8 +7,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from scipy.optimize import brentq
-
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
@@ -78,6 +76,7 @@ def solve_wind_up(transmitted_torque: Callable[[float], float], torque: float, s
     transmitted_torque : wind-up [rad] -> torque [N.m]
     stiffness          : approximate stiffness [N.m/rad], for the initial bracket
     """
+    from scipy.optimize import brentq  # slow to import, and most commands import this module
 
     def residual(angle: float) -> float:
         return transmitted_torque(angle) - torque
@@ -142,6 +141,7 @@ class DriveTestRig:
 
         max_torque : end of the search; inf is returned if a larger torque is needed
         """
+        from scipy.optimize import brentq  # slow to import, and most commands import this module
 
         def required_torque(load: float) -> float:
             """Motor torque [N.m] for slow rotation in the direction of the load."""

@@ -18,6 +18,7 @@ import math
 import re
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -79,8 +80,9 @@ class ScaledFriction:
     load_loss_back: ScaledNumber
 
 
+@lru_cache(maxsize=512)  # most drives of the catalogue share size and ratio with others
 def scale_friction(
-    drive_size: float, ratio: float, published_drives: Collection[PublishedFriction]
+    drive_size: float, ratio: float, published_drives: tuple[PublishedFriction, ...]
 ) -> ScaledFriction:
     """Scale the friction of published drives (four or more) to a drive of a size [1] and a ratio [1]."""
     starting_logs = np.array(
@@ -313,7 +315,8 @@ def add_friction_estimates(
     Without a rated torque there is no estimate of the efficiency.
     """
     numbers, ratio = dict(entry.numbers), entry.numbers["ratio"].value
-    law = scale_friction(parse_drive_size(entry.name), ratio, [each for each, _ in published_drives.values()])
+    published = tuple(each for each, _ in published_drives.values())
+    law = scale_friction(parse_drive_size(entry.name), ratio, published)
     makers: dict[str, list[str]] = {}
     for name, (_, maker) in published_drives.items():
         makers.setdefault(maker, []).append(name)
