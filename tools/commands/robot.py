@@ -118,7 +118,7 @@ def run(args: argparse.Namespace) -> CommandResult:
             "not load; --tip BODY puts it elsewhere, at a body (a link of a URDF) that stands for the tool"
         )
     lacking = (
-        f"{axis.drive.name}: the MJCF does not carry {line}" for axis in axes for line in axis.drive.lacks
+        f"{axis.drive.name}: the MJCF does not include {line}" for axis in axes for line in axis.drive.lacks
     )
     notes += dict.fromkeys(lacking)
     if model.opt.timestep > longest:
@@ -212,6 +212,6 @@ def _parse_pairs(words: Sequence[str], option: str, value: str) -> dict[str, str
         if not (joint and sign and text):
             raise ValueError(f"{option} {word!r}: expected JOINT={value}")
         if joint in pairs:
-            raise ValueError(f"{option}: {joint} is stated twice")
+            raise ValueError(f"{option}: {joint} is given twice")
         pairs[joint] = text
     return pairs

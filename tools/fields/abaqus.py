@@ -180,7 +180,7 @@ def _column_names(location: str, head: Sequence[str]) -> list[str]:
     count = sum(line.count("@Loc") for line in head)
     if count not in (0, len(names)):
         raise ValueError(
-            f"{location}: has {count} columns, their names are not told apart: {' '.join(words)}"
+            f"{location}: has {count} columns, their names cannot be separated: {' '.join(words)}"
         )
     columns = [_standard_name(name) for name in names]
     if columns.count(PRESSURE) > 1:
@@ -206,7 +206,7 @@ def _parse_row(
         or len(words) != len(columns) + 1
         or not all(map(NUMBER_PATTERN.fullmatch, numbers))
     ):
-        raise ValueError(f"{location}: {' '.join(words)!r} is no row with a node and {' '.join(columns)}")
+        raise ValueError(f"{location}: {' '.join(words)!r} is not a row with a node and {' '.join(columns)}")
     values = [float(word.upper().replace("D", "E")) for word in numbers]
     return ListingRow(location, frame, instance, int(words[0]), dict(zip(columns, values, strict=True)))
 
@@ -273,7 +273,7 @@ def read_deck(path: Path) -> FiniteElementMesh:
         open_row = row if words[-1] == "" and 0 < len(row) < size else []
         if not open_row and len(row) != size:
             raise ValueError(
-                f"{path}: line {number}: {', '.join(words)!r} is no line of *{keyword}"
+                f"{path}: line {number}: {', '.join(words)!r} is not a line of *{keyword}"
                 + (f" with {size - 1} nodes" if kind else "")
             )
         if not open_row:

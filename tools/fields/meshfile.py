@@ -43,7 +43,7 @@ def read_mesh(path: Path, length_unit: float, pressure_unit: float, data: str | 
         rows = np.asarray(block.data, dtype=np.intp)
         cells[block.type] = np.concatenate([cells[block.type], rows]) if block.type in cells else rows
     if not cells:
-        raise ValueError(f"{path}: has no cells with faces, expected the contact's faces or the bodies")
+        raise ValueError(f"{path}: has no cells with faces; expected the faces of the contact, or the bodies")
     return NodalResult(
         path=path,
         label="node",
@@ -89,7 +89,7 @@ def _select_values(path: Path, point_data: dict[str, Any], data: str | None) -> 
     available = ", ".join(listed) or "none"
     if data is None:
         raise InputRefusal(
-            f"{path}: state the point data that is the pressure; there are {available}", "data"
+            f"{path}: state which point data are the pressure; the file has {available}", "data"
         )
     name, _, component = data.partition(":")
     name, component = (data, "") if data in arrays else (name, component)
@@ -100,6 +100,6 @@ def _select_values(path: Path, point_data: dict[str, Any], data: str | None) -> 
         component = "1"
     if not component.isdigit() or not 1 <= int(component) <= value.shape[1]:
         raise ValueError(
-            f"{path}: {data!r} is no component of {name}; expected {name}:1 to {name}:{value.shape[1]}"
+            f"{path}: {data!r} is not a component of {name}; expected {name}:1 to {name}:{value.shape[1]}"
         )
     return np.asarray(value[:, int(component) - 1], dtype=np.float64)

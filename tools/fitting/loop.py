@@ -240,7 +240,7 @@ def _check_monotone(line: Backbone) -> Backbone:
     nonempty = [k for k in range(MONOTONE_INTERVALS) if np.any(tenth == k)]
     means = np.array([np.average(line.angle[tenth == k], weights=line.count[tenth == k]) for k in nonempty])
     if np.all(np.diff(means) < 0.0):
-        raise ValueError("the angle falls as the torque rises; reverse the sign of one column")
+        raise ValueError("the angle decreases as the torque increases; reverse the sign of one column")
     if np.any(falling := np.diff(means) <= 0.0):
         k = nonempty[int(np.argmax(falling))]
         raise ValueError(

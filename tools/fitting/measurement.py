@@ -81,9 +81,9 @@ class ColumnNames:
         if 1.0 / WRONG_UNIT_RATIO < ratio < WRONG_UNIT_RATIO:
             return
         raise InputRefusal(
-            f"{path}: the stiffness is {ratio:.3g} times that of {start.name}, "
-            f"allowed are {1.0 / WRONG_UNIT_RATIO:g} to {WRONG_UNIT_RATIO:g}: "
-            f"{self.likely_unit(ratio, units)}; if both are right, start from a joint of its size",
+            f"{path}: the stiffness is {ratio:.3g} times that of {start.name}, allowed are "
+            f"{1.0 / WRONG_UNIT_RATIO:g} to {WRONG_UNIT_RATIO:g}: {self.likely_unit(ratio, units)}; if the "
+            "units are right, start from the parameter file of a joint of similar stiffness",
             "params",
         )
 

@@ -113,7 +113,7 @@ def _differences(starts: Mapping[str, object], expected: ExpectedContents) -> li
     """
     return [
         f"{name} "
-        f"{f'starts at {_format_value(starts[name])}' if name in starts else 'is no parameter of the FMU'}, "
+        f"{f'starts at {_format_value(starts[name])}' if name in starts else 'is not an FMU parameter'}, "
         f"{expected.source} says {_format_value(value)}"
         for name, value in expected.start_values.items()
         if name not in starts or starts[name] != value

@@ -240,8 +240,8 @@ def find_conjugate(
     if output is not None:
         if output not in fitting:
             raise ValueError(
-                f"{source}: {output!r} is no output whose product with {input_name} is an energy, allowed "
-                f"are {', '.join(fitting) or 'none'}"
+                f"{source}: {output!r} is not an output whose product with {input_name} is an energy, "
+                f"allowed are {', '.join(fitting) or 'none'}"
             )
         return output
     if not fitting:

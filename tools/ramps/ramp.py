@@ -45,11 +45,11 @@ def ramp_points(to: float, step: float) -> Array:
             raise ValueError(f"{name} = {value:g} is outside (-inf, inf): must be finite")
     if abs(to) > MAX_END:
         raise ValueError(
-            f"to = {to:g} is outside [-{MAX_END:g}, {MAX_END:g}] (SI): no load or motion is so large"
+            f"to = {to:g} is outside [-{MAX_END:g}, {MAX_END:g}] (SI): limit for loads and motions"
         )
     if step == 0.0 or to / step < 0.0:
         allowed = "(-inf, 0)" if to < 0.0 else "(0, inf)"
-        raise ValueError(f"step = {step:g} is outside {allowed}: it must lead from 0 to {to:g}")
+        raise ValueError(f"step = {step:g} is outside {allowed}: steps must lead from 0 to {to:g}")
     count = to / step
     if count > 1e7:
         raise ValueError(f"step = {step:g} makes {count:.3g} points, allowed are 1e7")
@@ -103,7 +103,7 @@ def drive(
     rows, count = broadcast({**inputs} if time is None else {**inputs, "time": time}, str(fmu))
     clock = rows.pop("time", np.arange(float(count)))
     if not (clock[0] == 0.0 and np.all(np.diff(clock) > 0.0) and np.all(np.isfinite(clock))):
-        raise ValueError(f"{fmu}: time does not rise from 0 s")
+        raise ValueError(f"{fmu}: the times must start at 0 s and increase")
     with unpack_fmu(fmu) as (folder, description):
         return _drive(folder, description, rows, clock, dict(settings or {}), str(fmu))
 
@@ -139,7 +139,7 @@ def _drive(
         if name not in allowed:
             raise ValueError(f"{source}: unknown input {name!r}, allowed are {', '.join(allowed)}")
         if name in settings:
-            raise ValueError(f"{source}: {name} is driven by the ramp and cannot be set as well")
+            raise ValueError(f"{source}: {name} is the input of the ramp; do not set it too")
     settable = [v.name for v in md.modelVariables if v.causality in ("input", "parameter")]
     for name, value in settings.items():
         if name not in settable:

@@ -80,7 +80,7 @@ def read_robot(path: str | Path) -> Any:
 def axes(spec: Any, drives: Mapping[str, Transmission]) -> list[ElasticAxis]:
     """Make the elastic axes of the joints in `drives`, in the order of the robot.
 
-    Raises ValueError for a name that is no hinge of the robot.
+    Raises ValueError for a name that is not a hinge of the robot.
     """
     import mujoco
 
@@ -90,7 +90,7 @@ def axes(spec: Any, drives: Mapping[str, Transmission]) -> list[ElasticAxis]:
     for name in drives:
         if name not in known:
             raise ValueError(
-                f"{name!r} is no hinge of the robot; allowed are {', '.join(filter(None, known))}"
+                f"{name!r} is not a hinge of the robot; allowed are {', '.join(filter(None, known))}"
             )
     matrix = mass_matrix(model, model.qpos0)
     elastic_axes = []
@@ -222,7 +222,7 @@ def joint_positions(model: Any, angles: Mapping[str, str]) -> Array:
 
     position_texts : {joint: text of its position [rad or m]}
 
-    Raises ValueError for an unknown joint, or a position that is no number or outside the joint's range.
+    Raises ValueError for an unknown joint, or a position that is not a number or outside the joint's range.
     """
     import mujoco
 
@@ -239,7 +239,7 @@ def joint_positions(model: Any, angles: Mapping[str, str]) -> Array:
         try:
             value = float(text)
         except ValueError:
-            raise ValueError(f"--pose {name} = {text!r} is no number") from None
+            raise ValueError(f"--pose {name} = {text!r} is not a number") from None
         joint = model.joint(name).id
         low, high = model.jnt_range[joint] if model.jnt_limited[joint] else (-np.inf, np.inf)
         if not (np.isfinite(value) and low <= value <= high):

@@ -25,7 +25,7 @@ def write_drive(form: str, source: str, torque: float | None) -> tuple[str, list
             f"--torque = {fit_torque:g} N.m is outside (0, {drive.max_torque:g}] N.m of {drive.name}"
         )
     text, miss, lacks = WRITERS[form](drive, fit_torque)
-    lines = [*(miss.lines(fit_torque) if miss else ()), *(f"not carried: {line}" for line in lacks)]
+    lines = [*(miss.lines(fit_torque) if miss else ()), *(f"not included: {line}" for line in lacks)]
     errors = asdict(miss) if miss else {}
     return text, lines, {"drive": drive.name, "torque": fit_torque, **errors, "lacks": lacks}
 

@@ -160,7 +160,9 @@ def body_on(joint: str) -> Body:
     tool_module = load_tool_module(KINDS[joint], "ringing")
     if tool_module is None:
         joints = [name for name, kind in KINDS.items() if load_tool_module(kind, "ringing")]
-        raise ValueError(f"joint {joint!r} does not say how it rings, allowed are {', '.join(joints)}")
+        raise ValueError(
+            f"joint {joint!r} has no free vibration that can be simulated; allowed are {', '.join(joints)}"
+        )
     body: Body = tool_module.RINGING
     return body
 
@@ -231,7 +233,7 @@ def vibrating_joint(system: System, joint: str | None = None) -> VibratingJoint:
     body_names = [w.source for w in wires(system) if (w.target, w.input) == (name, body.motion[0])]
     moving = system.components[body_names[0]] if body_names else None
     if joints[name].model != body.model or moving is None or moving.model != body.partner:
-        raise ValueError(f"{name}: expected a {body.model} that takes {body.motion[0]} from a {body.partner}")
+        raise ValueError(f"{name}: expected a {body.model} that gets {body.motion[0]} from a {body.partner}")
     key = next(iter(dict(flat_fields(PARTNERS[body.partner].parameters))))
     return VibratingJoint(body, joints[name], fmu_names(system)[name], moving, key)
 
@@ -313,7 +315,7 @@ def _ring(joint: Slave, body: Slave, rest: Rest, load: float, inertia: float) ->
     if not stated < MOST_DAMPED:
         raise ValueError(
             f"load = {load:g}: damping ratio {stated:.3g} with the inertia {inertia:g}; allowed is "
-            f"less than {MOST_DAMPED:g}, so that there are periods to count: take a larger inertia"
+            f"less than {MOST_DAMPED:g}, so that it vibrates; state a larger inertia"
         )
     step = 2.0 * np.pi / (expected * PER_PERIOD)
     signal = motion(joint, body, rest.force, step, PERIODS * PER_PERIOD)[:, 0] - rest.position

@@ -75,9 +75,7 @@ def ends(system: System) -> list[tuple[End, End]]:
         pair = [_end(system, text) for text in connection]
         for end, other in zip(connection, reversed(connection), strict=True):
             if end != GROUND and end in partners:
-                raise ValueError(
-                    f"{end} is connected to {partners[end]} and to {other}; allowed is one of them"
-                )
+                raise ValueError(f"{end} is connected to {partners[end]} and to {other}; state one of them")
             partners[end] = other
         pair.sort(key=lambda end: (end.component is None, not end.load, not end.joint))
         _check_pair(*pair)
@@ -86,12 +84,10 @@ def ends(system: System) -> list[tuple[End, End]]:
         flanges = [f"{component.name}.{flange.name}" for flange in terminals(model_of(component))]
         if component.file and (unconnected := [name for name in flanges if name not in partners]):
             raise ValueError(
-                f'{unconnected[0]} is connected to nothing; allowed are a flange of a body, or "{GROUND}"'
+                f'{unconnected[0]} is not connected; connect it to a flange of a body, or "{GROUND}"'
             )
         if not partners.keys() & {component.name, *flanges}:
-            raise ValueError(
-                f"{component.name} is connected to nothing; allowed is a flange of a body or joint"
-            )
+            raise ValueError(f"{component.name} is not connected; connect it to a flange of a body or joint")
     _check_loops(pairs)
     _check_held(system, pairs)
     return pairs
@@ -147,8 +143,8 @@ def _end(system: System, text: str) -> End:
     members = known[flange].members
     if component.file and "inflow" in {kind for _, kind in members.values()}:
         raise ValueError(
-            f"{name}: a {model.name} takes a load and gives a motion; allowed are joints that take the "
-            "motion of bodies"
+            f"{name}: a {model.name} has a load as input and a motion as output; expected a joint whose "
+            "input is the motion of bodies"
         )
     return End(text, component, known[flange], {key: variable for key, (variable, _) in members.items()})
 
@@ -170,7 +166,7 @@ def _check_pair(first: End, second: End) -> None:
     elif first.joint == second.joint:
         raise ValueError(f"{prefix}; allowed is a joint's flange on a body's")
     elif first.members.keys() != second.members.keys():
-        raise ValueError(f"{prefix}; allowed are two that turn or two that shift")
+        raise ValueError(f"{prefix}; allowed are two rotational or two translational flanges")
 
 
 def _check_held(system: System, connections: Sequence[tuple[End, End]]) -> None:
@@ -202,6 +198,7 @@ def _check_loops(connections: Sequence[tuple[End, End]]) -> None:
             roots = root(first.component.name), root(second.component.name)
             if roots[0] == roots[1]:
                 raise ValueError(
-                    f"{first.text} on {second.text} closes a loop; allowed are chains of joints and bodies"
+                    f"{first.text} on {second.text} closes a loop; only chains of joints and bodies are "
+                    "possible"
                 )
             parents[roots[0]] = roots[1]

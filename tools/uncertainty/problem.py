@@ -209,7 +209,7 @@ def _loads(
     allowed = Interval.from_bounds(gt=0.0, le=curves.max_load(values))
     if single_load is not None:
         if to is not None:
-            raise ValueError(f"{curves.load.name} is set and cannot be ramped as well; drop to = {to:g}")
+            raise ValueError(f"{curves.load.name} is set and is also the ramped input; leave out to = {to:g}")
         if not isinstance(single_load, int | float) or isinstance(single_load, bool):
             raise ValueError(f"{curves.load.name} = {single_load!r} is not a number in {curves.load.unit}")
         ends = [end for end in load.support if np.isfinite(end) and end != 0.0] if load else []

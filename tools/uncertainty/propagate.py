@@ -136,7 +136,7 @@ def compute_bands(task: Problem, points: Array) -> Bands:
     outcome = evaluate_samples(task, points, task.loads, "samples")
     refused = summarise_refusals(task, points, outcome.accepted)
     if not np.any(outcome.accepted):
-        raise RuntimeError(f"all {len(points)} samples are refused, the first: {refused.reason}")
+        raise RuntimeError(f"all {len(points)} samples are rejected; the first: {refused.reason}")
     error = check_reduction(task, points, outcome)
     nominal = task.curves.evaluate(task.parameters, task.values, task.loads, np.ones((1, 1)))
     statistics = {
@@ -216,8 +216,9 @@ def check_reduction(task: Problem, points: Array, outcome: SampledOutputs) -> fl
             if not error <= MAX_REDUCTION_ERROR:
                 sample = ", ".join(f"{k} = {v:g}" for k, v in uncertain.items())
                 raise RuntimeError(
-                    f"{name} of the reduced evaluation misses the joint's own by {error:.2g} at {sample}, "
-                    f"allowed is {MAX_REDUCTION_ERROR:g}: take `jointfmu sweep` for such a study"
+                    f"{name} of the reduced evaluation differs from the evaluation of the joint by "
+                    f"{error:.2g} at {sample}, allowed is {MAX_REDUCTION_ERROR:g}: use `jointfmu sweep` for "
+                    "this study"
                 )
             largest = max(largest, error)
     return largest

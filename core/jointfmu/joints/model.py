@@ -172,7 +172,7 @@ class Model:
 
     def __post_init__(self) -> None:
         if (self.initial_history is None) != (self.advance is None):
-            raise ValueError(f"{self.name}: one of rest, evolve is given, expected both or none")
+            raise ValueError(f"{self.name}: one of rest, evolve is missing; state both or neither")
         if self.loop and self.advance is None:
             raise ValueError(f"{self.name}: a loop is given without a memory, expected one with evolve")
 
@@ -235,5 +235,5 @@ class Model:
         return self.dependencies.get(output, [v.name for v in self.inputs])
 
 
-EXTRAPOLATION_WARNING = "beyond the tabulated law the last tangent is continued"
+EXTRAPOLATION_WARNING = "outside the tabulated law, the curve continues with its last tangent"
 """Text of the warning for a state beyond the end of the table."""

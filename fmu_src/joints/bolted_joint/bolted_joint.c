@@ -78,8 +78,8 @@ bool kind_tabulate(Joint *joint, Text *why)
     kind->bolt_count = head[6] / (double)data.n_bolts;
     kind->begin.known = kind->end.known = false;
     if (ELASTIC && (!kind->memory || head[5] != 0.0)) {
-        text_add(why, kind->memory ? "damping = true beside sides = elastic: expected false, the dashpots stand between rigid sides"
-                                   : "memory = false beside sides = elastic: expected true, elastic sides go with friction that remembers");
+        text_add(why, kind->memory ? "damping = true with sides = elastic; expected false, the dashpots act between rigid sides only"
+                                   : "memory = false with sides = elastic; expected true, elastic sides need friction with memory");
         return false;
     }
     kind->work.abreast.fours = vectors_of_four();

@@ -430,7 +430,7 @@ static void tell(const double *inputs, double done, double missed, Text *why)
         text_add(why, " = ");
         text_number(why, inputs[at], 6);
     }
-    text_add(why, ": the sides find no equilibrium beyond ");
+    text_add(why, ": no equilibrium of the joint was found beyond a fraction of ");
     text_number(why, done, 3);
     text_add(why, " of the way, the residual is ");
     text_number(why, missed, 2);

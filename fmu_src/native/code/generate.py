@@ -80,7 +80,7 @@ def native_part(model: Model) -> NativePart:
         raise ValueError(f"{model.name}: the joint {model.joint!r} has no part `native`; expected its C")
     native = load()
     if (model.initial_history is None) != (native.memory.size == 0):
-        raise ValueError(f"{model.name}: one of `rest` and the memory in C is given, expected both or none")
+        raise ValueError(f"{model.name}: one of `rest` and the memory in C is missing; state both or neither")
     return native
 
 

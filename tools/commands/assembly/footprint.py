@@ -49,7 +49,7 @@ def _declare_import(steps: SubParsers) -> None:
         step, "file", Path, "contact result: CSV, CalculiX .frd, ANSYS or Abaqus listing, or a mesh"
     )
     declare_argument(
-        step, "--preload", float, "force of each bolt in the contact result [N]", "F", required=True
+        step, "--preload", float, "preload of each bolt in the contact result [N]", "F", required=True
     )
     declare_argument(step, "--params", Path, "parameter file of the joint (default: Zhao 2018)")
     declare_output(
@@ -69,7 +69,12 @@ def _declare_import(steps: SubParsers) -> None:
     text = "side of the contact to read if both bodies have pressure: below or above"
     declare_argument(step, "--side", str, text, "SIDE")
     declare_argument(
-        step, "--open", str, "nodes without pressure: keep, drop or refuse", "WHAT", default="refuse"
+        step,
+        "--open",
+        str,
+        "nodes without pressure: keep (they just touch), drop (they never touch) or refuse",
+        "WHAT",
+        default="refuse",
     )
     text = "more listings, or the mesh of a listing: ANSYS archive .cdb, Abaqus deck .inp"
     step.add_argument("--with", dest="beside", nargs="+", type=Path, default=[], metavar="FILE", help=text)
@@ -87,7 +92,7 @@ def _declare_import(steps: SubParsers) -> None:
 
 def _run_import(args: argparse.Namespace) -> CommandResult:
     if (args.moment is None) != (args.moment_file is None):
-        raise ValueError("--moment and --moment-file belong together: expected both or none")
+        raise ValueError("--moment and --moment-file belong together; state both or neither")
     from ...fields import joint_parameters
     from ...fields.joint_parameters import FORCE_TOLERANCE, with_field
 

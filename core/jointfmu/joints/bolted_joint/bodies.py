@@ -35,34 +35,61 @@ class ElasticBodies:
 
     stiffness: tuple[float, ...] = series_field("N/m", "stiffness of each mode", gt=0.0)
     opening: tuple[float, ...] = series_field(
-        "1", "how far the points of the contact come apart, of each all modes", ge=-1.0, le=1.0
+        "1",
+        "modal matrix of the opening at the contact points: all modes of point 1, of point 2, ...",
+        ge=-1.0,
+        le=1.0,
     )
     patch_x: tuple[float, ...] = series_field(
-        "1", "how far the sides of the patches shift along x, of each all modes", ge=-1.0, le=1.0
+        "1",
+        "modal matrix of the relative displacement along x at the friction patches, same order",
+        ge=-1.0,
+        le=1.0,
     )
-    patch_y: tuple[float, ...] = series_field("1", "the same along y", ge=-1.0, le=1.0)
+    patch_y: tuple[float, ...] = series_field("1", "as patch_x, along y", ge=-1.0, le=1.0)
     patch_around: tuple[float, ...] = series_field(
-        "1", "the same of their sliders around the centre of each, on its circle", ge=-1.0, le=1.0
+        "1",
+        "as patch_x, for the mean displacement around the centre of a patch, on the circle of its sliders",
+        ge=-1.0,
+        le=1.0,
     )
     stretch: tuple[float, ...] = series_field(
-        "1", "how far the seats of the bolts come apart, of each all modes", ge=-1.0, le=1.0
+        "1",
+        "modal matrix of the elongation of the bolts between their seats: all modes of bolt 1, of bolt 2, "
+        "...",
+        ge=-1.0,
+        le=1.0,
     )
-    x: tuple[float, ...] = series_field("m", "places of the patches along the rows, from the centroid")
-    y: tuple[float, ...] = series_field("m", "places of the patches across the rows, from the centroid")
-    bolt_x: tuple[float, ...] = series_field("m", "places of the bolts along the rows, from the centroid")
-    bolt_y: tuple[float, ...] = series_field("m", "places of the bolts across the rows, from the centroid")
+    x: tuple[float, ...] = series_field(
+        "m", "positions of the friction patches along the bolt rows, from the centroid"
+    )
+    y: tuple[float, ...] = series_field(
+        "m", "positions of the friction patches across the bolt rows, from the centroid"
+    )
+    bolt_x: tuple[float, ...] = series_field(
+        "m", "positions of the bolts along the bolt rows, from the centroid"
+    )
+    bolt_y: tuple[float, ...] = series_field(
+        "m", "positions of the bolts across the bolt rows, from the centroid"
+    )
     attached: str = choice_field(
-        "unstated", "faces", "edge", "heads", doc="what of the bodies moves with what the joint connects"
+        "unstated",
+        "faces",
+        "edge",
+        "heads",
+        doc="surfaces of the bodies that move rigidly with the connected parts",
     )
     thickness: tuple[float, ...] = series_field(
         "m", "thickness of side 1 and 2 at the bolts, for pictures", gt=0.0, optional=True
     )
     outline: tuple[float, ...] = series_field(
-        "m", "lowest x and y, highest x and y of the contact, from its centroid, for pictures", optional=True
+        "m",
+        "smallest x and y, largest x and y of the contact, from its centroid, for pictures",
+        optional=True,
     )
     hole_diameter: float = quantity_field("m", "clearance hole, for pictures", ge=0.0, default=0.0)
     head_diameter: float = quantity_field(
-        "m", "outer diameter of what lies under heads and nuts, for pictures", ge=0.0, default=0.0
+        "m", "outer diameter of the bearing surfaces of heads and nuts, for pictures", ge=0.0, default=0.0
     )
     thread_depth: float = quantity_field(
         "m", "depth of the threads in side 2, for pictures; 0: bolts go through", ge=0.0, default=0.0
@@ -123,8 +150,8 @@ class Modes:
             raise ValueError(f"[bodies] has {stated}, the contact {points} and {len(patches)}")
         if (away := float(np.max(np.abs(there - patches)))) > POSITION_TOLERANCE:
             raise ValueError(
-                f"[bodies] lies {away:.3g} m beside the contact: it was computed for another one, expected "
-                f"at most {POSITION_TOLERANCE:g} m"
+                f"[bodies] lies {away:.3g} m away from the contact: it was computed for another contact; "
+                f"expected at most {POSITION_TOLERANCE:g} m"
             )
         moved = {name: each[name].reshape(-1, count) for name in _MODAL_SERIES}
         return cls(

@@ -27,8 +27,8 @@ from ...quantity import (
 from .bodies import ElasticBodies, RigidBodies
 
 ELASTIC_NEEDS = {
-    "memory": "elastic sides go with friction that remembers",
-    "damping": "the dashpots stand between rigid sides",
+    "memory": "elastic sides need friction with memory",
+    "damping": "the dashpots act between rigid sides only",
 }
 
 
@@ -40,26 +40,26 @@ class Bolts:
     row_bolts: float = quantity_field(
         "1", "bolts in each of the two rows that carry the moment", ge=1.0, is_integer=True
     )
-    row_distance: float = quantity_field("m", "distance L_a of the two bolt rows", gt=0.0)
+    row_distance: float = quantity_field("m", "distance L_a between the two bolt rows", gt=0.0)
     bolt_stiffness: float = quantity_field("N/m", "stiffness of each bolt", ge=0.0, default=0.0)
     embedding: float = quantity_field(
         "N", "preload that each bolt loses by embedding (VDI 2230)", ge=0.0, default=0.0
     )
     memory: bool = choice_field(
-        True, False, doc="friction with partial slip and memory; without it an elastic joint"
+        True, False, doc="true: friction with partial slip and memory; false: elastic joint"
     )
-    damping: bool = choice_field(False, True, doc="the dashpots C_xx, C_yy, C_zz of Zhao 2018 act")
+    damping: bool = choice_field(False, True, doc="true: the dashpots C_xx, C_yy, C_zz of Zhao 2018 act")
     sides: str = choice_field(
         "rigid",
         "elastic",
-        doc="rigid: the interface alone; elastic: the whole joint between its attachments, with [bodies]",
+        doc="rigid: the interface alone; elastic: the complete joint between its attachments, with [bodies]",
     )
     bodies: RigidBodies | ElasticBodies = group_field(
-        "how the members give way between their attachments", rigid=RigidBodies, bodies=ElasticBodies
+        "compliance of the members between their attachments", rigid=RigidBodies, bodies=ElasticBodies
     )
     pattern: PressureSource = group_field(
-        "what gives the pressure: the decay around each bolt of a frame, the cones of the bolts of a plate, "
-        "or the points of a field",
+        "contact pressure: decay around each bolt of a frame, deformation cones of the bolts of a plate, "
+        "or points of a field",
         pattern=BoltedFrame,
         plate=BoltedPlate,
         field=NodalField,
@@ -73,24 +73,26 @@ class Bolts:
 
     @property
     def elastic(self) -> bool:
-        """Whether the whole joint is meant, not its interface alone."""
+        """Whether the complete joint is meant, not its interface alone."""
         return self.sides == "elastic"
 
     def _check_elastic(self) -> None:
         if isinstance(self.bodies, RigidBodies):
             raise ValueError(
-                "sides = elastic without [bodies]: expected what `new bolted-joint` writes there"
+                "sides = elastic needs the section [bodies]; `jointfmu new bolted-joint` writes it"
             )
         for name, wrong in (("memory", False), ("damping", True)):
             if getattr(self, name) is wrong:
                 why = ELASTIC_NEEDS[name]
                 raise ValueError(
-                    f"{name} = {wrong} beside sides = elastic: expected {not wrong}, {why}".lower()
+                    f"{name} = {wrong} with sides = elastic; expected {not wrong}, {why}".lower()
                 )
 
     def find_limits(self) -> list[ParameterLimit]:
         """Intervals that other parameters decide."""
-        why = "two rows hold at most half of n_bolts each; set row_bolts = 1 where all bolts make one row"
+        why = (
+            "each of the two rows has at most half of n_bolts; set row_bolts = 1 if all bolts are in one row"
+        )
         rows = ParameterLimit(
             "row_bolts", Interval.from_bounds(ge=1.0, le=np.maximum(0.5 * self.n_bolts, 1.0)), why
         )
@@ -110,7 +112,7 @@ class BoltedJoint(Bolts, Zhao2018):
     """Parameters of the bolted joint with the law of Zhao 2018."""
 
     plastic_damping: bool = choice_field(
-        False, True, doc="normal damping by the plastic work of first loading (Zhao 2018, Eqs. 19-20)"
+        False, True, doc="true: normal damping from the plastic work of first loading (Zhao 2018, Eqs. 19-20)"
     )
 
 
@@ -120,7 +122,9 @@ class RoughBoltedJoint(Bolts, RoughnessLaw):
 
     plastic_damping: ClassVar[bool] = False
 
-    mass: float = quantity_field("kg", "mass of the structure, for the viscous equivalent", gt=0.0)
+    mass: float = quantity_field(
+        "kg", "mass of the structure, used for the equivalent viscous damping", gt=0.0
+    )
 
 
 Bolted: TypeAlias = BoltedJoint | RoughBoltedJoint

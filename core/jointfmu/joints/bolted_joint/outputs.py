@@ -35,7 +35,7 @@ stretch                    : [m] elongation of all bolts by the modes of elastic
                              their heads; _x, _y: times x and y
 
 normal_stiffness and normal_about_* lack what bolts that lifted off have between rigid sides. With elastic
-sides they and tangent_* are those of the whole joint, less what all bolts have between rigid sides.
+sides they and tangent_* are those of the complete joint, less what all bolts have between rigid sides.
 """
 STRETCHES = SUMS[-3:]
 

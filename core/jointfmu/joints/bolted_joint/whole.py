@@ -173,9 +173,8 @@ class JointAssembly:
                 step *= 0.5
                 if step < MIN_LOAD_STEP:
                     raise ValueError(
-                        f"{load_step.input_summary}: the sides find no equilibrium beyond "
-                        f"{done:.3g} of the way, "
-                        f"the residual is {found:.2g} N"
+                        f"{load_step.input_summary}: no equilibrium of the joint was found beyond a fraction "
+                        f"of {done:.3g} of the way, the residual is {found:.2g} N"
                     )
                 continue
             if part == 1.0:

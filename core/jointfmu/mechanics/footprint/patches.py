@@ -105,7 +105,7 @@ def _select_groups(shape: PressureDistribution, group: NodeIndices, count: int) 
             nodes = np.flatnonzero(weights > 0.0)
             return nodes, weights[nodes] / share[nodes]
         number = min(number, int(np.sum(reduced > 0.0))) - max(excess // (2 * int(np.max(size))), 1)
-    raise ValueError(f"{count} points are too few, expected at least {count + excess} for this contact")
+    raise ValueError(f"{count} points are too few for this contact; expected at least {count + excess}")
 
 
 def _minimum_shares(shape: PressureDistribution, group: NodeIndices, share: Array) -> Array:
