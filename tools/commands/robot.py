@@ -114,8 +114,8 @@ def run(args: argparse.Namespace) -> CommandResult:
     last = axes[-1].joint
     if args.payload and not jacobian[:, -1].any() and model.jnt_bodyid[model.joint(last).id] == tip:
         notes.append(
-            f"the payload is at the origin of {model.body(tip).name}, on the axis of {last}, which it does "
-            "not load; --tip BODY puts it elsewhere, at a body (a link of a URDF) that stands for the tool"
+            f"the payload is at the origin of {model.body(tip).name}, on the axis of {last}, and does not "
+            "load that axis; state another body (a link of a URDF) with --tip BODY"
         )
     lacking = (
         f"{axis.drive.name}: the MJCF does not include {line}" for axis in axes for line in axis.drive.lacks

@@ -100,7 +100,10 @@ def axes(spec: Any, drives: Mapping[str, Transmission]) -> list[ElasticAxis]:
             rotor, notes = float(model.dof_armature[dof]), list[str]()
             if rotor <= 0.0:
                 rotor = float(matrix[dof, dof])
-                notes.append("no armature; the rotor is taken as large as what the axis turns")
+                notes.append(
+                    "no armature in the file; the rotor inertia is set equal to the "
+                    "inertia that the axis moves"
+                )
             if drive.static and bristles.borne(model.opt):
                 angle = bristles.presliding(drive, rotor / drive.ratio**2, model.opt.timestep)
                 if angle > 1.01 * drive.presliding:

@@ -148,7 +148,7 @@ def _about_friction(drive: Transmission, motor: float) -> Iterator[str]:
     """Comment lines on the motor friction of the written file."""
     angle = presliding(drive, motor, STEP)
     yield f"dry friction builds up over {angle:.3g} rad of the motor, {drive.presliding:g} rad in the FMU"
-    yield "  and after a reversal as Dahl has it, not Masing; its numbers are of this motor"
+    yield "  and after a reversal it follows Dahl's model, not Masing's; the values are for this motor"
     yield f"  and steps up to {STEP:g} s, not for the integrator RK4"
 
 
@@ -171,10 +171,11 @@ def text(drive: Transmission, torque: float) -> tuple[str, Miss, list[str]]:
         f"by least squares up to {torque:g} N.m",
         f"measured in MuJoCo {mujoco.__version__} beside the FMU, motor locked:",
         *(f"  {line}" for line in miss.lines(torque)),
-        f"beyond {torque:g} N.m the cubic goes on; the FMU is tabulated to {drive.max_torque:g} N.m",
-        f"inertias stand for yours: {FREQUENCY:g} Hz of the link, motor locked; the motor's is as large",
+        f"beyond {torque:g} N.m the cubic continues; the table of the FMU ends at {drive.max_torque:g} N.m",
+        f"the inertias are placeholders: the link has {FREQUENCY:g} Hz with locked "
+        f"motor, the motor is as large",
         *(_about_friction(drive, motor) if drive.static else ()),
-        "it cannot carry:" if drive.lacks else "nothing of the drive is left out",
+        "not included:" if drive.lacks else "all effects of the drive are included",
         *(f"  {line}" for line in drive.lacks),
     ]
     return f"{comment(about)}{_model(drive, fitted, motor, link)}", miss, [*drive.lacks]

@@ -208,7 +208,7 @@ def _format_results(facts: dict[str, Any], area_before: float) -> list[str]:
     ]
     if facts["loads"]:
         lines.append(
-            f"{facts['points']} points stand for them: force, K_zz, K_xx, K_rx, K_ry within "
+            f"{facts['points']} points represent them: force, K_zz, K_xx, K_rx, K_ry within "
             f"{facts['deviation']:.1e} at {facts['loads']} other loads (preload {low:g} to {high:g} times "
             f"this one, pressed to fully open, moment up to {facts['largest_moment']:.4g} N.m at this one)"
         )
