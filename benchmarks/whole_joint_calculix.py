@@ -1,5 +1,5 @@
-"""A lap with friction in CalculiX (`*FRICTION`, its own elements and contact) beside the reduced whole joint
-and finite elements with friction at every element.
+"""A lap with friction in CalculiX (`*FRICTION`, its own elements and contact) against the reduced
+complete joint and finite elements with friction at every element.
 
 Two thin plates, each held at one end and kept plane, pressed evenly, on an interface whose pressure is linear
 in the approach: its friction is one spring at a place, which is the law of CalculiX. Side 2 is moved along

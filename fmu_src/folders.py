@@ -18,7 +18,7 @@ def find_fmu_parts(model: Model) -> FmuParts:
         return partners.FMU_PARTS
     if model.joint not in joints.FMU_PARTS:
         known = ", ".join(joints.FMU_PARTS)
-        raise ValueError(f"joint {model.joint!r} has no parts of its FMU; they are known of {known}")
+        raise ValueError(f"joint {model.joint!r} has no FMU parts; joints with FMU parts: {known}")
     return joints.FMU_PARTS[model.joint]
 
 
@@ -34,5 +34,7 @@ def find_asset(model: Model, name: str) -> Path:
     """
     folder = find_source_folder(model)
     if not (folder / name).is_file():
-        raise ValueError(f"{model.name}: {folder / name} is missing; expected it beside the other parts")
+        raise ValueError(
+            f"{model.name}: {folder / name} is missing; it must be in the folder of the other parts"
+        )
     return folder / name

@@ -20,7 +20,7 @@ def check_name(name: str) -> str:
     """
     if not is_identifier(name):
         shown = name if len(name) <= 80 else f"{name[:77]}..."
-        raise ValueError(f"name {shown!r} is no model identifier, allowed are {NAME_RULE}")
+        raise ValueError(f"name {shown!r} is not a model identifier, allowed are {NAME_RULE}")
     return name
 
 

@@ -60,7 +60,7 @@ def _run_command(args: Any, name: str) -> int:
         print(f"{name}:", *str(error).splitlines(), *hint, file=sys.stderr)
         return 2 if isinstance(error, ValueError) else 1
     except OverflowError:
-        print(f"{name}: a parameter is so large that numbers of the law exceed 1.8e308", file=sys.stderr)
+        print(f"{name}: a parameter is so large that results of the law exceed 1.8e308", file=sys.stderr)
         return 2
 
 

@@ -30,7 +30,7 @@ ColumnHead: TypeAlias = tuple[str, str | None]
 """Name and unit of a column; None if the column states no unit."""
 
 CONTROL_CHARACTERS = re.compile(rb"[\x00-\x08\x0e-\x1f]")
-"""Control characters: a file that has them is no text."""
+"""Control characters: a file that has them is not a text."""
 _HEADING_PATTERN = re.compile(r"\s*(?P<name>[^\[\]]*?)\s*(?:\[\s*(?P<unit>[^\[\]]*?)\s*\])?\s*$")
 _WRITTEN_HEADING_PATTERN = re.compile(r"\S.* \[[^\[\]]+\]")
 """Heading of one column as `format_table` writes it: `name [unit]`."""
@@ -106,7 +106,7 @@ def read_columns(
     stated_headings : {column: (heading in this file, unit)}; unit None: the unit of the heading
 
     Raises ValueError, one line with file, line and column: no file, no text, no heading, a column that has
-    no unit or a wrong unit or stands twice, a row of another length, a value that is no finite number, or
+    no unit or a wrong unit or stands twice, a row of another length, a value that is not a finite number, or
     fewer than `min_rows` rows.
     """
     path = Path(path)
@@ -133,7 +133,7 @@ def read_columns(
 def read_names(path: str | Path) -> list[str]:
     """Read the names of a file's columns in lower case; an empty list if the file is empty.
 
-    Raises ValueError if the file cannot be read or is no text.
+    Raises ValueError if the file cannot be read or is not a text.
     """
     lines = read_numbered_lines(Path(path), 1)
     if not lines:
@@ -155,7 +155,7 @@ def read_numbered_lines(path: Path, max_lines: int | None = None) -> list[tuple[
 
     max_lines : number of lines to return; None: all
 
-    Raises ValueError if the file cannot be read or is no text.
+    Raises ValueError if the file cannot be read or is not a text.
     """
     lines = enumerate(read_text_lines(path), 1)
     rows = ((i, line) for i, line in lines if line.strip() and not line.lstrip().startswith("#"))
@@ -163,11 +163,11 @@ def read_numbered_lines(path: Path, max_lines: int | None = None) -> list[tuple[
 
 
 def read_text_lines(path: Path) -> list[str]:
-    """Read all lines of a file. Raises ValueError, one line, if the file cannot be read or is no text."""
+    """Read all lines of a file. Raises ValueError, one line, if the file cannot be read or is not a text."""
     try:
         return decode_text(read_bytes(path, "a CSV file")).splitlines()
     except UnicodeDecodeError:
-        raise ValueError(f"{path}: is no text file; expected CSV (UTF-8)") from None
+        raise ValueError(f"{path}: is not a text file; expected CSV (UTF-8)") from None
 
 
 def decode_text(file_bytes: bytes) -> str:
@@ -197,7 +197,7 @@ def check_cell_count(path: Path, line_number: int, cells: Sequence[str], count: 
 
 
 def parse_number(cell: str) -> float | None:
-    """Parse a cell as a number with decimal point or comma; None if the cell is no number."""
+    """Parse a cell as a number with decimal point or comma; None if the cell is not a number."""
     try:
         return float(cell if "." in cell else cell.replace(",", ".", 1))
     except ValueError:
@@ -243,7 +243,7 @@ def _find_columns(
             continue
         allowed = ", ".join(allowed_units[name])
         if name in places:
-            raise ValueError(f"{path}: column {name!r} is given twice, allowed is once")
+            raise ValueError(f"{path}: column {name!r} is given twice; state it once")
         if unit is None:
             raise ValueError(
                 f"{path}: column {name!r} has no unit, expected e.g. {name} "
@@ -305,8 +305,8 @@ def _parse_column(path: Path, name: str, line_numbers: Sequence[int], cells: Seq
     if np.any(wrong := ~np.isfinite(values)):
         first = int(np.argmax(wrong))
         raise ValueError(
-            f"{path}: line {line_numbers[first]}: {name} = {cells[first].strip()!r} is no finite "
-            "number with a "
+            f"{path}: line {line_numbers[first]}: {name} = {cells[first].strip()!r} is not a finite number "
+            "with a "
             "decimal point"
         )
     return values

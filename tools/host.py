@@ -185,7 +185,9 @@ def open_instance(
         instance = Instance(folder, model_description, "host", model_exchange, log_lines)
     except Exception as error:  # fmpy raises bare Exception, ctypes its own
         reason = " ".join(str(error.__context__ or error).replace(f"{folder}{os.sep}", "").split())
-        raise ValueError(f"{fmu_label}: its library cannot be loaded ({reason.rstrip('.')})") from None
+        raise ValueError(
+            f"{fmu_label}: the library in the FMU cannot be loaded ({reason.rstrip('.')})"
+        ) from None
     try:
         instance.instantiate()
     except Exception as error:  # fmpy raises bare Exception
@@ -220,7 +222,7 @@ def _read_cached_description(fmu: str, file_version: tuple[int, ...]) -> "ModelD
         if version.startswith(("2.", "3.")):
             return read_model_description(fmu, validate=False)
     except Exception as error:  # fmpy raises bare Exception for a broken description
-        raise ValueError(f"{fmu}: is no FMU ({str(error).splitlines()[0]})") from None
+        raise ValueError(f"{fmu}: is not an FMU ({str(error).splitlines()[0]})") from None
     raise ValueError(f"{fmu}: is an FMU of FMI {version}, allowed are 2.0 and 3.0")
 
 
@@ -275,7 +277,7 @@ def _check_python_flavour(resources: Path, fmu_path: Path) -> None:
         return
     entry = resources / "slavemodule.txt"
     if not entry.is_file():
-        raise ValueError(f"{fmu_path}: is no complete FMU; resources/slavemodule.txt is missing")
+        raise ValueError(f"{fmu_path}: is not a complete FMU; resources/slavemodule.txt is missing")
     script = resources / f"{entry.read_text(encoding='utf-8').strip()}.py"
     if not script.is_file():
-        raise ValueError(f"{fmu_path}: is no complete FMU; resources/{script.name} is missing")
+        raise ValueError(f"{fmu_path}: is not a complete FMU; resources/{script.name} is missing")

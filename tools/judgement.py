@@ -45,7 +45,10 @@ class StiffnessComparison:
 
     def __str__(self) -> str:
         at = f"at {_format_range(self.pressure / 1e6)} MPa, h = {1e6 * self.h:.3g} um"
-        return f"the law's K is {_format_range(self.ratio)} times p/({PERSSON_GAMMA:g} h) {at}"
+        return (
+            f"stiffness by the law: {_format_range(self.ratio)} times the roughness "
+            f"estimate p/({PERSSON_GAMMA:g} h) {at}"
+        )
 
     def to_json(self) -> dict[str, Any]:
         """Convert to a JSON object."""
@@ -114,14 +117,13 @@ def assess_law(
     warnings = find_validity_violations(law, highest, lowest) if check_limits and highest > 0.0 else []
     if h is not None and h > 2.0 * MAX_HEIGHT:
         warnings.insert(
-            0, f"h = {h:.3g} m is no roughness: faces that are joined have up to {MAX_HEIGHT:g} m each"
+            0, f"h = {h:.3g} m is not a roughness: faces that are joined have up to {MAX_HEIGHT:g} m each"
         )
     if comparison is not None and comparison.is_doubtful:
         warnings.append(
-            f"the law's K is {_format_range(comparison.ratio)} times that of the roughness, "
-            f"K/A_0 = p/({PERSSON_GAMMA:g} h) with h = {1e6 * comparison.h:.3g} um: beyond a factor of "
-            f"{MAX_STIFFNESS_RATIO:g} a "
-            "measurement decides, and without one believe the roughness (docs/validity.md)"
+            f"stiffness by the law: {_format_range(comparison.ratio)} times the roughness estimate K/A_0 = "
+            f"p/({PERSSON_GAMMA:g} h) with h = {1e6 * comparison.h:.3g} um, allowed is a factor of "
+            f"{MAX_STIFFNESS_RATIO:g}: measure the joint, or use the roughness estimate (docs/validity.md)"
         )
     return Plausibility(comparison, tuple(warnings))
 

@@ -40,7 +40,7 @@ def check_picture(path: str | Path) -> None:
     Call it before long work.
     """
     if Path(path).suffix.lower() not in PICTURE_FORMATS:
-        raise ValueError(f"{path}: suffix {Path(path).suffix!r} is no picture, allowed are .png, .svg")
+        raise ValueError(f"{path}: suffix {Path(path).suffix!r} is not a picture, allowed are .png, .svg")
     _load_style_context()
 
 

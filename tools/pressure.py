@@ -91,7 +91,7 @@ def warn_missing_members(file: ParameterFile) -> list[str]:
     if not getattr(file.values, "elastic", False):
         return []
     return [
-        f"{file.name!r} is a whole joint (sides = elastic), but this file has its interface alone: between "
+        f"{file.name!r} is a complete joint (sides = elastic), but this file has the interface only: between "
         "rigid bodies it is far too stiff, because the members are missing; the FMU has them"
     ]
 

@@ -65,7 +65,7 @@ class ParameterFile:
     ranges  : {structured name: (smallest, largest value)} of the uncertain values, from the same source
     values_by_name : {structured name: value} of `values`
 
-    Raises ValueError if the name or a source is no text that `check_text` allows.
+    Raises ValueError if the name or a source is not a text that `check_text` allows.
     """
 
     joint: str
@@ -225,9 +225,8 @@ def _law_height(
     if not abs(entry_values[name] / stated - 1.0) <= RELATIVE_HEIGHT_TOLERANCE:
         makers = ", ".join(_ROUGHNESS_PREFIX + height for height in heights)
         raise ValueError(
-            f"{name} = {entry_values[name]:g} m beside {makers}, which make {stated:.4g} m: expected "
-            "one of them, "
-            f"or both within {RELATIVE_HEIGHT_TOLERANCE:.1%}"
+            f"{name} = {entry_values[name]:g} m does not agree with {makers}, which give {stated:.4g} m: "
+            f"state one of them, or both within {RELATIVE_HEIGHT_TOLERANCE:.1%}"
         )
     return {}
 
@@ -237,15 +236,15 @@ def read_document(path: Path, expected_content: str) -> dict[str, Any]:
 
     expected_content : what the file should be, for the error
 
-    Raises ValueError with one line if the file cannot be read, is no TOML or of another schema, or if a key
+    Raises ValueError with one line if the file cannot be read, is not TOML or of another schema, or if a key
     or a text is too long or has control characters.
     """
     try:
         document = tomllib.loads(read_bytes(path, expected_content).decode("utf-8-sig"))
     except UnicodeDecodeError:
-        raise ValueError(f"{path}: is no text file; expected {expected_content} (TOML, UTF-8)") from None
+        raise ValueError(f"{path}: is not a text file; expected {expected_content} (TOML, UTF-8)") from None
     except tomllib.TOMLDecodeError as error:
-        raise ValueError(f"{path}: is no valid TOML ({error})") from None
+        raise ValueError(f"{path}: is not valid TOML ({error})") from None
     try:
         check_document(document)
     except ValueError as error:
@@ -267,7 +266,7 @@ def read_entries(
     sections        : nested sections and entries of the document
     allowed_keys    : keys that an entry may have
 
-    Raises ValueError, one line, for an entry that is no table, or has an unknown key, a wrong unit, an
+    Raises ValueError, one line, for an entry that is not a table, or has an unknown key, a wrong unit, an
     unknown kind or no source. Unknown names and the values themselves are not checked here.
     """
     values: dict[str, Any] = {}
@@ -291,7 +290,7 @@ def read_entries(
             )
         source = entry.get("source")
         if not isinstance(source, str) or not source.strip():
-            raise ValueError(f"{path}: {name}: source = {source!r}, expected where the value comes from")
+            raise ValueError(f"{path}: {name}: source = {source!r}, state where the value comes from")
         values[name], origins[name], sources[name] = entry.get("value"), str(entry["kind"]), source
     return values, origins, sources
 

@@ -16,7 +16,10 @@ GRAVITY = 9.80665
 
 def _lag_parameter(flange: str) -> Any:
     """Parameter `lag_...` of a body: delay of the load on a flange in communication steps [1]."""
-    doc = f"communication steps by which the load on {flange} comes late: 1 from a joint in a parallel master"
+    doc = (
+        f"delay of the load on {flange} in communication steps: 1 if a joint feeds it "
+        f"in a parallel master, else 0"
+    )
     return quantity_field("1", doc, ge=0.0, le=1.0)
 
 
@@ -27,7 +30,7 @@ class RotationalInertia(CheckedParameters):
     inertia_name: ClassVar[str] = "J"
     J: float = quantity_field("kg.m2", "moment of inertia about the axis", gt=0.0)
     m: float = quantity_field("kg", "mass on which the weight acts", ge=0.0)
-    l: float = quantity_field("m", "from the axis to the centre of mass", ge=0.0)  # noqa: E741
+    l: float = quantity_field("m", "distance from the axis to the centre of mass", ge=0.0)  # noqa: E741
     lag_a: float = _lag_parameter("a")
     lag_b: float = _lag_parameter("b")
 
@@ -63,11 +66,11 @@ class TranslationalMass(CheckedParameters):
 class _RampAndPulse(CheckedParameters):
     """Load over time: a ramp that stays at its end value, and a pulse; subclasses define the heights."""
 
-    ramp_start: float = quantity_field("s", "begin of the ramp")
-    ramp_duration: float = quantity_field("s", "from the ramp's begin to its end", gt=0.0)
-    pulse_start: float = quantity_field("s", "begin of the pulse")
-    pulse_rise: float = quantity_field("s", "rise time of the pulse, and of its fall", gt=0.0)
-    pulse_hold: float = quantity_field("s", "time at the pulse's height", ge=0.0)
+    ramp_start: float = quantity_field("s", "start time of the ramp")
+    ramp_duration: float = quantity_field("s", "duration of the ramp", gt=0.0)
+    pulse_start: float = quantity_field("s", "start time of the pulse")
+    pulse_rise: float = quantity_field("s", "rise time and fall time of the pulse", gt=0.0)
+    pulse_hold: float = quantity_field("s", "duration of the plateau of the pulse", ge=0.0)
 
     def find_corner_times(self) -> tuple[Number, ...]:
         """Times [s] at which a ramp or an edge of the pulse begins or ends."""
@@ -88,8 +91,8 @@ class _RampAndPulse(CheckedParameters):
 class TorqueProfile(_RampAndPulse):
     """Torque over time: ramp and pulse."""
 
-    ramp_height: float = quantity_field("N.m", "torque of the ramp")
-    pulse_height: float = quantity_field("N.m", "torque of the pulse")
+    ramp_height: float = quantity_field("N.m", "torque at the end of the ramp")
+    pulse_height: float = quantity_field("N.m", "torque of the plateau of the pulse")
 
     def evaluate_outputs(self, variable_values: Mapping[str, Number]) -> dict[str, Number]:
         """Torque [N.m], including the input torque."""
@@ -103,8 +106,8 @@ class TorqueProfile(_RampAndPulse):
 class ForceProfile(_RampAndPulse):
     """Force over time: ramp and pulse."""
 
-    ramp_height: float = quantity_field("N", "force of the ramp")
-    pulse_height: float = quantity_field("N", "force of the pulse")
+    ramp_height: float = quantity_field("N", "force at the end of the ramp")
+    pulse_height: float = quantity_field("N", "force of the plateau of the pulse")
 
     def evaluate_outputs(self, variable_values: Mapping[str, Number]) -> dict[str, Number]:
         """Force [N], including the input force."""
@@ -118,9 +121,9 @@ class ForceProfile(_RampAndPulse):
 class AngleProfile(CheckedParameters):
     """Prescribed rotation from rest to rest, as of a motor that follows its command exactly."""
 
-    start: float = quantity_field("s", "begin of the turn")
-    duration: float = quantity_field("s", "from its begin to its end", gt=0.0)
-    height: float = quantity_field("rad", "angle of the turn")
+    start: float = quantity_field("s", "start time of the rotation")
+    duration: float = quantity_field("s", "duration of the rotation", gt=0.0)
+    height: float = quantity_field("rad", "angle of the rotation")
 
     def find_corner_times(self) -> tuple[Number, ...]:
         """Times [s] at which the rotation begins and ends."""
@@ -147,8 +150,8 @@ _POINT_NAMES = [f"p{k + 1}" for k in range(CONTROL_POINTS)]
 class _BernsteinTorque(CheckedParameters):
     """Torque over time as a Bernstein polynomial; constant before its start and after its end."""
 
-    start: float = quantity_field("s", "begin of the curve")
-    duration: float = quantity_field("s", "from its begin to its end", gt=0.0)
+    start: float = quantity_field("s", "start time of the curve")
+    duration: float = quantity_field("s", "duration of the curve", gt=0.0)
 
     @staticmethod
     def basis_functions(normalized_time: Number) -> list[Number]:

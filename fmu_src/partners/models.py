@@ -43,7 +43,10 @@ def _make_model(
     )
 
 
-_TORQUE_VARIABLES = (Variable("tau_in", "N.m", "torque that is added"),), (Variable("tau", "N.m", "torque"),)
+_TORQUE_VARIABLES = (
+    (Variable("tau_in", "N.m", "torque added to the profile"),),
+    (Variable("tau", "N.m", "torque"),),
+)
 """Inputs and outputs of models that prescribe a torque over time."""
 PARTNERS: dict[str, Model] = {
     model.name: model
@@ -53,7 +56,7 @@ PARTNERS: dict[str, Model] = {
             "Rotational inertia with its weight: torques in, motion out",
             (
                 Variable("tau_a", "N.m", "torque on the inertia"),
-                Variable("tau_b", "N.m", "further torque on the inertia"),
+                Variable("tau_b", "N.m", "second torque on the inertia"),
             ),
             (
                 Variable("phi", "rad", "angle, zero where the centre of mass hangs down", 1e-3),
@@ -68,7 +71,7 @@ PARTNERS: dict[str, Model] = {
             "Mass: forces in, motion out",
             (
                 Variable("f_a", "N", "force on the mass", 1e3),
-                Variable("f_b", "N", "further force on the mass", 1e3),
+                Variable("f_b", "N", "second force on the mass", 1e3),
             ),
             (
                 Variable("s", "m", "displacement", 1e-6),
@@ -80,23 +83,23 @@ PARTNERS: dict[str, Model] = {
         ),
         _make_model(
             TorqueProfile,
-            "Torque over time: a ramp that stays and a pulse, without corners",
+            "Torque over time: smooth ramp to a constant value, and smooth pulse",
             *_TORQUE_VARIABLES,
             LoadRamp("tau_in", 1.0, 1e-3, 1e-3, {"pulse_height": 1.0}),
         ),
         _make_model(
             ForceProfile,
-            "Force over time: a ramp that stays and a pulse, without corners",
-            (Variable("f_in", "N", "force that is added", 1e3),),
+            "Force over time: smooth ramp to a constant value, and smooth pulse",
+            (Variable("f_in", "N", "force added to the profile", 1e3),),
             (Variable("f", "N", "force", 1e3),),
             LoadRamp("f_in", 1e3, 1.0, 1e-3, {"pulse_height": 1e3}),
         ),
         _make_model(
             AngleProfile,
-            "Angle over time: a turn from rest to rest, without corners",
+            "Angle over time: smooth rotation from rest to rest",
             (
-                Variable("phi_in", "rad", "angle that is added"),
-                Variable("w_in", "rad/s", "speed that is added"),
+                Variable("phi_in", "rad", "angle added to the profile"),
+                Variable("w_in", "rad/s", "speed added to the profile"),
             ),
             (Variable("phi", "rad", "angle"), Variable("w", "rad/s", "speed")),
             LoadRamp("phi_in", 1.0, 1e-3, 1e-3, {"height": 1.0}),

@@ -30,7 +30,7 @@ Platforms differ by 1e-12; a solver adds 4e-10 to models with states.
 TEXT_PATH = "documentation/fmi-ls-ref.txt"
 """Path in an FMU of the text that explains its experiments."""
 _RUN_INSTRUCTIONS = {
-    standard.CO_SIMULATION: "steps of stepSize; each takes the inputs of its begin or of its end",
+    standard.CO_SIMULATION: "steps of stepSize; the inputs of a step are those at its start or at its end",
     standard.MODEL_EXCHANGE: f"a solver with {SOLVER_TOLERANCE_RATIO:g} times the tolerance of the "
     "experiment as its own; a completed integrator step at each row of inputs and results",
 }

@@ -60,7 +60,7 @@ def parse_csv(content: str, location: str) -> TimeSeries:
             f"{location}: begins with {','.join(head)[:60]!r}; expected {TIME_COLUMN!r} first, and rows"
         )
     if len(set(head)) < len(head):
-        raise ValueError(f"{location}: a column is given twice, allowed is once")
+        raise ValueError(f"{location}: a column is given twice; state it once")
     for row in rows[1:]:
         if len(row) != len(head):
             raise ValueError(f"{location}: {','.join(row)[:60]!r}: expected rows of {len(head)} numbers")

@@ -158,7 +158,7 @@ def test_an_fmu_starts_with_the_inputs_of_its_parameter_file(tmp_path: Path) -> 
             assert owner in archive.read(f"documentation/licenses/{file}.txt").decode()
     with zipfile.ZipFile(tmp_path / "fmi3" / f"{model.name}.fmu") as archive:
         page = archive.read("documentation/index.html").decode()
-    assert "pre-tightening force of each bolt; at least 0; starts at 9000<" in page
+    assert "preload of each bolt (bolt force at tightening); at least 0; starts at 9000<" in page
     assert "all other inputs at their start values." in page
 
 

@@ -283,7 +283,7 @@ def test_beyond_the_table_the_last_tangent_continues_with_one_warning(
     (warning,) = instance.warnings
     assert text in warning
     assert " is outside " in warning
-    assert "beyond the tabulated law the last tangent is continued" in warning
+    assert "outside the tabulated law, the curve continues with its last tangent" in warning
     assert not [m for m in instance.messages if m.status > 1]
     assert all(math.isfinite(v) for f in found for v in f.values())
     y = [f[answer] for f in found]
@@ -361,7 +361,7 @@ def broken(kind: str, whole: Path, folder: Path) -> Path:
     if kind == "directory":
         path.mkdir()
     elif kind == "text":
-        path.write_text("this is no FMU\n")
+        path.write_text("this is not an FMU\n")
     elif kind == "empty":
         path.write_bytes(b"")
     elif kind == "half":
@@ -406,8 +406,8 @@ CHANGES = {
     "FMI 1.0": description(rb"(?s)\A.*", FMI_1.strip()),
 }
 REASONS = {
-    "corrupt library": "its library cannot be loaded (binaries",
-    "foreign library": "its library cannot be loaded (Cannot find shared library binaries",
+    "corrupt library": "the library in the FMU cannot be loaded (binaries",
+    "foreign library": "the library in the FMU cannot be loaded (Cannot find shared library binaries",
     "model exchange": "has no co-simulation",
     "FMI 1.0": "is an FMU of FMI 1.0, allowed are 2.0 and 3.0",
 }

@@ -180,7 +180,7 @@ def test_a_roughness_out_of_the_file_of_another_law(law_json, tmp_path, run):
 @pytest.mark.parametrize(
     ("settings", "message"),
     [
-        (["h=1e-6", "Ra1=1e-6"], "Ra1 beside h: expected one height of each side, or h alone"),
+        (["h=1e-6", "Ra1=1e-6"], "Ra1 beside h: state one height for each side, or only h"),
         (["surface.D=1.3"], "surface.D without surface.G: expected both, or heights"),
         (["surface.G=1e-9"], "surface.G without surface.D: expected both, or heights"),
         (

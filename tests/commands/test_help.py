@@ -209,8 +209,11 @@ def test_the_list_as_text(capsys: pytest.CaptureFixture[str]) -> None:
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["hu2023", "--law", "roughness"], "--law has no meaning for the law hu2023"),
-        (["gear_contact", "--law", "hu2023"], "law = 'hu2023' is none of a gear_contact, allowed are yu2022"),
+        (["hu2023", "--law", "roughness"], "--law has no effect for the law hu2023"),
+        (
+            ["gear_contact", "--law", "hu2023"],
+            "law = 'hu2023' is not a law of a gear_contact, allowed are yu2022",
+        ),
         (["hu2023", "--params", "absent.toml"], "absent.toml"),
     ],
 )

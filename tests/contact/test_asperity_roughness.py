@@ -159,7 +159,7 @@ def test_the_first_loading_is_softer_where_spots_flow():
 
 def test_the_law_knows_no_largest_spot(capsys):
     assert np.isnan(evaluate_at_pressure(GROUND, 1e6)["largest_spot"])
-    with pytest.raises(ValueError, match="knows no largest spot; expected a pressure"):
+    with pytest.raises(ValueError, match="has no largest spot; state a pressure"):
         evaluate_at_largest_spot(GROUND, 1e-9)
     assert main(["law", "roughness", "--largest-spot", "1e-9"]) == 2
     assert capsys.readouterr().err.count("\n") == 1

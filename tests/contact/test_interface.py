@@ -208,7 +208,7 @@ def test_impossible_spots_are_refused(law, area):
 )
 def test_dimensions_without_a_representable_area_are_refused(law, values):
     # the critical area ~ G^2 (E/H)^(2/(D - 1)) is some 1e1000 m2
-    with pytest.raises(ValueError, match=r"^the parameters give a reference area of [^\n]*$"):
+    with pytest.raises(ValueError, match=r"^the parameters give a critical spot area of [^\n]*$"):
         solve_largest_spot(changed(law, values), 1e6)
 
 

@@ -46,7 +46,7 @@ def test_the_law_roughness_is_judged_by_its_own_height():
 
 def test_a_height_that_is_no_roughness():
     file = load_default("bolted_joint", "roughness").with_values({"h": 8e-3}, "user", "test")
-    assert judge_file(file, [9e3]).warnings[0].startswith("h = 0.008 m is no roughness: ")
+    assert judge_file(file, [9e3]).warnings[0].startswith("h = 0.008 m is not a roughness: ")
 
 
 @pytest.mark.parametrize("side", [1.0, -1.0])
@@ -59,7 +59,7 @@ def test_a_factor_of_three_either_way(side):
         assert found.comparison.ratio == pytest.approx([factor**side], rel=1e-9)
         assert bool(found.warnings) == found.comparison.is_doubtful == doubtful
     assert f"{found.comparison.ratio[0]:.3g} times" in found.warnings[0]
-    assert "a measurement decides" in found.warnings[0]
+    assert "measure the joint" in found.warnings[0]
 
 
 def test_what_is_not_known_is_not_judged():
@@ -120,9 +120,9 @@ def test_the_law_roughness_is_proven_in_a_range():
     few, flat = 0.3 * modulus * law.longest_wave / law.A_0, 1.5 * modulus / law.longest_wave
     assert find_validity_violations(law, 1.01 * few) == []
     (line,) = find_validity_violations(law, 0.99 * few)
-    assert f"below {few:.3g} Pa, from where the law roughness is proven" in line
+    assert f"below {few:.3g} Pa, the lower end of the checked range" in line
     (line,) = [text for text in find_validity_violations(law, 1.01 * flat) if "wave" in text]
-    assert f"above {flat:.3g} Pa, up to which the law roughness is proven" in line
+    assert f"above {flat:.3g} Pa, the upper end of the checked range" in line
     assert not any("wave" in text for text in find_validity_violations(law, 0.99 * flat))
     (line,) = assess_law(law, [0.5 * few, 2.0 * few], law.h).warnings
     assert f"{0.5 * few:.4g} Pa is below" in line
@@ -146,7 +146,7 @@ def test_holes_of_no_bolt():
 
 
 def test_a_preload_that_no_bolt_bears():
-    assert judge_file(BOLTED, [150e3]).warnings[0].startswith("the law's K")
+    assert judge_file(BOLTED, [150e3]).warnings[0].startswith("stiffness by the law")
     first, *_ = judge_file(BOLTED, [155e3]).warnings
     assert first.startswith("preload = 155000 N is above 1.52e+05 N, the proof load of M16, class 12.9")
 
@@ -176,8 +176,8 @@ def test_a_command_prints_the_ratio_and_warns(command, fine, tmp_path, capsys):
     words = [word.format(out=tmp_path / "out") for word in COMMANDS[command]]
     assert cli.main([*words, "--params", str(fine)]) == 0
     out, err = capsys.readouterr()
-    assert "times p/(0.45 h) at" in out
-    assert err.startswith("warning: the law's K is 0.0")
+    assert "times the roughness estimate p/(0.45 h) at" in out
+    assert err.startswith("warning: stiffness by the law: 0.0")
     assert err.count("\n") == 1
     assert cli.main([*words, "--params", str(fine), "--json"]) == 0
     out, err = capsys.readouterr()
@@ -185,7 +185,7 @@ def test_a_command_prints_the_ratio_and_warns(command, fine, tmp_path, capsys):
     assert err == ""
     assert found["level"]["h"] == pytest.approx(0.3545e-6, rel=1e-3)
     assert all(0.03 < point["ratio"] < 0.1 for point in found["level"]["points"])
-    assert [text for text in found["warnings"] if "a measurement decides" in text]
+    assert [text for text in found["warnings"] if "measure the joint" in text]
 
 
 @pytest.mark.slow
@@ -201,7 +201,10 @@ def test_bands_are_judged_along_their_ramp(fine, capsys):
 def test_the_specimen_states_its_level_without_a_warning(capsys):
     assert cli.main(["law", "zhao2018", "--pressure", "1e6"]) == 0
     out, err = capsys.readouterr()
-    assert out.splitlines()[-1] == "the law's K is 0.448 times p/(0.45 h) at 1 MPa, h = 2.84 um"
+    assert (
+        out.splitlines()[-1] == "stiffness by the law: 0.448 times the roughness estimate p/(0.45 "
+        "h) at 1 MPa, h = 2.84 um"
+    )
     assert err == ""
 
 

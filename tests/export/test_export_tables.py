@@ -136,7 +136,7 @@ def test_calculix_refuses_more_rows_than_it_holds():
     file = load_default("bolted_joint")
     rows = writing.export_contact("abaqus", file, SI_UNIT_SET, 1e-4).facts["rows"]
     assert rows > 200
-    with pytest.raises(ValueError, match=f"has {rows + 1} rows, CalculiX holds 200; allow a larger error"):
+    with pytest.raises(ValueError, match=f"has {rows + 1} rows, CalculiX holds 200; state a larger error"):
         writing.export_contact("calculix", file, SI_UNIT_SET, 1e-4)
 
 
@@ -301,4 +301,4 @@ def test_a_catalogue_drive_has_rows_for_a_per_cent_of_its_stiffness(tmp_path, ca
 def test_a_slope_that_is_off_is_a_warning(tmp_path, capsys):
     out = tmp_path / "curve.csv"
     assert cli.main(["export", "csv", "curve", "--joint", "gear_contact", "--out", str(out)]) == 0
-    assert "slope is up to 4.6 % off the stiffness by straight lines" in capsys.readouterr().err
+    assert "from the stiffness by up to 4.6 % with straight lines" in capsys.readouterr().err

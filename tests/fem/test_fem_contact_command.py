@@ -154,8 +154,8 @@ REFUSED = [
     (["--preload", "5e3", "--moment", "1e6"], "moment = 1e+06 N.m is outside (-300, 300)"),
     (["--refinement", "0.1"], "--refinement = 0.1 is outside [0.3, 4]"),
     (["--refine", "0"], "--refine = 0 is outside [1, 5]"),
-    (["--field", "field.dat"], "suffix '.dat' is no field, allowed are .csv, .vtu"),
-    (["--plot", "field.gif"], "suffix '.gif' is no picture"),
+    (["--field", "field.dat"], "suffix '.dat' is not a field, allowed are .csv, .vtu"),
+    (["--plot", "field.gif"], "suffix '.gif' is not a picture"),
     (["--out", "."], "is a folder"),
     (["--params", "nowhere.toml"], "nowhere.toml: cannot be read"),
 ]

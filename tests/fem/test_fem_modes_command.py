@@ -64,7 +64,7 @@ def test_text(plates, capsys):
     lines = capsys.readouterr().out.splitlines()
     assert lines[0].startswith("two plates: 9000 N per bolt")
     assert [line.split()[0] for line in lines[1:4]] == ["mode", "1", "2"]
-    assert lines[4].startswith("the law's K is ")  # the level beside the specimen's roughness
+    assert lines[4].startswith("stiffness by the law: ")  # the level beside the specimen's roughness
     assert len(lines) == 5
 
 
@@ -73,7 +73,7 @@ def test_text(plates, capsys):
     [
         (["--count", "0"], "--count = 0 is outside [1, 40]"),
         (["--refinement", "9"], "--refinement = 9 is outside [0.1, 4]"),
-        (["--vtu", "shapes.png"], ".png is the ending of another kind of file; expected .vtu"),
+        (["--vtu", "shapes.png"], ".png is the suffix of another kind of file; expected .vtu"),
         (["--preload", "-1"], "preload = -1 N is outside (0, inf)"),
         (["--moment", "1e6"], "a row of bolts would lose its force"),
         (["--preload", "nan"], "preload = nan N is outside (0, inf)"),

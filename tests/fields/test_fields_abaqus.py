@@ -203,10 +203,10 @@ def changed(old, new, **options):
     (report(["U.U1"], listed()[:, :1]), "has no contact pressure"),
     (changed("reported at nodes", "reported at element nodes"), r"has no contact pressure, .* \(Unique"),
     (changed("CNAREA", " EVOL "), r"has no nodal areas, a column CNAREA; list them too, or give"),
-    (changed("          @Loc 1", ""), r"line \d+: has 4 columns, their names are not told apart: CPRESS"),
+    (changed("          @Loc 1", ""), r"line \d+: has 4 columns, their names cannot be separated: CPRESS"),
     (changed("COORD.COOR1", "CPRESS X/Y "), r"line \d+: has 2 columns CPRESS, expected one contact pair"),
     (changed("\n              20  ", "\n               1  "), r"line \d+: node 1 has a second CPRESS, exp"),
-    (changed("\n               2  ", "\n               2 x"), r"line \d+: '2 x.*' is no row with a node and"),
+    (changed("\n               2  ", "\n               2 x"), r"line \d+: '2 x.*' is not a row with a"),
 ])  # fmt: skip
 def test_broken_reports_are_refused_with_the_line(tmp_path, text, message):
     path = tmp_path / "a.rpt"
@@ -221,10 +221,10 @@ def test_broken_reports_are_refused_with_the_line(tmp_path, text, message):
     ("*NODE, NSET=ALL", "*INSTANCE, NAME=A", r"line 4: has \*INSTANCE, expected a deck whose nodes and elem"),
     ("*NODE, NSET=ALL", "*NGEN", r"line 4: has \*NGEN, expected a deck"),
     ("*NODE, NSET=ALL", "*NSET, NSET=ALL", r"has no nodes and elements"),
-    ("\n1, 0.0", "\n1, 0.x", r"line 5: '1, 0.x, .*' is no line of \*NODE"),
+    ("\n1, 0.0", "\n1, 0.x", r"line 5: '1, 0.x, .*' is not a line of \*NODE"),
     ("\n5, ", "\n500, ", r"node 5 of an element is not there; expected elements of the nodes in the file"),
-    ("type=S4", "type=S3", r"line \d+: '1, 1, 5, 6, 2' is no line of \*ELEMENT with 3 nodes"),
-    ("type=S4", "type=S8R", r"line \d+: '1, 1, 5, 6, 2' is no line of \*ELEMENT with 8 nodes"),
+    ("type=S4", "type=S3", r"line \d+: '1, 1, 5, 6, 2' is not a line of \*ELEMENT with 3 nodes"),
+    ("type=S4", "type=S8R", r"line \d+: '1, 1, 5, 6, 2' is not a line of \*ELEMENT with 8 nodes"),
 ])  # fmt: skip
 def test_broken_decks_are_refused(tmp_path, old, new, message):
     points, cells = grid(4, 3)

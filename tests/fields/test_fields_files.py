@@ -120,11 +120,11 @@ def _written(path, field):
 
 
 @pytest.mark.parametrize(("row", "message"), [
-    ("10,20,10,nan", r"line 5: pressure = 'nan' is no finite number"),
+    ("10,20,10,nan", r"line 5: pressure = 'nan' is not a finite number"),
     ("10,20,10,-1", r"line 5: pressure = -1e\+06 Pa is outside \[0, inf\)"),
     ("10,20,0,1", r"line 5: area = 0 m2 is outside \(0, inf\)"),
     ("10,0,10,1", r"line 5: is at the same place as line 4"),
-    ("10,20,10,0", r"line 5: is open \(no pressure\), with 1 of 4 nodes; say keep \(they just touch\)"),
+    ("10,20,10,0", r"line 5: is open \(no pressure\), with 1 of 4 nodes; state keep \(they just touch\)"),
     ("10,20,10", r"line 5 has 3 columns, expected 4"),
 ])  # fmt: skip
 def test_csv_is_refused_with_the_line(tmp_path, row, message):
@@ -188,7 +188,7 @@ def test_nodes_that_calculix_leaves_out_are_open(tmp_path):
     broken = tmp_path / "a.frd"
     head, contact = path.read_text().split(" -4  CONTACT")
     broken.write_text(head + " -4  CONTACT" + contact.replace(" 0.00000E+00", "         NaN", 1))
-    with pytest.raises(ValueError, match=r"line \d+: .* is no node with 6 numbers"):
+    with pytest.raises(ValueError, match=r"line \d+: .* is not a node with 6 numbers"):
         FieldReader(**UNITS, open_nodes="keep").read_field(broken)
 
 
@@ -210,10 +210,10 @@ def test_broken_frd_is_refused_with_the_line(tmp_path):
     with pytest.raises(ValueError, match=r"has no result CONTACT .*; there are DISP, DISPLAY"):
         FieldReader(**UNITS).read_field(path)
     path.write_text(text.replace(" -1         1-2.00000E+01", " -1         1-2.0x000E+01", 1))
-    with pytest.raises(ValueError, match=r"line \d+: .* is no node with 3 numbers"):
+    with pytest.raises(ValueError, match=r"line \d+: .* is not a node with 3 numbers"):
         FieldReader(**UNITS).read_field(path)
     path.write_text("hello")
-    with pytest.raises(ValueError, match="is no CalculiX result"):
+    with pytest.raises(ValueError, match="is not a CalculiX result"):
         FieldReader(**UNITS).read_field(path)
 
 
@@ -233,11 +233,13 @@ def test_volume_mesh_of_two_bodies(tmp_path):
     both = np.concatenate([0 * p, p, 1.1 * p, 0 * p])
     path = tmp_path / "a.vtu"
     meshio.Mesh(points, {"hexahedron": bricks}, {"CPRESS": both, "U": np.zeros((4 * n, 3))}).write(path)
-    with pytest.raises(ValueError, match=r"state the point data .*; there are CPRESS, U \(3 components\)"):
+    with pytest.raises(
+        ValueError, match=r"state which point data .*; the file has CPRESS, " r"U \(3 components\)"
+    ):
         FieldReader(**UNITS).read_field(path)
     with pytest.raises(ValueError, match=r"has no point data 'PRES'; there are CPRESS"):
         FieldReader(**UNITS, point_data_name="PRES").read_field(path)
-    with pytest.raises(ValueError, match=r"'U' is no component of U; expected U:1 to U:3"):
+    with pytest.raises(ValueError, match=r"'U' is not a component of U; expected U:1 to U:3"):
         FieldReader(**UNITS, point_data_name="U").read_field(path)
     with pytest.raises(ValueError, match=r"node \d+: is at the same place as node \d+"):
         FieldReader(**UNITS, point_data_name="CPRESS").read_field(path)
@@ -267,7 +269,7 @@ def test_surface_mesh_in_another_plane(tmp_path, suffix, monkeypatch):
     ).read_field(path)
     np.testing.assert_allclose(turned.position[:, 0], field.position[:, 1])
     np.testing.assert_allclose(turned.position[:, 1], -field.position[:, 0])
-    with pytest.raises(ValueError, match=r"node \d+: lies .* off the plane z = "):
+    with pytest.raises(ValueError, match=r"node \d+: lies .* away from the plane z = "):
         FieldReader(**UNITS, point_data_name="p", format="mesh").read_field(path)
 
 

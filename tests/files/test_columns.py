@@ -95,14 +95,14 @@ def test_cells_in_quotes(tmp_path):
             "load [lbf]\n1",
             r"column 'load' has unit 'lbf', allowed are N, kN and others that measure the same",
         ),
-        ("load [N],Load [kN]\n1,2", r"column 'load' is given twice, allowed is once"),
+        ("load [N],Load [kN]\n1,2", r"column 'load' is given twice; state it once"),
         (f"{HEAD}", r"has 0 points, at least 1 are needed"),
         (f"#\n{HEAD}\n1,2\n\n3", r"line 5 has 1 columns, expected 2"),
         (f"{HEAD}\n1,2\n3,4,5", r"line 3 has 3 columns, expected 2"),
-        (f"{HEAD}\n1,2\n3,", r"line 3: angle = '' is no finite number with a decimal point"),
-        (f"{HEAD}\n1,2\n inf ,4", r"line 3: load = 'inf' is no finite number with a decimal point"),
-        (f"{HEAD.replace(',', ';')}\n1,5,0;2", r"line 2: load = '1,5,0' is no finite number"),
-        (f"{HEAD.replace(',', ';')}\n1.234,5;2", r"line 2: load = '1.234,5' is no finite number"),
+        (f"{HEAD}\n1,2\n3,", r"line 3: angle = '' is not a finite number with a decimal point"),
+        (f"{HEAD}\n1,2\n inf ,4", r"line 3: load = 'inf' is not a finite number with a decimal point"),
+        (f"{HEAD.replace(',', ';')}\n1,5,0;2", r"line 2: load = '1,5,0' is not a finite number"),
+        (f"{HEAD.replace(',', ';')}\n1.234,5;2", r"line 2: load = '1.234,5' is not a finite number"),
     ],
 )
 def test_faults_are_named_with_their_place(tmp_path, content, said):
@@ -116,7 +116,7 @@ def test_files_that_are_none(tmp_path):
     with pytest.raises(ValueError, match=r"none.csv: cannot be read \(No such file .*; expected a CSV file"):
         read_columns(tmp_path / "none.csv", SPEC, 1)
     (tmp_path / "b.csv").write_bytes(b"\xff\xfe\x00")
-    with pytest.raises(ValueError, match=r"b.csv: is no text file; expected CSV \(UTF-8\)"):
+    with pytest.raises(ValueError, match=r"b.csv: is not a text file; expected CSV \(UTF-8\)"):
         read_columns(tmp_path / "b.csv", SPEC, 1)
 
 

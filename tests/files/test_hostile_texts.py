@@ -270,7 +270,7 @@ def test_reserved_words_name_neither_fmus_nor_components(
     name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     line = refused_line(capsys, "build", FMU, f"--name={name}", "--out", tmp_path / "out")
-    assert "is no model identifier" in line
+    assert "is not a model identifier" in line
     text = (ROOT / "models/systems/robot_joint.toml").read_text(encoding="utf-8")
     text = text.replace("[drive]", f"[{name}]").replace("drive.flange", f"{name}.flange")
     for file, content in (("mine", text), (name, (ROOT / "models/systems/robot_joint.toml").read_text())):

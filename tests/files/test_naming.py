@@ -25,7 +25,7 @@ def test_all_else_is_refused_in_one_line(
     name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     line = refused_line(capsys, "build", NAME, f"--name={name}", "--out", tmp_path / "out")
-    assert "is no model identifier" in line
+    assert "is not a model identifier" in line
     assert ALLOWED in line
     assert not (tmp_path / "out").exists()
 
@@ -35,7 +35,7 @@ def test_all_else_is_refused_in_one_line(
     [
         ((), f"expected one of {', '.join(MODELS)}"),
         (tuple(MODELS)[:2], "is for one FMU"),
-        ((NAME, "--systems"), "no --systems beside it"),
+        ((NAME, "--systems"), "leave out --systems"),
     ],
 )
 def test_a_name_is_for_one_fmu(

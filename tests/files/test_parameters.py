@@ -217,7 +217,7 @@ REFUSED = {
     "input-low": (
         PRELOAD,
         PRELOAD.replace("0.0", "-1.0"),
-        ["inputs.preload = -1 N", "[0, inf)", "pre-tightening force"],
+        ["inputs.preload = -1 N", "[0, inf)", "preload of each bolt"],
     ),
     "input-nan": (PRELOAD, PRELOAD.replace("0.0", "nan"), ["inputs.preload = nan N", "[0, inf)"]),
     "input-text": (PRELOAD, PRELOAD.replace("0.0", '"much"'), ["inputs.preload = 'much'", "not a number"]),

@@ -58,11 +58,11 @@ def larger(path: Path, name: str, size: int) -> Path:
 
 ZEROS = bytes(1 << 20)
 REFUSED = {
-    "ratio": ({f"resources/{i}": ZEROS for i in range(80)}, "times its own size; allowed are 100 times"),
+    "ratio": ({f"resources/{i}": ZEROS for i in range(80)}, "times its packed size; allowed are 100 times"),
     "members": ({f"resources/{i}": b"" for i in range(archives.MAX_MEMBERS)}, "members; allowed are 20000"),
-    "parent": ({"resources/../../x": b""}, "expected names inside of the archive"),
-    "root": ({"/resources/x": b""}, "expected names inside of the archive"),
-    "drive": ({"C:/x": b""}, "expected names inside of the archive"),
+    "parent": ({"resources/../../x": b""}, "expected names inside the archive"),
+    "root": ({"/resources/x": b""}, "expected names inside the archive"),
+    "drive": ({"C:/x": b""}, "expected names inside the archive"),
 }
 
 
@@ -98,10 +98,10 @@ def test_a_declared_size_is_refused(size: int, tmp_path: Path) -> None:
 def test_a_member_is_unpacked_to_its_declared_size_at_most(tmp_path: Path) -> None:
     """Its list says 10 bytes, the member has a million."""
     path = larger(archive(tmp_path / "lies.fmu", {"resources/x": ZEROS}), "resources/x", 10)
-    with pytest.raises(ValueError, match=r"lies.fmu: is no FMU \(Bad CRC-32"):
+    with pytest.raises(ValueError, match=r"lies.fmu: is not an FMU \(Bad CRC-32"):
         archives.FmuMembers(path)["resources/x"]
     with (
-        pytest.raises(ValueError, match=r"lies.fmu: is no FMU \(Bad CRC-32"),
+        pytest.raises(ValueError, match=r"lies.fmu: is not an FMU \(Bad CRC-32"),
         archives.open_archive(path) as opened,
     ):
         archives.extract_members(opened, tmp_path / "out", lambda name: True)
@@ -110,7 +110,7 @@ def test_a_member_is_unpacked_to_its_declared_size_at_most(tmp_path: Path) -> No
 
 def test_a_surface_in_a_zip_is_measured_too(tmp_path: Path) -> None:
     path = archive(tmp_path / "scan.x3p", {f"{i}.bin": ZEROS for i in range(80)})
-    with pytest.raises(ValueError, match="times its own size"):
+    with pytest.raises(ValueError, match="times its packed size"):
         heights(path)
 
 
@@ -151,7 +151,7 @@ def test_a_pipe_and_a_device_are_refused(tmp_path: Path) -> None:
     os.mkfifo(pipe)
     for path, kind in ((pipe, "a pipe"), (Path("/dev/zero"), "a device")):
         for read in (load_parameter_file, host.read_description, lambda p: read_bytes(p, "a file")):
-            with pytest.raises(ValueError, match=f"{path}: is {kind}, no regular file; expected"):
+            with pytest.raises(ValueError, match=f"{path}: is {kind}, not a regular file; expected"):
                 read(path)
 
 
@@ -236,5 +236,5 @@ def test_a_command_refuses_a_pipe_at_once(
         said = refused_line(capsys, *command.split(), *LINES[command, name].split())
     finally:
         writer.cancel()
-    assert re.search(r"PIPE\S*: is a pipe, no regular file; expected", said)
+    assert re.search(r"PIPE\S*: is a pipe, not a regular file; expected", said)
     assert {*os.listdir()} == {*FILES, *PIPES}

@@ -247,7 +247,7 @@ UNITS = [
     ("N·cm", 100.0, "urad", 1e6),
 ]
 BAD = {
-    "no text": (b"\xff\xfe\x00\x01", "is no text file"),
+    "no text": (b"\xff\xfe\x00\x01", "is not a text file"),
     "empty": ("# nothing", "is empty; expected columns torque [N.m"),
     "no heading": (GOOD, "the first line is"),
     "no unit": ("torque, angle [rad]", "column 'torque' has no unit"),
@@ -255,7 +255,7 @@ BAD = {
     "one column": (["torque [N.m], other [rad]", *GOOD], "has no column 'angle'; expected angle [rad"),
     "twice": ("torque [N.m], torque [N.m], angle [rad]", "given twice"),
     "few": ([HEADING, *GOOD[:9]], "has 9 points, at least 10 are needed"),
-    "nan": ([HEADING, *GOOD, "nan,1"], "line 22: torque = 'nan' is no finite"),
+    "nan": ([HEADING, *GOOD, "nan,1"], "line 22: torque = 'nan' is not a finite"),
     "ragged": ([HEADING, *GOOD, "1"], "line 22 has 1 columns, expected 2"),
     "constant": ([HEADING, *["2,1"] * 12], "torque is 2 N.m throughout"),
     "reversed": ([HEADING, *FALLING], "reverse the sign of one column"),
@@ -321,11 +321,11 @@ RISING = ["1e3,1e9", "2e3,2e9", "3e3,3e9", "4e3,4e9"]
         ([*RISING[:3]] * 2, (), "has 3 different preloads"),
         (("1e3,4e9", "2e3,3e9", "3e3,2e9", "4e3,1e9"), (), "does not rise with the preload"),
         (RISING, ("--free", "surface.D", "surface.G", "H", "A_0"), "too few for 4 unknowns"),
-        (RISING, ("--free", "surface.X"), "'surface.X' is no parameter to fit; allowed are surface.D"),
+        (RISING, ("--free", "surface.X"), "'surface.X' is not a parameter to fit; allowed are surface.D"),
         (RISING, ("--free", "H", "H"), "'H' is given twice"),
         (RISING, ("--modal-mass", "5"), "the file has stiffnesses, no frequencies"),
         (RISING, ("--series-stiffness", "-1"), "series stiffness = -1 N/m is outside (0, inf)"),
-        (RISING, ("--plot", "fit.pdf"), "'.pdf' is no picture"),
+        (RISING, ("--plot", "fit.pdf"), "'.pdf' is not a picture"),
     ],
 )
 def test_bad_preload(rows, options, message, tmp_path, capsys):

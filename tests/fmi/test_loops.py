@@ -155,8 +155,8 @@ SHEAR = ["--input", "s_rel_x", "--loop", "1e-6"]
         ("GearContact", [*GEAR, "--loop", "1", "--about", "nan"], "about = nan is outside (-inf, inf)"),
         ("BoltedJoint", [*SHEAR, "--points", "10"], "points = 10, allowed are multiples of 4 from 8"),
         ("BoltedJoint", [*SHEAR, "--cycles", "0"], "cycles = 0 is outside [1, 1000]"),
-        ("BoltedJoint", [*SHEAR, "--output", "K_xx"], "'K_xx' is no output whose product with s_rel_x"),
-        ("BoltedJoint", [*SHEAR, "--plot", "a.pdf"], "'.pdf' is no picture"),
+        ("BoltedJoint", [*SHEAR, "--output", "K_xx"], "'K_xx' is not an output whose product with s_rel_x"),
+        ("BoltedJoint", [*SHEAR, "--plot", "a.pdf"], "'.pdf' is not a picture"),
         (
             "BoltedJoint",
             ["--input", "v_rel_x", "--loop", "1"],

@@ -117,7 +117,10 @@ def test_equations_are_solved_as_lapack_does():
 
 
 def test_too_few_points_are_refused():
-    with pytest.raises(ValueError, match=r"^6 points are too few, expected at least \d+ for this contact$"):
+    with pytest.raises(
+        ValueError,
+        match=r"^6 points are too few for " r"this contact; " r"expected at least " r"\d+ for this contact$",
+    ):
         reduce_points(contact("frame"), 6)
 
 

@@ -455,7 +455,7 @@ def test_there_is_a_date_only_if_it_is_given(
     dated = etree.fromstring(description(name, version))
     assert dated.get("generationDateAndTime") == "2023-11-14T22:13:20Z"
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "yesterday")
-    with pytest.raises(ValueError, match="SOURCE_DATE_EPOCH = 'yesterday' is no date"):
+    with pytest.raises(ValueError, match="SOURCE_DATE_EPOCH = 'yesterday' is not a date"):
         description(name, version)
 
 
@@ -579,7 +579,7 @@ def test_icons_are_small_and_tell_the_joints_apart() -> None:
 
 def test_an_icon_that_is_missing_is_named() -> None:
     nameless = replace(MODELS["GearContact"], name="GearContact2")
-    with pytest.raises(ValueError, match=r"^GearContact2: \S+GearContact2\.png is missing; expected"):
+    with pytest.raises(ValueError, match=r"^GearContact2: \S+GearContact2\.png is missing; it must be"):
         terminal_files(nameless)
 
 

@@ -126,7 +126,7 @@ def test_a_state_pointer_of_another_fmu_is_refused(host: Host, version: str, exc
     assert sizes[0] < sizes[1]
     for call in (bolted.fmu.setFMUState, bolted.fmu.serializeFMUState, bolted.fmu.freeFMUState):
         said = bolted.refused(call, foreign)
-        assert said.endswith("this is no FMU state of BoltedJoint; expected one that it gave")
+        assert said.endswith("this is not an FMU state of BoltedJoint; expected one that it gave")
         assert numbers(bolted) == before
     gear.fmu.setFMUState(foreign)  # the refusals left it as it was
     gear.fmu.freeFMUState(foreign)

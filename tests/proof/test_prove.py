@@ -188,7 +188,7 @@ def test_a_library_for_another_platform_is_named(
         library = archive.read(f"binaries/win64/{NAME}.dll")
     path = copy(fmu, tmp_path / fmu.name, lambda name, data: library if name == LIBRARY else data)
     (line,) = proved(capsys, path, status=1)["misses"]
-    assert line.startswith(f"start: its library cannot be loaded (binaries/linux64/{NAME}.so")
+    assert line.startswith(f"start: the library in the FMU cannot be loaded (binaries/linux64/{NAME}.so")
 
 
 def test_an_fmu_without_this_platform_is_refused(
@@ -234,7 +234,7 @@ def test_a_refused_parameter_is_reported_in_the_words_of_the_fmu(
     ("part", "data", "said"),
     [
         ("fmi-ls-manifest.xml", None, "has no extra/org.fmi-standard.fmi-ls-ref/fmi-ls-manifest.xml"),
-        ("fmi-ls-manifest.xml", b"<fmi", "fmi-ls-manifest.xml is no XML"),
+        ("fmi-ls-manifest.xml", b"<fmi", "fmi-ls-manifest.xml is not valid XML"),
         ("fmi-ls-manifest.xml", b"<fmiReferences/>", "is of None, expected 'org.fmi-standard.fmi-ls-ref'"),
         (
             "validation.exp",
@@ -242,8 +242,8 @@ def test_a_refused_parameter_is_reported_in_the_words_of_the_fmu(
             "has no extra/org.fmi-standard.fmi-ls-ref/validation.exp, which its manifest",
         ),
         ("load_ramp_ref.csv", b"", "load_ramp_ref.csv: begins with ''; expected 'time' first"),
-        ("load_ramp_ref.csv", b"\xff", "is no text; expected UTF-8"),
-        ("e_0_999999.ssv", b"<a", "e_0_999999.ssv is no XML"),
+        ("load_ramp_ref.csv", b"\xff", "is not a text; expected UTF-8"),
+        ("e_0_999999.ssv", b"<a", "e_0_999999.ssv is not valid XML"),
     ],
 )
 def test_a_broken_proof_is_refused_in_one_line(
@@ -261,7 +261,7 @@ def test_what_cannot_be_proved_is_refused_in_one_line(
     assert "absent.fmu: there is no such file; expected an FMU" in refused_line(
         capsys, "prove", tmp_path / "absent.fmu"
     )
-    assert "is no FMU" in refused_line(capsys, "prove", text)
+    assert "is not an FMU" in refused_line(capsys, "prove", text)
     assert "invalid choice: 'simulink'" in refused_line(capsys, "prove", text, "--in", "simulink")
     monkeypatch.setattr("jointfmu_tools.proof.run.find_spec", lambda name: None)
     line = refused_line(capsys, "prove", native / "fmi2" / f"{NAME}.fmu", "--in", "ecos")

@@ -217,11 +217,11 @@ def test_changes_of_an_alternative_that_is_not_there_are_refused():
         Hole, SQUARE | {"square.side": 3.0}
     )
     allowed = "allowed are depth, square.side, square.corner"
-    text = f"round.radius is no parameter of a set that has [square]; {allowed}"
+    text = f"round.radius is not a parameter of a set that has [square]; {allowed}"
     with pytest.raises(ValueError, match=f"^{re.escape(text)}$"):
         replace_values(hole, {"round.radius": 1.0})
     with pytest.raises(
-        ValueError, match=r"^hole.round.radius is no .* that has \[hole.square\]; allowed are hole.d"
+        ValueError, match=r"^hole.round.radius is not a .* that has \[hole.square\]; allowed are hole.d"
     ):
         replace_values(part, {"hole.round.radius": 1.0})
     with pytest.raises(ValueError, match=r"^unknown name 'width'; allowed are depth, square.side"):

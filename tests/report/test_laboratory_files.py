@@ -263,7 +263,7 @@ def test_roughnesses_make_the_height_of_the_law(shown: Browser, tmp_path: Path) 
     alone = re.sub(r"(?m)^h = .*\n", "", text) + roughness(0.7e-6)
     check_shown(shown, alone, tmp_path)
     said = refusal(shown, text + roughness(3e-6))
-    assert re.search(r"h = \S+ m beside roughness.Ra1, roughness.Ra2, which make ", said)
+    assert re.search(r"h = \S+ m does not agree with roughness.Ra1, roughness.Ra2, which give ", said)
     assert "roughness.Rq1 beside roughness.Ra1" in refusal(shown, alone + entry("Rq1", 1e-6, "m"))
 
 
@@ -274,7 +274,7 @@ def test_roughnesses_make_the_height_of_the_law(shown: Browser, tmp_path: Path) 
 def test_a_bolted_joint_of_a_drawing_is_refused(
     shown: Browser, drawings: dict[str, str], name: str, key: str
 ) -> None:
-    """Of the whole joint, and of its interface: the points that carry it are not those of the page."""
+    """Of the complete joint, and of its interface: the points that carry it are not those of the page."""
     for model, index in (("BoltedJoint", 0), ("BoltedJoint", 1), ("GearContact", 0)):
         choose(shown, model, index)
         said = refusal(shown, drawings[name])
@@ -410,7 +410,7 @@ def test_an_address_of_another_page_is_said_and_not_mixed_in(shown: Browser) -> 
 
 @needed
 def test_an_opened_file_is_reset_and_saved(shown: Browser, drawings: dict[str, str], tmp_path: Path) -> None:
-    """Back to the file is back to this file; what is saved is this file with what was moved."""
+    """Reset to the file is back to this file; what is saved is this file with what was moved."""
     drop(shown, drawings["contact"])
     first = load_parameter_file(write(tmp_path / "first.toml", drawings["contact"]))
     text, back = shown.run("""laboratory.then((lab) => {

@@ -303,7 +303,7 @@ def test_a_measured_curve_stands_beside_the_curves_that_measure_the_same(shown: 
         assert first[0] == pytest.approx(-5.0 / size)
         assert x == pytest.approx(factor * first[units.index(base)])
     assert "expected one in" in drop(shown, "loop.csv", "time [s], voltage [V]\n0, 1\n")
-    assert "is no number" in drop(shown, "loop.csv", "angle [rad], torque [N.m]\n0, x\n")
+    assert "is not a number" in drop(shown, "loop.csv", "angle [rad], torque [N.m]\n0, x\n")
 
 
 @needed

@@ -151,8 +151,8 @@ def test_what_is_said_of_the_end_of_the_law_is_so_there() -> None:
     [
         (("absent.toml",), "absent.toml: cannot be read"),
         (("broken.toml",), "broken.toml: joint = 'nothing', allowed are"),
-        (("good.toml", "--fmu", "Nothing"), "fmu = 'Nothing' is none of a"),
-        (("good.toml", "--out", "good.toml"), "good.toml: is an input of this command too"),
+        (("good.toml", "--fmu", "Nothing"), "fmu = 'Nothing' is not a model of a"),
+        (("good.toml", "--out", "good.toml"), "good.toml: is also an input of this command"),
         (("good.toml", "--out", "page.txt"), "allowed is .html"),
         (("good.toml", "--out", "folder.html"), "is a folder"),
     ],

@@ -60,7 +60,7 @@ class Read:
 
     Scalars are numbers or arrays over time, Modelica's arrays are lists of them.
 
-    values  : of all that is no parameter
+    values  : of all that is not a parameter
     changes : of parameters
     """
 

@@ -151,12 +151,12 @@ def test_form_is_removed(area, form, order):
 @pytest.mark.parametrize(
     ("name", "content", "says"),
     [
-        ("none.csv", None, "none.csv: is no file"),
-        ("empty.csv", "", "empty.csv: is no surface: the file is empty"),
-        ("words.csv", "hello 1 2\n", "words.csv: is no surface: a text of 2 numbers"),
-        ("junk.vk4", "\x00\x01junk", "junk.vk4: is no surface: it does not begin as a .vk4 file"),
-        ("odd.foo", "\x00\x01junk", "odd.foo: is no surface: neither our CSV nor a format"),
-        ("scan.pdf", "%PDF-1.7", "scan.pdf: is no surface: it is a PDF"),
+        ("none.csv", None, "none.csv: is not a file"),
+        ("empty.csv", "", "empty.csv: is not a surface scan: the file is empty"),
+        ("words.csv", "hello 1 2\n", "words.csv: is not a surface scan: a text of 2 numbers"),
+        ("junk.vk4", "\x00\x01junk", "junk.vk4: is not a surface scan: it does not begin as a .vk4 file"),
+        ("odd.foo", "\x00\x01junk", "odd.foo: is not a surface scan: neither our CSV nor a format"),
+        ("scan.pdf", "%PDF-1.7", "scan.pdf: is not a surface scan: it is a PDF"),
         (
             "bare.csv",
             "0,1\n1,2\n" * 99,
@@ -165,7 +165,7 @@ def test_form_is_removed(area, form, order):
         (
             "unit.csv",
             "# profile: x, z\n0,1\n",
-            "unit.csv: the header states no unit of x, z; write it as x [um]",
+            "unit.csv: the header has no unit for x, z; write it as x [um]",
         ),
         ("inch.csv", "# profile: x [in], z [in]\n0,1\n", "unit 'in' is not one of m, mm, um, nm"),
         ("step.csv", "# grid: dy = 1 um, z [um]\n0,1\n", "step.csv: the header states no dx"),
@@ -190,11 +190,15 @@ def test_form_is_removed(area, form, order):
             "# profile: x [m], z [m]\n" + "".join(f"{i},nan\n" for i in range(200)),
             "all 200 heights",
         ),
-        ("text.csv", "# profile: x [m], z [m]\n1,abc\n", "is no surface: line 2: 'abc' is no number"),
+        (
+            "text.csv",
+            "# profile: x [m], z [m]\n1,abc\n",
+            "is not a surface scan: line 2: 'abc' is not a number",
+        ),
         ("short.csv", "# profile: x [m], z [m]\n1,2\n\n3\n", "short.csv: line 4 has 1 columns, expected 2"),
-        ("head.csv", "# profile: x [m], z [m]\n", "head.csv: is no surface: it holds no numbers"),
+        ("head.csv", "# profile: x [m], z [m]\n", "head.csv: is not a surface scan: it holds no numbers"),
         ("cols.csv", "# profile: x [m], z [m]\n1,2,3\n", "has 3 columns, its header declares 2"),
-        ("twice.csv", "# profile: x [m], z [m]\n" + "1,2\n" * 200, "x repeats values"),
+        ("twice.csv", "# profile: x [m], z [m]\n" + "1,2\n" * 200, "x has repeated values"),
         (
             "uneven.csv",
             "# profile: x [um], z [um]\n" + "".join(f"{i**1.1},{i % 7}\n" for i in range(200)),
@@ -212,17 +216,17 @@ def test_what_is_refused_by_name(folder, capsys, name, content, says):
     ("options", "says"),
     [
         (["--unit", "in"], "unit = 'in' is not one of m, mm, um, nm (--unit)"),
-        (["--unit", "um"], "states its units itself"),
+        (["--unit", "um"], "states its units"),
         (["--range", "2", "1"], "expected 0 < LOW < HIGH"),
         (["--range", "1", "2"], "holds 0 values"),
         (["--out", "x.toml"], "needs --joint"),
         (["--joint", "glue"], "invalid choice: 'glue'"),
-        (["--plot", "x.pdf"], "suffix '.pdf' is no picture, allowed are .png, .svg"),
+        (["--plot", "x.pdf"], "suffix '.pdf' is not a picture, allowed are .png, .svg"),
         (["--gamma", "1"], "gamma = 1 is outside (1, inf)"),
         (["--form", "cone"], "invalid choice: 'cone'"),
         (["--joint", "bolted_joint", "--out", "x.toml"], "is one side of the contact; state which"),
         (["--side", "3"], "invalid choice: '3'"),
-        (["line.csv", "--side", "1"], "side = 1 beside two files"),
+        (["line.csv", "--side", "1"], "side = 1 is given with two files"),
         (["--longest-wave", "-1"], "longest wave = -1 m is outside (0, inf)"),
         (["--longest-wave", "2e-3"], "line.csv: longest wave = 0.002 m is outside [1.95e-05, 0.001]"),
         (["line.csv", "line.csv"], "3 files given"),
@@ -368,7 +372,7 @@ def test_synthesize(folder, capsys, shape, D, G):
         (["--points", "0"], "points = 0 is outside"),
         (["--seed", "-1"], "seed = -1 is negative"),
         (["--ridges", "0"], "ridges = 0"),
-        (["--out", "s.png"], ".png is the ending of another kind of file; expected .csv"),
+        (["--out", "s.png"], ".png is the suffix of another kind of file; expected .csv"),
         (["--points", "1000000"], "points = 1000000 take 6.4e+04 GB, allowed are 2 GB: at most 5590 points"),
         (["--shape", "profile", "--points", "100000000"], "at most 10526315 points along a side of shape"),
         (["--ridges", "100000"], "ridges = 100000, allowed are 1, 2, 3, ... 1000"),
@@ -420,7 +424,7 @@ def test_missing_rows_of_a_profile_are_missing_points(folder):
     ("x", "says"),
     [
         (np.floor(np.arange(500) ** 1.1), "spacing of x varies"),
-        (np.concatenate([np.arange(250.0), np.arange(250.0)[::-1]]), "x repeats values"),
+        (np.concatenate([np.arange(250.0), np.arange(250.0)[::-1]]), "x has repeated values"),
         (np.arange(500) + 0.2 * (-1.0) ** (np.arange(500) // 7), "spacing of x varies"),
     ],
     ids=["uneven", "there and back", "shaken"],
@@ -433,7 +437,7 @@ def test_what_no_rounding_explains_is_refused(folder, x, says):
 def test_points_given_twice_are_refused(folder):
     rows = [f"{i % 70},{i // 70},{i % 11}" for i in range(70 * 70)]
     (folder / "t.csv").write_text("# points: x [um], y [um], z [um]\n" + "\n".join([*rows, rows[5]]))
-    with pytest.raises(ValueError, match="x and y repeat points"):
+    with pytest.raises(ValueError, match=r"some points \(x, y\) are repeated"):
         read_heights("t.csv")
 
 
@@ -443,7 +447,7 @@ def test_points_given_twice_are_refused(folder):
         (
             "m",
             0.16,
-            "the field is 163.8 m with lengths in m, scans have 5e-05 to 1 m; were lengths in um meant",
+            "the field is 163.8 m with lengths in m, scans have 5e-05 to 1 m; are the lengths in um",
         ),
         ("um", 5e-5, "the field is 5.12e-08 m with lengths in um"),
     ],
@@ -454,7 +458,7 @@ def test_a_field_of_no_scan_asks_back(folder, capsys, unit, step, says):
     (folder / "f.txt").write_text(rows)
     refused = refused_line(capsys, "surface", "f.txt", "--unit", unit)
     assert says in refused
-    assert refused.endswith("that the size is right (--force)\n")
+    assert refused.endswith("or confirm the size (--force)\n")
     run(capsys, "surface", "f.txt", "--unit", unit, "--force")
 
 
@@ -499,7 +503,7 @@ def test_the_micro_sign_of_latin_1_is_read_and_other_encodings_are_refused(folde
         (folder / "l.csv").write_text(f"{heads}\n{rows}", encoding="latin-1")
         assert read_heights(folder / "l.csv").z == pytest.approx(line.z, rel=1e-8)
     (folder / "l.csv").write_text(f"X [µm];Z [µm]\n{rows}", encoding="utf-16")
-    assert "l.csv: is no text file; expected CSV (UTF-8)" in refused_line(capsys, "surface", "l.csv")
+    assert "l.csv: is not a text file; expected CSV (UTF-8)" in refused_line(capsys, "surface", "l.csv")
 
 
 @pytest.mark.parametrize(
@@ -529,7 +533,7 @@ def test_units_as_instruments_write_them(folder, monkeypatch):
     (folder / "t.foo").write_bytes(bytes(1000))
     assert read_heights("t.foo").dx == pytest.approx(1e-6)
     made = SurfaceTopography.Topography(z, (70.0, 70.0), unit="furlong")
-    with pytest.raises(ValueError, match=r"t\.foo: its unit 'furlong' is no length that is known"):
+    with pytest.raises(ValueError, match=r"t\.foo: its unit 'furlong' is not a known unit of length"):
         read_heights("t.foo")
 
 

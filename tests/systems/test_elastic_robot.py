@@ -209,7 +209,7 @@ def test_the_longest_step_is_where_the_file_diverges(six):
     """At the frequency of small vibrations there, with motors free, drives without load."""
     said, _ = six
     assert [line.split(":")[:2] for line in said["notes"]] == [
-        [drive.partition("=")[2], f" the MJCF does not carry {what}"]
+        [drive.partition("=")[2], f" the MJCF does not include {what}"]
         for drive in DRIVES
         for what in ("friction that grows with the load", "the temperature of the lubricant")
     ]
@@ -287,9 +287,7 @@ def test_seven_axes_of_a_urdf(tmp_path, capsys, few_poses):
     words = [f"j{i}=CSG-20-100" for i in range(1, 8)]
     said = made(capsys, robot, tmp_path / "out", "--drive", *words, "--pose", "j2=1.5708")
     assert sum("no armature" in line for line in said["notes"]) == 7
-    assert any(
-        "at the origin of l7, on the axis of j7, which it does not load" in line for line in said["notes"]
-    )
+    assert any("at the origin of l7, on the axis of j7, and does not load" in line for line in said["notes"])
     assert list(said["wind_up"]) == [f"j{i}" for i in range(1, 8)]
     assert said["wind_up"]["j1"] == pytest.approx(0.0, abs=1e-9)
     assert said["wind_up"]["j2"] > 1e-4
@@ -352,9 +350,9 @@ def test_robots_of_others(wheel, end, count, tmp_path, capsys, few_poses):
 @pytest.mark.parametrize(
     ("words", "line"),
     [
-        (["--drive", "joint9=CSG-14-100"], "'joint9' is no hinge of the robot; allowed are joint1, "),
+        (["--drive", "joint9=CSG-14-100"], "'joint9' is not a hinge of the robot; allowed are joint1, "),
         (["--drive", "joint1"], "--drive 'joint1': expected JOINT=NAME"),
-        (["--drive", "joint1=CSG-14-100", "joint1=CSG-17-100"], "--drive: joint1 is stated twice"),
+        (["--drive", "joint1=CSG-14-100", "joint1=CSG-17-100"], "--drive: joint1 is given twice"),
         (["--drive", "joint1=GearMesh"], "is a gear_mesh, no drive of a motor"),
         (
             ["--drive", "joint1=CSG-14-100", "--payload", "-1"],
@@ -364,7 +362,7 @@ def test_robots_of_others(wheel, end, count, tmp_path, capsys, few_poses):
             ["--drive", "joint1=CSG-14-100", "--tip", "toe"],
             "--tip 'toe': no body of the robot; allowed",
         ),
-        (["--drive", "joint1=CSG-14-100", "--pose", "joint1=up"], "--pose joint1 = 'up' is no number"),
+        (["--drive", "joint1=CSG-14-100", "--pose", "joint1=up"], "--pose joint1 = 'up' is not a number"),
         (
             ["--drive", "joint1=CSG-14-100", "--pose", "joint2=90"],
             r"--pose joint2 = 90 rad is outside \[-2, 2\] rad",
@@ -384,7 +382,7 @@ def test_drives_of_one_name_that_differ_are_refused(tmp_path, capsys, wanted):
         (tmp_path / folder / "mine.toml").write_text(text)
     files = [f"joint{i}={tmp_path / folder / 'mine.toml'}" for i, folder in ((1, "one"), (2, "other"))]
     line = refused_line(capsys, "robot", ROBOT, "--drive", *files, wanted, "--out", tmp_path / "out")
-    assert "the drives of joint1 and joint2 are both named 'mine' and differ" in line
+    assert "the drives of joint1 and joint2 are both named 'mine' but differ" in line
     assert not (tmp_path / "out").exists()
 
 

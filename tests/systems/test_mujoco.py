@@ -225,7 +225,7 @@ def test_joints_do_not_see_each_other(robot: Robot) -> None:
     ("config", "line"),
     [
         ({"surface.D": 3.5}, r"drive0: surface\.D = 3\.5 is outside \(2, 3\): fractal dimension"),
-        ({"ratio": "fast"}, r"drive0: ratio = 'fast' is no number; expected one"),
+        ({"ratio": "fast"}, r"drive0: ratio = 'fast' is not a number; expected one"),
         ({"nothing": 1.0}, r"unrecognized attribute 'plugin:nothing'"),
     ],
 )
@@ -237,7 +237,7 @@ def test_bad_configurations_are_refused(robot: Robot, config: dict[str, Any], li
 def test_an_unknown_joint_is_refused(robot: Robot, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(globals(), "INSTANCE", INSTANCE.replace('"link{0}"', '"lnik{0}"'))
     with pytest.raises(
-        ValueError, match=r"drive0: phi2 = 'lnik0' is no hinge joint; expected the name of one"
+        ValueError, match=r"drive0: phi2 = 'lnik0' is not a hinge joint; expected the name of one"
     ):
         robot({})
 
@@ -278,5 +278,5 @@ def test_an_fmu_of_another_form_is_refused(native: Path, tmp_path: Path) -> None
     with pytest.raises(ValueError, match=f"^{re.escape(line)}$"):
         plugin(other, tmp_path)
     (tmp_path / "no.fmu").write_text("no archive")
-    with pytest.raises(ValueError, match=r"no\.fmu: is no FMU .File is not a zip file"):
+    with pytest.raises(ValueError, match=r"no\.fmu: is not an FMU .File is not a zip file"):
         plugin(tmp_path / "no.fmu", tmp_path)

@@ -1035,7 +1035,10 @@ def test_a_file_makes_a_system(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
 
 
 def test_a_joint_that_does_not_ring_is_refused() -> None:
-    said = "joint 'gear_contact' does not say how it rings, allowed are harmonic_drive, bolted_joint"
+    said = (
+        "joint 'gear_contact' has no free vibration that can be simulated; allowed are harmonic_drive, "
+        "bolted_joint"
+    )
     with pytest.raises(ValueError, match=said):
         ringing.load_vibration_test("gear_contact")
 
@@ -1174,7 +1177,7 @@ def test_ring_down_in_shear(built: Path, capsys: pytest.CaptureFixture[str]) -> 
             ["bolted_column", "--fmus", "nowhere"],
             "--fmus nowhere: has no BoltedJoint.fmu; `jointfmu system bolted_column` writes it",
         ),
-        (["robot_joint", "--plot", "a.pdf"], "suffix '.pdf' is no picture"),
+        (["robot_joint", "--plot", "a.pdf"], "suffix '.pdf' is not a picture"),
         (["gearbox"], "system 'gearbox': allowed are bolted_column, robot_joint, six_axis_robot, or a file"),
         (
             ["six_axis_robot"],

@@ -41,7 +41,7 @@ WRONG = {
     "a parameter that is not finite": {**GOOD, "run": 2, "parameters": {"D": float("inf")}},
     "neither columns nor error": {"run": 2, "parameters": {}},
     "columns and error": {**GOOD, "run": 2, "error": "x"},
-    "an error that is no text": {"run": 2, "parameters": {}, "error": 5},
+    "an error that is not a text": {"run": 2, "parameters": {}, "error": 5},
     "a list of columns": {**GOOD, "run": 2, "columns": [1.0]},
     "no columns": {**GOOD, "run": 2, "columns": {}},
     "a column that is a number": columns(K_WTS=1.0),
@@ -107,16 +107,16 @@ def test_rows_of_a_sweep_are_read(tmp_path: Path) -> None:
 def test_a_pipe_in_its_place_is_refused(tmp_path: Path) -> None:
     for name in (journal.RUNS_FILE, journal.STUDY_FILE):
         os.mkfifo(tmp_path / name)
-    with pytest.raises(ValueError, match=r"runs\.jsonl: is a pipe, no regular file"):
+    with pytest.raises(ValueError, match=r"runs\.jsonl: is a pipe, not a regular file"):
         journal.Journal(tmp_path, 8).__enter__()
-    with pytest.raises(ValueError, match=r"study\.json: is a pipe, no regular file"):
+    with pytest.raises(ValueError, match=r"study\.json: is a pipe, not a regular file"):
         journal.claim_folder(tmp_path, {"fmu": "a.fmu"})
 
 
 @pytest.mark.parametrize("text", ["[1, 2]", "null", 100_000 * "[", "{", "\x1b"])
 def test_a_study_that_is_none_is_refused(text: str, tmp_path: Path) -> None:
     (tmp_path / journal.STUDY_FILE).write_text(text)
-    with pytest.raises(ValueError, match=r"study.json: is no study of a sweep"):
+    with pytest.raises(ValueError, match=r"study.json: is not a study of a sweep"):
         journal.claim_folder(tmp_path, {"fmu": "a.fmu"})
 
 

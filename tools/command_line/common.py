@@ -197,7 +197,7 @@ def parse_setting(text: str) -> tuple[str, Any]:
     """
     name, equals, value = text.partition("=")
     if not equals or not name.strip():
-        raise ValueError(f"{text!r} is no setting; expected NAME=VALUE")
+        raise ValueError(f"{text!r} is not a setting; expected NAME=VALUE")
     value = value.strip()
     if value.lower() in ("true", "false"):
         return name.strip(), value.lower() == "true"

@@ -40,10 +40,10 @@ def check_command_outputs(outputs: Mapping[str, FileKind], args: argparse.Namesp
     check_input_overwrite(files.values(), args, outputs)
     for (option, path), (other_option, other_path) in combinations(files.items(), 2):
         if is_same_file(path, other_path) and not path.is_char_device():
-            raise ValueError(f"{option} {path}: is the file of {other_option} too; expected two files")
+            raise ValueError(f"{option} {path}: {other_option} writes the same file; state two files")
     for name, path in stated.items():
         if args.json and is_standard_output(path):
-            raise ValueError(f"--{name} {path}: --json writes there too; expected another file")
+            raise ValueError(f"--{name} {path}: --json writes to the same place; state another file")
         if outputs[name] is PICTURE:
             plots.check_picture(path)
         check_output(path, outputs[name], getattr(args, "force", False))
@@ -58,7 +58,7 @@ def check_input_overwrite(files: Iterable[Path], args: argparse.Namespace, outpu
     inputs = [path for value in stated for path in _iterate_named_files(value)]
     for path in files:
         if not path.is_char_device() and any(is_same_file(path, source) for source in inputs):
-            raise ValueError(f"{path}: is an input of this command too; expected another file")
+            raise ValueError(f"{path}: is also an input of this command; state another file")
 
 
 def _iterate_named_files(value: object) -> Iterator[Path]:

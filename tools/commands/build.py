@@ -54,7 +54,7 @@ def add(commands: SubParsers) -> None:
 
 def _run_build(args: argparse.Namespace) -> CommandResult:
     if args.name is not None and args.systems:
-        raise ValueError(f"--name {args.name} is for one FMU; expected no --systems beside it")
+        raise ValueError(f"--name {args.name} is for one FMU; leave out --systems")
     file = load_parameter_file(args.params) if args.params else None
     with require_package("build"):
         from jointfmu_fmu_src import building
@@ -97,7 +97,7 @@ def _run_build(args: argparse.Namespace) -> CommandResult:
 
 
 def _read_start_values(path: Path) -> dict[str, str]:
-    """Read {parameter: start value as text} of an FMU; empty if the file is no FMU."""
+    """Read {parameter: start value as text} of an FMU; empty if the file is not an FMU."""
     try:
         with archives.open_archive(path) as archive:
             description = ElementTree.fromstring(archives.read_member(archive, archives.DESCRIPTION_NAME))

@@ -51,8 +51,8 @@ def add(commands: SubParsers) -> None:
         metavar="WHAT",
         help="springs: springs and dashpots between node pairs "
         f"({', '.join(KINDS[joint].title for joint in with_springs)}); contact: pressure over overclosure; "
-        "curve: load over displacement of the whole joint; "
-        f"for {', '.join(ROBOT_FORMATS)}: parameter file of a drive or its name in the catalogue",
+        f"curve: load over displacement of the complete joint; for {', '.join(ROBOT_FORMATS)}: parameter "
+        "file of a drive or its name in the catalogue",
     )
     joint = export.add_mutually_exclusive_group()
     declare_argument(joint, "--params", Path, "parameter file of the joint (TOML)")
@@ -192,7 +192,7 @@ def _refuse_options(args: argparse.Namespace, unused_options: Mapping[str, str])
     """
     for name, what in unused_options.items():
         if getattr(args, name) is not None:
-            raise ValueError(f"{option_flag(name)} has no meaning for {what}")
+            raise ValueError(f"{option_flag(name)} has no effect for {what}")
 
 
 def _check_working_point(args: argparse.Namespace, joint: str) -> None:

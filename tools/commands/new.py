@@ -185,7 +185,7 @@ def _run_catalogue(args: argparse.Namespace) -> CommandResult:
     ]
     if not rows:
         word = " ".join(args.words)
-        raise ValueError(f"no joint of the catalogues has {word!r} in its name (jointfmu catalogue)")
+        raise ValueError(f"no drive in the catalogue has {word!r} in its name (jointfmu catalogue)")
     lines, last_joint = [], None
     for joint, columns, item in rows:
         if joint != last_joint:

@@ -37,7 +37,7 @@ def _run_parameters(args: argparse.Namespace) -> CommandResult:
     name = args.name
     if name in LAWS:
         if args.law:
-            raise ValueError(f"--law has no meaning for the law {name}; it is for FMUs and joints")
+            raise ValueError(f"--law has no effect for the law {name}; it is for FMUs and joints")
         values = flatten_parameters(
             build_law_parameters(name, load_law_file(args.params, name) if args.params else None, {})
         )
@@ -67,7 +67,7 @@ def _load_joint_file(name: str, args: argparse.Namespace) -> ParameterFile:
         return load_parameter_file(args.params, joint)
     if args.law and args.law not in KINDS[joint].laws:
         raise ValueError(
-            f"law = {args.law!r} is none of a {joint}, allowed are {', '.join(KINDS[joint].laws)}"
+            f"law = {args.law!r} is not a law of a {joint}, allowed are {', '.join(KINDS[joint].laws)}"
         )
     return load_default(joint, args.law)
 

@@ -37,7 +37,7 @@ def add(commands: SubParsers) -> None:
 
 def _run_prove(args: argparse.Namespace) -> CommandResult:
     if args.listing and args.against:
-        raise ValueError("--listing needs the reference results stored in the FMU; expected no --against")
+        raise ValueError("--listing needs the reference results stored in the FMU; leave out --against")
     proof = prove(
         args.fmu, args.importer, _compute_expected_contents(args.fmu, args.against) if args.against else None
     )
@@ -48,7 +48,9 @@ def _run_prove(args: argparse.Namespace) -> CommandResult:
     return CommandResult(
         document=report.build_document(proof) | listed,
         lines=report.format_lines(proof),
-        notes=["no listing is written: not all passed"] if args.listing and not folders else (),
+        notes=["the listing is not written: not all experiments passed"]
+        if args.listing and not folders
+        else (),
         written_files=folders,
         exit_status=int(not proof.has_passed),
     )

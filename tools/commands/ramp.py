@@ -69,17 +69,17 @@ def _run_command(args: argparse.Namespace) -> CommandResult:
     )
     if args.loop and ramp_options:
         raise ValueError(
-            f"--loop and {option_flag(ramp_options[0])} are both given; allowed is --loop, or --to "
+            f"--loop and {option_flag(ramp_options[0])} are both given; state either --loop, or --to "
             "with --step"
         )
     if not args.loop and loop_options:
         raise ValueError(
-            f"{option_flag(loop_options[0])} is given without --loop; allowed is with --loop only"
+            f"{option_flag(loop_options[0])} is for load cycles; state --loop too, or leave it out"
         )
     if not args.loop and len(ramp_options) < len(RAMP_OPTIONS):
-        raise ValueError("the load is not stated; expected --to with --step, or --loop")
+        raise ValueError("the load is missing; state --to with --step, or --loop")
     if args.loop and args.columns:
-        raise ValueError("--columns is given with --loop; allowed is with a ramp only")
+        raise ValueError("--columns is for a ramp; leave it out with --loop")
     return _run_loops(args) if args.loop else _run_ramp(args)
 
 

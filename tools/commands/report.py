@@ -25,6 +25,6 @@ def _run_report(args: argparse.Namespace) -> CommandResult:
     joint = load(args.file)
     out: Path = args.out or Path(f"{args.file.stem}.html")
     if out.suffix != ".html":
-        raise ValueError(f"--out {out} has the ending {out.suffix!r}, allowed is .html")
+        raise ValueError(f"--out {out} has the suffix {out.suffix!r}, allowed is .html")
     joint.report(out, args.fmu, force=args.force)
     return CommandResult(document={"report": str(out)}, written_files=[out])

@@ -61,7 +61,7 @@ def _run_ring(args: argparse.Namespace) -> CommandResult:
     if args.amplitude is not None:
         return _run_decays(args, example)
     if args.settings:
-        raise ValueError("--set is given without --amplitude; allowed is with --amplitude only")
+        raise ValueError("--set works with --amplitude only; state --amplitude too")
     points = ringing.simulate_vibrations(example, args.fmus, args.load, args.inertia)
     rows = [_resonance_row(point) for point in points]
     for message in dict.fromkeys(text for point in points for text in point.messages):

@@ -121,11 +121,11 @@ def run(args: argparse.Namespace) -> CommandResult:
     last = axes[-1].joint
     if args.payload and not jacobian[:, -1].any() and model.jnt_bodyid[model.joint(last).id] == tip:
         notes.append(
-            f"the payload is at the origin of {model.body(tip).name}, on the axis of {last}, which it does "
-            "not load; --tip BODY puts it elsewhere, at a body (a link of a URDF) that stands for the tool"
+            f"the payload is at the origin of {model.body(tip).name}, on the axis of {last}, and does not "
+            "load that axis; state another body (a link of a URDF) with --tip BODY"
         )
     lacking = (
-        f"{axis.drive.name}: the MJCF does not carry {line}"
+        f"{axis.drive.name}: the MJCF does not include {line}"
         for axis in axes
         for line in axis.drive.omitted_effects
     )
@@ -224,6 +224,6 @@ def _parse_pairs(words: Sequence[str], option_name: str, value_name: str) -> dic
         if not (joint and sign and text):
             raise ValueError(f"{option_name} {word!r}: expected JOINT={value_name}")
         if joint in pairs:
-            raise ValueError(f"{option_name}: {joint} is stated twice")
+            raise ValueError(f"{option_name}: {joint} is given twice")
         pairs[joint] = text
     return pairs

@@ -48,9 +48,7 @@ DEFAULT_MU, DEFAULT_MU_LIMITS = 0.15, (0.1, 0.3)
 """Coefficient of friction if the drawing states none, and its range [1]."""
 MAX_MU = 2.0
 """Largest allowed coefficient of friction [1]: clean pairs of the same metal in air have 0.8 to 1.5."""
-DEFAULT_MU_SOURCE = (
-    "dry machined metal: a table of usual values, no measurement; VDI 2230, Table A6 has 0.1 to 0.3"
-)
+DEFAULT_MU_SOURCE = "usual value of dry machined metal, not measured; VDI 2230, Table A6: 0.1 to 0.3"
 DEFAULT_RMS_SLOPE = 0.1
 """Rms slope [1] of a surface if only its height is known."""
 DEFAULT_HURST_EXPONENT = 0.8
@@ -125,7 +123,9 @@ def add_faces(sheet: ParameterSheet, options: DrawingOptions) -> HeightRange:
     else:
         mu = parse_number("mu", options["mu"], "1", "1")
         if mu > MAX_MU:
-            raise ValueError(f"--mu = {options['mu']!r} is outside (0, {MAX_MU:g}]: no metals rub as much")
+            raise ValueError(
+                f"--mu = {options['mu']!r} is outside (0, {MAX_MU:g}]: coefficient of friction of metals"
+            )
         sheet.add_drawing_value("mu", mu)
     sheet.add("traction_ratio", 0.1, "estimate", "vibration far below slip")
     return _add_roughness(sheet, read_faces(options), options["longest_wave"])
@@ -191,16 +191,16 @@ def fractal_roughness(D: float, h: float, longest_wave: float) -> float:
 def read_faces(options: DrawingOptions) -> tuple[Face, Face]:
     """Read the roughness of the two faces.
 
-    Raises ValueError if the roughness is not stated or is stated twice, or for a bad number or scan.
+    Raises ValueError if the roughness is not stated or is given twice, or for a bad number or scan.
     """
     heights = [name for name in ("Ra", "Rq", "surface") if options[name]]
     finishes = expand_to_sides("finish", options["finish"])
     if len(heights) > 1:
         raise ValueError(
-            f"{' beside '.join(map(option_flag, heights))}: expected one statement of the roughness"
+            f"{' and '.join(map(option_flag, heights))} are given together; state the roughness once"
         )
     if heights == ["surface"] and finishes:
-        raise ValueError("--surface beside --finish: expected one of them, the scan has its own slope")
+        raise ValueError("--surface and --finish are both given; state one of them: a scan has its own slope")
     if not heights:
         if finishes is None:
             raise ValueError("the roughness is missing; expected --finish, --Ra, --Rq or --surface")
@@ -221,7 +221,7 @@ def read_faces(options: DrawingOptions) -> tuple[Face, Face]:
 def _cut_off_wavelength(Ra: float) -> SourcedNumber:
     wave = next(cut_off for up_to, cut_off in CUT_OFF_WAVELENGTHS if Ra <= up_to)
     return SourcedNumber(
-        wave, "estimate", f"cut-off of Ra {Ra * 1e6:.3g} um (ISO 4288): Ra counts no longer waves"
+        wave, "estimate", f"cut-off of Ra {Ra * 1e6:.3g} um (ISO 4288): Ra contains no longer waves"
     )
 
 
@@ -242,11 +242,12 @@ def _face_from_number(roughness_name: str, height_text: str, finish: TableRow | 
     if value > roughness.MAX_HEIGHT:
         limit = roughness.MAX_HEIGHT * 1e6
         raise ValueError(
-            f"--{roughness_name} = {height_text!r} is outside (0, {limit:g}] um: no roughness is as high"
+            f"--{roughness_name} = {height_text!r} is outside (0, {limit:g}] um: larger than the roughness "
+            "of machined surfaces"
         )
     Rq = value if roughness_name == "Rq" else float(roughness.rms_height(value))
-    slope = SourcedNumber(DEFAULT_RMS_SLOPE, "estimate", "usual of machined surfaces")
-    hurst = SourcedNumber(DEFAULT_HURST_EXPONENT, "estimate", "usual of machined surfaces, 0.7 to 0.9")
+    slope = SourcedNumber(DEFAULT_RMS_SLOPE, "estimate", "usual value of machined surfaces")
+    hurst = SourcedNumber(DEFAULT_HURST_EXPONENT, "estimate", "usual value of machined surfaces, 0.7 to 0.9")
     if finish:
         slope, hurst = finish.numbers["slope"], finish.numbers["hurst"]
     wave = _cut_off_wavelength(Rq / roughness.RQ_OVER_RA)
@@ -272,7 +273,7 @@ def _face_from_scan(path: str, unit: str | None) -> Face:
         scan.h,
         scan.h,
         SourcedNumber(scan.slope, "user", f"{source}, waves down to {scan.shortest_wave:.3g} m"),
-        SourcedNumber(DEFAULT_HURST_EXPONENT, "estimate", "usual of machined surfaces, 0.7 to 0.9"),
+        SourcedNumber(DEFAULT_HURST_EXPONENT, "estimate", "usual value of machined surfaces, 0.7 to 0.9"),
         SourcedNumber(longest, "user", f"length of the {source}"),
         f"{source}, waves up to {longest:.3g} m",
         {"Rq": scan.h},

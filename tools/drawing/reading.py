@@ -22,14 +22,14 @@ def parse_number(
     target_unit : unit of the result
     lower_bound : the number must be above it [target_unit]; None: no bound
 
-    Raises ValueError for text that is no number, a wrong unit, an infinite number, or one out of range.
+    Raises ValueError for text that is not a number, a wrong unit, an infinite number, or one out of range.
     """
     match = _NUMBER_PATTERN.fullmatch(text.strip())
     example = f"expected a number in {unit}, or with its unit as in 1{unit}"
     if unit == "1":
         example = "expected a number without a unit"
     if not match:
-        raise ValueError(f"{option_flag(option)} = {text!r} is no number; {example}")
+        raise ValueError(f"{option_flag(option)} = {text!r} is not a number; {example}")
     try:
         value = float(match[1]) * conversion_factor(match[2] or unit, target_unit)
     except ValueError as error:
@@ -43,20 +43,19 @@ def parse_number(
 def parse_temperature(option: str, text: str) -> float:
     """Parse the temperature [K] of an option, stated in degC or with the unit K.
 
-    Raises ValueError for text that is no temperature, or outside the range LUBRICANTS of lubricants.
+    Raises ValueError for text that is not a temperature, or outside the range LUBRICANTS of lubricants.
     """
     match = _TEMPERATURE_PATTERN.fullmatch(text.strip())
     if not match:
         raise ValueError(
-            f"{option_flag(option)} = {text!r} is no temperature; expected 45, 45degC or 318.15K"
+            f"{option_flag(option)} = {text!r} is not a temperature; expected 45, 45degC or 318.15K"
         )
     kelvin = float(match[1]) + (0.0 if match[2] == "K" else KELVIN_AT_ZERO)
     if not LUBRICANT_TEMPERATURES[0] <= kelvin <= LUBRICANT_TEMPERATURES[1]:
         low, high = (end - KELVIN_AT_ZERO for end in LUBRICANT_TEMPERATURES)
         raise ValueError(
-            f"{option_flag(option)} = {text!r} is {kelvin:g} K, outside [{low:g}, {high:g}] degC; "
-            "kelvin are stated "
-            "as 318.15K"
+            f"{option_flag(option)} = {text!r} is {kelvin:g} K, outside [{low:g}, {high:g}] degC; write "
+            "kelvin as 318.15K"
         )
     return kelvin
 
@@ -93,6 +92,6 @@ def expand_to_sides(option: str, texts: Sequence[str] | None) -> tuple[str, str]
         return None
     if len(texts) > 2:
         raise ValueError(
-            f"{option_flag(option)} has {len(texts)} values, expected one for both sides or one of each"
+            f"{option_flag(option)} has {len(texts)} values, state one for both sides, or one for each side"
         )
     return texts[0], texts[-1]

@@ -40,7 +40,7 @@ DEFAULT_LOAD_ERROR = 1e-3
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LoadCurve:
-    """Load over displacement of the whole joint.
+    """Load over displacement of the complete joint.
 
     meaning       : content of the file in words
     columns       : variables displacement, load and stiffness

@@ -80,7 +80,7 @@ def format_contact(
     rows = np.vstack([table.rows[:, :2], [x + EXTRAPOLATED_OVERCLOSURE, p + k * EXTRAPOLATED_OVERCLOSURE]])
     if max_rows is not None and len(rows) > max_rows:
         raise InputRefusal(
-            f"the table has {len(rows)} rows, CalculiX holds {max_rows}; allow a larger error", "error"
+            f"the table has {len(rows)} rows, CalculiX holds {max_rows}; state a larger error", "error"
         )
     lines = [
         *comment_header(comment_lines, "**"),

@@ -51,14 +51,14 @@ def read_pairs(path: str | Path) -> NodePairs:
     """Read node pairs from a CSV file. The origin of x and y is arbitrary.
 
     Raises ValueError, one line with file and node: a file that `columns.read_columns` cannot read, a missing
-    column, a label that is no positive whole number or stands twice, an area that is not positive, a negative
+    column, a label that is no positive whole number or is repeated, an area that is not positive, a negative
     pressure, or a pressure that is zero everywhere.
     """
     table = read_columns(path, COLUMN_UNITS, 3)
     nodes = np.stack([_read_node_labels(table, name) for name in ("node_1", "node_2")], axis=1)
     labels, counts = np.unique(nodes, return_counts=True)
     if np.any(counts > 1):
-        raise ValueError(f"{table.path}: node {labels[counts > 1][0]} stands twice, allowed is once")
+        raise ValueError(f"{table.path}: node {labels[counts > 1][0]} is given twice; state it once")
     area = table.require_column("area", COLUMN_UNITS)
     _check_values(table, nodes, "area", area, area <= 0.0, "it must be positive")
     pressure = table.columns.get("pressure")
@@ -75,7 +75,7 @@ def _read_node_labels(table: Columns, column_name: str) -> NDArray[np.int64]:
     bad = (value != np.round(value)) | (value < 1.0) | (value > MAX_NODE_LABEL)
     if np.any(bad):
         raise ValueError(
-            f"{table.path}: {column_name} = {value[bad][0]:.10g} is no node; "
+            f"{table.path}: {column_name} = {value[bad][0]:.10g} is not a node; "
             f"expected a whole number in [1, {MAX_NODE_LABEL}]"
         )
     return value.astype(np.int64)

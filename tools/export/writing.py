@@ -101,7 +101,7 @@ def export_contact(file_format: str, file: ParameterFile, units: UnitSet, max_er
 def export_curve(
     file_format: str, file: ParameterFile, working_point: object, units: UnitSet, max_error: float
 ) -> ExportedFile:
-    """Export the load over the displacement of the whole joint, with its stiffness.
+    """Export the load over the displacement of the complete joint, with its stiffness.
 
     Raises ValueError if the joint does not offer the curve, or if the working point is missing.
     """
@@ -136,8 +136,8 @@ def _stiffness_warnings(table: tables.LoadTable) -> tuple[str, ...]:
     if straight <= tables.MAX_STIFFNESS_ERROR:
         return ()
     return (
-        f"the table's slope is up to {100.0 * straight:.2g} % off the stiffness by straight lines and "
-        f"{100.0 * cubic:.2g} % by a monotone cubic; a smaller --error has more rows",
+        f"the slope of the table differs from the stiffness by up to {100.0 * straight:.2g} % with straight "
+        f"lines and {100.0 * cubic:.2g} % with a monotone cubic; a smaller --error gives more rows",
     )
 
 

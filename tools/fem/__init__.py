@@ -20,6 +20,6 @@ def require_fem_packages(feature: str) -> Iterator[None]:
             yield
     except (ImportError, OSError) as error:
         raise ValueError(
-            f"{feature} needs what is missing here ({error}); install it with: pip install 'jointfmu[fem]', "
-            "and on Linux libglu1-mesa libgl1 libgomp1 libxcursor1 libxft2 libxinerama1"
+            f"{feature} cannot run here, a package is missing ({error}); install it with: pip install "
+            "'jointfmu[fem]', and on Linux libglu1-mesa libgl1 libgomp1 libxcursor1 libxft2 libxinerama1"
         ) from None

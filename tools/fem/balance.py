@@ -85,7 +85,7 @@ class RigidBalance:
     def check_loads(self) -> None:
         """Raise RuntimeError if the contact cannot balance the loads by pushing, or if no load closes it."""
         if not _has_independent_columns(self.unsupported_approach):
-            raise RuntimeError("supports and contact leave a rigid motion of a body free")
+            raise RuntimeError("a body can move rigidly: supports and contact do not hold it")
         if self.generalised_load.size == 0:
             return
         if not self.total_load > 0.0:
@@ -93,8 +93,8 @@ class RigidBalance:
         contact_force, imbalance = self._best_balance()
         if imbalance > MAX_RELATIVE_IMBALANCE:
             raise RuntimeError(
-                f"the loads do not balance: a contact that only pushes leaves {imbalance:.2g} of them over, "
-                f"allowed is {MAX_RELATIVE_IMBALANCE:g}"
+                f"the loads do not balance: without tension in the contact, a fraction of {imbalance:.2g} is "
+                f"left over, allowed is {MAX_RELATIVE_IMBALANCE:g}"
             )
         if contact_force <= MAX_RELATIVE_IMBALANCE:
             raise RuntimeError(
@@ -113,9 +113,8 @@ class RigidBalance:
         imbalance = float(np.abs(self.generalised_load - self.rigid_approach.T @ contact_force).sum())
         if not imbalance <= MAX_RELATIVE_IMBALANCE * self.total_load:
             raise RuntimeError(
-                f"the contact is not in balance: it leaves {imbalance / self.total_load:.2g} of the "
-                "loads over, "
-                f"allowed is {MAX_RELATIVE_IMBALANCE:g}"
+                f"the contact is not in equilibrium: it leaves {imbalance / self.total_load:.2g} times the "
+                f"loads unbalanced, allowed is {MAX_RELATIVE_IMBALANCE:g}"
             )
 
     def _best_balance(self) -> tuple[float, float]:
@@ -132,7 +131,7 @@ class RigidBalance:
             b_eq=self.generalised_load / self.total_load,
         )
         if best.status != 0:
-            raise RuntimeError(f"the balance of the loads was not found: {best.message}")
+            raise RuntimeError(f"the equilibrium of the loads was not found: {best.message}")
         return float(best.x[: self.hull_points.size].sum()), float(best.fun)
 
 

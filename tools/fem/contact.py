@@ -271,12 +271,12 @@ def displacement_matrix(body: ElasticBody, interface: Interface, axis: int = 2) 
 def nodal_displacement_matrix(body: ElasticBody, interface: Interface, axis: int = 2) -> sp.csr_matrix:
     """Matrix (contact nodes, n) [1]: displacement along an axis at the contact nodes per unknown of a body.
 
-    Raises RuntimeError if a node of the contact is no node of the body.
+    Raises RuntimeError if a node of the contact is not a node of the body.
     """
     contact_nodes = np.vstack([interface.nodes, np.zeros((1, interface.nodes.shape[1]))])
     distance, node = cKDTree(body.nodes.T).query(contact_nodes.T)
     if distance.max() > 1e-9:
-        raise RuntimeError(f"a node of the contact lies {distance.max():g} m beside the body's nodes")
+        raise RuntimeError(f"a node of the contact lies {distance.max():g} m away from the nodes of the body")
     ones = np.ones(node.size)
     return sp.csr_matrix(
         (ones, (np.arange(node.size), 3 * node + axis)), shape=(node.size, body.unknown_count)

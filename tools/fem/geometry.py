@@ -26,8 +26,8 @@ class BoltGrid:
 
     rows: float = quantity_field("1", "rows of bolts", ge=1.0, is_integer=True)
     columns: float = quantity_field("1", "bolts in a row", ge=1.0, is_integer=True)
-    row_spacing: float = quantity_field("m", "distance of the two outermost rows", ge=0.0)
-    column_spacing: float = quantity_field("m", "distance of the outermost bolts of a row", ge=0.0)
+    row_spacing: float = quantity_field("m", "distance between the two outermost rows", ge=0.0)
+    column_spacing: float = quantity_field("m", "distance between the outermost bolts of a row", ge=0.0)
     inside: bool = choice_field(False, True, doc="whether there are bolts inside the outer frame of the grid")
     hole_diameter: float = quantity_field("m", "clearance hole", gt=0.0)
     head_diameter: float = quantity_field("m", "outer diameter of the bolt head or washer", gt=0.0)
@@ -36,7 +36,9 @@ class BoltGrid:
         check_fields(self)
         for count, name in ((self.rows, "row_spacing"), (self.columns, "column_spacing")):
             if count > 1.0 and getattr(self, name) == 0.0:
-                raise ValueError(f"{name} = 0 m is outside (0, inf): there is more than one row or column")
+                raise ValueError(
+                    f"{name} = 0 m is outside (0, inf): with more than one row or column it must be positive"
+                )
 
     @property
     def positions(self) -> Array:
@@ -171,12 +173,12 @@ class BoxSection:
         if not low - LENGTH_TOLERANCE <= self.flange_width < high:
             raise ValueError(
                 f"flange_width = {self.flange_width:g} m is outside [{low:g}, {high:g}): "
-                "the walls stand on the flange, and the flange leaves the middle open"
+                "the flange must carry the walls and leave the middle open"
             )
         if not self.flange_thickness < self.height - self.floor:
             raise ValueError(
                 f"flange_thickness = {self.flange_thickness:g} m is outside "
-                f"(0, {self.height - self.floor:g}): flange, walls and floor make up the height"
+                f"(0, {self.height - self.floor:g}): flange, walls and floor must fit into the height"
             )
 
     @property
@@ -273,7 +275,8 @@ def check_bolts(assembly: Assembly) -> None:
     hole, head, positions = 0.5 * bolts.hole_diameter, 0.5 * bolts.head_diameter, bolts.positions
     if hole >= head:
         raise ValueError(
-            f"hole_diameter = {2 * hole:g} m is outside (0, {2 * head:g}): the head covers the hole"
+            f"hole_diameter = {2 * hole:g} m is outside (0, {2 * head:g}): the hole must be smaller than the "
+            "head"
         )
     for i, (x, y) in enumerate(positions):
         for side in ("side1", "side2"):
@@ -297,8 +300,8 @@ def check_thickness(assembly: Assembly) -> None:
         if not body.clamped_thickness >= min_thickness:
             raise ValueError(
                 f"{name} is {1e3 * body.clamped_thickness:.4g} mm thick, expected at least "
-                f"{1e3 * min_thickness:.4g} "
-                "mm: the width of the ring under a head, which would punch through"
+                f"{1e3 * min_thickness:.4g} mm: the width of the bearing ring under a head; thinner plates "
+                "would punch through"
             )
 
 

@@ -80,7 +80,8 @@ def compute_modes(
     frequency = np.array([motion[0] for motion in motions])
     if frequency[RIGID_MODE_COUNT] < MIN_ELASTIC_FREQUENCY:
         raise RuntimeError(
-            f"the contact leaves more than {RIGID_MODE_COUNT} rigid motions: it does not hold the bodies"
+            f"the contact leaves more than {RIGID_MODE_COUNT} rigid motions: the contact does not hold the "
+            "bodies together"
         )
     mass = sum(float(body.mass.sum()) / 3.0 for body in bodies) * (3 - len(bodies))
     end = RIGID_MODE_COUNT + mode_count

@@ -39,7 +39,7 @@ def check_field_path(path: str | Path) -> None:
     """Raise ValueError if the suffix of the path is no format of a field. Call before a long calculation."""
     if Path(path).suffix.lower() not in FIELD_FILE_KIND.endings:
         raise ValueError(
-            f"{path}: suffix {Path(path).suffix!r} is no field, allowed are "
+            f"{path}: suffix {Path(path).suffix!r} is not a field, allowed are "
             f"{', '.join(FIELD_FILE_KIND.endings)}"
         )
 

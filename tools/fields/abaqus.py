@@ -187,7 +187,7 @@ def _column_names(location: str, head_lines: Sequence[str]) -> list[str]:
     count = sum(line.count("@Loc") for line in head_lines)
     if count not in (0, len(names)):
         raise ValueError(
-            f"{location}: has {count} columns, their names are not told apart: {' '.join(words)}"
+            f"{location}: has {count} columns, their names cannot be separated: {' '.join(words)}"
         )
     columns = [_standard_name(name) for name in names]
     if columns.count(PRESSURE_COLUMN) > 1:
@@ -214,7 +214,9 @@ def _parse_row(
         or len(row_words) != len(columns) + 1
         or not all(map(NUMBER_PATTERN.fullmatch, numbers))
     ):
-        raise ValueError(f"{location}: {' '.join(row_words)!r} is no row with a node and {' '.join(columns)}")
+        raise ValueError(
+            f"{location}: {' '.join(row_words)!r} is not a row with a node and {' '.join(columns)}"
+        )
     values = [float(word.upper().replace("D", "E")) for word in numbers]
     return ListingRow(
         location, frame, part_instance, int(row_words[0]), dict(zip(columns, values, strict=True))
@@ -283,7 +285,7 @@ def read_deck(path: Path) -> FiniteElementMesh:
         open_row = row if words[-1] == "" and 0 < len(row) < size else []
         if not open_row and len(row) != size:
             raise ValueError(
-                f"{path}: line {number}: {', '.join(words)!r} is no line of *{keyword}"
+                f"{path}: line {number}: {', '.join(words)!r} is not a line of *{keyword}"
                 + (f" with {size - 1} nodes" if kind else "")
             )
         if not open_row:

@@ -90,5 +90,5 @@ def field_adapter(joint: str) -> FieldAdapter:
     adapters = field_adapters()
     if joint not in adapters:
         allowed = " or ".join(repr(name) for name in adapters)
-        raise ValueError(f"joint = {joint!r} has no field of pressure; expected {allowed}")
+        raise ValueError(f"joint = {joint!r} has no pressure field; expected {allowed}")
     return adapters[joint]

@@ -45,7 +45,7 @@ class ContactPlane:
         x = (n + 1) % 3 if self.bolt_row_axis is None else AXES.index(self.bolt_row_axis)
         if x == n:
             raise ValueError(
-                f"rows = {self.bolt_row_axis!r} is the normal too, allowed are the two other axes"
+                f"rows = {self.bolt_row_axis!r} is also the normal; state one of the two other axes"
             )
         return x, 3 - n - x, n
 
@@ -107,7 +107,7 @@ def _check_surface(contact: ContactSurface) -> None:
     """Raise ValueError for a pressure or area out of range, and for nodes that coincide."""
     p = contact.pressure
     for invalid, text in (
-        (~np.isfinite(p), "pressure = {p:g} is no finite number"),
+        (~np.isfinite(p), "pressure = {p:g} is not a finite number"),
         (p < 0.0, "pressure = {p:g} Pa is outside [0, inf)"),
         (~(contact.area > 0.0), "area = {a:g} m2 is outside (0, inf)"),
     ):
@@ -120,7 +120,7 @@ def _check_surface(contact: ContactSurface) -> None:
         first, second = min(coincident)
         raise ValueError(
             f"{contact.describe_node(second)}: is at the same place as {contact.source_result.node_label} "
-            f"{contact.source_result.node_numbers[contact.node_indices[first]]}; expected each place once"
+            f"{contact.source_result.node_numbers[contact.node_indices[first]]}; give each position once"
         )
 
 
@@ -137,9 +137,8 @@ def _contact_faces(result: NodalResult, plane: ContactPlane) -> list[NodeIndices
     if np.any(off_plane[loaded]):
         i = int(loaded[np.argmax(off_plane[loaded])])
         raise InputRefusal(
-            f"{result.describe_node(i)}: lies {abs(height[i] - level):.3g} m off the plane "
-            f"{plane.normal_axis} = "
-            f"{level:.6g} m; expected a plane contact and its normal",
+            f"{result.describe_node(i)}: lies {abs(height[i] - level):.3g} m away from the plane "
+            f"{plane.normal_axis} = {level:.6g} m; the contact must be plane; state its normal",
             "normal",
         )
     candidate = ~off_plane & np.isin(
@@ -167,7 +166,7 @@ def _check_not_line(result: NodalResult, loaded_nodes: NodeIndices) -> None:
     if np.max(distance) <= PLANE_TOLERANCE * size**2:
         raise ValueError(
             f"{result.path}: all nodes with pressure lie on one line, as in a two-dimensional or "
-            "axisymmetric model; expected a three-dimensional one, whose contact is a surface"
+            "axisymmetric model; give the result of a three-dimensional model"
         )
 
 

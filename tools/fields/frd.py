@@ -52,7 +52,7 @@ def _read_text(path: Path) -> str:
     data = read_bytes(path, "a CalculiX .frd file")
     if not data.startswith(b"    1"):
         raise ValueError(
-            f"{path}: is no CalculiX result; expected an ASCII .frd file, which begins with '    1C'"
+            f"{path}: is not a CalculiX result; expected an ASCII .frd file, which begins with '    1C'"
         )
     return data.decode("latin-1")
 
@@ -99,7 +99,9 @@ def _parse_row(path: Path, line_index: int, line: str, min_count: int) -> tuple[
     except ValueError:
         values = []
     if len(values) < min_count or not line.startswith(" -1") or not all(map(isfinite, values)):
-        raise ValueError(f"{path}: line {line_index + 1}: {line[:60]!r} is no node with {min_count} numbers")
+        raise ValueError(
+            f"{path}: line {line_index + 1}: {line[:60]!r} is not a node with {min_count} numbers"
+        )
     return name, values
 
 
@@ -115,7 +117,7 @@ def _read_cells(path: Path, lines: list[str]) -> dict[str, list[list[int]]]:
             nodes += [int(line[i : i + 10]) for i in range(3, len(line.rstrip()), 10)]
         except (ValueError, KeyError):
             raise ValueError(
-                f"{path}: line {number + 1}: {line[:60]!r} is no element of the format"
+                f"{path}: line {number + 1}: {line[:60]!r} is not an element of the format"
             ) from None
         if len(nodes) == NODE_COUNTS.get(kind):
             cells.setdefault(kind, []).append([nodes[i] for i in NODE_ORDER.get(kind, range(len(nodes)))])

@@ -136,7 +136,7 @@ def pressure_shape(
         low, high = MOMENT_RATIO_RANGE
         raise ValueError(
             f"the pressures of the second field balance {moment_ratio:.3g} of the moment of {moment:g} N.m, "
-            f"allowed is {low:g} to {high:g}: a positive moment raises the pressure at y > 0"
+            f"allowed is {low:g} to {high:g}: check the sign: a positive moment raises the pressure at y > 0"
         )
     return PressureDistribution(share, position, equal, added * joint.row_distance * area / moment)
 
@@ -153,9 +153,8 @@ def _force_ratio(
     if not abs(field.force / expected - 1.0) <= force_tolerance:
         raise InputRefusal(
             f"the force of {field_name} is {field.force:.6g} N, expected {expected:.6g} N within "
-            f"{100.0 * force_tolerance:.3g} %: {joint.n_bolts:g} bolts of {preload:g} N; a larger "
-            "tolerance scales "
-            "it to theirs",
+            f"{100.0 * force_tolerance:.3g} %: {joint.n_bolts:g} bolts of {preload:g} N; with a larger "
+            "tolerance the field is scaled to the bolt force",
             "force_tolerance",
         )
     return expected / field.force

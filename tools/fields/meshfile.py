@@ -45,7 +45,7 @@ def read_mesh(
         rows = np.asarray(block.data, dtype=np.intp)
         cells[block.type] = np.concatenate([cells[block.type], rows]) if block.type in cells else rows
     if not cells:
-        raise ValueError(f"{path}: has no cells with faces, expected the contact's faces or the bodies")
+        raise ValueError(f"{path}: has no cells with faces; expected the faces of the contact, or the bodies")
     return NodalResult(
         path=path,
         node_label="node",
@@ -91,7 +91,7 @@ def _select_values(path: Path, point_data: dict[str, Any], point_data_name: str 
     available = ", ".join(listed) or "none"
     if point_data_name is None:
         raise InputRefusal(
-            f"{path}: state the point data that is the pressure; there are {available}", "data"
+            f"{path}: state which point data are the pressure; the file has {available}", "data"
         )
     name, _, component = point_data_name.partition(":")
     name, component = (point_data_name, "") if point_data_name in arrays else (name, component)
@@ -102,7 +102,7 @@ def _select_values(path: Path, point_data: dict[str, Any], point_data_name: str 
         component = "1"
     if not component.isdigit() or not 1 <= int(component) <= value.shape[1]:
         raise ValueError(
-            f"{path}: {point_data_name!r} is no component of {name}; expected {name}:1 to "
+            f"{path}: {point_data_name!r} is not a component of {name}; expected {name}:1 to "
             f"{name}:{value.shape[1]}"
         )
     return np.asarray(value[:, int(component) - 1], dtype=np.float64)

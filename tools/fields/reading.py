@@ -142,6 +142,6 @@ def _check_no_open_nodes(surface: ContactSurface) -> None:
     if open_nodes.size:
         raise InputRefusal(
             f"{surface.describe_node(int(open_nodes[0]))}: is open (no pressure), with {open_nodes.size} of "
-            f"{surface.area.size} nodes; say keep (they just touch) or drop (they never do)",
+            f"{surface.area.size} nodes; state keep (they just touch) or drop (they never touch)",
             "open",
         )

@@ -169,9 +169,8 @@ def reduce_field(
     if nodes <= MAX_KEPT_NODES:
         return Reduction(unrounded, unrounded)
     raise RuntimeError(
-        f"the field of {nodes} nodes has no points that keep its sums within "
-        f"{LARGE_FIELD_TOLERANCE:g}; of up to {MAX_KEPT_NODES} all "
-        "nodes are kept"
+        f"the field of {nodes} nodes cannot be reduced to points that keep its sums within "
+        f"{LARGE_FIELD_TOLERANCE:g}; of up to {MAX_KEPT_NODES} all nodes are kept"
     )
 
 

@@ -249,7 +249,7 @@ def _check_monotone(backbone: Backbone) -> Backbone:
         [np.average(backbone.angle[tenth == k], weights=backbone.sample_counts[tenth == k]) for k in nonempty]
     )
     if np.all(np.diff(means) < 0.0):
-        raise ValueError("the angle falls as the torque rises; reverse the sign of one column")
+        raise ValueError("the angle decreases as the torque increases; reverse the sign of one column")
     if np.any(falling := np.diff(means) <= 0.0):
         k = nonempty[int(np.argmax(falling))]
         raise ValueError(

@@ -185,7 +185,7 @@ def cut_branches(runs: Sequence[tuple[str, Array, Array]]) -> Loops:
     for number, (name, motion, force) in enumerate(runs):
         turns = find_turning_points(motion)
         if not turns.size:
-            raise ValueError(f"{name}the motion does not turn around; expected loops")
+            raise ValueError(f"{name}the motion never reverses; give loops with reversals")
         _check_sign(name, motion, force)
         ends = [*turns.tolist(), motion.size - 1]
         areas += _check_energy(name, motion, force, ends)
@@ -274,10 +274,10 @@ def noise_deviation(signal: Array) -> float:
 
 
 def _check_sign(message_prefix: str, motion: Array, force: Array) -> None:
-    """Raise ValueError if the force falls as the motion rises."""
+    """Raise ValueError if the force decreases as the motion increases."""
     if np.sum((motion - motion.mean()) * (force - force.mean())) <= 0.0:
         raise ValueError(
-            f"{message_prefix}the force falls as the motion rises; reverse the sign of one column"
+            f"{message_prefix}the force decreases as the motion increases; reverse the sign of one column"
         )
 
 
@@ -304,9 +304,8 @@ def _check_energy(
     )
     if area < -max(MAX_CREATED_ENERGY * deviation, RELATIVE_ROUNDING * size * float(np.ptp(force))):
         raise ValueError(
-            f"{message_prefix}the loop creates energy, area = {area:.3g} J, expected is 0 or more: the "
-            "force has to "
-            "lead the motion; reverse the order of the rows if they run back in time"
+            f"{message_prefix}the loop creates energy, area = {area:.3g} J, expected 0 or more: the force "
+            "must lead the motion; reverse the order of the rows if their time order is reversed"
         )
     closed = [(work, common) for work, common, longer in loops if common >= MIN_COMMON_RANGE * longer]
     return [max(closed, key=lambda loop: loop[1])] if closed else []

@@ -61,26 +61,27 @@ def analyse_decay(time: Array, motion: Array, message_prefix: str = "") -> Decay
     """
     if np.any(np.diff(time) <= 0.0):
         row = int(np.argmax(np.diff(time) <= 0.0)) + 1
-        raise ValueError(f"{message_prefix}time does not rise at its value {row + 1}; expected rising times")
+        raise ValueError(
+            f"{message_prefix}time does not increase at row {row + 1}; expected increasing times"
+        )
     frequency = _main_frequency(time, motion)
     step = float(np.median(np.diff(time)))
     if not frequency * step * MIN_SAMPLES_PER_PERIOD <= 1.0:
         raise ValueError(
-            f"{message_prefix}has {1.0 / (frequency * step):.3g} samples a period, at least "
+            f"{message_prefix}has {1.0 / (frequency * step):.3g} samples per period, at least "
             f"{MIN_SAMPLES_PER_PERIOD} are needed"
         )
     largest = time[int(np.argmax(np.abs(motion - np.median(motion))))]
     if largest > time[-1] - RECORD_END_FRACTION * (time[-1] - time[0]):
         raise ValueError(
-            f"{message_prefix}the motion is largest at {largest:.3g} s, near its end: the joint "
-            "creates energy, "
-            "expected is a decay; reverse the order of the rows if they run back in time"
+            f"{message_prefix}the motion is largest at {largest:.3g} s, near its end: a joint cannot create "
+            "energy; expected a decay; reverse the order of the rows if their time order is reversed"
         )
     windows = list(_fit_windows(time, motion, 2.0 * np.pi * frequency))
     if len(windows) < MIN_WINDOWS:
         raise ValueError(
-            f"{message_prefix}{len(windows)} windows of a few periods of {1.0 / frequency:.3g} s stand "
-            "out of the "
+            f"{message_prefix}{len(windows)} windows of a few periods of {1.0 / frequency:.3g} s are above "
+            "the "
             f"noise, at least {MIN_WINDOWS} are needed"
         )
     amplitude, w, s, w_deviation, s_deviation, length = np.array(windows).T

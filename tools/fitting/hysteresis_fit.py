@@ -19,7 +19,7 @@ from .measurement import Measurement
 from .outcome import Facts, Picture, correlation_note
 
 DAMPING_RATIO_NAME = "damping_ratio"
-"""Name of an unknown that is no parameter of the joint: the damping ratio of the structure [1]."""
+"""Name of an unknown that is not a parameter of the joint: the damping ratio of the structure [1]."""
 MAX_DAMPING = 0.3
 """Upper limit of the damping ratio of the structure [1]."""
 DAMPING_UNKNOWN = Unknown(DAMPING_RATIO_NAME, "1", 1e-3, 1e-9, MAX_DAMPING)
@@ -85,7 +85,7 @@ def build_model(
     name = inertia_option.replace("_", " ")
     if measurement.kind == "loops":
         if inertia is not None:
-            raise ValueError(f"{measurement.path}: has loops, nothing vibrates; allowed is no {name}")
+            raise ValueError(f"{measurement.path}: has loops, so {name} has no effect; leave it out")
     elif inertia is None:
         raise InputRefusal(
             f"{measurement.path}: has a vibration ({measurement.kind}); state the {name}", inertia_option
@@ -207,7 +207,11 @@ def summarize_fit(
         )
     _, loss = law.equivalent_spring(np.array([measurement.amplitude]))
     result["loss_factor"] = (float(loss[0]), "1", "of the fitted law at the largest amplitude")
-    result["noise"] = (solution.noise, "1", "of a residual over what its group has")
+    result["noise"] = (
+        solution.noise,
+        "1",
+        "standard deviation of a residual, relative to the size of its group",
+    )
     return result
 
 

@@ -51,8 +51,8 @@ class Unknown:
         if not self.lower_bound < self.start_value < self.upper_bound or self.start_value <= 0.0:
             unit = "" if self.unit == "1" else f" {self.unit}"
             raise ValueError(
-                f"{self.name} = {self.start_value:g}{unit} cannot be fitted from there: a fit in logarithms "
-                f"starts inside ({max(self.lower_bound, 0.0):g}, {self.upper_bound:g}){unit}"
+                f"{self.name} = {self.start_value:g}{unit} cannot be the start value of the fit; expected a "
+                f"value inside ({max(self.lower_bound, 0.0):g}, {self.upper_bound:g}){unit}"
             )
 
 
@@ -146,7 +146,7 @@ def solve(
         )
         if result.status == 0:
             raise RuntimeError(
-                f"the fit of {', '.join(model.names)} found no end within {MAX_EVALUATIONS} steps"
+                f"the fit of {', '.join(model.names)} did not converge within {MAX_EVALUATIONS} steps"
             )
         logs, current = result.x, result.fun[: first.size]
     jacobian = result.jac[: first.size]

@@ -83,10 +83,10 @@ class ColumnNames:
         if 1.0 / WRONG_UNIT_RATIO < stiffness_ratio < WRONG_UNIT_RATIO:
             return
         raise InputRefusal(
-            f"{path}: the stiffness is {stiffness_ratio:.3g} times that of {start_file.name}, "
-            f"allowed are {1.0 / WRONG_UNIT_RATIO:g} to {WRONG_UNIT_RATIO:g}: "
-            f"{self.describe_likely_unit_error(stiffness_ratio, stated_units)}; if both are right, "
-            "start from a joint of its size",
+            f"{path}: the stiffness is {stiffness_ratio:.3g} times that of {start_file.name}, allowed are "
+            f"{1.0 / WRONG_UNIT_RATIO:g} to {WRONG_UNIT_RATIO:g}: "
+            f"{self.describe_likely_unit_error(stiffness_ratio, stated_units)}; if the units are right, "
+            "start from the parameter file of a joint of similar stiffness",
             "params",
         )
 

@@ -176,12 +176,12 @@ class FitResult:
         """Reason to reject the fit, as text; None if the fit is accepted."""
         names = [u.name for u in self.solution.unknowns]
         if names and {*names} == {*self.solution.names_at_bound}:
-            return f"{', '.join(names)} ended on a bound, nothing else was fitted"
+            return f"{', '.join(names)} ended on a bound of its interval; no other parameter was fitted"
         if (height := self.solution.values.get(HEIGHT_PARAMETER, 0.0)) > MAX_HEIGHT:
             return (
                 f"{HEIGHT_PARAMETER} = {1e6 * height:.3g} um is outside (0, {1e6 * MAX_HEIGHT:g}] "
-                "um: no roughness is as "
-                "high; what lies in series with the joint may be missing (--series-stiffness)"
+                "um: too large for a roughness; check the units, and state the stiffness in series with the "
+                "joint (--series-stiffness)"
             )
         count = len(undetermined_names(self.solution))
         if names and count == len(names) and not any(c.is_determined for c in combinations(self.solution)):
@@ -190,15 +190,15 @@ class FitResult:
             measured, law = self.facts["loop_area"][0], self.facts["loop_area_law"][0]
             if not measured / MAX_AREA_RATIO <= law <= measured * MAX_AREA_RATIO:
                 return (
-                    f"the area of the widest loop is {measured:.3g} J, of the fitted law {law:.3g} J; "
-                    f"allowed is a factor of {MAX_AREA_RATIO:g}"
+                    f"the area of the widest loop is {measured:.3g} J measured, {law:.3g} J by the fitted "
+                    f"law; allowed is a factor of {MAX_AREA_RATIO:g}"
                 )
         if "held_out" in self.facts:
             law, constant = self.facts["held_out"][0], self.facts["held_out_constant"][0]
             if law > MAX_RESIDUAL_RATIO * constant:
                 return (
-                    f"it misses the held-out part by {law:.3g} N.m, a constant by {constant:.3g} N.m; "
-                    f"allowed is {MAX_RESIDUAL_RATIO:g} of that"
+                    f"the fit misses the held-out part of the log by {law:.3g} N.m, a constant friction "
+                    f"torque by {constant:.3g} N.m; allowed is {MAX_RESIDUAL_RATIO:g} times the latter"
                 )
         return None
 
@@ -216,12 +216,12 @@ class FitResult:
                     )
                 elif len(combination.exponents) > 1:
                     lines.append(
-                        f"the combination {combination} stays open: "
+                        f"the combination {combination} is not determined: "
                         f"{format_deviation(combination.relative_deviation)}"
                     )
-        lines += [f"{name} ended on its bound" for name in self.solution.names_at_bound]
+        lines += [f"{name} ended on a bound of its interval" for name in self.solution.names_at_bound]
         if self.solution.refusal_message:
-            lines.append(f"the fit ended where the model refuses: {self.solution.refusal_message}")
+            lines.append(f"the fit ended at values that the model rejects: {self.solution.refusal_message}")
         return lines + list(self.notes)
 
     def document(self) -> dict[str, Any]:
@@ -265,8 +265,8 @@ def correlation_note(
     if correlation <= MAX_RESIDUAL_CORRELATION:
         return []
     return [
-        f"neighbouring residuals are alike (correlation {correlation:.2f}): the law misses the {quantity} "
-        "systematically, the standard deviations are too small"
+        f"neighbouring residuals are correlated ({correlation:.2f}): the law deviates systematically from "
+        f"the {quantity}, and the standard deviations are too small"
     ]
 
 
@@ -274,7 +274,7 @@ def format_deviation(deviation: float) -> str:
     """Format a relative standard deviation [1]: in percent, as a factor, or as "orders of magnitude"."""
     if deviation < 1.0:
         return f"{100.0 * deviation:.2g} %"
-    return f"{np.exp(deviation):.2g} times more or less" if deviation < 5.0 else "orders of magnitude"
+    return f"a factor of {np.exp(deviation):.2g}" if deviation < 5.0 else "orders of magnitude"
 
 
 def _finite_or_none(value: float) -> float | None:
@@ -289,15 +289,15 @@ def make_unknowns(
 
     bounds : {name: (low, high)} that narrow the declared intervals
 
-    Raises ValueError for a name that the joint lacks, that is no number, or that is given twice.
+    Raises ValueError for a name that the joint lacks, that is not a number, or that is given twice.
     """
     values, result = start_file.values_by_name, []
     declared = {n: f for n, f in flat_fields(type(start_file.values)) if isinstance(values.get(n), float)}
     for name in names:
         if name not in declared:
-            raise ValueError(f"{name!r} is no parameter to fit; allowed are {', '.join(declared)}")
+            raise ValueError(f"{name!r} is not a parameter to fit; allowed are {', '.join(declared)}")
         if names.count(name) > 1:
-            raise ValueError(f"{name!r} is given twice; allowed is once")
+            raise ValueError(f"{name!r} is given twice; state it once")
         meta = declared[name].metadata
         interval = meta["interval"].intersection(Interval(*bounds.get(name, ())))
         result.append(Unknown(name, meta["unit"], float(values[name]), interval.low, interval.high))
@@ -324,7 +324,7 @@ def fitted_parameters(
 
     The date is today, or SOURCE_DATE_EPOCH if that environment variable is set (reproducible files).
 
-    Raises ValueError if SOURCE_DATE_EPOCH is no number of seconds.
+    Raises ValueError if SOURCE_DATE_EPOCH is not a number of seconds.
     """
     today = build_time().date().isoformat()
     file = start_file.with_values(values, origin, f"fitted to {data_name}, {today}, {range_text}")

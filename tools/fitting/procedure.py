@@ -61,7 +61,7 @@ def fit_procedures() -> dict[str, dict[str, Procedure]]:
 
 DAMPING_RATIO_OPTION = Option(
     "damping_ratio",
-    "of the structure, beside the joint [1]; to fit it, free damping_ratio",
+    "damping ratio of the structure without the joint [1]; to fit it: --free damping_ratio",
     default=0.0,
     is_number=True,
 )

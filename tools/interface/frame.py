@@ -108,7 +108,7 @@ class Frame(TableDisplay, Mapping[str, Array]):
 
     def __getitem__(self, name: str) -> Array:
         if name not in self._columns:
-            raise KeyError(f"{name!r} is no column, allowed are {', '.join(self._columns)}")
+            raise KeyError(f"{name!r} is not a column, allowed are {', '.join(self._columns)}")
         return self._columns[name]
 
     def __iter__(self) -> Iterator[str]:
@@ -134,7 +134,7 @@ class Frame(TableDisplay, Mapping[str, Array]):
     def plot(self, x: str | None = None, y: str | None = None) -> "Figure":
         """Draw one column over another, by default the last over the first; returns a matplotlib figure.
 
-        Raises KeyError for a name that is no column.
+        Raises KeyError for a name that is not a column.
         """
         names = list(self)
         x, y = x or names[0], y or names[-1]
@@ -148,7 +148,7 @@ class Frame(TableDisplay, Mapping[str, Array]):
     def save(self, path: str | Path, *, force: bool = False) -> Path:
         """Write the columns as CSV with headings `name [unit]`; numbers are written exactly.
 
-        force : replace a file that is no table of jointfmu
+        force : replace a file that is not a table of jointfmu
 
         Raises ValueError if the file may not or cannot be written.
         """

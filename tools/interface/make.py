@@ -71,7 +71,7 @@ def load(source: str | Path) -> Joint:
             with _use_python_names():
                 return make_from_drawing(load_tool_module(kind, "new").NEW, {"catalogue": name})  # type: ignore[union-attr]
     raise ValueError(
-        f"{name!r} is no parameter file (.toml) and no known name; allowed are "
+        f"{name!r} is not a parameter file (.toml) or a known name; allowed are "
         f"{', '.join((*MODELS, *KINDS))} and names of the catalogue (jointfmu catalogue)"
     )
 
@@ -241,7 +241,7 @@ def _to_procedure_value(option: Option, value: Any) -> object:
     if option.default_unit and isinstance(value, str):
         return parse_number(option.name, value, option.default_unit, option.default_unit, None)
     if not isinstance(value, int | float | np.number):
-        raise ValueError(f"{option.name} = {value!r} is no number: {option.help_text}")
+        raise ValueError(f"{option.name} = {value!r} is not a number: {option.help_text}")
     return float(value)
 
 

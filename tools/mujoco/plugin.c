@@ -44,7 +44,7 @@ static bool find_joint(Coupling *c, const mjModel *m, int instance, const char *
     *joint = name && *name ? mj_name2id(m, mjOBJ_JOINT, name) : -1;
     if (*joint >= 0 && (m->jnt_type[*joint] == mjJNT_HINGE || (slides && m->jnt_type[*joint] == mjJNT_SLIDE)))
         return true;
-    snprintf(c->why, sizeof c->why, "%s = '%.80s' is no hinge joint; expected the name of one", key,
+    snprintf(c->why, sizeof c->why, "%s = '%.80s' is not a hinge joint; expected the name of one", key,
              name ? name : "");
     return false;
 }
@@ -62,7 +62,7 @@ static bool set_parameter(Coupling *c, const char *text, uint32_t ref)
     if (right)
         instance_put(c->instance, ref, value);
     else
-        snprintf(c->why, sizeof c->why, "%s = '%.80s' is no %s", v->name, text,
+        snprintf(c->why, sizeof c->why, "%s = '%.80s' is not a %s", v->name, text,
                  v->boolean ? "Boolean; expected true or false" : "number; expected one");
     return right;
 }

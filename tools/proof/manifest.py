@@ -205,7 +205,7 @@ class RelatedFiles:
                 try:
                     settings[name] = StartSetting(_parse_value(kind, value), child.get("unit", ""))
                 except (KeyError, ValueError):
-                    raise ValueError(f"{self.fmu}: {path}: {name} = {value!r} is no {kind}") from None
+                    raise ValueError(f"{self.fmu}: {path}: {name} = {value!r} is not a {kind}") from None
                 break
         return settings
 
@@ -222,14 +222,14 @@ class RelatedFiles:
         try:
             return self.members[path].decode("utf-8-sig")
         except UnicodeDecodeError:
-            raise ValueError(f"{self.fmu}: {path} is no text; expected UTF-8") from None
+            raise ValueError(f"{self.fmu}: {path} is not a text; expected UTF-8") from None
 
     def _read_xml(self, path: str) -> Element:
         """XML root element of a related file."""
         try:
             return ElementTree.fromstring(self._read_text(path))
         except ElementTree.ParseError as error:
-            raise ValueError(f"{self.fmu}: {path} is no XML ({error})") from None
+            raise ValueError(f"{self.fmu}: {path} is not valid XML ({error})") from None
 
 
 _FILE_TYPES = {"Parameters": SSV_TYPE, "Stimuli": CSV_TYPE, "References": CSV_TYPE}

@@ -143,7 +143,7 @@ def _communication_points(experiment: Experiment, description: "ModelDescription
         experiment.stop, results.time[-1] if results else None, getattr(default, "stopTime", None), start
     )
     if not stop > start:
-        raise ValueError(f"its stop time is {stop:g} s; expected one after {start:g} s")
+        raise ValueError(f"its stop time is {stop:g} s; expected a time after {start:g} s")
     step = _first_stated(experiment.step, getattr(default, "stepSize", None), (stop - start) / DEFAULT_STEPS)
     if not step > 0.0 or (stop - start) / step > MAX_STEPS:
         raise ValueError(f"its step is {step:g} s; expected at least {(stop - start) / MAX_STEPS:g} s")

@@ -112,7 +112,7 @@ def _list_differences(start_values: Mapping[str, object], expected: ExpectedCont
 
     start_values : {variable: start value} of the FMU
     """
-    missing = "is no parameter of the FMU"
+    missing = "is not an FMU parameter"
     found = {name: f"starts at {_format_value(value)}" for name, value in start_values.items()}
     return [
         f"{name} {found.get(name, missing)}, {expected.source} says {_format_value(value)}"

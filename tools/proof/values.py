@@ -32,7 +32,7 @@ def variable_kind(variable: "ScalarVariable") -> str:
 def convert_setting(variable: "ScalarVariable", setting: StartSetting) -> object:
     """Convert a stated start value to the type of its variable.
 
-    Raises ValueError if its unit is not that of the variable, or if it is no value of this type.
+    Raises ValueError if its unit is not that of the variable, or if it is not a value of this type.
     """
     unit = variable.unit or "1"
     if setting.unit and setting.unit != unit:
@@ -45,7 +45,7 @@ def convert_setting(variable: "ScalarVariable", setting: StartSetting) -> object
     try:
         return convert_value(variable, float(value))
     except ValueError:
-        raise ValueError(f"{variable.name} = {setting.value!r} is no {variable.type}") from None
+        raise ValueError(f"{variable.name} = {setting.value!r} is not a {variable.type}") from None
 
 
 def convert_value(variable: "ScalarVariable", value: float) -> float | int | bool:
@@ -54,7 +54,7 @@ def convert_value(variable: "ScalarVariable", value: float) -> float | int | boo
         return value
     number = int(value)
     if number != value or (kind == "boolean" and number not in (0, 1)):
-        raise ValueError(f"{variable.name} = {value:g} is no {variable.type}")
+        raise ValueError(f"{variable.name} = {value:g} is not a {variable.type}")
     return bool(number) if kind == "boolean" else number
 
 

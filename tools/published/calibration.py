@@ -54,7 +54,9 @@ def _fit_unknowns(
     solution = least_squares(residuals, first, xtol=1e-15, ftol=1e-15, gtol=1e-15, max_nfev=400)
     worst = float(np.max(np.abs(solution.fun)))
     if worst > 1e-8:
-        raise RuntimeError(f"calibration of {', '.join(names)} misses a point by {worst:.2g}")
+        raise RuntimeError(
+            f"calibration of {', '.join(names)} does not meet a calibration point: deviation {worst:.2g}"
+        )
     return parameters_at(solution.x)
 
 

@@ -264,8 +264,8 @@ def find_conjugate_output(
     if output is not None:
         if output not in fitting:
             raise ValueError(
-                f"{fmu_label}: {output!r} is no output whose product with {input_name} is an energy, allowed "
-                f"are {', '.join(fitting) or 'none'}"
+                f"{fmu_label}: {output!r} is not an output whose product with {input_name} is an energy, "
+                f"allowed are {', '.join(fitting) or 'none'}"
             )
         return output
     if not fitting:

@@ -51,12 +51,11 @@ def ramp_points(end: float, step: float) -> Array:
             raise ValueError(f"{name} = {value:g} is outside (-inf, inf): must be finite")
     if abs(end) > MAX_RAMP_END:
         raise ValueError(
-            f"to = {end:g} is outside [-{MAX_RAMP_END:g}, {MAX_RAMP_END:g}] (SI): no load or motion is "
-            "so large"
+            f"to = {end:g} is outside [-{MAX_RAMP_END:g}, {MAX_RAMP_END:g}] (SI): limit for loads and motions"
         )
     if step == 0.0 or end / step < 0.0:
         allowed = "(-inf, 0)" if end < 0.0 else "(0, inf)"
-        raise ValueError(f"step = {step:g} is outside {allowed}: it must lead from 0 to {end:g}")
+        raise ValueError(f"step = {step:g} is outside {allowed}: steps must lead from 0 to {end:g}")
     count = end / step
     if count > 1e7:
         raise ValueError(f"step = {step:g} makes {count:.3g} points, allowed are 1e7")
@@ -116,7 +115,7 @@ def run_paths(
     rows, count = broadcast_columns({**inputs} if time is None else {**inputs, "time": time}, str(fmu))
     clock = rows.pop("time", np.arange(float(count)))
     if not (clock[0] == 0.0 and np.all(np.diff(clock) > 0.0) and np.all(np.isfinite(clock))):
-        raise ValueError(f"{fmu}: time does not rise from 0 s")
+        raise ValueError(f"{fmu}: the times must start at 0 s and increase")
     with unpack_fmu(fmu) as (folder, description):
         return _simulate_paths(folder, description, rows, clock, dict(settings or {}), str(fmu))
 
@@ -155,7 +154,7 @@ def _simulate_paths(
         if name not in allowed:
             raise ValueError(f"{fmu_label}: unknown input {name!r}, allowed are {', '.join(allowed)}")
         if name in settings:
-            raise ValueError(f"{fmu_label}: {name} is driven by the ramp and cannot be set as well")
+            raise ValueError(f"{fmu_label}: {name} is the input of the ramp; do not set it too")
     settable = [v.name for v in model_description.modelVariables if v.causality in ("input", "parameter")]
     for name, value in settings.items():
         if name not in settable:

@@ -85,7 +85,11 @@ def _ring_down_figure(name: str, vibrating_joint: VibratingJoint, decays: Sequen
         "ratio of the "
         "simulated signal in windows of two to five periods, over the mean amplitude. Line: values from the "
         "energy loss of the joint's hysteresis loops of the same amplitude, with viscous damping"
-        + ("; dashes: half of eta_loop, the law before it is divided into sliders. " if has_law else ". ")
+        + (
+            "; dashes: half of eta_loop, the law before its discretization into sliders. "
+            if has_law
+            else ". "
+        )
         + "Because of friction the joint becomes stiffer and less damped as the amplitude decreases.",
         decay_panels(decays, body),
     )

@@ -81,7 +81,7 @@ def read_robot(path: str | Path) -> Any:
 def make_axes(spec: Any, drives: Mapping[str, Transmission]) -> list[ElasticAxis]:
     """Make the elastic axes of the joints in `drives`, in the order of the robot.
 
-    Raises ValueError for a name that is no hinge of the robot.
+    Raises ValueError for a name that is not a hinge of the robot.
     """
     import mujoco
 
@@ -91,7 +91,7 @@ def make_axes(spec: Any, drives: Mapping[str, Transmission]) -> list[ElasticAxis
     for name in drives:
         if name not in known:
             raise ValueError(
-                f"{name!r} is no hinge of the robot; allowed are {', '.join(filter(None, known))}"
+                f"{name!r} is not a hinge of the robot; allowed are {', '.join(filter(None, known))}"
             )
     matrix = compute_mass_matrix(model, model.qpos0)
     fit_drive = cache(fit_spring)  # axes may share a drive
@@ -102,7 +102,10 @@ def make_axes(spec: Any, drives: Mapping[str, Transmission]) -> list[ElasticAxis
             rotor, notes = float(model.dof_armature[dof]), list[str]()
             if rotor <= 0.0:
                 rotor = float(matrix[dof, dof])
-                notes.append("no armature; the rotor is taken as large as what the axis turns")
+                notes.append(
+                    "no armature in the file; the rotor inertia is set equal to the inertia that the axis "
+                    "moves"
+                )
             if drive.static_friction and bristles.is_stable(model.opt):
                 angle = bristles.presliding_angle(drive, rotor / drive.ratio**2, model.opt.timestep)
                 if angle > 1.01 * drive.presliding_angle:
@@ -227,7 +230,7 @@ def joint_positions(model: Any, position_texts: Mapping[str, str]) -> Array:
 
     position_texts : {joint: text of its position [rad or m]}
 
-    Raises ValueError for an unknown joint, or a position that is no number or outside the joint's range.
+    Raises ValueError for an unknown joint, or a position that is not a number or outside the joint's range.
     """
     import mujoco
 
@@ -244,7 +247,7 @@ def joint_positions(model: Any, position_texts: Mapping[str, str]) -> Array:
         try:
             value = float(text)
         except ValueError:
-            raise ValueError(f"--pose {name} = {text!r} is no number") from None
+            raise ValueError(f"--pose {name} = {text!r} is not a number") from None
         joint = model.joint(name).id
         low, high = model.jnt_range[joint] if model.jnt_limited[joint] else (-np.inf, np.inf)
         if not (np.isfinite(value) and low <= value <= high):

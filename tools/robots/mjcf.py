@@ -156,7 +156,7 @@ def _friction_comments(drive: Transmission, motor_inertia: float) -> Iterator[st
     yield (
         f"dry friction builds up over {angle:.3g} rad of the motor, {drive.presliding_angle:g} rad in the FMU"
     )
-    yield "  and after a reversal as Dahl has it, not Masing; its numbers are of this motor"
+    yield "  and after a reversal it follows Dahl's model, not Masing's; the values are for this motor"
     yield f"  and steps up to {TIME_STEP:g} s, not for the integrator RK4"
 
 
@@ -180,10 +180,11 @@ def format_mjcf(drive: Transmission, torque: float) -> tuple[str, FitErrors, lis
         f"by least squares up to {torque:g} N.m",
         f"measured in MuJoCo {mujoco.__version__} beside the FMU, motor locked:",
         *(f"  {line}" for line in miss.format_lines(torque)),
-        f"beyond {torque:g} N.m the cubic goes on; the FMU is tabulated to {drive.max_torque:g} N.m",
-        f"inertias stand for yours: {LINK_FREQUENCY:g} Hz of the link, motor locked; the motor's is as large",
+        f"beyond {torque:g} N.m the cubic continues; the table of the FMU ends at {drive.max_torque:g} N.m",
+        f"the inertias are placeholders: the link has {LINK_FREQUENCY:g} Hz with locked motor, the motor is "
+        "as large",
         *(_friction_comments(drive, motor) if drive.static_friction else ()),
-        "it cannot carry:" if drive.omitted_effects else "nothing of the drive is left out",
+        "not included:" if drive.omitted_effects else "all effects of the drive are included",
         *(f"  {line}" for line in drive.omitted_effects),
     ]
     return (

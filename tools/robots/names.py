@@ -25,6 +25,6 @@ def check_names(drive_files: Mapping[str, ParameterFile]) -> None:
         other, known = first.setdefault(make_identifier(file.name), (joint, file))
         if format_parameter_file(known) != format_parameter_file(file):
             raise ValueError(
-                f"the drives of {other} and {joint} are both named {file.name!r} and differ; "
-                "expected a name of its own in one of their files"
+                f"the drives of {other} and {joint} are both named {file.name!r} but differ; "
+                "change the name in one of their files"
             )

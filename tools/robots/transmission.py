@@ -63,7 +63,7 @@ def loop_area(wind_up: Array, torque: Array) -> float:
 
 
 def make_transmission(file: ParameterFile) -> Transmission:
-    """Drive of a parameter file. Raises ValueError if its joint is no drive."""
+    """Drive of a parameter file. Raises ValueError if its joint is not a drive."""
     tool_module = load_tool_module(KINDS[file.joint], "transmission")
     if tool_module is None:
         drives = [name for name, kind in KINDS.items() if load_tool_module(kind, "transmission")]

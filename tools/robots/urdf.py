@@ -35,9 +35,9 @@ def format_urdf(drive: Transmission, torque: float) -> tuple[str, None, list[str
     about = [
         f"{drive.name} as URDF, written by jointfmu {__version__}; not run in ROS",
         "friction of the motor is that of the joint, times the ratio and its square",
-        "it cannot carry, as URDF has no springs:",
+        "not included, because URDF has no springs:",
         *(f"  {line}" for line in lacks),
-        "limits: largest torque of the drive; speed at 2000 rpm of the motor; inertias stand for yours",
+        "limits: largest torque of the drive; speed at 2000 rpm of the motor; the inertias are placeholders",
     ]
     return f'<?xml version="1.0"?>\n{format_xml_comment(about)}{_format_robot(drive)}', None, lacks
 

@@ -27,7 +27,7 @@ def write_drive(
             f"--torque = {fit_torque:g} N.m is outside (0, {drive.max_torque:g}] N.m of {drive.name}"
         )
     text, miss, lacks = FORMAT_WRITERS[robot_format](drive, fit_torque)
-    lines = [*(miss.format_lines(fit_torque) if miss else ()), *(f"not carried: {line}" for line in lacks)]
+    lines = [*(miss.format_lines(fit_torque) if miss else ()), *(f"not included: {line}" for line in lacks)]
     errors = asdict(miss) if miss else {}
     return text, lines, {"drive": drive.name, "torque": fit_torque, **errors, "lacks": lacks}
 

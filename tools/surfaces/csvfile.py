@@ -68,7 +68,7 @@ def read_declared(path: Path, first_line: str) -> tuple[Heights, str]:
     needed = LAYOUT_COLUMNS[layout]
     if missing := [name for name in needed if name not in units]:
         expected = ", ".join(f"{name} [um]" for name in missing)
-        raise ValueError(f"{path}: the header states no unit of {', '.join(missing)}; write it as {expected}")
+        raise ValueError(f"{path}: the header has no unit for {', '.join(missing)}; write it as {expected}")
     factors = {name: parse_unit(units[name], f"{path}: {name}") for name in needed}
     if layout == "grid":
         spacings = {name: _parse_spacing(path, declaration, name) for name in ("dx", "dy")}
@@ -142,7 +142,9 @@ def _parse_spacing(path: Path, text: str, name: str) -> tuple[float, str]:
     except ValueError as error:
         if "unit" in str(error):
             raise
-        raise ValueError(f"{path}: {name} = {match[1]!r} is no number; write it as {name} = 0.5 um") from None
+        raise ValueError(
+            f"{path}: {name} = {match[1]!r} is not a number; write it as {name} = 0.5 um"
+        ) from None
 
 
 def read_table(path: Path, header_lines: int = 0) -> Array:
@@ -152,7 +154,7 @@ def read_table(path: Path, header_lines: int = 0) -> Array:
     """
     top = read_numbered_lines(path, header_lines + 1)
     if len(top) <= header_lines:
-        raise ValueError(f"{path}: is no surface: it holds no numbers")
+        raise ValueError(f"{path}: is not a surface scan: it holds no numbers")
     first, line = top[header_lines]
     delimiter = find_separator(line.partition("#")[0])
     with contextlib.suppress(ValueError):  # empty cells, rows of other lengths, words: row by row below
@@ -166,12 +168,13 @@ def read_table(path: Path, header_lines: int = 0) -> Array:
 
 
 def _parse_numbers(path: Path, line: int, row: Sequence[str]) -> Array:
-    """Parse the cells of one row; empty cells are NaN. Raises ValueError for a cell that is no number."""
+    """Parse the cells of one row; empty cells are NaN. Raises ValueError for a cell that is not a number."""
     values = [parse_number(cell) if cell.strip() else np.nan for cell in row]
     if None in values:
         cell = row[values.index(None)].strip()
         raise ValueError(
-            f"{path}: is no surface: line {line}: {cell!r} is no number; expected numbers in columns"
+            f"{path}: is not a surface scan: line {line}: {cell!r} is not a number; expected numbers in "
+            "columns"
         )
     return np.array(values, dtype=np.float64)
 
@@ -192,12 +195,12 @@ def heights_from_columns(path: Path, values: Array, unit_factors: list[float]) -
         _grid_indices(path, name, values[:, i], unit_factors[i]) for i, name in enumerate("xy")
     )
     if (x.max() + 1) * (y.max() + 1) > 4 * x.size:
-        raise ValueError(f"{path}: {x.size} points lie on no grid of x and y; resample them to one")
+        raise ValueError(f"{path}: {x.size} points do not lie on a grid of x and y; resample them to a grid")
     heights = np.full((y.max() + 1, x.max() + 1), np.nan)
     occupied = np.zeros(heights.shape, dtype=bool)
     occupied[y, x] = True
     if np.count_nonzero(occupied) < x.size:
-        raise ValueError(f"{path}: x and y repeat points; expected every point once")
+        raise ValueError(f"{path}: some points (x, y) are repeated; give every point once")
     heights[y, x] = values[:, 2] * unit_factors[2]
     return ArealMap(z=heights, dx=dx, dy=dy, name=str(path))
 

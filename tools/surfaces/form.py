@@ -114,7 +114,7 @@ def fill_gaps(heights: Heights) -> tuple[Heights, list[Repair]]:
     if count > MAX_MISSING_SHARE * z.size:
         raise ValueError(
             f"{heights.name}: {count} of {z.size} points are missing or spikes, "
-            f"at most {100.0 * MAX_MISSING_SHARE:g} % can be filled"
+            f"at most {100.0 * MAX_MISSING_SHARE:g} % may be missing"
         )
     if z.ndim == 1:
         index = np.arange(z.size)

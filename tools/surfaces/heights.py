@@ -121,12 +121,10 @@ def fit_grid(
     multiple of it. Raises ValueError if this fails too.
     """
     if positions.size < 2 or not np.all(np.isfinite(positions)):
-        raise ValueError(
-            f"{path}: {axis_name} has a gap or a single value; expected positions in rising order"
-        )
+        raise ValueError(f"{path}: {axis_name} has a gap or a single value; expected increasing positions")
     gaps = np.diff(positions)
     if positions[-1] == positions[0] or (not allow_repeats and gaps.min() <= 0.0):
-        raise ValueError(f"{path}: {axis_name} repeats values; expected every position once")
+        raise ValueError(f"{path}: {axis_name} has repeated values; give every position once")
     offset = positions - positions[0]
     step = float(offset[-1] / (positions.size - 1))
     index = np.arange(positions.size)
@@ -213,10 +211,10 @@ def check_surface_file(path: Path) -> None:
     if kind := next(
         (text for signature, text in FOREIGN_SIGNATURES.items() if start.startswith(signature)), None
     ):
-        raise ValueError(f"{path}: is no surface: it is {kind}")
+        raise ValueError(f"{path}: is not a surface scan: it is {kind}")
     if path.suffix[1:].lower() in SIGNED_SUFFIXES and not has_signature(start):
         raise ValueError(
-            f"{path}: is no surface: it does not begin as a {path.suffix} file, nor as any other"
+            f"{path}: is not a surface scan: it does not begin as a {path.suffix} file, nor as any other"
         )
     if path.stat().st_size > MAX_CHECKED_SIZE:
         return
@@ -226,7 +224,7 @@ def check_surface_file(path: Path) -> None:
         and (count := len(_NUMBER_PATTERN.findall(data))) < MIN_PROFILE_POINTS
     ):
         raise ValueError(
-            f"{path}: is no surface: a text of {count} numbers, "
+            f"{path}: is not a surface scan: a text of {count} numbers, "
             f"a profile needs at least {MIN_PROFILE_POINTS} points"
         )
 

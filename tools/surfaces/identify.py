@@ -55,11 +55,11 @@ def identify(
         raise ValueError(f"{len(surfaces)} files given, allowed are one surface or the two of a pair")
     if side is not None and len(surfaces) == 2:
         raise InputRefusal(
-            f"side = {side} beside two files, of which the first is side 1; leave it out", "side"
+            f"side = {side} is given with two files; leave it out: the first file is side 1", "side"
         )
     areal = {isinstance(surface, ArealMap) for surface in surfaces}
     if len(areal) == 2:
-        raise ValueError("a profile and an areal map given, a pair needs two of the same kind")
+        raise ValueError("one file is a profile, the other an areal map; a pair needs two of the same kind")
     if longest_wave is not None:
         for surface in surfaces:
             check_longest_wave(surface, longest_wave)

@@ -51,18 +51,18 @@ def read_heights(
     path = Path(path)
     check_regular(path, "height data")
     if not path.is_file():
-        raise ValueError(f"{path}: is no file; expected height data")
+        raise ValueError(f"{path}: is not a file; expected height data")
     option_units = {"x": unit_x or unit, "z": unit_z or unit}
     for name, value in {"unit": unit, "unit_x": unit_x, "unit_z": unit_z}.items():
         if value is not None and value not in csvfile.LENGTH_UNITS:
             raise InputRefusal(f"{name} = {value!r} is not one of {csvfile.UNIT_LIST}", name)
     if path.stat().st_size == 0:
-        raise ValueError(f"{path}: is no surface: the file is empty")
+        raise ValueError(f"{path}: is not a surface scan: the file is empty")
     is_text = path.suffix.lower() in TEXT_SUFFIXES
     if line := csvfile.read_declaration(path):
         if any(option_units.values()):
             value = next(filter(None, option_units.values()))
-            raise InputRefusal(f"{path}: states its units itself; leave the unit {value} out", "unit")
+            raise InputRefusal(f"{path}: states its units; leave the unit {value} out", "unit")
         heights, file_unit = csvfile.read_declared(path, line)
     elif is_text and (titles := csvfile.read_titles(path)):
         heights, file_unit = csvfile.read_titled(path, titles, option_units)
@@ -74,7 +74,7 @@ def read_heights(
         heights, file_unit = csvfile.read_titled(path, heads, option_units, header_lines=0)
     elif unit_x or unit_z:
         name = "unit_x" if unit_x else "unit_z"
-        raise InputRefusal(f"{path}: is no table of columns; expected one unit for all axes", name)
+        raise InputRefusal(f"{path}: is not a table of columns; expected one unit for all axes", name)
     else:
         heights, file_unit = _read_instrument(path, unit)
     if not accept_any_size:
@@ -98,7 +98,7 @@ def _check_size(heights: Heights, unit: str) -> None:
     likely_size = " x ".join(f"{length / factor:.4g} {likely}" for length in heights.lengths)
     raise InputRefusal(
         f"{heights.name}: the field is {size} with lengths in {unit}, scans have {low:g} to {high:g} m; "
-        f"were lengths in {likely} meant ({likely_size})? State the right unit, or that the size is right",
+        f"are the lengths in {likely} ({likely_size})? State the right unit, or confirm the size",
         "force",
     )
 
@@ -140,11 +140,11 @@ def _read_instrument(path: Path, unit: str | None) -> tuple[Heights, str]:
             size, heights = topography.physical_sizes, topography.heights()
     except SurfaceTopography.Exceptions.CannotDetectFileFormat:
         raise ValueError(
-            f"{path}: is no surface: neither our CSV nor a format of SurfaceTopography"
+            f"{path}: is not a surface scan: neither our CSV nor a format of SurfaceTopography"
         ) from None
     except Exception as error:  # the readers raise exceptions of any kind
         reason = " ".join(str(error).split())[:120] or type(error).__name__
-        raise ValueError(f"{path}: is no surface that SurfaceTopography can read ({reason})") from None
+        raise ValueError(f"{path}: is not a surface that SurfaceTopography can read ({reason})") from None
     if topography.unit is None and unit is None:
         raise _missing_unit_error(path)
     if topography.unit is not None and unit is not None:
@@ -172,7 +172,7 @@ def _unit_size(unit: str) -> float:
     with contextlib.suppress(ValueError):
         if (factor := get_unit_conversion_factor(unit, "m")) is not None:
             return float(factor)
-    raise ValueError(f"its unit {unit!r} is no length that is known")
+    raise ValueError(f"its unit {unit!r} is not a known unit of length")
 
 
 def _convert_heights(path: Path, topography: Any, size: Any, heights: Any, factor: float) -> Heights:

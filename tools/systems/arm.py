@@ -53,11 +53,13 @@ AXIS_VECTORS: Mapping[str, Array] = {"y": np.array([0.0, 1.0, 0.0]), "z": np.arr
 class Link(CheckedParameters):
     """Link of an arm, from its axis to the next axis or to the tip."""
 
-    length: float = quantity_field("m", "from this axis to the next one, or to the tip", ge=0.0)
+    length: float = quantity_field("m", "distance from this axis to the next axis, or to the tip", ge=0.0)
     mass: float = quantity_field("kg", "mass of the link with the next drive", gt=0.0)
-    centre: float = quantity_field("m", "from the axis to the centre of mass", ge=0.0)
+    centre: float = quantity_field("m", "distance from the axis to the centre of mass", ge=0.0)
     J_along: float = quantity_field("kg.m2", "moment of inertia about the link's own line", gt=0.0)
-    J_across: float = quantity_field("kg.m2", "the same across it, about the centre of mass", gt=0.0)
+    J_across: float = quantity_field(
+        "kg.m2", "moment of inertia across the link's line, about the centre of mass", gt=0.0
+    )
     travel: float = quantity_field("rad", "angle of the motion")
 
 
@@ -165,8 +167,8 @@ def _multiply(matrices: Array, vectors: Array) -> Array:
 
 
 _MOTION_ENTRIES = {
-    "start": quantity_field("s", "begin of the motion", ge=0.0),
-    "duration": quantity_field("s", "from its begin to its end", gt=0.0),
+    "start": quantity_field("s", "start time of the motion", ge=0.0),
+    "duration": quantity_field("s", "duration of the motion", gt=0.0),
 }
 Sections = dict[str, dict[str, object]]
 """{component: its section, as in a system file}."""

@@ -160,7 +160,9 @@ def load_vibration_test(joint: str) -> VibrationTest:
     tool_module = load_tool_module(KINDS[joint], "ringing")
     if tool_module is None:
         joints = [name for name, kind in KINDS.items() if load_tool_module(kind, "ringing")]
-        raise ValueError(f"joint {joint!r} does not say how it rings, allowed are {', '.join(joints)}")
+        raise ValueError(
+            f"joint {joint!r} has no free vibration that can be simulated; allowed are {', '.join(joints)}"
+        )
     body: VibrationTest = tool_module.RINGING
     return body
 
@@ -236,8 +238,7 @@ def find_vibrating_joint(system: System, joint: str | None = None) -> VibratingJ
     moving = system.components[body_names[0]] if body_names else None
     if joints[name].model_name != body.model_name or moving is None or moving.model_name != body.body_model:
         raise ValueError(
-            f"{name}: expected a {body.model_name} that takes {body.motion_inputs[0]} from a "
-            f"{body.body_model}"
+            f"{name}: expected a {body.model_name} that gets {body.motion_inputs[0]} from a {body.body_model}"
         )
     key = next(iter(dict(flat_fields(PARTNERS[body.body_model].parameters))))
     return VibratingJoint(body, joints[name], find_fmu_names(system)[name], moving, key)
@@ -328,7 +329,7 @@ def _run_vibration(
     if not stated < MAX_DAMPING_RATIO:
         raise ValueError(
             f"load = {load:g}: damping ratio {stated:.3g} with the inertia {inertia:g}; allowed is "
-            f"less than {MAX_DAMPING_RATIO:g}, so that there are periods to count: take a larger inertia"
+            f"less than {MAX_DAMPING_RATIO:g}, so that it vibrates; state a larger inertia"
         )
     step = 2.0 * np.pi / (expected * STEPS_PER_PERIOD)
     signal = (

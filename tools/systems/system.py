@@ -34,8 +34,8 @@ from .system_joint import FILE_KEYS, load_joint_file
 GROUND = "ground"
 """Name of the ground in connections; it fixes a flange of a joint."""
 _EXPERIMENT_ENTRIES = {
-    "stop_time": quantity_field("s", "end of the simulation", gt=0.0),
-    "interval": quantity_field("s", "between two points of the result", gt=0.0),
+    "stop_time": quantity_field("s", "end time of the simulation", gt=0.0),
+    "interval": quantity_field("s", "time between two points of the result", gt=0.0),
 }
 _RESERVED_KEYS = ("schema", "name", "description", "connect", "experiment", "arm")
 
@@ -48,7 +48,7 @@ class Component:
     base_file              : parameter file of a joint, without values of the system; None: a partner
     parameter_file         : parameter file of a joint, with values of the system; None: a partner
     has_own_fmu            : whether the system needs its own FMU of the joint: it names a parameter file or a
-        catalogue item, or sets a parameter that is no FMU variable
+        catalogue item, or sets a parameter that is not an FMU variable
     values, units, sources : {parameter or input: SI value, unit, source} given in the system file
     """
 
@@ -174,7 +174,7 @@ def read_system(path: Path) -> System:
     """
     document = read_document(path, "a system's file")
     if not is_identifier(path.stem):
-        raise ValueError(f"{path}: the file's name is the system's; allowed are {NAME_RULE}")
+        raise ValueError(f"{path}: the file name is the name of the system; allowed are {NAME_RULE}")
     try:
         return _make_system(path, document)
     except ValueError as error:
@@ -200,8 +200,8 @@ def _make_system(path: Path, document: Mapping[str, Any]) -> System:
     for prefix in components:
         if longer := [name for name in components if name != prefix and name.startswith(prefix)]:
             raise ValueError(
-                f"component {longer[0]!r} begins like {prefix!r}, which fmpy mixes up; allowed are names of "
-                "which none begins another"
+                f"component {longer[0]!r} begins with the name {prefix!r}, which fmpy confuses; no name may "
+                "begin with another name"
             )
     if not any(component.parameter_file for component in components.values()):
         raise ValueError(f"no component is a joint, allowed models are {', '.join(MODELS)}")

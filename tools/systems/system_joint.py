@@ -24,7 +24,7 @@ def load_joint_file(folder: Path, name: str, joint: str, section: Mapping[str, A
     """
     entries = {key: value for key, value in section.items() if key in FILE_KEYS}
     if len(entries) > 1:
-        raise ValueError(f"{name} has {' and '.join(sorted(entries))}, allowed is one of them")
+        raise ValueError(f"{name} has {' and '.join(sorted(entries))}, state one of them")
     for key, value in entries.items():
         if not isinstance(value, str):
             raise ValueError(f"{name}.{key} = {value!r}, expected a text")

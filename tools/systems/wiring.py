@@ -77,9 +77,7 @@ def find_connections(system: System) -> list[tuple[ConnectionEnd, ConnectionEnd]
         pair = [_parse_end(system, text) for text in connection]
         for end, other in zip(connection, reversed(connection), strict=True):
             if end != GROUND and end in partners:
-                raise ValueError(
-                    f"{end} is connected to {partners[end]} and to {other}; allowed is one of them"
-                )
+                raise ValueError(f"{end} is connected to {partners[end]} and to {other}; state one of them")
             partners[end] = other
         pair.sort(key=lambda end: (end.component is None, not end.is_load, not end.is_joint))
         _check_pair(*pair)
@@ -88,12 +86,10 @@ def find_connections(system: System) -> list[tuple[ConnectionEnd, ConnectionEnd]
         flanges = [f"{component.name}.{flange.name}" for flange in find_terminals(find_model(component))]
         if component.parameter_file and (unconnected := [name for name in flanges if name not in partners]):
             raise ValueError(
-                f'{unconnected[0]} is connected to nothing; allowed are a flange of a body, or "{GROUND}"'
+                f'{unconnected[0]} is not connected; connect it to a flange of a body, or "{GROUND}"'
             )
         if not partners.keys() & {component.name, *flanges}:
-            raise ValueError(
-                f"{component.name} is connected to nothing; allowed is a flange of a body or joint"
-            )
+            raise ValueError(f"{component.name} is not connected; connect it to a flange of a body or joint")
     _check_loops(pairs)
     _check_moved_joints(system, pairs)
     return pairs
@@ -149,8 +145,8 @@ def _parse_end(system: System, text: str) -> ConnectionEnd:
     members = known[flange].members
     if component.parameter_file and "inflow" in {kind for _, kind in members.values()}:
         raise ValueError(
-            f"{name}: a {model.name} takes a load and gives a motion; allowed are joints that take the "
-            "motion of bodies"
+            f"{name}: a {model.name} has a load as input and a motion as output; expected a joint whose "
+            "input is the motion of bodies"
         )
     return ConnectionEnd(
         text, component, known[flange], {key: variable for key, (variable, _) in members.items()}
@@ -176,7 +172,7 @@ def _check_pair(first: ConnectionEnd, second: ConnectionEnd) -> None:
     elif first.is_joint == second.is_joint:
         raise ValueError(f"{prefix}; allowed is a joint's flange on a body's")
     elif first.members.keys() != second.members.keys():
-        raise ValueError(f"{prefix}; allowed are two that turn or two that shift")
+        raise ValueError(f"{prefix}; allowed are two rotational or two translational flanges")
 
 
 def _check_moved_joints(system: System, connections: Sequence[tuple[ConnectionEnd, ConnectionEnd]]) -> None:
@@ -210,6 +206,7 @@ def _check_loops(connections: Sequence[tuple[ConnectionEnd, ConnectionEnd]]) -> 
             roots = find_root(first.component.name), find_root(second.component.name)
             if roots[0] == roots[1]:
                 raise ValueError(
-                    f"{first.label} on {second.label} closes a loop; allowed are chains of joints and bodies"
+                    f"{first.label} on {second.label} closes a loop; only chains of joints and bodies are "
+                    "possible"
                 )
             parents[roots[0]] = roots[1]

@@ -39,24 +39,25 @@ def claim_folder(folder: Path, study: Mapping[str, object]) -> None:
     path = folder / STUDY_FILE
     if not path.exists():
         if folder.exists() and not (folder.is_dir() and not any(folder.iterdir())):
-            raise ValueError(f"{folder}: holds something else than a sweep; expected a new or empty folder")
+            raise ValueError(
+                f"{folder}: contains other files than those of a sweep; state a new or empty folder"
+            )
         write_text(path, json.dumps(study, indent=1) + "\n")
         return
     data = read_bytes(path, "a study of a sweep")
     try:
         present = json.loads(data.decode())
     except (ValueError, RecursionError) as error:
-        raise ValueError(f"{path}: is no study of a sweep ({error}); expected another folder") from None
+        raise ValueError(f"{path}: is not a study of a sweep ({error}); expected another folder") from None
     if not isinstance(present, dict):
-        raise ValueError(f"{path}: is no study of a sweep (no JSON object); expected another folder")
+        raise ValueError(f"{path}: is not a study of a sweep (no JSON object); expected another folder")
     if present == json.loads(json.dumps(study)):
         return
     changed = sorted(key for key in {*present, *study} if present.get(key) != study.get(key))
     old, new = (json.dumps(record.get(changed[0])) for record in (present, study))
     raise ValueError(
         f"{folder}: holds another study ({replace_unprintable(changed[0])[:60]} = {old[:60]}, now "
-        f"{new[:60]}); "
-        "expected the same study or another folder"
+        f"{new[:60]}); repeat that study, or state another folder"
     )
 
 
@@ -106,7 +107,7 @@ class Journal:
         except OSError:
             self.file.close()
             raise ValueError(
-                f"{self.path.parent}: another sweep is writing here; wait or choose another folder"
+                f"{self.path.parent}: another sweep is writing here; wait, or state another folder"
             ) from None
         end = 0
         try:
@@ -145,14 +146,14 @@ class Journal:
 
 
 def read_entries(folder: Path) -> Iterator[dict[str, Any]]:
-    """Entries of all finished runs of a folder. Raises ValueError, one line, for a row that is no run."""
+    """Entries of all finished runs of a folder. Raises ValueError, one line, for a row that is not a run."""
     return (entry for entry, _ in _read_lines(folder / RUNS_FILE))
 
 
 def _read_lines(path: Path) -> Iterator[tuple[dict[str, Any], int]]:
     """Yield (entry, position of its end in the file [byte]) of each complete line.
 
-    Raises ValueError, one line, for a row that is no run, a repeated run, or columns of another length.
+    Raises ValueError, one line, for a row that is not a run, a repeated run, or columns of another length.
     """
     end, rows, shape = 0, dict[int, int](), dict[str, int]()
     check_regular(path, "the journal of a sweep")
@@ -164,7 +165,7 @@ def _read_lines(path: Path) -> Iterator[tuple[dict[str, Any], int]]:
                 entry = json.loads(line.decode())
                 _check_entry(entry)
                 if (first_row := rows.setdefault(entry["run"], row)) != row:
-                    raise ValueError(f"run {entry['run']} stands in row {first_row} already")
+                    raise ValueError(f"run {entry['run']} is already in row {first_row}")
                 if lengths := {name: len(values) for name, values in entry.get("columns", {}).items()}:
                     shape = shape or lengths
                     if lengths != shape:
@@ -176,7 +177,7 @@ def _read_lines(path: Path) -> Iterator[tuple[dict[str, Any], int]]:
 
 
 def _row_error(path: Path, row: int, reason: str) -> ValueError:
-    """Error for a row that is no run of the study."""
+    """Error for a row that is not a run of the study."""
     return ValueError(
         f"{path}: row {row}: {replace_unprintable(reason)[:200]}; expected a run as the sweep wrote "
         "it: delete "
@@ -187,37 +188,37 @@ def _row_error(path: Path, row: int, reason: str) -> ValueError:
 def _check_entry(entry: object) -> None:
     """Raise ValueError if a JSON value is no journal entry of a run."""
     if not isinstance(entry, dict):
-        raise ValueError("is no JSON object")
+        raise ValueError("is not a JSON object")
     run, parameters = entry.get("run"), entry.get("parameters")
     if type(run) is not int or run < 0:
-        raise ValueError(f"run = {_format_value(run)} is no index")
+        raise ValueError(f"run = {_format_value(run)} is not an index")
     if not isinstance(parameters, dict):
-        raise ValueError(f"parameters = {_format_value(parameters)} is no JSON object")
+        raise ValueError(f"parameters = {_format_value(parameters)} is not a JSON object")
     for name, value in parameters.items():
         check_text("a name in parameters", name)
         if isinstance(value, str):
             check_text(f"parameter {name}", value)
         elif type(value) is not bool and not _is_number(value):
             raise ValueError(
-                f"parameter {name} = {_format_value(value)} is no finite number, word, true or false"
+                f"parameter {name} = {_format_value(value)} is not a finite number, word, true or false"
             )
     if ("columns" in entry) == ("error" in entry):
         raise ValueError("has not one of columns and error")
     if "error" in entry:
         if not isinstance(entry["error"], str):
-            raise ValueError(f"error = {_format_value(entry['error'])} is no text")
+            raise ValueError(f"error = {_format_value(entry['error'])} is not a text")
         check_text("error", entry["error"])
         return
     columns = entry["columns"]
     if not isinstance(columns, dict) or not columns:
-        raise ValueError(f"columns = {_format_value(columns)} is no JSON object with lists of numbers")
+        raise ValueError(f"columns = {_format_value(columns)} is not a JSON object with lists of numbers")
     lengths = set()
     for name, values in columns.items():
         check_text("a name in columns", name)
         if not isinstance(values, list):
-            raise ValueError(f"column {name} = {_format_value(values)} is no list")
+            raise ValueError(f"column {name} = {_format_value(values)} is not a list")
         if wrong := [value for value in values if not _is_number(value)]:
-            raise ValueError(f"column {name} has {_format_value(wrong[0])}, which is no finite number")
+            raise ValueError(f"column {name} has {_format_value(wrong[0])}, which is not a finite number")
         lengths.add(len(values))
     if len(lengths) > 1 or 0 in lengths:
         raise ValueError(f"its columns have {' and '.join(map(str, sorted(lengths)))} values")

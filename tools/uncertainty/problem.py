@@ -213,7 +213,7 @@ def _ramp_loads(
     if single_load is not None:
         if ramp_end is not None:
             raise ValueError(
-                f"{curves.load.name} is set and cannot be ramped as well; drop to = {ramp_end:g}"
+                f"{curves.load.name} is set and is also the ramped input; leave out to = {ramp_end:g}"
             )
         if not isinstance(single_load, int | float) or isinstance(single_load, bool):
             raise ValueError(f"{curves.load.name} = {single_load!r} is not a number in {curves.load.unit}")

@@ -138,7 +138,7 @@ def compute_bands(problem: Problem, points: Array) -> Bands:
     outcome = evaluate_samples(problem, points, problem.loads, "samples")
     refused = summarise_refusals(problem, points, outcome.accepted)
     if not np.any(outcome.accepted):
-        raise RuntimeError(f"all {len(points)} samples are refused, the first: {refused.reason}")
+        raise RuntimeError(f"all {len(points)} samples are rejected; the first: {refused.reason}")
     error = check_reduction(problem, points, outcome)
     nominal = problem.curves.evaluate(problem.parameter_class, problem.values, problem.loads, np.ones((1, 1)))
     statistics = {
@@ -224,8 +224,9 @@ def check_reduction(problem: Problem, points: Array, outcome: SampledOutputs) ->
             if not error <= MAX_REDUCTION_ERROR:
                 sample = ", ".join(f"{k} = {v:g}" for k, v in uncertain.items())
                 raise RuntimeError(
-                    f"{name} of the reduced evaluation misses the joint's own by {error:.2g} at {sample}, "
-                    f"allowed is {MAX_REDUCTION_ERROR:g}: take `jointfmu sweep` for such a study"
+                    f"{name} of the reduced evaluation differs from the evaluation of the joint by "
+                    f"{error:.2g} at {sample}, allowed is {MAX_REDUCTION_ERROR:g}: use `jointfmu sweep` for "
+                    "this study"
                 )
             largest = max(largest, error)
     return largest

@@ -105,15 +105,15 @@ def format_table(problem: Problem, bands: Bands, sensitivity: Sensitivity | None
         lines += _indices_table(problem, sensitivity, bands.nonzero_outputs)
     varied = ", ".join(f"{parameter.name} = {parameter.text}" for parameter in problem.uncertain_parameters)
     lines.append(f"over {problem.curves.load.name}: {problem.curves.load.doc}")
-    lines.append(f"varied: {varied}{'' if bands.has_scatter else ': no output depends on that'}")
+    lines.append(f"varied: {varied}{'' if bands.has_scatter else ': no output depends on it'}")
     if zero := [name for name in bands.units if name not in bands.nonzero_outputs]:
-        lines.append(f"zero throughout: {', '.join(zero)}")
+        lines.append(f"zero at all loads: {', '.join(zero)}")
     lines.append(f"{bands.sample_count} samples, {bands.refusals.count} refused by the law")
     if bands.refusals.count:
         example = ", ".join(f"{k} = {v:.6g}" for k, v in bands.refusals.example.items())
         lines.append(f"the first refused: {example}: {bands.refusals.reason}")
     lines.append(
-        "reduced evaluation beside the exported spring: largest relative difference "
+        "fast evaluation against the exported spring: largest relative difference "
         f"{bands.reduction_error:.1e}"
     )
     return "\n".join(lines)

@@ -71,7 +71,7 @@ def parse_distribution(name: str, text: str, file_value: float | None) -> Uncert
         law = _parse_distribution(text.strip(), file_value)
     except ValueError as error:
         raise ValueError(
-            f"{name} = {text}: {error or 'is no distribution'}; allowed are {DISTRIBUTION_FORMS}"
+            f"{name} = {text}: {error or 'is not a distribution'}; allowed are {DISTRIBUTION_FORMS}"
         ) from None
     return law and UncertainParameter(name, text, law)
 
@@ -169,7 +169,7 @@ def _parse_number(text: str) -> float:
     try:
         value = float(text)
     except ValueError:
-        raise ValueError(f"{text.strip()!r} is no number") from None
+        raise ValueError(f"{text.strip()!r} is not a number") from None
     if not math.isfinite(value):
         raise ValueError(f"{value:g} is not finite")
     return value
@@ -190,7 +190,7 @@ def _parse_percent(text: str) -> float:
 def _require_file_value(file_value: float | None) -> float:
     """Return the value of the parameter file; ValueError if there is none."""
     if file_value is None:
-        raise ValueError("a percentage needs a value before it here")
+        raise ValueError("a percentage needs a value before it: VALUE+-PERCENT%")
     return file_value
 
 

@@ -54,7 +54,7 @@ def plan_runs(
     settings : {name: value or text of a distribution} of parameters and inputs
     seed     : seed of the Sobol' sequence
 
-    Raises ValueError for a file that is no FMU, an unknown name, a wrong distribution or ramp.
+    Raises ValueError for a file that is not an FMU, an unknown name, a wrong distribution or ramp.
     """
     ramp.ramp_points(load_ramp.to, load_ramp.step)
     with unpack_fmu(fmu) as (_, description):
@@ -67,7 +67,7 @@ def plan_runs(
         if name not in settable:
             raise ValueError(f"{fmu}: unknown name {name!r}, allowed are {', '.join(settable)}")
         if name == load_ramp.input:
-            raise ValueError(f"{fmu}: {name} is driven by the ramp and cannot be set as well")
+            raise ValueError(f"{fmu}: {name} is the input of the ramp; do not set it too")
     if INTERVAL_SETTING in settings.values():
         file = _parameter_file_of(fmu)
         settings = {name: resolve_interval(name, value, file) for name, value in settings.items()}
@@ -79,7 +79,7 @@ def plan_runs(
         )
     if wrong := [parameter for parameter in uncertain if parameter.name not in real]:
         raise ValueError(
-            f"{fmu}: {wrong[0].name} = {wrong[0].text}: is no real number and cannot be uncertain"
+            f"{fmu}: {wrong[0].name} = {wrong[0].text}: is not a real number and cannot be uncertain"
         )
     samples = draw_samples(uncertain, unit_cube_points(run_count, len(uncertain), seed))
     runs = [plain | {name: float(column[i]) for name, column in samples.items()} for i in range(run_count)]
@@ -107,7 +107,7 @@ def _parameter_file_of(fmu: Path) -> ParameterFile:
             file = Path(folder, Path(parameter_files[0]).name)
             file.write_bytes(archives.read_member(archive, parameter_files[0]))
             return load_parameter_file(file)
-    raise ValueError(f"{fmu}: carries no parameter file; expected LOW..HIGH in place of {INTERVAL_SETTING}")
+    raise ValueError(f"{fmu}: contains no parameter file; state LOW..HIGH in place of {INTERVAL_SETTING}")
 
 
 def sweep(

@@ -25,8 +25,8 @@ MAX_ITERATIONS = 200
 ONE_SIDED_OFFSET = 1e-9
 """Distance in log-area [1] from the end of a regime, at which the one-sided derivative is evaluated."""
 _NOT_REPRESENTABLE_TEXT = (
-    "the parameters give a reference area of {} m2 or a load that is not representable; "
-    "is D close to the end of its interval, or G, h or another one extreme?"
+    "the parameters give a critical spot area of {} m2 or a load that is not representable; "
+    "check D (close to the end of its interval?) and extreme values of G, h and others"
 )
 _BLOCK_SIZE = 16384
 
@@ -190,7 +190,7 @@ def evaluate_at_largest_spot(law: InterfaceLaw, area: ArrayLike) -> dict[str, Nu
     a = np.asarray(area, dtype=np.float64)
     spots = find_checked_spots(law)
     if not spots.has_spot_area:
-        raise ValueError("the law knows no largest spot; expected a pressure")
+        raise ValueError("the law has no largest spot; state a pressure instead")
     bad = ~(np.isfinite(a) & (a > 0.0))
     if np.any(bad):
         raise ValueError(f"largest spot = {a[bad].flat[0]:g} m2 is outside (0, inf): area of a spot")
@@ -233,7 +233,8 @@ def find_validity_violations(
     if pressure > hardness:
         messages.append(
             f"a pressure of {pressure:.4g} Pa is above the hardness of the softer body, {hardness:.4g} Pa, "
-            "where the interface law ends: the contact yields as a whole, the numbers are an extrapolation"
+            "where the interface law ends: above it the whole contact yields, and the numbers are an "
+            "extrapolation"
         )
     limit = _full_contact_pressure(law, pressure)
     if limit is not None:

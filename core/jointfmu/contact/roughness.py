@@ -26,7 +26,9 @@ MAX_HEIGHT = 1e-4
 
 
 def _height_field(doc: str) -> Any:
-    return quantity_field("m", f"{doc} over the longest wave that machining leaves", gt=0.0, le=MAX_HEIGHT)
+    return quantity_field(
+        "m", f"{doc}, measured over the longest wavelength that machining leaves", gt=0.0, le=MAX_HEIGHT
+    )
 
 
 HEIGHT_FIELDS: dict[str, Field[Any]] = {
@@ -34,7 +36,7 @@ HEIGHT_FIELDS: dict[str, Field[Any]] = {
     "Ra2": _height_field("arithmetic mean height of the second surface"),
     "Rq1": _height_field("rms height of the first surface"),
     "Rq2": _height_field("rms height of the second surface"),
-    "h": _height_field("rms height of both surfaces together"),
+    "h": _height_field("combined rms height of both surfaces"),
 }
 """{name: field} of the heights that a parameter file may state."""
 
@@ -68,7 +70,7 @@ def conflicting_heights(name: str) -> tuple[str, ...]:
 def check_heights(heights: Mapping[str, Any], prefix: str = "") -> dict[str, Number]:
     """Check {name: height [m]}, floats or arrays; return it with floats. `prefix` precedes names in errors.
 
-    Raises ValueError, one line, for an unknown name, a value that is no number or outside its interval, or
+    Raises ValueError, one line, for an unknown name, a value that is not a number or outside its interval, or
     two heights of one surface.
     """
     declared = {prefix + name: item for name, item in HEIGHT_FIELDS.items()}
@@ -77,7 +79,7 @@ def check_heights(heights: Mapping[str, Any], prefix: str = "") -> dict[str, Num
         conflicts = [other for other in conflicting_heights(name) if other in heights]
         if conflicts:
             others = ", ".join(prefix + other for other in conflicts)
-            texts.append(f"{prefix}{name} beside {others}: expected one height of each side, or h alone")
+            texts.append(f"{prefix}{name} beside {others}: state one height for each side, or only h")
             break
     if texts:
         raise ValueError("; ".join(texts))

@@ -56,14 +56,14 @@ def open_archive(path: str | Path) -> Iterator[zipfile.ZipFile]:
     try:
         with zipfile.ZipFile(path) as archive:
             if DESCRIPTION_NAME not in archive.namelist():
-                raise ValueError(f"{path}: is no FMU (it has no {DESCRIPTION_NAME}); expected {expected}")
+                raise ValueError(f"{path}: is not an FMU (it has no {DESCRIPTION_NAME}); expected {expected}")
             check_members(path, archive)
             yield archive
     except OSError as error:
         raise ValueError(f"{path}: cannot be read ({error.strerror or error}); expected an FMU") from None
     except _ARCHIVE_ERRORS as error:
         reason = " ".join(str(error).split()) or type(error).__name__
-        raise ValueError(f"{path}: is no FMU ({reason}); expected {expected}") from None
+        raise ValueError(f"{path}: is not an FMU ({reason}); expected {expected}") from None
 
 
 def check_members(path: str | Path, archive: zipfile.ZipFile) -> None:
@@ -78,10 +78,10 @@ def check_members(path: str | Path, archive: zipfile.ZipFile) -> None:
     for member in members:
         name = member.filename
         if "\\" in name or ":" in name or name.startswith("/") or ".." in name.split("/"):
-            raise ValueError(f"{path}: has a member {name[:80]!r}; expected names inside of the archive")
+            raise ValueError(f"{path}: has a member {name[:80]!r}; expected names inside the archive")
         if member.flag_bits & 1 or member.compress_type not in _COMPRESSION_METHODS:
             raise ValueError(
-                f"{path}: {name[:80]!r} is encrypted or compressed otherwise; expected deflate or none"
+                f"{path}: {name[:80]!r} is encrypted or uses another compression; expected deflate or none"
             )
         if name.endswith(".xml"):
             _check_text_size(path, member)
@@ -90,7 +90,7 @@ def check_members(path: str | Path, archive: zipfile.ZipFile) -> None:
         raise ValueError(f"{path}: has {size} bytes unpacked; allowed are {MAX_UNPACKED_SIZE}")
     if size > MIN_SUSPICIOUS_SIZE and size > MAX_COMPRESSION_RATIO * packed:
         raise ValueError(
-            f"{path}: has {size} bytes unpacked, {size / packed:.0f} times its own size; allowed are "
+            f"{path}: has {size} bytes unpacked, {size / packed:.0f} times its packed size; allowed are "
             f"{MAX_COMPRESSION_RATIO} times, or {MIN_SUSPICIOUS_SIZE} bytes"
         )
 

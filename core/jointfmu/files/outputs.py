@@ -115,15 +115,15 @@ def check_output(path: str | Path, kind: FileKind, force: bool = False) -> None:
         known = ending in _PROGRAM_ENDINGS or _FOREIGN_ENDINGS.fullmatch(ending)
         if known and ending not in kind.endings:
             allowed = " or ".join(kind.endings)
-            raise ValueError(f"{path}: {ending} is the ending of another kind of file; expected {allowed}")
+            raise ValueError(f"{path}: {ending} is the suffix of another kind of file; expected {allowed}")
     try:
         if target.exists():
             if not os.access(target, os.W_OK):
                 raise ValueError(f"{path}: is write-protected; expected another file")
             if not force and target.stat().st_size and not kind.is_own(target):
                 raise InputRefusal(
-                    f"{path}: exists, and jointfmu did not write it as this {kind.noun}; expected another "
-                    "file, or force to replace it",
+                    f"{path}: exists, and is not a {kind.noun} written by jointfmu, or was edited; "
+                    "state another file, or force to replace it",
                     "force",
                 )
     except OSError as error:

@@ -17,7 +17,7 @@ def check_regular(path: str | Path, expected_content: str) -> None:
     if stat.S_ISREG(mode) or stat.S_ISDIR(mode):
         return
     kind = "a pipe" if stat.S_ISFIFO(mode) else "a socket" if stat.S_ISSOCK(mode) else "a device"
-    raise ValueError(f"{path}: is {kind}, no regular file; expected {expected_content}")
+    raise ValueError(f"{path}: is {kind}, not a regular file; expected {expected_content}")
 
 
 def read_bytes(path: str | Path, expected_content: str) -> bytes:
@@ -25,7 +25,7 @@ def read_bytes(path: str | Path, expected_content: str) -> bytes:
 
     expected_content : what the file should be, for the error
 
-    Raises ValueError, one line, if the file does not exist, cannot be read or is no regular file.
+    Raises ValueError, one line, if the file does not exist, cannot be read or is not a regular file.
     """
     check_regular(path, expected_content)
     try:

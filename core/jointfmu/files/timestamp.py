@@ -21,5 +21,5 @@ def fixed_time() -> datetime | None:
         return datetime.fromtimestamp(int(epoch), UTC)
     except (ValueError, OverflowError, OSError):
         raise ValueError(
-            f"SOURCE_DATE_EPOCH = {epoch!r} is no date; expected whole seconds since 1970"
+            f"SOURCE_DATE_EPOCH = {epoch!r} is not a date; expected whole seconds since 1970"
         ) from None

@@ -24,6 +24,8 @@ def register_joint(kind: JointKind) -> None:
     """
     taken = [name for name in (kind.name, *(model.name for model in kind.models)) if name in KINDS | MODELS]
     if taken:
-        raise ValueError(f"joint {kind.name!r}: the name {taken[0]!r} is taken; allowed is one of its own")
+        raise ValueError(
+            f"joint {kind.name!r}: the name {taken[0]!r} is already used by another joint; state another name"
+        )
     KINDS[kind.name] = kind
     MODELS.update((model.name, model) for model in kind.models)

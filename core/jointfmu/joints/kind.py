@@ -78,7 +78,9 @@ class JointKind:
         """Model with the name of an FMU; None: the first model. Raises ValueError if there is none."""
         models = {model.name: model for model in self.models}
         if name is not None and name not in models:
-            raise ValueError(f"fmu = {name!r} is none of a {self.name}, allowed are {', '.join(models)}")
+            raise ValueError(
+                f"fmu = {name!r} is not a model of a {self.name}, allowed are {', '.join(models)}"
+            )
         return models[name or next(iter(models))]
 
     @property

@@ -175,7 +175,9 @@ class Model:
 
     def __post_init__(self) -> None:
         if (self.initial_history is None) != (self.advance is None):
-            raise ValueError(f"{self.name}: one of initial_history, advance is given, expected both or none")
+            raise ValueError(
+                f"{self.name}: one of initial_history, advance is missing; state both or neither"
+            )
         if self.load_cycle and self.advance is None:
             raise ValueError(f"{self.name}: a load cycle needs history, expected initial_history and advance")
 
@@ -240,5 +242,5 @@ class Model:
         return self.dependencies.get(output, [v.name for v in self.inputs])
 
 
-EXTRAPOLATION_WARNING = "beyond the tabulated law the last tangent is continued"
+EXTRAPOLATION_WARNING = "outside the tabulated law, the curve continues with its last tangent"
 """Text of the warning for a state beyond the end of the table."""

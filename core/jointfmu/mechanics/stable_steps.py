@@ -12,7 +12,11 @@ from ..quantity import Number, select
 MAX_STABLE_STEP = 1e3
 """Largest reported stable step [s]: used if every step is stable (no stiffness, or fixed bodies)."""
 STABLE_STEP_OUTPUTS = (
-    ("step_at_once", "largest stable step if the master passes the new force on before the body steps"),
+    (
+        "step_at_once",
+        "largest stable step for a sequential (Gauss-Seidel) master, which passes the new "
+        "force on before the body steps",
+    ),
     (
         "step_side_by_side",
         "largest stable step for a parallel (Jacobi) master with lag_b = 1; 0: unstable at any step",

@@ -95,7 +95,7 @@ def find_problem(name: str, value: object, declared_field: Field[object]) -> str
         first = array[~inside].flat[0]
         return f"{name} = {first:.10g}{unit} is outside {meta['interval']}: {meta['doc']}"
     if meta["whole"] and np.any(is_fractional := array % 1.0 != 0.0):
-        return f"{name} = {array[is_fractional].flat[0]:g} is no whole number, allowed are 1, 2, 3, ..."
+        return f"{name} = {array[is_fractional].flat[0]:g} is not a whole number, allowed are 1, 2, 3, ..."
     return None
 
 
@@ -123,7 +123,7 @@ def _find_series_problem(name: str, values: object, declared_field: Field[object
     if values == () and declared_field.default == ():
         return None
     if not isinstance(values, list | tuple) or not values:
-        return f"{name} = {_shorten_repr(values)} is no list of numbers: {declared_field.metadata['doc']}"
+        return f"{name} = {_shorten_repr(values)} is not a list of numbers: {declared_field.metadata['doc']}"
     if all(type(value) is float for value in values) and np.all(
         declared_field.metadata["interval"].contains(np.array(values))
     ):

@@ -48,7 +48,7 @@ class Interval:
         """
         for open_end, closed_end, names in ((gt, ge, "gt and ge"), (lt, le, "lt and le")):
             if open_end is not None and closed_end is not None:
-                raise ValueError(f"{names} = {open_end}, {closed_end} are the same end; allowed is one")
+                raise ValueError(f"{names} = {open_end}, {closed_end} are the same bound; state only one")
         low = gt if ge is None else ge
         high = lt if le is None else le
         return cls(-inf if low is None else low, inf if high is None else high, ge is None, le is None)

@@ -99,7 +99,7 @@ def flatten_parameters(parameters: Any) -> dict[str, Any]:
 def build_parameter_set(cls: type[T], values: Mapping[str, object]) -> T:
     """Build and check the parameter set `cls` from {structured name: value}.
 
-    Raises ValueError, one line, that names every unknown or missing name and every value that is no number
+    Raises ValueError, one line, that names every unknown or missing name and every value that is not a number
     or lies outside its interval; also if names belong to two alternatives of a group.
     """
     declared = dict(flat_fields(cls, parameter_names=values))
@@ -119,7 +119,7 @@ def replace_values(parameters: T, new_values: Mapping[str, object]) -> T:
     all_names = {name for name, _ in flat_fields(type(parameters))}
     if foreign := [name for name in new_values if name in all_names and name not in values]:
         texts = [
-            f"{name} is no parameter of a set that has [{_present_alternative(parameters, name)}]"
+            f"{name} is not a parameter of a set that has [{_present_alternative(parameters, name)}]"
             for name in foreign
         ]
         raise ValueError("; ".join([*texts, f"allowed are {', '.join(values)}"]))

@@ -44,8 +44,8 @@ bool kind_tabulate(Joint *joint, Text *why)
     joint_constants(0, joint->c, constants);
     set_parts(joint, constants);
     if (ELASTIC && (!kind->friction.has_history || constants[5] != 0.0)) {
-        text_add(why, kind->friction.has_history ? "damping = true beside sides = elastic: expected false, the dashpots stand between rigid sides"
-                                                 : "memory = false beside sides = elastic: expected true, elastic sides go with friction that remembers");
+        text_add(why, kind->friction.has_history ? "damping = true with sides = elastic; expected false, the dashpots act between rigid sides only"
+                                                 : "memory = false with sides = elastic; expected true, elastic sides need friction with memory");
         return false;
     }
     bodies_tabulate(&kind->bodies);

@@ -374,7 +374,7 @@ static void explain_failure(const double *inputs, double load_factor, double lef
         text_add(why, " = ");
         text_number(why, inputs[at], 6);
     }
-    text_add(why, ": the sides find no equilibrium beyond ");
+    text_add(why, ": no equilibrium of the joint was found beyond a fraction of ");
     text_number(why, load_factor, 3);
     text_add(why, " of the way, the residual is ");
     text_number(why, left, 2);

@@ -105,7 +105,7 @@ bool hysteresis_of(Hysteresis *hysteresis, const double *head, const double *sha
     curve_at(curve, 0.5 * head[LOSS], 1, y);
     const double least = y[0];
     if (!(least < 0.5 * head[RATED])) {
-        text_print(why, "hysteresis_loss = %g rad is outside [0, %g) rad: friction would hold half of the rated torque",
+        text_print(why, "hysteresis_loss = %g rad is outside [0, %g) rad: above it the hysteresis friction would exceed half of the rated torque",
                    head[LOSS], 2.0 * curve_inverse_safe(curve, 0.5 * head[RATED]));
         return false;
     }

@@ -83,7 +83,7 @@ def load_native_definition(model: Model) -> NativeDefinition:
     native = load()
     if (model.initial_history is None) != (native.history_layout.size == 0):
         raise ValueError(
-            f"{model.name}: one of `initial_history` and the history in C is given, expected both or none"
+            f"{model.name}: one of `initial_history` and the history in C is missing; state both or neither"
         )
     return native
 

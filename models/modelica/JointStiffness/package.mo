@@ -8,10 +8,10 @@ package JointStiffness "Joints whose stiffness comes from the roughness of the s
       Line(points={{-80,-60},{-40,-52},{0,-30},{40,10},{80,76}}, color={31,95,168}, thickness=1.0, smooth=Smooth.Bezier),
       Line(points={{-80,76},{-80,-60},{80,-60}}, color={43,58,74}, thickness=0.5)}),
     Documentation(info="<html>
-<p>Robots and machine tools are simulated with joints that are springs with a guessed constant. Here the stiffness follows from the roughness of the surfaces in contact: it grows with torque, preload and load.</p>
+<p>Robots and machine tools are often simulated with joints of constant, estimated stiffness. Here the stiffness follows from the roughness of the surfaces in contact: it increases with torque, preload and load.</p>
 <h4>Two ways to use it</h4>
 <ul>
-<li><a href=\"modelica://JointStiffness.Components\">Components</a> have flanges of the Modelica Standard Library and hold the joint's curve as a table. They need no FMU. Start with <a href=\"modelica://JointStiffness.Examples\">Examples</a>.</li>
+<li><a href=\"modelica://JointStiffness.Components\">Components</a> have flanges of the Modelica Standard Library and contain the curve of the joint as a table. They need no FMU. Start with <a href=\"modelica://JointStiffness.Examples\">Examples</a>.</li>
 <li><a href=\"modelica://JointStiffness.Wrappers\">Wrappers</a> connect an imported FMU to flanges. The FMU evaluates the law itself, so all its parameters can be set. Import the FMU, then redeclare <code>fmu</code> of the wrapper.</li>
 </ul>
 <p>The tables equal the curves of the Python package jointfmu within a relative error of 1e-07 in load and in stiffness; each record of <a href=\"modelica://JointStiffness.Data\">Data</a> states its own. For another joint write its parameter file and run <code>jointfmu modelica --params FILE --out DIR</code>.</p>

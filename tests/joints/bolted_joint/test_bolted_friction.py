@@ -322,7 +322,7 @@ def test_elastic_joint_warns_beyond_its_friction():
     assert not quiet
     (text,) = said.values()
     assert text.startswith("slip = ")
-    assert "beyond what friction holds" in text
+    assert "the shear force exceeds the friction limit" in text
     assert "elastic" not in text
     remembers = BoltedJointSpring.of(JOINT)
     assert not MODEL.find_warnings(remembers, inputs | MODEL.evaluate(remembers, inputs))

@@ -31,7 +31,7 @@ STILL = (0.0, 0.0, 0.0)
 
 @pytest.fixture(autouse=True)
 def interface_alone(monkeypatch):
-    """The finite elements of the whole joint take seconds; test_bolted_plate.py looks at them."""
+    """The finite elements of the complete joint take seconds; test_bolted_plate.py looks at them."""
     monkeypatch.setattr(
         plate_finite_elements,
         "compute_facts",
@@ -299,7 +299,7 @@ def test_a_scan_gives_height_and_slope(capsys, tmp_path):
     ("words", "text"),
     [
         (["--plate", "200"], "--plate = '200' has 1 numbers, expected 2, as in 200x100"),
-        (["--plate", "200xabc"], "--plate = 'abc' is no number; expected a number in mm"),
+        (["--plate", "200xabc"], "--plate = 'abc' is not a number; expected a number in mm"),
         (["--plate", "200Nx100"], "--plate = '200N': unit 'm' does not measure what 'N' does"),
         (["--plate", "-200x100"], "--plate = '-200' is outside (0, inf)"),
         (["--bolts", "four"], "--bolts = 'four' are no bolts; expected a number and a thread, as in 4xM12"),
@@ -307,14 +307,14 @@ def test_a_scan_gives_height_and_slope(capsys, tmp_path):
         (["--bolts", "0xM12"], "--bolts = '0xM12' are no bolts"),
         (["--bolts", "5xM12"], "5 bolts on a rectangle: expected --grid"),
         (["--bolts", "M12"], "--at LxW beside one bolt: expected the number of --bolts, as in 4xM12"),
-        (["--mu", "15"], "--mu = '15' is outside (0, 2]: no metals rub as much"),
-        (["--at", "220x60"], "bolt 1 at (-110, -30) mm leaves the plate"),
-        (["--at", "190x60"], "leaves the plate; allowed are |x| < 0.09325 m"),
+        (["--mu", "15"], "--mu = '15' is outside (0, 2]: coefficient of friction of metals"),
+        (["--at", "220x60"], "bolt 1 at (-110, -30) mm is not inside the plate"),
+        (["--at", "190x60"], "is not inside the plate; allowed are |x| < 0.09325 m"),
         (["--at", "10x60"], "the holes of bolts 1 and 2 overlap"),
         (["--at", "0,0", "10,10"], "--at has 2 places, expected 4: one for each of --bolts"),
         (["--at", "160x60", "80x30"], "expected one LxW, or the place X,Y of each bolt"),
         (["--grid", "3x2"], "--grid = 3x2 has 6 bolts, but --bolts states 4"),
-        (["--grid", "2"], "--grid = '2' is no grid"),
+        (["--grid", "2"], "--grid = '2' is not a grid"),
         (["--circle", "80"], "--at beside --circle: expected one of them"),
         (["--grip", "0"], "--grip = '0' is outside (0, inf)"),
         (["--grip", "1", "2", "3"], "--grip has 3 values, expected both plates together, or each"),
@@ -322,12 +322,12 @@ def test_a_scan_gives_height_and_slope(capsys, tmp_path):
         (["--hole", "11"], "--hole = 11 mm is outside (12, inf) mm"),
         (["--bearing", "13"], "--bearing = 13 mm is outside (13.5, inf) mm"),
         (["--preload", "-1"], "--preload = '-1' is outside (0, inf)"),
-        (["--preload", "nan"], "--preload = 'nan' is no number"),
+        (["--preload", "nan"], "--preload = 'nan' is not a number"),
         (["--preload", "2kN"], "embedding takes 2643 N of a preload of 2000 N: expected less than all"),
         (["--embedding", "-1"], "embedding = -1 N is outside [0, inf)"),
         (["--material", "unobtainium"], "material 'unobtainium' is unknown, allowed are steel,"),
         (["--material", "steel", "steel", "steel"], "--material has 3 values"),
-        (["--Rq", "1"], "--Ra beside --Rq: expected one statement of the roughness"),
+        (["--Rq", "1"], "--Ra and --Rq are given together; state the roughness once"),
         (["--finish", "licked"], "finish 'licked' is unknown, allowed are turned,"),
         (["--tapped", "--field", "computed"], "--tapped: expected --thickness of both plates for it"),
         (["--law", "hu2023"], "invalid choice: 'hu2023'"),
@@ -345,7 +345,7 @@ def test_a_roughness_must_be_stated(capsys):
     assert "the roughness is missing; expected --finish, --Ra, --Rq or --surface" in line
     both = ["--surface", "scan.csv", "--finish", "ground"]
     line = refused_line(capsys, "new", "bolted-joint", *PLATE, *STEEL, *both)
-    assert "--surface beside --finish: expected one of them" in line
+    assert "--surface and --finish are both given; state one of them" in line
 
 
 def test_places_must_be_stated(capsys):

@@ -1,4 +1,4 @@
-"""Bolts anywhere on a plate: layouts, equilibrium, contradictions; and the whole joint that `new` prints."""
+"""Bolts anywhere on a plate: layouts, equilibrium, contradictions; the complete joint that `new` prints."""
 
 import json
 import sys
@@ -121,7 +121,7 @@ def test_two_rows_have_their_own_distance_and_more_rows_help():
 
 
 def test_as_many_places_along_as_across():
-    with pytest.raises(ValueError, match="y has 1 numbers, expected as many as x has: 2"):
+    with pytest.raises(ValueError, match="y has 1 numbers, expected as many as x: 2"):
         plate([0.0, 0.05], [0.0])
 
 
@@ -156,9 +156,9 @@ def test_the_contact_of_one_row_opens_where_the_rows_say():
     ("changes", "words"),
     [
         ({"x": (0.0, 0.0), "y": (0.0, 0.013)}, ("overlap", "(0, 0.013)")),
-        ({"x": (0.096,)}, ("bolt 1 at (0.096, 0) m", "leaves the plate", "|x| < 0.09325 m")),
+        ({"x": (0.096,)}, ("bolt 1 at (0.096, 0) m", "is not inside the plate", "|x| < 0.09325 m")),
         ({"x": (0.0, 0.01), "y": (0.0, 0.0)}, ("bolts 1 and 2 overlap", "0.0135 m is outside (0, 0.01)")),
-        ({"hole_diameter": 0.12, "cone_diameter": 0.2}, ("leaves the plate",)),
+        ({"hole_diameter": 0.12, "cone_diameter": 0.2}, ("is not inside the plate",)),
         ({"cone_diameter": 0.0135}, ("cone_diameter = 0.0135 m is outside (0.0135, inf)",)),
         ({"length": -0.2}, ("length = -0.2 m",)),
     ],
@@ -208,7 +208,7 @@ def test_a_frame_of_eight_bolts_with_four_is_refused(tmp_path):
 
 def test_one_row_says_what_to_do():
     one = joint(plate(*LAYOUTS["one row"]))
-    with pytest.raises(ValueError, match=r"row_bolts = 3 is outside \[1, 1.5\]: .* set row_bolts = 1 where"):
+    with pytest.raises(ValueError, match=r"row_bolts = 3 is outside \[1, 1.5\]: .* set row_bolts = 1 if"):
         replace(one, row_bolts=3.0)
     single = joint(plate([0.0], [0.0]))
     assert single.row_bolts == 1.0  # where half of a bolt would be the limit
@@ -304,7 +304,7 @@ def test_the_default_joint_takes_one_row(x):
     assert (joint.n_bolts, joint.row_bolts, joint.row_distance) == (len(x), 1.0, 0.018)
 
 
-# The whole joint: interface, members and bolts side by side
+# The complete joint: interface, members and bolts side by side
 
 
 M16 = ["--plate", "80x80", "--bolts", "M16", "--grip", "40", "--material", "steel", "--Ra", "0.8"]
@@ -353,7 +353,7 @@ def test_the_load_at_the_faces_passes_the_bolts_by(capsys, fine_elements):
     assert faces["joint_load_factor"] < 0.5 * heads["joint_load_factor"]
     assert heads["joint_K_zz"] < faces["joint_K_zz"] < faces["interface_K_zz"]
     assert (
-        "between the outer faces, other motions held: output K_zz of the FMU at preload = 60000 N; "
+        "between the outer faces, other motions fixed: output K_zz of the FMU at preload = 60000 N; "
         "compliance: " in found["facts"]["joint_K_zz"]["text"]
     )
     assert "the FMU is the whole" in found["facts"]["interface_share"]["text"]
@@ -448,8 +448,7 @@ def test_embedding_that_takes_all_of_the_preload_is_refused(tmp_path, capsys):
     for words in (["build", "BoltedJoint", "--params", path, "--out", tmp_path], ["report", path]):
         line = refused_line(capsys, *words)
         assert (
-            "preload = 9000 N is outside (12000, inf) N: embedding takes all of it; state more preload"
-            in line
+            "preload = 9000 N is outside (12000, inf) N: embedding takes all of it; increase preload" in line
         )
     # none is stated: the ramp and the loops begin with a bolt that embedding does not slacken
     page = make_documentation(MODELS["BoltedJoint"], replace(file, inputs={}))["index.html"]

@@ -1,4 +1,4 @@
-"""Elastic sides: the whole joint against finite elements and VDI 2230, energy, FMU, what is refused."""
+"""Elastic sides: the complete joint against finite elements and VDI 2230, energy, FMU, what is refused."""
 
 import json
 import re
@@ -235,7 +235,7 @@ def test_what_is_made_of_the_interface_alone_says_so(made, tmp_path, capsys):
     words = ["export", "csv", "springs", "--params", path, "--preload", "15e3", "--out", out, "--json"]
     assert cli.main(words) == 0
     (line,) = json.loads(capsys.readouterr().out)["warnings"]
-    assert line.startswith("'plate 80x80 with 4xM8' is a whole joint (sides = elastic), but this file has")
+    assert line.startswith("'plate 80x80 with 4xM8' is a complete joint (sides = elastic), but this file has")
     docs = {
         v.name: v.doc
         for v in KINDS["bolted_joint"]
@@ -342,7 +342,11 @@ def test_the_fmu_is_the_package(made, tmp_path, flavour):
     before = fmu.get("f_x", "m_y")
     fmu.set_values({"s_rel_x": 1e15, "theta_z": 1e20})
     line = fmu.refused(fmu.step)
-    assert re.search(r"s_rel_x = 1e\+15, .*: the sides find no equilibrium beyond .* residual is .* N", line)
+    assert re.search(
+        r"s_rel_x = 1e\+15, .*: no equilibrium of the joint was found beyond a fraction of .* residual is .* "
+        r"N",
+        line,
+    )
     fmu.set_values(dict(zip(MOTIONS, six, strict=True)))
     fmu.step()
     assert fmu.get("f_x", "m_y") == before
@@ -497,7 +501,10 @@ def test_a_motion_without_equilibrium_is_told_and_the_next_goes_on(made, monkeyp
     spring = made(*FOUR, preload=15e3).spring
     with monkeypatch.context() as patch:
         patch.setattr(equilibrium, "MAX_ITERATIONS", 0)
-        told = r"preload = 15000, s_rel_x = 1e-07: the sides find no equilibrium beyond .* residual is .* N"
+        told = (
+            r"preload = 15000, s_rel_x = 1e-07: no equilibrium of the joint was found beyond a fraction of "
+            r".* residual is .* N"
+        )
         with pytest.raises(ValueError, match=told):
             at(spring, 1e-7, 0, 0, 0, 0, 0, preload=15e3)
     assert at(spring, 1e-7, 0, 0, 0, 0, 0, preload=15e3)[0]["f_x"] < 0.0
@@ -508,7 +515,8 @@ def test_a_singular_derivative_is_told_as_no_equilibrium(made, monkeypatch):
     nothing = np.zeros([len(spring.joint.bodies.stiffness)] * 2)
     monkeypatch.setattr(equilibrium.LoadStep, "modal_tangent", lambda *given: nothing)
     told = (
-        r"preload = 15000, s_rel_x = 0.0001: the sides find no equilibrium beyond 0\.00061 of the way, .* N"
+        r"preload = 15000, s_rel_x = 0.0001: no equilibrium of the joint was found beyond a fraction of "
+        r"0\.00061 of the way, .* N"
     )
     with pytest.raises(ValueError, match=told):
         at(spring, 1e-4, 0, 0, 0, 0, 0, preload=15e3)

@@ -176,13 +176,13 @@ def test_pairs_are_read_in_their_units(tmp_path):
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
-        ("3,13", "1,13", "node 1 stands twice"),
-        ("3,13", "3,3", "node 3 stands twice"),
-        ("2,12", "2.5,12", "node_1 = 2.5 is no node"),
-        ("2,12", "-2,12", "node_1 = -2 is no node"),
+        ("3,13", "1,13", "node 1 is given twice"),
+        ("3,13", "3,3", "node 3 is given twice"),
+        ("2,12", "2.5,12", "node_1 = 2.5 is not a node"),
+        ("2,12", "-2,12", "node_1 = -2 is not a node"),
         ("4,2.5", "0,2.5", "area = 0 .SI. at node 3: it must be positive"),
         ("4,2.5", "4,-1", "pressure = -1e.06 .SI. at node 3: a contact does not pull"),
-        ("4,2.5", "4,nan", "line 4: pressure = 'nan' is no finite number"),
+        ("4,2.5", "4,nan", "line 4: pressure = 'nan' is not a finite number"),
         ("area [mm2]", "area", "column 'area' has no unit"),
         ("area [mm2]", "area [in2]", "column 'area' has unit 'in2', allowed are m2, mm2"),
         ("node_2 [1]", "other [1]", "has no column 'node_2'"),

@@ -111,7 +111,10 @@ def test_points_balance(reduced):
 def test_a_field_that_is_a_bit_off_is_the_same():
     """Reduced are the same bits: 40 times with every number of the file off by 1e-15 of itself."""
     rng, shape = np.random.default_rng(8), pressure_shape(JOINT, FIELD, PRELOAD)
-    before, numbers = round_distribution(shape, ROUNDING_BITS), ("area_share", "position", "preload_shape", "moment_shape")
+    before, numbers = (
+        round_distribution(shape, ROUNDING_BITS),
+        ("area_share", "position", "preload_shape", "moment_shape"),
+    )
     for _ in range(40):
         area, position, pressure = (
             values * (1.0 + 1e-15 * rng.choice([-1.0, 1.0], values.shape))
@@ -243,10 +246,10 @@ def test_file_survives_and_says_where_it_comes_from(imported, tmp_path):
 
 
 @pytest.mark.parametrize(("change", "message"), [
-    ({"pattern.decay_length": 0.01}, r"pattern.decay_length is no parameter of a set that has \[field\]"),
+    ({"pattern.decay_length": 0.01}, r"pattern.decay_length is not a parameter of a set that has \[field\]"),
     ({"field.share": (0.5, 0.6)}, r"x has \d+ numbers, expected as many as share has: 2"),
     ({"field.share": (0.5, "a")}, r"field.share\[1\] = 'a' is not a number"),
-    ({"field.share": 3.0}, r"field.share = 3.0 is no list of numbers"),
+    ({"field.share": 3.0}, r"field.share = 3.0 is not a list of numbers"),
     ({"field.equal": (-1.0, 1.0)}, r"field.equal\[0\] = -1 is outside \[0, inf\)"),
 ])  # fmt: skip
 def test_broken_field_is_refused(imported, change, message):

@@ -270,8 +270,8 @@ def test_the_file_has_the_stiffness_it_shows(capsys, tmp_path):
         (["12"], "--radii has 1 values, expected one of each flank"),
         (["-12", "30"], "--radii = -12 30: the flanks do not bulge towards each other"),
         (["flat", "flat"], "do not bulge towards each other"),
-        (["0", "30"], "--radii = 0 mm is no radius"),
-        (["a", "30"], "--radii = 'a' is no number"),
+        (["0", "30"], "--radii = 0 mm is not a radius"),
+        (["a", "30"], "--radii = 'a' is not a number"),
     ],
 )
 def test_what_does_not_fit_is_refused(capsys, radii, text):

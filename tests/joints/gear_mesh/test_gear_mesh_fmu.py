@@ -181,7 +181,7 @@ def test_a_closed_path_returns_its_energy(host: Host, version: str) -> None:
     [
         ("contact_ratio", 3.0, "contact_ratio = 3 is outside [1, 3): mean number of tooth pairs in contact"),
         ("backlash", -1.0, "backlash = -1 m is outside [0, inf): backlash along the line of action"),
-        ("teeth1", 28.5, "teeth1 = 28.5 is no whole number, allowed are 1, 2, 3, ..."),
+        ("teeth1", 28.5, "teeth1 = 28.5 is not a whole number, allowed are 1, 2, 3, ..."),
     ],
 )
 def test_a_parameter_that_is_refused_can_be_set_right(

@@ -153,7 +153,7 @@ def test_options(capsys):
         (["--pressure-angle", "50"], "--pressure-angle = 50 deg is outside (0, 45)"),
         (["--helix-angle", "-5"], "--helix-angle = -5 deg is outside [0, 60)"),
         (["--helix-angle", "55"], "contact_ratio"),
-        (["--torque", "nan"], "--torque = 'nan' is no number"),
+        (["--torque", "nan"], "--torque = 'nan' is not a number"),
     ],
 )
 def test_what_does_not_fit_is_refused(capsys, words, text):

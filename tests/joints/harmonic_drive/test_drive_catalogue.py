@@ -262,7 +262,7 @@ def test_without_corners_the_printed_angles_are_met():
 def test_the_kinks_are_said_and_kept_in_the_file(tmp_path, capsys):
     out = tmp_path / "drive.toml"
     assert cli.main(["new", "harmonic-drive", "--catalogue", DRIVE, "--corner", "0", "--out", str(out)]) == 0
-    assert "kinks at T1 and T2" in capsys.readouterr().err
+    assert "the stiffness jumps at T1 and T2" in capsys.readouterr().err
     assert jointfmu.load(out).values["corner"] == 0.0
 
 

@@ -120,7 +120,7 @@ def test_the_page_of_a_drive_says_what_friction_costs(tmp_path: Path) -> None:
             assert bench.efficiency(100.0, held) == pytest.approx(expected, rel=1e-2), (law, held)
     write_joint_report(tmp_path / "plain.html", drive_file())
     plain = (tmp_path / "plain.html").read_text(encoding="utf-8")
-    assert "None with these parameters" in plain
+    assert "The parameters contain no friction" in plain
     assert "Compared with the catalogue" not in plain
 
 

@@ -168,7 +168,7 @@ IN_1E4 = {"K1": 1.0, "K2": 1.4, "K3": 1.6, "T1": 3.9, "T2": 12, "rated-torque": 
         (IN_1E4, "likely they are in 1e4 N.m/rad: times 10000"),
         (IN_1E4 | {"K1": 2.9, "K2": 3.9, "K3": 4.4}, "likely they are in N.m/arcmin: times 3437.75"),
         (IN_1E4 | {"K1": 1e8, "K2": 1e8, "K3": 1e8}, "1.2e-07 rad at the rated torque"),
-        ({"free": "K_FTS", "law": "hu2023"}, "'K_FTS' is no parameter to fit"),
+        ({"free": "K_FTS", "law": "hu2023"}, "'K_FTS' is not a parameter to fit"),
         ({"K1": "4700N"}, "--K1 = '4700N': unit 'N.m/rad' does not measure what 'N' does"),
     ],
 )

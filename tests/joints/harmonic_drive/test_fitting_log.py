@@ -178,7 +178,7 @@ MISSING = np.where(np.arange(4001) == 7, np.nan, 0.1)
         ({"q": ("rad", np.degrees(np.sin(2.0 * TIME))), "dq": None}, "likely angles are in degrees"),
         ({"tau": None, "i": ("A", 1e4 + 0.0 * TIME)}, "a current of 1e+04 A is outside [-1000, 1000] A"),
         ({"tau": ("N.m", 300.0 * np.sin(TIME))}, "expected that of the motor, not of the joint"),
-        ({"tau": ("N.m", MISSING)}, "line 9: tau = 'nan' is no finite number"),
+        ({"tau": ("N.m", MISSING)}, "line 9: tau = 'nan' is not a finite number"),
         ({"time": ("s", BACK)}, "runs back; expected rising times"),
         ({"time": ("s", HOLE)}, "a gap of 3.002 s"),
         ({"tau": ("N.m", -FRICTION)}, "friction drives the motion; reverse the sign of one column"),
@@ -201,7 +201,7 @@ def test_a_log_that_cannot_be_is_refused(drive, tmp_path, capsys, given, text):
         ([], "the log does not tell the ratio; expected --params FILE of the drive, or --ratio"),
         (["--ratio", "100", "--columns", "speed=x"], "expected NAME=HEADING with one of time, q, dq"),
         (["--ratio", "100", "--columns", "dq=x"], "has no column 'x' for dq; it has time, q, dq, tau"),
-        (["--ratio", "100", "--free", "K9"], "'K9' is no parameter to fit"),
+        (["--ratio", "100", "--free", "K9"], "'K9' is not a parameter to fit"),
         (["--ratio", "100", "--free", "K1"], "K1 needs the columns q and q_motor beside the time"),
     ],
 )
@@ -213,7 +213,7 @@ def test_words_that_cannot_be_are_refused(tmp_path, capsys, words, text):
 def test_an_unknown_rotor_is_told(drive, tmp_path, capsys):
     path = written(tmp_path / "log.csv")
     assert cli.main(["fit", "log", str(path), "--params", str(drive)]) == 0
-    assert "without --motor-inertia all inertia counts as the arm's" in capsys.readouterr().err
+    assert "without --motor-inertia the rotor counts as part of the arm" in capsys.readouterr().err
 
 
 LIGHT = FRICTION - 0.6 * 4.0 / 100.0 * np.sin(2.0 * TIME)
@@ -232,7 +232,9 @@ def test_what_a_light_arm_leaves_open_stays_as_it_is(drive, tmp_path, capsys):
     assert cli.main(asked) == 0
     shown, start, found = capsys.readouterr().err, load_parameter_file(drive), load_parameter_file(out)
     for name in ("load_loss", "load_loss_back"):
-        assert f"does not determine {name}, which stays as it is: that fits as well" in shown
+        assert (
+            f"does not determine {name}, which keeps its value: the fit is as good with that value" in shown
+        )
         assert (found.values_by_name[name], found.sources[name]) == (
             start.values_by_name[name],
             start.sources[name],

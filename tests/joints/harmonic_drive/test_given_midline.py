@@ -116,7 +116,7 @@ def test_parts_and_pressure_of_a_given_midline():
         ({"K1": 0.0}, r"K1 = 0 N.m/rad is outside \(0, 1e\+12\]: stiffness below T1"),
         (
             {"corner": 0.5},
-            r"corner = 0.5 is outside \[0, 0.425868\): corners must",
+            r"corner = 0.5 is outside \[0, 0.425868\): the smooth corners must",
         ),
         ({"corner": -0.1}, r"corner = -0.1 is outside \[0, 1\)"),
     ],
@@ -288,5 +288,5 @@ def test_lost_motion_adds_to_the_lines_and_a_measured_curve_has_it_already():
         ValueError, match=r"^lost_motion = 0.0002 rad is outside \[0, 0\]: a measured midline"
     ):
         replace(load_default("harmonic_drive", "table").values, lost_motion=2e-4)
-    with pytest.raises(ValueError, match=r"^lost_motion = 0.0002 rad is outside \[0, 0\]: the first line"):
+    with pytest.raises(ValueError, match=r"^lost_motion = 0.0002 rad is outside \[0, 0\]: T1 must be above"):
         drive(lost_motion=2e-4, rated_torque=1e3)

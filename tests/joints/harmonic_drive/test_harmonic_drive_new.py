@@ -68,7 +68,7 @@ def test_a_drive_by_its_name(capsys, tmp_path):
     assert "ratio              -100  circular spline fixed, output the flexspline: it turns against" in out
     assert "limit for the actuators CHA-17A" in out
     assert "lost_motion" in out
-    assert "estimates, not of the catalogue's row: d" in err
+    assert "estimated, not in the catalogue row: d" in err
     file = load_parameter_file(path)
     d = file.values
     assert (file.law, file.name, d.ratio) == ("catalogue", "CSG-17-100", -100.0)
@@ -327,8 +327,8 @@ START = ("--starting-torque", "0.03")
     [
         (["--motor-drag", "-1"], "--motor-drag = '-1' is outside [0, inf) N.m"),
         (["--motor-drag", "1 N"], "unit 'N.m' does not measure what 'N' does"),
-        (["--temperature", "318"], "is 591.15 K, outside [-80, 200] degC; kelvin are stated as 318.15K"),
-        (["--temperature", "warm"], "is no temperature; expected 45, 45degC or 318.15K"),
+        (["--temperature", "318"], "is 591.15 K, outside [-80, 200] degC; write kelvin as 318.15K"),
+        (["--temperature", "warm"], "is not a temperature; expected 45, 45degC or 318.15K"),
         (["--efficiency", "1.5"], "--efficiency = '1.5' is outside (0, 1)"),
         (["--starting-torque", "0.03", "--efficiency", "70"], "--efficiency = '70' is outside (0, 1)"),
         (["--starting-torque", "0.03N"], "unit 'N.m' does not measure what 'N' does"),

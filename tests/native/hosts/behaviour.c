@@ -90,7 +90,7 @@ static void check_parameters(void)
     refused(&fmu, fmu_exit(&fmu),
             "D = 2.5 is outside (1, 2): fractal dimension of the profile; "
             "k = -1.23456789e-07 N.m/rad is outside [0, 1e+09]: stiffness; "
-            "n = 2.5 is no whole number, allowed are 1, 2, 3, ...");
+            "n = 2.5 is not a whole number, allowed are 1, 2, 3, ...");
     set(&fmu, D, 2.0); /* the open end */
     set(&fmu, STIFFNESS, 0.0);
     set(&fmu, N, 101.0);

@@ -41,10 +41,10 @@ def load_joint_file(path: Path | None) -> ParameterFile:
 
 
 def check_bolt_stiffness(option: str, file: ParameterFile) -> None:
-    """Raise ValueError if an option for the whole joint is set and the file has no bolt stiffness."""
+    """Raise ValueError if an option for the complete joint is set and the file has no bolt stiffness."""
     if not file.values_by_name.get("bolt_stiffness", 0.0) > 0.0:
         raise ValueError(
-            f"{option} without the stiffness of a bolt: expected bolt_stiffness above 0 N/m in the file of "
+            f"{option} needs the stiffness of a bolt; state bolt_stiffness above 0 N/m in the file of "
             "--params"
         )
 

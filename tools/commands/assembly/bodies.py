@@ -31,8 +31,9 @@ def declare_body_arguments(parser: argparse.ArgumentParser) -> None:
         "--thickness",
         nargs=2,
         metavar=("T1", "T2"),
-        help="thicknesses of both plates [mm]: write the whole joint (sides = elastic), with plates as large "
-        "as the rectangle around the contact (default: write the interface only)",
+        help="thicknesses of both plates [mm]: write the complete joint (sides = "
+        "elastic), with plates as large as the rectangle around the contact (default: write the interface "
+        "only)",
     )
     parser.add_argument(
         "--attached",
@@ -49,14 +50,14 @@ def declare_body_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def check_body_arguments(args: argparse.Namespace, file: ParameterFile) -> None:
-    """Raise ValueError before the work starts if the options do not describe a whole joint."""
+    """Raise ValueError before the work starts if the options do not describe a complete joint."""
     if args.attached and not args.thickness:
-        raise ValueError(f"--attached {args.attached} without --thickness: expected that of both plates")
+        raise ValueError(f"--attached {args.attached} needs --thickness, the thickness of both plates")
     for name in ("hole", "head"):
         if getattr(args, name) and not args.thickness:
-            raise ValueError(f"--{name} without --thickness: expected that of both plates")
+            raise ValueError(f"--{name} needs --thickness, the thickness of both plates")
     if args.thickness and not args.out:
-        raise ValueError("--thickness without --out: expected the file for the whole joint")
+        raise ValueError("--thickness needs --out, the file for the complete joint")
     if args.thickness:
         check_bolt_stiffness("--thickness", file)
 
@@ -84,7 +85,7 @@ def find_bolt_positions(args: argparse.Namespace, file: ParameterFile, field: Co
         ]
     )
     if len(stated) != file.values.n_bolts:
-        raise ValueError(f"--bolts has {len(stated)} places, expected {file.values.n_bolts:g}: n_bolts")
+        raise ValueError(f"--bolts has {len(stated)} positions, expected {file.values.n_bolts:g}: n_bolts")
     for i, place in enumerate(stated):
         if not np.all((place > low) & (place < high)):
             x, y = 1e3 * place
@@ -109,7 +110,7 @@ def build_assembly(
     from ...fem.geometry import Assembly, BoltList, Plate, check_thickness
 
     if bolt_positions is None:
-        raise ValueError("--thickness without the places of the bolts: expected --bolts X,Y for each")
+        raise ValueError("--thickness needs the positions of the bolts; state --bolts X,Y for each")
     hole, head = _hole_and_head_diameters(args, file)
     thick = [parse_number("thickness", text, "mm", "m") for text in args.thickness]
     low, high = np.min(field.position, axis=0), np.max(field.position, axis=0)
@@ -155,10 +156,10 @@ def _hole_and_head_diameters(args: argparse.Namespace, file: ParameterFile) -> t
     layout = field_adapter(file.joint).bolt_layout(file.values)
     hole = parse_number("hole", args.hole, "mm", "m") if args.hole else layout.hole_diameter
     if not hole > 0.0:
-        raise ValueError("--thickness without the holes of the bolts: expected --hole")
+        raise ValueError("--thickness needs the holes of the bolts; state --hole")
     if args.head:
         return hole, parse_number("head", args.head, "mm", "m")
     fitting = [thread for thread in read_threads().values() if thread.d < hole]
     if layout.head_diameter <= 0.0 and not fitting:
-        raise ValueError(f"no bolt of the tables passes a hole of {1e3 * hole:g} mm: expected --head")
+        raise ValueError(f"no bolt of the tables fits a hole of {1e3 * hole:g} mm; state --head")
     return hole, layout.head_diameter or max(fitting, key=lambda thread: thread.d).hexagon

@@ -39,7 +39,7 @@ def add(commands: SubParsers) -> None:
     sub.add_argument(
         "--attached",
         choices=("faces", "edge", "heads"),
-        help="write the whole joint (sides = elastic) between these surfaces of the bodies: outer faces, "
+        help="write the complete joint (sides = elastic) between these surfaces of the bodies: outer faces, "
         "edges (side 1 at -x, side 2 at +x), or seats of the heads (default: write the interface only)",
     )
     declare_output(sub, "--field", FIELD_FILE_KIND, "write the pressure field (.csv, .vtu)")
@@ -96,7 +96,7 @@ def _check_arguments(args: argparse.Namespace) -> None:
     if not MIN_REFINEMENT <= args.refinement <= 4.0:
         raise ValueError(f"--refinement = {args.refinement:g} is outside [{MIN_REFINEMENT:g}, 4]")
     if args.attached and not args.out:
-        raise ValueError(f"--attached {args.attached} without --out: expected the file for the whole joint")
+        raise ValueError(f"--attached {args.attached} needs --out, the file for the complete joint")
 
 
 def _write_outputs(args: argparse.Namespace, file: ParameterFile, solution: "JointSolution") -> list[str]:

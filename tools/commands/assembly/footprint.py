@@ -49,7 +49,7 @@ def _declare_import(subcommands: SubParsers) -> None:
         step, "file", Path, "contact result: CSV, CalculiX .frd, ANSYS or Abaqus listing, or a mesh"
     )
     declare_argument(
-        step, "--preload", float, "force of each bolt in the contact result [N]", "F", required=True
+        step, "--preload", float, "preload of each bolt in the contact result [N]", "F", required=True
     )
     declare_argument(step, "--params", Path, "parameter file of the joint (default: Zhao 2018)")
     declare_output(
@@ -69,7 +69,12 @@ def _declare_import(subcommands: SubParsers) -> None:
     text = "side of the contact to read if both bodies have pressure: below or above"
     declare_argument(step, "--side", str, text, "SIDE")
     declare_argument(
-        step, "--open", str, "nodes without pressure: keep, drop or refuse", "WHAT", default="refuse"
+        step,
+        "--open",
+        str,
+        "nodes without pressure: keep (they just touch), drop (they never touch) or refuse",
+        "WHAT",
+        default="refuse",
     )
     text = "more listings, or the mesh of a listing: ANSYS archive .cdb, Abaqus deck .inp"
     step.add_argument("--with", dest="beside", nargs="+", type=Path, default=[], metavar="FILE", help=text)
@@ -87,7 +92,7 @@ def _declare_import(subcommands: SubParsers) -> None:
 
 def _run_import(args: argparse.Namespace) -> CommandResult:
     if (args.moment is None) != (args.moment_file is None):
-        raise ValueError("--moment and --moment-file belong together: expected both or none")
+        raise ValueError("--moment and --moment-file belong together; state both or neither")
     from ...fields import joint_parameters
     from ...fields.joint_parameters import FORCE_TOLERANCE, insert_field
 
@@ -206,11 +211,10 @@ def _format_results(result_values: dict[str, Any], area_before: float) -> list[s
     ]
     if result_values["loads"]:
         lines.append(
-            f"{result_values['points']} points stand for them: force, K_zz, K_xx, K_rx, K_ry within "
-            f"{result_values['deviation']:.1e} at {result_values['loads']} other loads (preload "
-            f"{low:g} to {high:g} times "
-            f"this one, pressed to fully open, moment up to {result_values['largest_moment']:.4g} N.m "
-            "at this one)"
+            f"{result_values['points']} points represent them: force, K_zz, K_xx, K_rx, K_ry within "
+            f"{result_values['deviation']:.1e} at {result_values['loads']} other loads (preload {low:g} to "
+            f"{high:g} times this one, pressed to fully open, moment up to "
+            f"{result_values['largest_moment']:.4g} N.m at this one)"
         )
     else:
         lines.append("all nodes are kept")

@@ -70,10 +70,10 @@ def _check_arguments(args: argparse.Namespace) -> None:
         raise ValueError(f"--count = {args.count} is outside [1, {MAX_MODES}]: number of modes")
     if not 0.1 <= args.refinement <= 4.0:
         raise ValueError(
-            f"--refinement = {args.refinement:g} is outside [0.1, 4]: divides the sizes of elements"
+            f"--refinement = {args.refinement:g} is outside [0.1, 4]: factor that divides the element sizes"
         )
     if args.vtu and args.vtu.suffix.lower() not in MESH.endings:
-        raise ValueError(f"{args.vtu}: suffix {args.vtu.suffix!r} is no mesh, allowed is .vtu")
+        raise ValueError(f"{args.vtu}: suffix {args.vtu.suffix!r} is not a mesh, allowed is .vtu")
 
 
 def _build_document(

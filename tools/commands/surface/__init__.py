@@ -60,7 +60,10 @@ def add(commands: SubParsers) -> None:
     find.add_argument("--range", dest="span", nargs=2, type=float, metavar=("LOW", "HIGH"), help=text)
     text = "longest wavelength that counts for the rms height h [m] (default: the length of a profile, the "
     declare_argument(find, "--longest-wave", float, text + "shorter side of a map)", "L")
-    text = "side of the contact that a single file describes: 1 or 2, the other side is smooth; or both equal"
+    text = (
+        "side of the contact that a single file describes: 1 or 2 (the other side is "
+        "smooth), or both (equal sides)"
+    )
     find.add_argument("--side", choices=SCAN_SIDES, help=text)
     text = "method whose result the joint gets (default: the one with the smaller uncertainty)"
     find.add_argument("--method", choices=METHODS, help=text)
@@ -114,7 +117,7 @@ def _check_rms_heights(identification: "Identification", force: bool) -> None:
         if scan.rms > MAX_RMS_HEIGHT and not force:
             raise InputRefusal(
                 f"{name}: the rms height is {1e6 * scan.rms:.4g} um, surfaces in contact have up to "
-                f"{1e6 * MAX_RMS_HEIGHT:g} um; state the right unit of z, or that the height is right",
+                f"{1e6 * MAX_RMS_HEIGHT:g} um; state the right unit of z, or confirm the height",
                 "force",
             )
 

@@ -151,7 +151,9 @@ def collect_warnings(
     )
     alone = ["slope"] if file.law == ROUGHNESS_LAW else []
     if why and not args.force:
-        lines.append(f"{names} stay as they were, since they are not determined ({why}); --force writes them")
+        lines.append(
+            f"{names} keep their values, because they are not determined ({why}); --force writes them"
+        )
     else:
         alone.append(names)
     if alone and len(identification.roughness_by_side) < len({name[-1] for name in file.roughness}):

@@ -235,7 +235,7 @@ def tabulate_normal_force(
 class TightenedState:
     """Tightened state of a bolted joint: preload of each bolt and bending moment."""
 
-    preload: float = quantity_field("N", "the force of each bolt")
+    preload: float = quantity_field("N", "the preload of each bolt")
     moment: float = quantity_field("N.m", "the bending moment")
 
     def __str__(self) -> str:

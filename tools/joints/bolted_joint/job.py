@@ -63,8 +63,8 @@ def figures(job_result: Any) -> list[Figure]:
         ),
         Figure(
             "Contact pressure",
-            "Bolts are numbered. First the preload of the published pressures, then the moment that shifts "
-            "the bolt forces of the two rows by 5 kN.",
+            "Bolts are numbered. First picture: the preload of the published pressures. Second picture: with "
+            "a moment that changes the bolt forces of the two rows by 5 kN.",
             pictures=[draw_plan(joint, *case) for case in _MAP_LOADS],
         ),
     ]

@@ -362,11 +362,11 @@ def approach(spring: BoltedJointSpring, loads: Array) -> Array:
 
 _OUTPUTS = ("K_zz", "K_xx", "C_zz", "C_xx")
 REDUCED = ReducedCurves(
-    load=replace(KIND.variables["preload"], doc="force of each bolt that embedding has left"),
+    load=replace(KIND.variables["preload"], doc="force of each bolt after embedding"),
     outputs=(
         *(KIND.variables[name] for name in _OUTPUTS),
-        Variable("approach", "m", "approach of the two sides by tightening, from no preload", 1e-6),
-        Variable("slip_force", "N", "shear force at which all of the interface slips", 1e4),
+        Variable("approach", "m", "approach of the two sides by tightening, from zero preload", 1e-6),
+        Variable("slip_force", "N", "shear force at which the whole interface slips", 1e4),
         Variable("loss_factor", "1", f"of a loop under a shear of {SHEAR:g} times the bolts' force", 0.1),
     ),
     default_end=lambda joint: 30e3,

@@ -49,7 +49,7 @@ def picture_figure(load_history: LoadHistory) -> Figure:
     pictures = [draw_plan(joint, preload, moment)]
     if joint.elastic and isinstance(bodies, ElasticBodies) and bodies.thickness:
         pictures.append(draw_section(joint))
-    text = "The tightened interface from side 2, grey where it is open. "
+    text = "The tightened interface, seen from side 2; open areas are grey. "
     if isinstance(joint.pattern, NodalField):
         text += "Dots show the pressure at some nodes of the field, which represent all nodes. "
     if not PlaneLayout.from_joint(joint).contact_outline:
@@ -57,7 +57,7 @@ def picture_figure(load_history: LoadHistory) -> Figure:
     text += (
         "The numbers of the bolts are those of the FMU's F_bolt. "
         if len(bolts)
-        else "The file has no places of the bolts. "
+        else "The file has no bolt positions. "
     )
     text += (
         "Hatched surfaces move rigidly with the connected bodies; the section is schematic."
@@ -75,7 +75,7 @@ def friction_figures(load_history: LoadHistory) -> list[Figure]:
     if "mu" not in load_history.file.ranges:
         return []
     shear, rows = friction_results(load_history.file, _working_point(load_history)[0])
-    table = [("mu", "all slips at", f"loss factor at {_format_value(shear, 'N')} of shear")]
+    table = [("mu", "gross slip at", f"loss factor at {_format_value(shear, 'N')} of shear")]
     for row in sorted(rows):
         table.append((f"{row.mu:.4g}", _format_value(row.slip_force, "N"), f"{row.loss_factor:.3g}"))
     text = (
@@ -166,21 +166,19 @@ def stiffness_figures(load_history: LoadHistory) -> list[Figure]:
     most_loaded = int(np.argmax(share))
     is_uneven = share[most_loaded] > (1.0 + EQUAL_SHARE_TOLERANCE) * np.mean(share)
     location = (
-        f"around bolt {most_loaded + 1}, which gets {share[most_loaded]:.3g} of it"
+        f"around bolt {most_loaded + 1}, which carries {share[most_loaded]:.3g} of the force"
         if is_uneven
         else "around the bolts"
     )
     text = _stiffness_text(compliances, remaining_preload, moment) + (
-        f" A force of {_format_value(opening, 'N')} along z opens the interface {location}, by "
-        "these stiffnesses; "
-        "a joint that peels opens at a lower load, as the plot shows. The whole interface slips at "
-        f"{_format_value(limit, 'N')} along x or y; slip begins at the edges at a far lower load, "
-        "and its loss is "
-        f"under Loops. The plot shows a tensile force up to {PLOTTED_LOAD_RATIO:g} times the "
-        "opening load, free in the "
-        f"other five motions, and up to {MAX_BOLT_FORCE_RATIO:g} times the force of a bolt at tightening."
+        f" A force of {_format_value(opening, 'N')} along z opens the interface {location} (linear estimate "
+        "with these stiffnesses); a joint that peels opens at a lower load, as the plot shows. The whole "
+        f"interface slips at {_format_value(limit, 'N')} along x or y; slip begins at the edges at a far "
+        "lower load, and its loss is under Loops. The plot shows a tensile force up to "
+        f"{PLOTTED_LOAD_RATIO:g} times the opening load, free in the other five motions, and up to "
+        f"{MAX_BOLT_FORCE_RATIO:g} times the force of a bolt at tightening."
     )
-    return [Figure("The whole joint", text, [panel], table=_stiffness_rows(compliances))]
+    return [Figure("The complete joint", text, [panel], table=_stiffness_rows(compliances))]
 
 
 def _format_value(value: float, unit: str) -> str:
@@ -189,7 +187,7 @@ def _format_value(value: float, unit: str) -> str:
 
 def _stiffness_rows(compliances: Compliances) -> list[tuple[str, ...]]:
     """Table rows, one per direction: stiffnesses, and shares of the compliance."""
-    heads = ("whole joint", "interface alone", "members", "bolts alone", "interface", "members", "bolts")
+    heads = ("complete joint", "interface alone", "members", "bolts alone", "interface", "members", "bolts")
     rows: list[tuple[str, ...]] = [("", *heads)]
     for name, unit, stiffnesses, shares in compliances.rows():
         cells = [_format_value(value, unit) if value > 0.0 else "none" for value in stiffnesses]
@@ -208,14 +206,13 @@ def _stiffness_text(compliances: Compliances, remaining_preload: float, moment: 
         f"{_format_value(remaining_preload, 'N')} "
         "in each bolt"
         + (f" with a moment of {moment:g} N m" if moment else "")
-        + ", one at a time with the other five fixed. The stiffness of the whole joint is that of the FMU. "
-        "The last three columns are shares of its compliance, by stored energy. Members are a spring in "
-        "series with interface and bolts; interface alone and bolts alone are between rigid sides. The "
-        f"interface has {share[2]:.1%} of the compliance along z and at most {largest:.1%} in any direction: "
-        f"{effect}. The bolts carry {compliances.load_factor:.3f} of a force along z (load factor n "
-        "Phi_K of VDI "
-        "2230), with the other motions free; where the interface is open they carry the full force, as the "
-        "plot shows."
+        + ", one at a time with the other five fixed. The stiffness of the complete "
+        "joint is that of the FMU. The last three columns are shares of its compliance, by stored energy. "
+        "Members are a spring in series with interface and bolts; interface alone and bolts alone are "
+        f"between rigid sides. The interface has {share[2]:.1%} of the compliance along z and at most "
+        f"{largest:.1%} in any direction: {effect}. The bolts carry {compliances.load_factor:.3f} of a force "
+        "along z (load factor n Phi_K of VDI 2230), with the other motions free; where the interface is "
+        "open they carry the full force, as the plot shows."
     )
 
 
@@ -224,7 +221,9 @@ def _bolt_force_panel(spring: BoltedJointSpring, preload: float, moment: float, 
     pulls = np.linspace(0.0, max_force, 27)
     columns = 1e-3 * bolt_forces(spring, preload, moment, pulls).T
     series = [Series(bolt_force_name(j), 1e-3 * pulls[: len(y)], y) for j, y in enumerate(columns)]
-    return Panel("Bolts under a force along z", "force that pulls [kN]", "force of a bolt [kN]", series)
+    return Panel(
+        "Bolt forces under a tensile force along z", "tensile force along z [kN]", "bolt force [kN]", series
+    )
 
 
 FIGURES = {"BoltedJoint": joint_figures}

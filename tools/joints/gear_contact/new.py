@@ -53,7 +53,7 @@ def _parse_curvature(radius_text: str) -> float:
         return 0.0
     radius = parse_number("radii", radius_text, "mm", "m", lower_bound=None)
     if radius == 0.0:
-        raise ValueError("--radii = 0 mm is no radius; expected one, negative where hollow, or flat")
+        raise ValueError("--radii = 0 mm is not a radius; expected a radius (negative: concave) or flat")
     return 1.0 / radius
 
 
@@ -61,10 +61,10 @@ NEW = NewJointCommand(
     description="the contact of two tooth flanks under a load",
     example="--width 20 --radii 12 30 --load 2000 --material 'hardened steel' --finish ground",
     options=(
-        Option("width", "of the flanks along the line of contact [mm]", "B", is_required=True),
+        Option("width", "width of the flanks along the line of contact [mm]", "B", is_required=True),
         Option(
             "radii",
-            "of curvature of the two flanks at the contact [mm]; negative where hollow, or flat",
+            "radius of curvature of each flank at the contact [mm]; negative: concave; flat: plane",
             "R",
             is_list=True,
             is_required=True,

@@ -43,7 +43,7 @@ def figures(job_result: Any) -> list[Figure]:
         Panel("Stiffness over load", "load [kN]", "K_N [N/um]", [Series("K_N", load, c["K_N"] / 1e6)]),
         Panel("Approach over load", "load [kN]", "s_rel [um]", [Series("s_rel", load, c["s_rel"] * 1e6)]),
     ]
-    text = "Up to about a tenth of the nominal area in real contact."
+    text = "Up to a real contact area of about a tenth of the nominal area."
     return [Figure("Stiffness and approach over load", text, panels, data_file="GearContact.csv")]
 
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def _contact_curve(mesh: MeshParameters) -> tuple[Curve, Sequence[str]]:
-    return tabulate_approach(mesh), ("the flanks alone; what the teeth give way comes on top",)
+    return tabulate_approach(mesh), ("the flanks only; the deflection of the teeth is added to it",)
 
 
 def _load_table(mesh: MeshParameters, _: None, max_error: float) -> "LoadTable":

@@ -210,7 +210,7 @@ def _add_parameters(
     text = "ISO 21771, addendum of one module, transverse"
     sheet.add("contact_ratio", wheels.contact_ratio, "derived", text)
     sheet.add("overlap_ratio", wheels.overlap_ratio, "derived", "b sin(beta)/(pi m_n) of ISO 21771")
-    sheet.add("engagement", 0.3, "estimate", "docs/gear_mesh.md says what it does")
+    sheet.add("engagement", 0.3, "estimate", "see docs/gear_mesh.md")
     density = tuple(material.numbers["density"].value for material in faces.read_materials(options))
     d = wheels.mesh_damping(tooth_stiffness * wheels.contact_ratio, (density[0], density[1]))
     sheet.add("d", d, "estimate", f"a damping ratio of {DAMPING_RATIO:g} for the wheels as solid discs")

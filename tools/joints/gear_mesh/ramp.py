@@ -67,12 +67,14 @@ def figures(job_result: Any) -> list[Figure]:
     return [
         Figure(
             "Stiffness and deflection over the mesh cycle",
-            "At constant forces: tooth pairs come and go, and flanks that carry more are stiffer.",
+            "At constant forces. The number of tooth pairs in contact changes; flanks with "
+            "a larger force are stiffer.",
             mesh_cycle_panels(GearMeshSpring.tabulate(load_default("gear_mesh").values)),
         ),
         Figure(
             "Torque over angle",
-            "What turns wheel 1, wheel 2 held: backlash and the flanks of both sides; then the first touch.",
+            "Torque on wheel 1 with wheel 2 fixed: backlash and contact on both flanks. Second chart: "
+            "detail at first contact.",
             torque_angle_panels(job_result.ramps["GearMesh"]),
             data_file="GearMesh.csv",
         ),

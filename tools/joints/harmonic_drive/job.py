@@ -74,24 +74,25 @@ def figures(job_result: Any) -> list[Figure]:
     return [
         Figure(
             "Stiffness over torque",
-            "K_WTS and the contact pair's part of it on the drive's scale, as the FMU gives them; then the "
+            "First chart: the outputs K_WTS and K_TS (contact pair) of the FMU. Second chart: the contact "
             "pair on the scale of the paper's figures.",
             stiffness_panels(result, job_result.rows),
             data_file=f"{_COMPLIANCE_FMU}.csv",
         ),
         Figure(
             "Torque over wind-up",
-            "The integral of dT/K_WTS, odd in the torque.",
+            "Integral of dT/K_WTS; antisymmetric in the torque.",
             [torque_angle_panel(result)],
             data_file=f"{_COMPLIANCE_FMU}.csv",
         ),
         Figure(
-            "What friction costs",
-            "By the FMU with the friction of catalogue drives: efficiency over load, with what is published "
-            "at rated torque and 2000 rev/min, and the torque at the output that moves a drive without "
-            "motor. Starting and running torque fix friction_coulomb and friction_viscous, the efficiency "
-            "load_loss, the back-driving torque load_loss_back. Of the CSF drives the running torque is an "
-            "estimate, and the back-driving torque fixes both where that is not below 0.",
+            "Effect of friction",
+            "Computed by the FMU with the friction of catalogue drives: efficiency over load, with the "
+            "published values at rated torque and 2000 rev/min, and the torque at the output that "
+            "back-drives the drive without a motor. Starting and running torque determine friction_coulomb "
+            "and friction_viscous, the efficiency load_loss, the back-driving torque load_loss_back. For "
+            "CSF drives the running torque is an estimate; there the back-driving torque determines both, "
+            "if the result is not negative.",
             friction_panels(_spring_fmu(job_result)),
         ),
     ]
@@ -145,7 +146,7 @@ def stiffness_panels(result: RampResult, rows: list[ValidatedPoint]) -> list[Pan
     pair = [
         Series("K_TS on the paper's scale", c["tau"], c["K_TS_pair"]),
         Series(
-            "computed: largest and least over w",
+            "computed: maximum and minimum over w",
             [r.point.where["torque"] for r in ends],
             [float(r.computed_value) for r in ends],
             "empty",

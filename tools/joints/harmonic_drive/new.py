@@ -211,7 +211,7 @@ def _make_line_joint(
     facts = {}
     if "hysteresis_loss" in numbers and numbers["hysteresis_loss"].bound:
         bound = numbers["hysteresis_loss"]
-        text = f"{_short_source(bound)}; off unless --hysteresis is stated"
+        text = f"{_short_source(bound)}; not used unless --hysteresis is stated"
         facts["hysteresis_bound"] = (bound.value, "rad", text)
         numbers["hysteresis_loss"] = SourcedNumber(0.0, "user", f"default choice: none; {bound.source}")
     printed_angle = numbers.pop("lost_motion", None)
@@ -221,8 +221,8 @@ def _make_line_joint(
     file = catalogue.make_line_drive(drive_name, numbers)
     spring = HarmonicDriveSpring.tabulate(file.values)
     angle = float(spring.curve.inverse(rated))
-    facts["wind_up"] = (angle, "rad", f"at the rated torque {rated:g} N.m, of the midline")
-    text = f"of this drive, midway in its loop between +-{LOST_MOTION_RATIO:g} times the rated torque"
+    facts["wind_up"] = (angle, "rad", f"at the rated torque {rated:g} N.m, on the midline")
+    text = f"computed between +-{LOST_MOTION_RATIO:g} times the rated torque, in the middle of the loop"
     computed_angle = lost_motion(spring)
     if printed_angle:
         relation = "below" if computed_angle < printed_angle.value else "above"
@@ -232,11 +232,9 @@ def _make_line_joint(
         facts["efficiency"] = (rated_efficiency(file.values), "1", "at rated torque and 2000 rev/min")
     kinds = {name: number.kind for name, number in numbers.items() if name in file.values_by_name}
     guessed = ", ".join(sorted(name for name, kind in kinds.items() if kind == "estimate"))
-    notes = [f"estimates, not of the catalogue's row: {guessed}"]
+    notes = [f"estimated, not in the catalogue row: {guessed}"]
     if file.values.corner == 0.0:
-        notes.append(
-            "corner = 0: the torque has kinks at T1 and T2, where the stiffness jumps without an event"
-        )
+        notes.append("corner = 0: the stiffness jumps at T1 and T2, and the FMU signals no event there")
     return NewJoint(file, facts, notes)
 
 
@@ -302,8 +300,8 @@ NEW = NewJointCommand(
         ),
         Option(
             "starting_torque",
-            "starting torque at the wave generator without load [N.m] (default: of a named drive published "
-            "or scaled, else none)",
+            "starting torque at the wave generator without load [N.m] (default: with --catalogue the "
+            "published or scaled, else none)",
             "T",
         ),
         Option(
@@ -322,7 +320,8 @@ NEW = NewJointCommand(
         Option("source", "where the row is published", "TEXT"),
         Option(
             "corner",
-            "half-width of the smooth corners at T1 and T2 over their wind-up [1], 0: sharp (default: 0.04)",
+            "half-width of the smooth corners at T1 and T2, relative to the wind-up there "
+            "[1]; 0: sharp (default: 0.04)",
             "C",
         ),
         Option(

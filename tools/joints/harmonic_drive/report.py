@@ -41,7 +41,7 @@ def friction_figures(load_history: LoadHistory) -> list[Figure]:
     drive = file.values
     title = "Friction"
     if not FrictionSliders.for_drive(drive).is_active and drive.friction_viscous == 0.0:
-        return [Figure(title, "None with these parameters: the wave generator turns without loss.")]
+        return [Figure(title, "The parameters contain no friction: the wave generator turns without loss.")]
     bench = make_python_test_rig(model, file)
     loads = drive.rated_torque * np.linspace(0.1, 1.0, _CURVE_POINTS) ** 2
     series = [
@@ -56,7 +56,7 @@ def friction_figures(load_history: LoadHistory) -> list[Figure]:
     )
     text = (
         f"Starting torque of the motor without load: {bench.starting_torque():.4g} N m. Torque at the output "
-        f"that drives the motor back: {torque_text}. Efficiency against a load, without hysteresis and "
+        f"that drives the motor back: {torque_text}. Efficiency when driving a load, without hysteresis and "
         "kinematic error, up to the rated torque; speeds are those of the motor; the lubricant is at "
         f"{_format_celsius(file.start_value('temperature'))}."
     )
@@ -81,7 +81,7 @@ def _speed_figure(file: ParameterFile) -> Figure:
         for name in ("viscous_temperature_coefficient", "dry_temperature_coefficient")
     ]
     text = (
-        "Torque that turns the wave generator without load, over the motor's speed. The parameters hold at "
+        "Torque needed to turn the wave generator without load, over the motor speed. The parameters hold at "
         f"{_format_celsius(REFERENCE_TEMPERATURE)}; other temperatures follow from "
         f"{' and '.join(coefficients)}."
     )

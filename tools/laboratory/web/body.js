@@ -23,7 +23,7 @@ class Body {
     const charts = element("div", { class: "charts" });
     place.append(charts);
     this.over = new Chart(charts, "Resonance over the load", `Square root of |d${this.output.name}/d${this.input.name}|${this.moves ? "" : " (its inverse)"} over the ${this.turns ? "inertia" : "mass"}, along the load ramp.`);
-    this.decay = this.moves && new Chart(charts, "Let go", "");
+    this.decay = this.moves && new Chart(charts, "Free decay", "");
   }
 
   /** Tangent stiffness at the present state. */
@@ -55,7 +55,7 @@ class Body {
     const held = joint.get(output.name), K = this.stiffness();
     if (!(K > 0)) {
       this.decay.draw([], { label: "time [ms]" }, { label: label(input) });
-      this.decay.note.textContent = "At the sliders the joint has no stiffness; the body does not vibrate.";
+      this.decay.note.textContent = "At the slider values the joint has no stiffness; the body does not vibrate.";
       return;
     }
     const step = (2 * Math.PI) / Math.sqrt(K / inertia) / PER_PERIOD, time = [], moved = [];

@@ -23,7 +23,7 @@ function told(value, unit) {
 
 /**
  * The tables of a TOML document, as objects without a prototype.
- * An Error for what is no TOML, and for what no parameter file has: dates, tables in lists, texts of several lines, numbers of another base.
+ * An Error for what is not TOML, and for what no parameter file has: dates, tables in lists, texts of several lines, numbers of another base.
  */
 function parseToml(text) {
   const source = text.replace(/^\ufeff/, ""), root = Object.create(null), headed = new Set(), closed = new WeakSet();
@@ -127,7 +127,7 @@ function faultOf(name, entry, own, origins) {
   const beside = Object.keys(entry).find((key) => !ENTRY_KEYS.includes(key));
   if (beside) return `${name} has an unknown key ${beside}, allowed are ${ENTRY_KEYS.join(", ")}`;
   if (!origins.includes(entry.kind)) return `${name}: kind = ${told(entry.kind)}, allowed are ${origins.join(", ")}`;
-  if (typeof entry.source !== "string" || !entry.source.trim()) return `${name}: source = ${told(entry.source)}, expected where the value comes from`;
+  if (typeof entry.source !== "string" || !entry.source.trim()) return `${name}: source = ${told(entry.source)}, state where the value comes from`;
   if (!own) return "";
   if ((entry.unit ?? null) !== own.unit) return `${name}: unit ${told(entry.unit)}, expected ${told(own.unit)}`;
   const number = typeof entry.value === "number";
@@ -150,7 +150,7 @@ function heightOf(file, { factor }) {
   const names = Object.keys(stated);
   if (!names.length) return {};
   const twice = [["Rq1", "Ra1"], ["Rq2", "Ra2"], ...names.filter((name) => name !== "h").map((name) => ["h", name])].find((two) => two.every((name) => name in stated));
-  if (twice) return { fault: `${ROUGHNESS}${twice[0]} beside ${ROUGHNESS}${twice[1]}: expected one height of each side, or h alone` };
+  if (twice) return { fault: `${ROUGHNESS}${twice[0]} beside ${ROUGHNESS}${twice[1]}: state one height for each side, or only h` };
   const [first, second] = [1, 2].map((side) => stated[`Rq${side}`] ?? factor * (stated[`Ra${side}`] ?? 0));
   return { height: stated.h ?? Math.sqrt(first * first + second * second), makers: names.map((name) => `${ROUGHNESS}${name}`) };
 }
@@ -169,7 +169,7 @@ function fitted(file, about, known) {
     if (name in first.values && !bound.has(name)) found.values[name] = value;
     else if (input in first.inputs) found.inputs[input] = value; // those of other models of the joint act on none of this
     else if (about.fixed.includes(name)) found.fixed[name] = value;
-    else if ("value" in own && !same(value, own.value)) others.push([typeof value === "string" ? 0 : bound.has(name) ? 3 : 2, `${name} = ${told(value, own.unit)}, and the page has ${told(own.value, own.unit)} alone`]);
+    else if ("value" in own && !same(value, own.value)) others.push([typeof value === "string" ? 0 : bound.has(name) ? 3 : 2, `${name} = ${told(value, own.unit)}, but the page has only ${told(own.value, own.unit)}`]);
     else if (bound.has(name)) found.values[name] = value;
   };
   for (const [name, entry] of file.entries) {
@@ -181,7 +181,7 @@ function fitted(file, about, known) {
   const made = faults.length || !about.height ? {} : heightOf(file, known.roughness), stated = file.entries.get(about.height)?.value;
   if (made.fault) faults.push(made.fault);
   if (made.height !== undefined && stated === undefined) found.values[about.height] = made.height;
-  else if (made.height !== undefined && !(Math.abs(stated / made.height - 1) <= known.roughness.close)) faults.push(`${about.height} = ${told(stated, "m")} beside ${made.makers.join(", ")}, which make ${digits(made.height)} m: expected one of them, or both alike`);
+  else if (made.height !== undefined && !(Math.abs(stated / made.height - 1) <= known.roughness.close)) faults.push(`${about.height} = ${told(stated, "m")} does not agree with ${made.makers.join(", ")}, which give ${digits(made.height)} m: state one of them, or both equal`);
   for (const [name, own] of Object.entries(about.entries)) {
     if (file.entries.has(name) || (name === about.height && made.height !== undefined)) continue;
     if ("default" in own) has(name, own.default);
@@ -257,7 +257,7 @@ function readCsv(text, name, units) {
     columns.forEach((c, k) => {
       if (!c) return;
       const number = Number(sign === ";" ? row[k]?.replace(",", ".") : row[k]);
-      if (!row[k] || Number.isNaN(number)) throw new Error(`row ${i + 2}: ${c.name} = ${row[k] || "nothing"} is no number`);
+      if (!row[k] || Number.isNaN(number)) throw new Error(`row ${i + 2}: ${c.name} = ${row[k] || "nothing"} is not a number`);
       c.values.push(number * c.size);
     });
   }

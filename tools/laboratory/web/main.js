@@ -67,7 +67,7 @@ class Laboratory {
     const fixed = Object.fromEntries(numbers.filter(([name]) => here && about.fixed.includes(name) && name in about.entries).map(([name, text]) => [name, Number(text)]));
     const wrong = Object.entries(fixed).map(([name, value]) => outside(name, value, about.entries[name])).find(Boolean);
     await (Object.keys(fixed).length && !wrong ? this.view({ about, set: { ...set, fixed, base: set } }) : this.choose(model, Math.max(index, 0)));
-    if (wrong || !here) return this.say(`The address is of another page: ${wrong || `${said.get("joint")}, ${said.get("set")} is not here`}. Shown is ${set.name}.`, true);
+    if (wrong || !here) return this.say(`The address belongs to another page: ${wrong || `${said.get("joint")}, ${said.get("set")} is not here`}. Shown is ${set.name}.`, true);
     const ways = said.get("path")?.split(",") ?? [];
     if (ways.length && ways.every((name) => name in this.about.pairs)) this.follow(ways);
     for (const [name, text] of numbers) {
@@ -114,7 +114,7 @@ class Laboratory {
     this.controls = controls(at("controls"), about, this.values, (name, value) => { this.values.set(name, value); this.redraw(); });
     this.rampControl(about);
     const bound = about.variables.filter((v) => v.bound).map((v) => v.name);
-    at("left-out").textContent = [about.variables.some((v) => v.causality !== "output" && warm(v)) ? "" : "Nothing of this joint depends on temperature, so there is no slider for it.", bound.length ? `Set by the place of the bolts or other numbers that are baked in: ${bound.join(", ")}.` : ""].join(" ");
+    at("left-out").textContent = [about.variables.some((v) => v.causality !== "output" && warm(v)) ? "" : "Nothing of this joint depends on temperature, so there is no slider for it.", bound.length ? `No sliders, because the bolt positions or other fixed numbers determine them: ${bound.join(", ")}.` : ""].join(" ");
     this.curves = new Curves(views[0], this.joint);
     at("map-part").hidden = !about.map;
     this.map = about.map && new PressureMap(views[2], this.joint);
@@ -258,7 +258,7 @@ class Laboratory {
       await navigator.clipboard.writeText(this.toml());
       this.say("The parameters are on the clipboard.");
     } catch {
-      this.say("The browser gives no clipboard here; save the file instead.");
+      this.say("The browser does not allow access to the clipboard here; save the file instead.");
     }
   }
 
@@ -274,7 +274,7 @@ class Laboratory {
       else {
         this.file = readCsv(text, file.name, this.known.units);
         at("forget").hidden = false;
-        this.say(`${file.name}: ${this.file.columns[0].values.length} points beside the curves that measure the same.`);
+        this.say(`${file.name}: ${this.file.columns[0].values.length} points, drawn with the curves of the same quantities.`);
         this.redraw();
       }
     } catch (error) {

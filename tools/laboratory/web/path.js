@@ -22,7 +22,7 @@ class Path {
     const places = element("div", { class: "charts" });
     place.append(places);
     const across = this.inputs[1] ? ` and ${this.inputs[1].name}` : "";
-    this.pad = new Chart(places, `Draw here: ${this.inputs[0].name}${across}`, `Press and draw, or use the arrow keys; the joint follows from where it is. ${this.inputs.map((v) => `${v.name}: ${v.doc}`).join("; ")}.`);
+    this.pad = new Chart(places, `Draw here: ${this.inputs[0].name}${across}`, `Press and draw, or use the arrow keys; the path continues from the present position. ${this.inputs.map((v) => `${v.name}: ${v.doc}`).join("; ")}.`);
     this.pad.svg.classList.add("pad");
     this.pad.svg.setAttribute("role", "application");
     for (const type of ["point", "key", "zoomTo"]) this.pad[type] = () => {};

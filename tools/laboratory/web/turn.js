@@ -17,7 +17,7 @@ class Turn {
     place.append(charts);
     this.over = new Chart(charts, `Torque to turn ${driven}`, "");
     this.wave = new Chart(charts, `${error} over a turn`, this.error.doc);
-    this.gain = new Chart(charts, "Efficiency over the load", `Load over the mean torque that turns ${driven} times the ratio, at this speed.`);
+    this.gain = new Chart(charts, "Efficiency over the load", `Load divided by ratio times mean torque on ${driven}, at this speed.`);
   }
 
   views() {
@@ -63,7 +63,7 @@ class Turn {
     const ideal = (this.load_now / Math.abs(this.ratio)) * this.torque.factor, mean = y.slice(1).reduce((sum, one) => sum + one, 0) / Math.max(1, y.length - 1);
     this.found = [x, found.map((p) => p[2])];
     this.over.draw([{ name: "torque", x, y }, { name: "without any loss", x: [0, 360], y: [ideal, ideal], dashed: true, colour: "var(--green)" }], { label: `${this.driven.name} [deg]` }, { label: withUnit("torque", this.torque.shown) });
-    this.over.note.textContent = found.length ? `In the mean ${digits(mean)} ${unitText(this.torque.shown)}, an efficiency of ${digits((100 * ideal) / mean, 3)} %.` : "The joint does not carry this load.";
+    this.over.note.textContent = found.length ? `Mean torque ${digits(mean)} ${unitText(this.torque.shown)}, efficiency ${digits((100 * ideal) / mean, 3)} %.` : "The joint does not carry this load.";
   }
 
   wavy() {

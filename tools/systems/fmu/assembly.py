@@ -36,7 +36,7 @@ def assemble_system(system: System) -> SystemModel:
         components.append(SystemComponent(name, model, file, feeds[name], start))
     if not any(component.model.state_count for component in components):
         raise ValueError(
-            f"{system.name}: no component is a body; allowed in one FMU are systems with one or more"
+            f"{system.name}: no component is a body; one FMU of a system needs at least one body"
         )
     components.sort(
         key=lambda component: (component.model.state_count > 0, not component.model.is_time_dependent)

@@ -57,11 +57,11 @@ SIGNIFICANT_DIGITS = 7
 _PAGE_TEXT = """\
 The proof inside this FMU
 
-The folder extra/{standard} holds the system's own experiment after FMI-LS-REF
+The folder extra/{standard} contains the system's own experiment after FMI-LS-REF
 {version}, at communication steps of {short:g} s and {long:g} s, and in model exchange. jointfmu {own}
 has computed the reference results by model exchange of this FMU: CVode, relative tolerance {solver:g}, a
-completed integrator step every {fine:.3g} s. They prove the implicit step, not the laws: these are proved
-by the joints' own FMUs. They end at {end:.6g} s of {stop:g} s: at the latest where model exchange at a
+completed integrator step every {fine:.3g} s. They test the implicit step, not the laws: the FMUs of the
+joints test the laws. They end at {end:.6g} s of {stop:g} s: at the latest where model exchange with a
 tolerance of {host:g} gives other results.
 
 How to run them
@@ -71,8 +71,8 @@ or by any importer: no value is set, steps are of stepSize.
 Tolerance
   |value - reference| <= {tolerance:g} scale
 The annotation of each experiment states the scale of each output: its largest reference between start and
-end, or {small:g} of its nominal value if that is more. Left out are times within {near:.3g} s of a jump of an
-output: a stiffness jumps where the motion turns and friction sticks again.
+end, or {small:g} of its nominal value if that is larger. Times within {near:.3g} s of a jump of an output are
+not compared: a stiffness jumps where the motion reverses and friction sticks again.
 """
 
 
@@ -96,7 +96,9 @@ def make_proof_files(model: Model, stop: float, interval: float, fmu: Path) -> d
         while (difference_row := _first_difference(model, results, coarse_results)) < results.time.size:
             count = (difference_row - 1) // (LONG_STEP_RATIO * substeps) * LONG_STEP_RATIO
             if not count:
-                raise RuntimeError("its own experiment is too sensitive from the start")
+                raise RuntimeError(
+                    "its own experiment is too sensitive to the solver tolerance from the start"
+                )
             results = _first_rows(results, count * substeps + 1)
     except Exception as error:  # fmpy raises bare Exception
         return {TEXT_PATH: f"There is no proof inside this FMU: where it was built {error}\n".encode()}

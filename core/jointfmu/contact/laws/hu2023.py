@@ -42,17 +42,23 @@ class Hu2023(CheckedParameters):
     side2: ElasticConstants = group_field("harder body")
     sigma_y: float = quantity_field("Pa", "yield strength of the softer body", gt=0.0)
     mu: float = quantity_field("1", "coefficient of static friction", gt=0.0)
-    traction_ratio: float = quantity_field("1", "shear over friction limit, x = T/(mu P)", ge=0.0, lt=1.0)
+    traction_ratio: float = quantity_field(
+        "1", "ratio of shear force to friction limit, x = T/(mu P)", ge=0.0, lt=1.0
+    )
     A_0: float = quantity_field("m2", "nominal contact area", gt=0.0)
     shear_traction: float = quantity_field(
         "Pa", "shear traction on the real area, used if traction is real_area", gt=0.0
     )
     traction: str = choice_field(
-        "ratio", "real_area", doc="shear of a spot: the node's traction ratio, or a traction on the real area"
+        "ratio",
+        "real_area",
+        doc="shear of a spot: from traction_ratio (ratio), or shear_traction on the real area (real_area)",
     )
 
     reading: str = choice_field(
-        "corrected", "printed", doc="pressure of Eq. 28: load over nominal area, or over real area as printed"
+        "corrected",
+        "printed",
+        doc="pressure in Eq. 28: load divided by the nominal area, or by the real area as printed",
     )
 
     @property

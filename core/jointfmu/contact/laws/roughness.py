@@ -39,14 +39,18 @@ class RoughSurfaces:
 
     h: float = quantity_field(
         "m",
-        "rms height of both surfaces together, of all waves up to longest_wave",
+        "combined rms height of both surfaces, of all wavelengths up to longest_wave",
         gt=0.0,
         le=1e3 * MAX_HEIGHT,  # the law holds at any scale; this rejects wrong units
     )
-    gamma: float = quantity_field("1", "approach over h by which the pressure grows e-fold", gt=0.0)
-    longest_wave: float = quantity_field("m", "longest wave of the roughness", gt=0.0)
+    gamma: float = quantity_field(
+        "1", "approach, divided by h, over which the pressure increases by a factor of e", gt=0.0
+    )
+    longest_wave: float = quantity_field("m", "longest wavelength of the roughness", gt=0.0)
     hurst: float = quantity_field("1", "Hurst exponent of the roughness", gt=0.0, lt=1.0)
-    slope: float = quantity_field("1", "rms slope of both surfaces together; for the real area", gt=0.0)
+    slope: float = quantity_field(
+        "1", "combined rms slope of both surfaces; only the real contact area depends on it", gt=0.0
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,7 +61,9 @@ class RoughnessLaw(RoughSurfaces, CheckedParameters):
     side2: ElasticConstants = group_field("second body")
     H: float = quantity_field("Pa", "hardness of the softer body", gt=0.0)
     mu: float = quantity_field("1", "coefficient of static friction", gt=0.0)
-    traction_ratio: float = quantity_field("1", "shear over friction limit, x = T/(mu P)", ge=0.0, lt=1.0)
+    traction_ratio: float = quantity_field(
+        "1", "ratio of shear force to friction limit, x = T/(mu P)", ge=0.0, lt=1.0
+    )
     A_0: float = quantity_field("m2", "nominal contact area", gt=0.0)
 
     @property
@@ -109,17 +115,15 @@ class RoughnessLaw(RoughSurfaces, CheckedParameters):
         messages = []
         if lowest_pressure < min_pressure:
             messages.append(
-                f"a pressure of {lowest_pressure:.4g} Pa is below {min_pressure:.3g} Pa, from where "
-                "the law roughness "
-                "is proven: one hill carries, and surfaces of the same roughness differ by half and more "
-                "(docs/validity.md)"
+                f"a pressure of {lowest_pressure:.4g} Pa is below {min_pressure:.3g} Pa, the lower end of "
+                "the checked range of the law roughness: few asperities carry the load, and surfaces of "
+                "equal roughness differ by 50 % and more (docs/validity.md)"
             )
         if highest_pressure > max_pressure:
             messages.append(
-                f"a pressure of {highest_pressure:.4g} Pa is above {max_pressure:.3g} Pa, up to which the "
-                "law roughness "
-                "is proven: the longest wave is pressed flat, the rest to its end is an extrapolation "
-                "(docs/validity.md)"
+                f"a pressure of {highest_pressure:.4g} Pa is above {max_pressure:.3g} Pa, the upper end of "
+                "the checked range of the law roughness: the longest waves are pressed flat, results are an "
+                "extrapolation (docs/validity.md)"
             )
         return messages
 

@@ -43,13 +43,13 @@ class Yu2022(CheckedParameters):
     side1: ElasticConstants = group_field("first body")
     side2: ElasticConstants = group_field("second body")
     sigma_y: float = quantity_field("Pa", "yield strength of the softer body", gt=0.0)
-    mu: float = quantity_field("1", "coefficient of static friction; does not enter this law", gt=0.0)
+    mu: float = quantity_field("1", "coefficient of static friction; without effect in this law", gt=0.0)
     traction_ratio: float = quantity_field(
-        "1", "shear over friction limit; does not enter this law", ge=0.0, lt=1.0
+        "1", "ratio of shear force to friction limit; without effect in this law", ge=0.0, lt=1.0
     )
     A_0: float = quantity_field("m2", "nominal contact area", gt=0.0)
     rigid_flat: bool = choice_field(
-        True, False, doc="true: the first body meets a rigid flat; false: both bodies deform (Eq. 21)"
+        True, False, doc="true: body 1 touches a rigid flat; false: both bodies deform (Eq. 21)"
     )
     plastic_area: str = choice_field(
         "geometric",

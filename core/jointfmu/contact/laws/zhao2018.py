@@ -30,7 +30,9 @@ class Zhao2018(CheckedParameters):
     side2: ElasticConstants = group_field("second body")
     H: float = quantity_field("Pa", "hardness of the softer body", gt=0.0)
     mu: float = quantity_field("1", "coefficient of static friction", gt=0.0)
-    traction_ratio: float = quantity_field("1", "shear over friction limit, x = T/(mu P)", ge=0.0, lt=1.0)
+    traction_ratio: float = quantity_field(
+        "1", "ratio of shear force to friction limit, x = T/(mu P)", ge=0.0, lt=1.0
+    )
     A_0: float = quantity_field("m2", "nominal contact area", gt=0.0)
     mass: float = quantity_field(
         "kg", "mass of the structure, used for the equivalent viscous damping C_N, C_T", gt=0.0

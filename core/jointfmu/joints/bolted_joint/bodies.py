@@ -51,7 +51,7 @@ class Modes:
             raise ValueError(f"[bodies] has {stated}, the contact {points} and {len(patches)}")
         if (distance := float(np.max(np.abs(position - patches)))) > POSITION_TOLERANCE:
             raise ValueError(
-                f"[bodies] lies {distance:.3g} m beside the contact: it was computed for another one, "
+                f"[bodies] lies {distance:.3g} m away from the contact: it was computed for another contact; "
                 f"expected at most {POSITION_TOLERANCE:g} m"
             )
         rows = {name: np.array(getattr(bodies, name)).reshape(-1, count) for name in MODAL_SERIES}

@@ -265,8 +265,8 @@ def solve_equilibrium(step: LoadStep) -> TrialState:
             increment *= 0.5
             if increment < MIN_LOAD_STEP:
                 raise ValueError(
-                    f"{step.input_summary}: the sides find no equilibrium beyond {load_factor:.3g} of the "
-                    f"way, the residual is {state.residual_norm:.2g} N"
+                    f"{step.input_summary}: no equilibrium of the joint was found beyond a fraction "
+                    f"of {load_factor:.3g} of the way, the residual is {state.residual_norm:.2g} N"
                 )
         elif target == 1.0:
             return state
@@ -287,7 +287,9 @@ def predict_by_tangent(step: LoadStep) -> ModalPredictor:
     try:
         change = np.linalg.solve(H[6:, 6:], H[6:, :6] @ (step.end - step.start))
     except np.linalg.LinAlgError:
-        reason = f"{step.input_summary}: the sides find no equilibrium beyond 0 of the way"
+        reason = (
+            f"{step.input_summary}: no equilibrium of the joint was found beyond a fraction of 0 of the way"
+        )
         raise ValueError(f"{reason}, their tangent stiffness is singular there") from None
     return ModalPredictor(np.asarray(a - change), H[6:, 6:])
 

@@ -31,8 +31,8 @@ MAX_MODES = 16
 MODAL_SERIES = ("opening", "patch_x", "patch_y", "patch_around", "stretch")
 """Entries of [bodies] with the displacements by the modes."""
 ELASTIC_NEEDS = {
-    "memory": "elastic sides go with friction that remembers",
-    "damping": "the dashpots stand between rigid sides",
+    "memory": "elastic sides need friction with memory",
+    "damping": "the dashpots act between rigid sides only",
 }
 
 
@@ -50,43 +50,61 @@ class ElasticBodies:
 
     stiffness: tuple[float, ...] = series_field("N/m", "stiffness of each mode", gt=0.0)
     opening: tuple[float, ...] = series_field(
-        "1", "opening of the points by the modes: all modes of a point, then of the next", ge=-1.0, le=1.0
+        "1",
+        "modal matrix of the opening at the contact points: all modes of point 1, of point 2, ...",
+        ge=-1.0,
+        le=1.0,
     )
     patch_x: tuple[float, ...] = series_field(
-        "1", "displacement of the patches along x by the modes, in the same order", ge=-1.0, le=1.0
+        "1",
+        "modal matrix of the relative displacement along x at the friction patches, same order",
+        ge=-1.0,
+        le=1.0,
     )
-    patch_y: tuple[float, ...] = series_field(
-        "1", "displacement of the patches along y by the modes", ge=-1.0, le=1.0
-    )
+    patch_y: tuple[float, ...] = series_field("1", "as patch_x, along y", ge=-1.0, le=1.0)
     patch_around: tuple[float, ...] = series_field(
         "1",
-        "displacement of the patches around their centres by the modes, on the circles of their sliders",
+        "as patch_x, for the mean displacement around the centre of a patch, on the circle of its sliders",
         ge=-1.0,
         le=1.0,
     )
     stretch: tuple[float, ...] = series_field(
-        "1", "elongation of the bolts by the modes: all modes of a bolt, then of the next", ge=-1.0, le=1.0
+        "1",
+        "modal matrix of the elongation of the bolts between their seats: all modes of bolt 1, of bolt 2, "
+        "...",
+        ge=-1.0,
+        le=1.0,
     )
-    x: tuple[float, ...] = series_field("m", "position of the patches along the rows, from the centroid")
-    y: tuple[float, ...] = series_field("m", "position of the patches across the rows, from the centroid")
-    bolt_x: tuple[float, ...] = series_field("m", "position of the bolts along the rows, from the centroid")
-    bolt_y: tuple[float, ...] = series_field("m", "position of the bolts across the rows, from the centroid")
+    x: tuple[float, ...] = series_field(
+        "m", "positions of the friction patches along the bolt rows, from the centroid"
+    )
+    y: tuple[float, ...] = series_field(
+        "m", "positions of the friction patches across the bolt rows, from the centroid"
+    )
+    bolt_x: tuple[float, ...] = series_field(
+        "m", "positions of the bolts along the bolt rows, from the centroid"
+    )
+    bolt_y: tuple[float, ...] = series_field(
+        "m", "positions of the bolts across the bolt rows, from the centroid"
+    )
     attached: str = choice_field(
         "unstated",
         "faces",
         "edge",
         "heads",
-        doc="part of the members that is attached to the connected bodies",
+        doc="surfaces of the bodies that move rigidly with the connected parts",
     )
     thickness: tuple[float, ...] = series_field(
         "m", "thickness of side 1 and 2 at the bolts, for pictures", gt=0.0, optional=True
     )
     outline: tuple[float, ...] = series_field(
-        "m", "lowest x and y, highest x and y of the contact, from its centroid, for pictures", optional=True
+        "m",
+        "smallest x and y, largest x and y of the contact, from its centroid, for pictures",
+        optional=True,
     )
     hole_diameter: float = quantity_field("m", "clearance hole, for pictures", ge=0.0, default=0.0)
     head_diameter: float = quantity_field(
-        "m", "outer diameter of what lies under heads and nuts, for pictures", ge=0.0, default=0.0
+        "m", "outer diameter of the bearing surfaces of heads and nuts, for pictures", ge=0.0, default=0.0
     )
     thread_depth: float = quantity_field(
         "m", "depth of the threads in side 2, for pictures; 0: bolts go through", ge=0.0, default=0.0
@@ -114,26 +132,26 @@ class Bolts:
     row_bolts: float = quantity_field(
         "1", "bolts in each of the two rows that carry the moment", ge=1.0, is_integer=True
     )
-    row_distance: float = quantity_field("m", "distance L_a of the two bolt rows", gt=0.0)
+    row_distance: float = quantity_field("m", "distance L_a between the two bolt rows", gt=0.0)
     bolt_stiffness: float = quantity_field("N/m", "stiffness of each bolt", ge=0.0, default=0.0)
     embedding: float = quantity_field(
         "N", "preload that each bolt loses by embedding (VDI 2230)", ge=0.0, default=0.0
     )
     memory: bool = choice_field(
-        True, False, doc="friction with partial slip and memory; without it an elastic joint"
+        True, False, doc="true: friction with partial slip and memory; false: elastic joint"
     )
-    damping: bool = choice_field(False, True, doc="the dashpots C_xx, C_yy, C_zz of Zhao 2018 act")
+    damping: bool = choice_field(False, True, doc="true: the dashpots C_xx, C_yy, C_zz of Zhao 2018 act")
     sides: str = choice_field(
         "rigid",
         "elastic",
-        doc="rigid: the interface alone; elastic: the whole joint between its attachments, with [bodies]",
+        doc="rigid: the interface alone; elastic: the complete joint between its attachments, with [bodies]",
     )
     bodies: RigidBodies | ElasticBodies = group_field(
-        "how the members give way between their attachments", rigid=RigidBodies, bodies=ElasticBodies
+        "compliance of the members between their attachments", rigid=RigidBodies, bodies=ElasticBodies
     )
     pattern: PressureSource = group_field(
-        "what gives the pressure: the decay around each bolt of a frame, the cones of the bolts of a plate, "
-        "or the points of a field",
+        "contact pressure: decay around each bolt of a frame, deformation cones of the bolts of a plate, "
+        "or points of a field",
         pattern=BoltedFrame,
         plate=BoltedPlate,
         field=NodalField,
@@ -153,18 +171,20 @@ class Bolts:
     def _check_elastic(self) -> None:
         if isinstance(self.bodies, RigidBodies):
             raise ValueError(
-                "sides = elastic without [bodies]: expected what `new bolted-joint` writes there"
+                "sides = elastic needs the section [bodies]; `jointfmu new bolted-joint` writes it"
             )
         for name, wrong in (("memory", False), ("damping", True)):
             if getattr(self, name) is wrong:
                 why = ELASTIC_NEEDS[name]
                 raise ValueError(
-                    f"{name} = {wrong} beside sides = elastic: expected {not wrong}, {why}".lower()
+                    f"{name} = {wrong} with sides = elastic; expected {not wrong}, {why}".lower()
                 )
 
     def find_limits(self) -> list[ParameterLimit]:
         """Intervals that depend on other parameters."""
-        why = "two rows hold at most half of n_bolts each; set row_bolts = 1 where all bolts make one row"
+        why = (
+            "each of the two rows has at most half of n_bolts; set row_bolts = 1 if all bolts are in one row"
+        )
         rows = ParameterLimit(
             "row_bolts", Interval.from_bounds(ge=1.0, le=np.maximum(0.5 * self.n_bolts, 1.0)), why
         )
@@ -184,7 +204,7 @@ class BoltedJoint(Bolts, Zhao2018):
     """Parameters of the bolted joint with the law of Zhao 2018."""
 
     plastic_damping: bool = choice_field(
-        False, True, doc="normal damping by the plastic work of first loading (Zhao 2018, Eqs. 19-20)"
+        False, True, doc="true: normal damping from the plastic work of first loading (Zhao 2018, Eqs. 19-20)"
     )
 
 
@@ -194,7 +214,9 @@ class RoughBoltedJoint(Bolts, RoughnessLaw):
 
     plastic_damping: ClassVar[bool] = False
 
-    mass: float = quantity_field("kg", "mass of the structure, for the viscous equivalent", gt=0.0)
+    mass: float = quantity_field(
+        "kg", "mass of the structure, used for the equivalent viscous damping", gt=0.0
+    )
 
 
 Bolted: TypeAlias = BoltedJoint | RoughBoltedJoint

@@ -41,8 +41,8 @@ stretch                    : [m] elongation of all bolts by the modes, plus gaps
                              times x and y [m2]
 
 Rigid members: normal_stiffness and normal_about_* are without the stiffness of bolts that have lifted off.
-Elastic members: they and tangent_* are for the whole joint, without the stiffness of all bolts between rigid
-members.
+Elastic members: they and tangent_* are for the complete joint, without the stiffness of all bolts between
+rigid members.
 """
 _TRACTIONS, _TANGENTS = ("traction_x", "traction_y", "torsion"), ("tangent_x", "tangent_y", "tangent_z")
 _STRETCHES = SUMS[-3:]

@@ -43,8 +43,8 @@ def _find_ramp(spring: BoltedJointSpring, v: VariableValues) -> tuple[float, flo
     preload, embedding = v["preload"], spring.joint.embedding
     if 0.0 < preload <= embedding:
         raise ValueError(
-            f"preload = {preload:g} N is outside ({embedding:g}, inf) N: embedding takes all of it; state "
-            "more preload or less embedding"
+            f"preload = {preload:g} N is outside ({embedding:g}, inf) N: embedding takes all of it; "
+            "increase preload or reduce embedding"
         )
     return 0.0, preload or max(_PRELOAD, 2.0 * embedding)
 
@@ -69,8 +69,8 @@ def _with_bolt_forces(model: Model, joint: Bolted) -> Model:
     if not joint.elastic:
         return model
     meaning = (
-        "working force of bolt {}: preload less embedding, what the moment adds, its share of the load; "
-        "0 where its head lifts off"
+        "force of bolt {}: preload minus embedding, plus its shares of moment and load; "
+        "0 after its head lifts off"
     )
     forces = [
         Variable(bolt_force_name(j), "N", meaning.format(j + 1), 1e4) for j in range(round(joint.n_bolts))
@@ -95,56 +95,80 @@ MODELS = (
         parameters=BoltedJoint,
         tabulate=BoltedJointSpring.of,
         inputs=(
-            Variable("preload", "N", "pre-tightening force of each bolt", 1e4, minimum=0.0),
+            Variable("preload", "N", "preload of each bolt (bolt force at tightening)", 1e4, minimum=0.0),
             Variable("moment", "N.m", "bending moment on the joint", 1e3),
-            Variable("s_rel_x", "m", "displacement from the tightened state, along the rows", 1e-6),
-            Variable("s_rel_y", "m", "displacement from the tightened state, across the rows", 1e-6),
-            Variable("s_rel_z", "m", "displacement from the tightened state, positive apart", 1e-6),
+            Variable(
+                "s_rel_x", "m", "displacement of side 2 from the tightened state, along the bolt rows", 1e-6
+            ),
+            Variable(
+                "s_rel_y", "m", "displacement of side 2 from the tightened state, across the bolt rows", 1e-6
+            ),
+            Variable(
+                "s_rel_z",
+                "m",
+                "displacement of side 2 from the tightened state, along the normal, positive: sides separate",
+                1e-6,
+            ),
             Variable("v_rel_x", "m/s", "rate of s_rel_x", 1e-3),
             Variable("v_rel_y", "m/s", "rate of s_rel_y", 1e-3),
             Variable("v_rel_z", "m/s", "rate of s_rel_z", 1e-3),
             *(
                 Variable(
-                    f"theta_{a}", "rad", f"small turn of side 2 about {a} through the joint's centre", 1e-5
+                    f"theta_{a}",
+                    "rad",
+                    f"small rotation of side 2 about {a} through the joint's centre",
+                    1e-5,
                 )
                 for a in "xyz"
             ),
             *(Variable(f"omega_{a}", "rad/s", f"rate of theta_{a}", 1e-2) for a in "xyz"),
         ),
         outputs=(
-            Variable("f_x", "N", "force on side 2 along x, restoring", 1e4),
-            Variable("f_y", "N", "force on side 2 along y, restoring", 1e4),
-            Variable("f_z", "N", "force on side 2 along the normal, negative when pulled apart", 1e4),
-            Variable("m_x", "N.m", "moment on side 2 about x through the joint's centre, restoring", 1e3),
-            Variable("m_y", "N.m", "moment on side 2 about y, same point", 1e3),
-            Variable("m_z", "N.m", "moment on side 2 about the normal, same point", 1e3),
+            Variable("f_x", "N", "restoring force on side 2 along x", 1e4),
+            Variable("f_y", "N", "restoring force on side 2 along y", 1e4),
+            Variable(
+                "f_z",
+                "N",
+                "restoring force on side 2 along the normal, negative when the sides are pulled apart",
+                1e4,
+            ),
+            Variable("m_x", "N.m", "restoring moment on side 2 about x through the joint's centre", 1e3),
+            Variable("m_y", "N.m", "restoring moment on side 2 about y through the joint's centre", 1e3),
+            Variable(
+                "m_z", "N.m", "restoring moment on side 2 about the normal through the joint's centre", 1e3
+            ),
             Variable("K_xx", "N/m", "tangential stiffness -df_x/ds_rel_x", 1e10),
             Variable("K_yy", "N/m", "tangential stiffness -df_y/ds_rel_y", 1e10),
             Variable("K_zz", "N/m", "normal stiffness -df_z/ds_rel_z", 1e10),
-            Variable("C_xx", "N.s/m", "viscous-equivalent damping along x", 1e4),
-            Variable("C_yy", "N.s/m", "viscous-equivalent damping along y", 1e4),
+            Variable("C_xx", "N.s/m", "equivalent viscous damping along x", 1e4),
+            Variable("C_yy", "N.s/m", "equivalent viscous damping along y", 1e4),
             Variable(
                 "C_zz",
                 "N.s/m",
-                "viscous-equivalent damping along the normal, zero without plastic_damping",
+                "equivalent viscous damping along the normal, zero without plastic_damping",
                 1e4,
             ),
             Variable("eta_t", "1", "tangential dissipation factor"),
             Variable(
-                "eta_n", "1", "plastic over elastic work of first loading; it damps with plastic_damping only"
+                "eta_n",
+                "1",
+                "ratio of plastic to elastic work in first loading; it causes damping only if "
+                "plastic_damping = true",
             ),
             Variable("K_rx", "N.m/rad", "rotational stiffness -dm_x/dtheta_x", 1e8),
             Variable("K_ry", "N.m/rad", "rotational stiffness -dm_y/dtheta_y", 1e8),
             Variable("K_rz", "N.m/rad", "rotational stiffness -dm_z/dtheta_z", 1e8),
             Variable("p_mean", "Pa", "mean contact pressure", 1e6),
             Variable("p_max", "Pa", "largest contact pressure", 1e6),
-            Variable("slip", "1", "friction force used: shear force over mu times normal force"),
-            Variable("E_loss", "J", "work turned into heat by friction since initialization", 1e-3),
-            Variable("eta_loop", "1", "loss factor of the loop whose amplitude is the present shift"),
+            Variable("slip", "1", "friction utilization: shear force divided by (mu times normal force)"),
+            Variable("E_loss", "J", "energy dissipated by friction since initialization", 1e-3),
+            Variable(
+                "eta_loop", "1", "loss factor of a load cycle whose amplitude is the present displacement"
+            ),
             # nominal as of eta_loop = 1, whose round-off it has: sqrt(mass K)
-            Variable("C_loop", "N.s/m", "its viscous equivalent, as C_xx is that of eta_t", 1e6),
+            Variable("C_loop", "N.s/m", "equivalent viscous damping for eta_loop, as C_xx for eta_t", 1e6),
             *(
-                Variable(name, "s", f"{doc}: along x, y or z, with `mass` on it", 1e-4)
+                Variable(name, "s", f"{doc}: smallest of x, y and z, with `mass` on the joint", 1e-4)
                 for name, doc in STABLE_STEP_OUTPUTS
             ),
         ),
@@ -155,13 +179,14 @@ MODELS = (
             ValidityLimit(
                 "moment",
                 lambda j, end, v: (-_row_moment(j, v["preload"]), _row_moment(j, v["preload"])),
-                "a bolt force would be negative; the contact is open where the pressure would be",
+                "a bolt force would be negative; the contact is open where its pressure would be negative",
             ),
             ValidityLimit("p_max", lambda j, end, v: (-math.inf, end[1]), EXTRAPOLATION_WARNING),
             ValidityLimit(
                 "slip",
                 lambda j, end, v: (-math.inf, select(j.memory, 2.0, LINEAR)),
-                "the shear is beyond what friction holds: none if open; without memory the joint would slip",
+                "the shear force exceeds the friction limit (zero if the joint is open); without memory "
+                "there is no slip",
             ),
         ),
         ramp=LoadRamp("preload", _PRELOAD, 100.0, find_range=_find_ramp),

@@ -18,7 +18,7 @@ MODELS = (
         tabulate=GearContactSpring.tabulate,
         inputs=(Variable("f", "N", "normal load of the tooth contact", 1e3),),
         outputs=(
-            Variable("s_rel", "m", "approach of the two flanks from first touch", 1e-6),
+            Variable("s_rel", "m", "approach of the two flanks, counted from first touch", 1e-6),
             Variable("K_N", "N/m", "tangent stiffness df/ds", 1e9),
             Variable("A_r", "m2", "real contact area", 1e-6),
             Variable("elastic_fraction", "1", "elastic part of the real contact area"),

@@ -32,23 +32,24 @@ class GearWheels:
     contact_ratio: float = quantity_field("1", "mean number of tooth pairs in contact", ge=1.0, lt=3.0)
     engagement: float = quantity_field(
         "1",
-        "time in which a pair takes up its load, over the shorter of the times with and without it",
+        "time over which a pair takes up its load, divided by the shorter of the times with and without the "
+        "pair",
         gt=0.0,
         le=1.0,
     )
     d: float = quantity_field("N.s/m", "damping along the line of action while the flanks touch", ge=0.0)
     overlap_ratio: float = quantity_field(
-        "1", "face width over the axial pitch of a helical mesh, 0 of a spur one", ge=0.0, default=0.0
+        "1", "overlap ratio: face width divided by axial pitch; 0: spur gears", ge=0.0, default=0.0
     )
     inertia1: float = quantity_field(
         "kg.m2",
-        "inertia of wheel 1 and its load, used only for the stable steps; 0: fixed",
+        "inertia of wheel 1 and its load, used only for the outputs of stable steps; 0: fixed",
         ge=0.0,
         default=0.0,
     )
     inertia2: float = quantity_field(
         "kg.m2",
-        "inertia of wheel 2 and its load, used only for the stable steps; 0: fixed",
+        "inertia of wheel 2 and its load, used only for the outputs of stable steps; 0: fixed",
         ge=0.0,
         default=1.0,
     )

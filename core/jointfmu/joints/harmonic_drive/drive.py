@@ -46,18 +46,27 @@ class Drive(ABC):
     d: float = quantity_field("N.m.s/rad", "viscous damping at the output", ge=0.0)
     rated_torque: float = quantity_field("N.m", "rated torque", gt=0.0)
     hysteresis_loss: float = quantity_field(
-        "rad", "angle between the branches at zero torque, after rated torque; 0: none", ge=0.0, default=0.0
+        "rad",
+        "angle between the loading and unloading branches at zero torque, after rated torque; 0: none",
+        ge=0.0,
+        default=0.0,
     )
     hysteresis_stiffness: float = quantity_field(
         "N.m/rad",
-        "extra stiffness for small motions, before friction slips; 0: K_WTS at zero torque, or as needed",
+        "additional stiffness for small motions, before the hysteresis friction slips; 0: K_WTS at zero "
+        "torque, or more if needed",
         ge=0.0,
         default=0.0,
     )
     lost_motion: float = quantity_field(
-        "rad", "play of the output around zero torque, from end to end; 0: none", ge=0.0, default=0.0
+        "rad",
+        "total play of the output around zero torque, in addition to the wind-up; 0: none",
+        ge=0.0,
+        default=0.0,
     )
-    friction_coulomb: float = quantity_field("N.m", "dry friction at the wave generator", ge=0.0, default=0.0)
+    friction_coulomb: float = quantity_field(
+        "N.m", "dry friction torque at the wave generator, independent of speed and load", ge=0.0, default=0.0
+    )
     friction_stribeck: float = quantity_field(
         "N.m", "extra dry friction at standstill that vanishes with speed (Stribeck)", ge=0.0, default=0.0
     )
@@ -71,7 +80,10 @@ class Drive(ABC):
         "N.m.s/rad", "viscous friction coefficient at the wave generator", ge=0.0, default=0.0
     )
     load_loss: float = quantity_field(
-        "1", "dry friction at the wave generator over the torque transmitted to it", ge=0.0, default=0.0
+        "1",
+        "load-dependent dry friction torque divided by the torque transmitted to the wave generator",
+        ge=0.0,
+        default=0.0,
     )
     load_loss_back: float = quantity_field(
         "1", "load_loss while the load drives the motor; negative: equal to load_loss", default=-1.0
@@ -82,7 +94,9 @@ class Drive(ABC):
         gt=0.0,
         default=0.01,
     )
-    temperature_factor: float = quantity_field("1", "factor of all friction", ge=0.0, default=1.0)
+    temperature_factor: float = quantity_field(
+        "1", "factor that multiplies all friction", ge=0.0, default=1.0
+    )
     viscous_temperature_coefficient: float = quantity_field(
         "1/K",
         "relative decrease of friction_viscous per kelvin above 293.15 K; 0: none",
@@ -99,13 +113,13 @@ class Drive(ABC):
     )
     inertia1: float = quantity_field(
         "kg.m2",
-        "inertia of the motor on the wave generator, used only for the stable steps; 0: fixed",
+        "inertia of the motor on the wave generator, used only for the outputs of stable steps; 0: fixed",
         ge=0.0,
         default=0.0,
     )
     inertia2: float = quantity_field(
         "kg.m2",
-        "inertia of the body on the output, used only for the stable steps; 0: fixed",
+        "inertia of the body on the output, used only for the outputs of stable steps; 0: fixed",
         ge=0.0,
         default=1.0,
     )

@@ -106,7 +106,7 @@ class HysteresisSliders(Sliders):
             raise ValueError(
                 f"hysteresis_loss = {drive.hysteresis_loss:g} rad is outside "
                 f"[0, {2.0 * float(curve.inverse(0.5 * drive.rated_torque)):g}) rad: "
-                "friction would hold half of the rated torque"
+                "above it the hysteresis friction would exceed half of the rated torque"
             )
         springs, friction = (
             np.array(share, dtype=np.float64) for share in slider_shares(stiffness_exponent(drive))

@@ -25,9 +25,11 @@ class ContactPairDrive(Drive):
     """
 
     mu: float = quantity_field("1", "coefficient of static friction, if traction is real_area", gt=0.0)
-    traction_ratio: float = quantity_field("1", "shear over friction limit, x = T/(mu P)", ge=0.0, lt=1.0)
+    traction_ratio: float = quantity_field(
+        "1", "ratio of shear force to friction limit, x = T/(mu P)", ge=0.0, lt=1.0
+    )
     A_0: float = quantity_field("m2", "nominal area of the contact pair", gt=0.0)
-    mean_over_peak: float = quantity_field("1", "mean contact pressure over peak pressure", gt=0.0, le=1.0)
+    mean_over_peak: float = quantity_field("1", "ratio of mean to peak contact pressure", gt=0.0, le=1.0)
     radius: float = quantity_field("m", "mean radius of the contact pair", gt=0.0)
     radial_deformation: float = quantity_field("m", "radial deformation w of the flexspline", gt=0.0, lt=2e-3)
     eccentricity: float = quantity_field(
@@ -36,15 +38,19 @@ class ContactPairDrive(Drive):
     K_FTS0: float = quantity_field(
         "N.m/rad", "stiffness K_FTS of circular spline and flexspline", gt=0.0, calibration=True
     )
-    max_torque: float = quantity_field("N.m", "end of the tabulated law", gt=0.0)
+    max_torque: float = quantity_field("N.m", "largest torque of the tabulated law", gt=0.0)
     zero_torque_pressure: float = quantity_field(
         "Pa", "peak contact pressure without torque, at the optimum deformation", gt=0.0, calibration=True
     )
     rated_pressure: float = quantity_field(
         "Pa", "peak contact pressure at rated torque, at the optimum deformation", gt=0.0, calibration=True
     )
-    torque_smoothing: float = quantity_field("N.m", "torque up to which the pressure hardly grows", gt=0.0)
-    optimum_deformation: float = quantity_field("m", "radial deformation of the largest pressure", gt=0.0)
+    torque_smoothing: float = quantity_field(
+        "N.m", "torque below which the pressure hardly increases", gt=0.0
+    )
+    optimum_deformation: float = quantity_field(
+        "m", "radial deformation at which the pressure is largest", gt=0.0
+    )
     deformation_loss: float = quantity_field(
         "Pa/m2",
         "loss of peak pressure per squared offset of radial_deformation from its optimum",
@@ -81,7 +87,7 @@ class ContactPairDrive(Drive):
 
     def find_limits(self) -> list[ParameterLimit]:
         """Intervals of parameters that depend on other parameters."""
-        no_contact = "beyond it the pair loses contact without torque"
+        no_contact = "above it the pair has no contact at zero torque"
         zero, loss, best = self.zero_torque_pressure, self.deformation_loss, self.optimum_deformation
         with np.errstate(over="ignore"):
             reach = np.sqrt(zero / np.maximum(loss, 1e-290))
@@ -120,11 +126,13 @@ class HarmonicDrive(ContactPairDrive):
         "Pa", "shear traction on the real area, used if traction is real_area", gt=0.0
     )
     node_area: float = quantity_field(
-        "m2", "nominal area with one set of spots: a mesh node of Eq. 45", gt=0.0
+        "m2", "nominal area of a mesh node in Eq. 45, which has its own set of spots", gt=0.0
     )
-    drive_scale: float = quantity_field("1", "K_TS in Eq. 46 over the published K_TS", gt=0.0)
+    drive_scale: float = quantity_field("1", "ratio of K_TS in Eq. 46 to the published K_TS", gt=0.0)
     traction: str = choice_field(
-        "ratio", "real_area", doc="shear of a spot: the node's traction ratio, or a traction on the real area"
+        "ratio",
+        "real_area",
+        doc="shear of a spot: from traction_ratio (ratio), or shear_traction on the real area (real_area)",
     )
 
     @property

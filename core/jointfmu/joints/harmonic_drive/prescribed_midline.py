@@ -104,13 +104,13 @@ class CatalogueDrive(PrescribedDrive):
     T2: float = quantity_field("N.m", "torque at the second corner", gt=0.0)
     corner: float = quantity_field(
         "1",
-        "half-width of the two smooth corners over their wind-up; 0: the lines themselves, with kinks",
+        "half-width of the smooth corners at T1 and T2, divided by the wind-up there; 0: sharp corners",
         ge=0.0,
         lt=1.0,
         default=DEFAULT_CORNER_RATIO,
     )
     max_torque: float = quantity_field(
-        "N.m", "end of the tabulated law, at least past the second corner", gt=0.0
+        "N.m", "largest torque of the tabulated law, above the second corner", gt=0.0
     )
 
     def find_limits(self) -> list[ParameterLimit]:
@@ -122,7 +122,7 @@ class CatalogueDrive(PrescribedDrive):
             ParameterLimit(
                 "corner",
                 Interval.from_bounds(ge=0.0, lt=(second - first) / (second + first)),
-                "corners must not meet",
+                "the smooth corners must not overlap",
             ),
             ParameterLimit(
                 "lost_motion",
@@ -135,8 +135,8 @@ class CatalogueDrive(PrescribedDrive):
                         0.0,
                     ),
                 ),
-                f"the first line must reach beyond {PLAY_END_TORQUE_RATIO * PLAY_WIDTH_RATIO:g} "
-                "rated_torque, where play ends",
+                f"T1 must be above {PLAY_END_TORQUE_RATIO * PLAY_WIDTH_RATIO:g} rated_torque, where play "
+                "ends",
             ),
         ]
 
@@ -209,8 +209,8 @@ class MeasuredMidline:
     increase.
     """
 
-    torque: tuple[float, ...] = series_field("N.m", "torque of each point, rising", gt=0.0)
-    angle: tuple[float, ...] = series_field("rad", "wind-up of each point, rising", gt=0.0)
+    torque: tuple[float, ...] = series_field("N.m", "torque of each point, increasing", gt=0.0)
+    angle: tuple[float, ...] = series_field("rad", "wind-up of each point, increasing", gt=0.0)
 
     def __post_init__(self) -> None:
         check_fields(self)
@@ -225,7 +225,7 @@ class MeasuredMidline:
             for i in np.flatnonzero(np.diff(values) <= 0.0).tolist():
                 raise ValueError(
                     f"table.{name}[{i + 1}] = {values[i + 1]:.10g} {unit} is outside "
-                    f"({values[i]:.10g}, inf): torque and angle rise from point to point"
+                    f"({values[i]:.10g}, inf): torque and angle must increase from point to point"
                 )
 
 

@@ -40,7 +40,7 @@ def torque_curve(drive: Drive) -> Curve:
     if isinstance(drive, PrescribedDrive):
         x, y, s, slope_before, slope_after = np.array(drive.make_nodes(), dtype=np.float64).T
         return Curve(x, y, s, slope_after[:-1], slope_before[1:])
-    raise TypeError(f"{type(drive).__name__} is no ContactPairDrive and no PrescribedDrive")
+    raise TypeError(f"{type(drive).__name__} is neither a ContactPairDrive nor a PrescribedDrive")
 
 
 def _tabulate_midline(drive: ContactPairDrive, step_count: int) -> Curve:

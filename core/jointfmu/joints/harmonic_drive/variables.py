@@ -12,11 +12,14 @@ _STIFFNESS_OUTPUTS = (
     Variable("K_WTS", "N.m/rad", "tangent stiffness dT/dphi of the midline at the present wind-up", 5e3),
     Variable("K_TS", "N.m/rad", "stiffness of the contact pair: 1/K_WTS = 1/K_FTS + 1/K_TS", 5e3),
     Variable("K_FTS", "N.m/rad", "stiffness of circular spline and flexspline", 2e4),
-    Variable("K_TS_pair", "N.m/rad", "K_TS over drive_scale, if any: scale of Hu 2023, Fig. 11", 1e3),
-    Variable("p_max", "Pa", "peak contact pressure, at the major axis and the cup's opening", 1e8),
     Variable(
-        "E_loss", "J", "work turned into heat by hysteresis and dry friction since initialization", 1e-3
+        "K_TS_pair",
+        "N.m/rad",
+        "K_TS divided by drive_scale (if the law has one): scale of Hu 2023, Fig. 11",
+        1e3,
     ),
+    Variable("p_max", "Pa", "peak contact pressure, at the major axis and the cup's opening", 1e8),
+    Variable("E_loss", "J", "energy dissipated by hysteresis and dry friction since initialization", 1e-3),
 )
 
 _ANGLE_INPUTS = ("phi1", "phi2")
@@ -79,16 +82,19 @@ MODELS = (
             Variable(
                 "tau1", "N.m", "torque on flange 1, tau (1/ratio + dphi_error/dphi1) - tau_friction", 0.1
             ),
-            Variable("tau2", "N.m", "torque of the element on flange 2, -tau", 5.0),
+            Variable("tau2", "N.m", "torque on flange 2, -tau", 5.0),
             Variable("phi_rel", "rad", "wind-up at the output, phi2 - phi1/ratio - phi_error", 1e-3),
             Variable(
-                "tau", "N.m", "T(phi_rel) + T_h + d der(phi_rel), T_h the friction of the hysteresis", 5.0
+                "tau",
+                "N.m",
+                "output torque: midline T(phi_rel) + hysteresis friction T_h + d der(phi_rel)",
+                5.0,
             ),
             *_STIFFNESS_OUTPUTS,
             Variable(
                 "tau_friction",
                 "N.m",
-                "friction torque at the wave generator, positive against positive rotation",
+                "friction torque at the wave generator, positive if it opposes positive rotation",
                 0.01,
             ),
             Variable("phi_error", "rad", "kinematic error at the output, a function of phi1", 1e-4),

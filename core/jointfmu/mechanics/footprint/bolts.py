@@ -22,8 +22,8 @@ class BoltedFrame:
     The rows lie at y = +-row_spacing/2 with bolts at x = -column_spacing/2, 0, +column_spacing/2.
     """
 
-    row_spacing: float = quantity_field("m", "distance of the two bolt rows", gt=0.0)
-    column_spacing: float = quantity_field("m", "distance of the outer bolts of a row", gt=0.0)
+    row_spacing: float = quantity_field("m", "distance between the two bolt rows", gt=0.0)
+    column_spacing: float = quantity_field("m", "distance between the outer bolts of a row", gt=0.0)
     flange_width: float = quantity_field("m", "width of the contact frame", gt=0.0)
     hole_diameter: float = quantity_field("m", "clearance hole of a bolt", gt=0.0)
     decay_length: float = quantity_field("m", "length of the pressure decay", gt=0.0, calibration=True)
@@ -34,7 +34,7 @@ class BoltedFrame:
         if self.hole_diameter >= self.flange_width:
             raise ValueError(
                 f"hole_diameter = {self.hole_diameter:g} m is outside (0, {self.flange_width:g}): "
-                "the hole must fit into the flange"
+                "the hole must be smaller than the flange width"
             )
 
     @property

@@ -82,7 +82,9 @@ def moment_pressure(area_share: Array, y: Array, preload_shape: Array) -> Array:
     distances = y - force @ y
     second_moment = float(force @ distances**2)
     if not second_moment > 0.0:
-        raise ValueError("all nodes that touch have the same y, expected a contact across the bolt rows")
+        raise ValueError(
+            "all nodes in contact have the same y, expected a contact that extends across the bolt rows"
+        )
     return np.asarray(preload_shape * distances / second_moment)
 
 

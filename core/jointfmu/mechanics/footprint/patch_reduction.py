@@ -3,7 +3,7 @@
 At constant load the traction of a node with the approach delta is p(delta) - p(delta - v), with the
 displacement v in units of mu/kappa, kappa = K_T/K_N (Jaeger 1995, Ciavarella 1998). Sums of such tractions
 over nodes cannot be kept by a few nodes with other shares: in a rotation about the normal the distance from
-the pole is no polynomial of the position, and a tilt changes the pressure.
+the pole is not a polynomial of the position, and a tilt changes the pressure.
 
 So each patch represents the nodes around it. Its position is the centre of their friction; its sliders lie on
 a circle with nearly their radius of gyration. Near the pole of a rotation, where its parts slide in different

@@ -52,11 +52,11 @@ class BoltedPlate:
     def __post_init__(self) -> None:
         check_fields(self)
         if len(self.y) != len(self.x):
-            raise ValueError(f"y has {len(self.y)} numbers, expected as many as x has: {len(self.x)}")
+            raise ValueError(f"y has {len(self.y)} numbers, expected as many as x: {len(self.x)}")
         if not self.cone_diameter > self.hole_diameter:
             raise ValueError(
                 f"cone_diameter = {self.cone_diameter:g} m is outside ({self.hole_diameter:g}, inf): "
-                "a bolt presses beside its hole"
+                "it must be larger than the hole"
             )
         check_holes(self)
 
@@ -144,7 +144,8 @@ def check_holes(plate: BoltedPlate) -> None:
         if np.any(np.abs(bolt) + radius >= half):
             x, y = half - radius
             raise ValueError(
-                f"bolt {i + 1} at ({bolt[0]:g}, {bolt[1]:g}) m with a hole of {2.0 * radius:g} m leaves "
+                f"bolt {i + 1} at ({bolt[0]:g}, {bolt[1]:g}) m with a hole of "
+                f"{2.0 * radius:g} m is not inside "
                 f"the plate; allowed are |x| < {x:g} m and |y| < {y:g} m"
             )
         distances = np.hypot(*(bolts[:i] - bolt).T)

@@ -112,7 +112,7 @@ def _select_groups(
             return nodes, weights[nodes] / share[nodes]
         number = min(number, int(np.sum(reduced > 0.0))) - max(excess // (2 * int(np.max(size))), 1)
     raise ValueError(
-        f"{max_node_count} points are too few, expected at least {max_node_count + excess} for this contact"
+        f"{max_node_count} points are too few for this contact; expected at least {max_node_count + excess}"
     )
 
 

@@ -35,7 +35,7 @@ static void check_parameter(Text *why, const Variable *v, double value)
         text_add(why, "; ");
     if (in) {
         text_quantity(why, v->name, value, 6, v->unit);
-        text_add(why, " is no whole number, allowed are 1, 2, 3, ...");
+        text_add(why, " is not a whole number, allowed are 1, 2, 3, ...");
     } else {
         add_outside(why, v, value, 10);
     }

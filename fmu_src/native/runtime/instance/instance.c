@@ -204,7 +204,7 @@ Status instance_set_experiment(Instance *m, const char *function, double toleran
         text_print(&text, "start time %.16g", start);
         if (stop_defined)
             text_print(&text, " and stop time %.16g", stop);
-        return instance_refuse(m, function, "%s; expected a finite start and a stop that is not before it",
+        return instance_refuse(m, function, "%s; expected a finite start time, and a stop time not before it",
                                text.line);
     }
     m->now.values[0] = m->now.start = start;

@@ -156,7 +156,7 @@ static bool is_saved(const Instance *m, const char *function, const SavedState *
     if (memcmp(saved->magic, magic, sizeof magic) == 0 && saved->version == m->version &&
         memcmp(saved->token, data.token, sizeof data.token) == 0)
         return true;
-    return instance_refuse(m, function, "this is no FMU state of %s; expected one that it gave", data.name) == OK;
+    return instance_refuse(m, function, "this is not an FMU state of %s; expected one that it gave", data.name) == OK;
 }
 
 static Status refuse_bytes(const Instance *m, const char *function, const char *what)
@@ -245,7 +245,7 @@ static Status hand_over(const Instance *m, const char *function, const State *st
         return ERROR;
     SavedState *to = *saved ? *saved : calloc(1, sizeof *to);
     if (!to)
-        return instance_refuse(m, function, "no memory is left; expected some for a state");
+        return instance_refuse(m, function, "out of memory; expected free memory for a state");
     memcpy(to->magic, magic, sizeof magic);
     to->version = m->version;
     memcpy(to->token, data.token, sizeof data.token);

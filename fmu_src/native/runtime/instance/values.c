@@ -122,7 +122,7 @@ Status instance_set_slopes(Instance *m, const char *function, const uint32_t ref
     for (size_t i = 0; i < n; i++) {
         if (!known(m, function, refs[i]))
             return ERROR;
-        const char *wrong = !among(refs[i], FIRST_INPUT, N_INPUTS) ? " is no input; expected one"
+        const char *wrong = !among(refs[i], FIRST_INPUT, N_INPUTS) ? " is not an input; expected one"
                             : orders[i] != 1 ? " is given a derivative of another order; expected order 1"
                             : !isfinite(values[i])
                                 ? " is given a derivative that is not finite; expected a finite one"

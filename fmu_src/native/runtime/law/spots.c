@@ -63,7 +63,7 @@ bool spots_begin(Spots *spots, const double *c, Text *why)
     if (!good)
         text_print(why,
                    "the parameters give a reference area of %g m2 or a load that is not representable; "
-                   "is D close to the end of its interval, or G, h or another one extreme?",
+                   "check D (close to the end of its interval?) and extreme values of G, h and others",
                    spots->reference);
     return good;
 }

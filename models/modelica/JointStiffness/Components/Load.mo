@@ -20,6 +20,6 @@ equation
       Line(points={{-90,-70},{82,-70}}, color={192,192,192}),
       Line(points={{-80,-70},{-60,-70},{-40,-60},{-20,-30},{0,-20},{20,-20},{30,0},{34,60},{52,60},{56,0},{66,-20},{80,-20}}, color={31,95,168}, thickness=0.5)}),
     Documentation(info="<html>
-<p>The load of the FMUs <code>TorqueProfile</code> and <code>ForceProfile</code>, with the same parameters: edges are quintics with continuous first and second derivative. Where an edge begins there is a time event, so that a solver with a large step does not pass over a short pulse.</p>
+<p>The load of the FMUs <code>TorqueProfile</code> and <code>ForceProfile</code>, with the same parameters: edges are quintics with continuous first and second derivative. The start of each edge is a time event, so that a solver with a large step does not miss a short pulse.</p>
 </html>"));
 end Load;

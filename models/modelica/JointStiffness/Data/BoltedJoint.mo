@@ -1,23 +1,23 @@
 within JointStiffness.Data;
 record BoltedJoint "A bolted joint at a fixed preload and moment"
   extends Modelica.Icons.Record;
-  parameter Modelica.Units.SI.Force preload(min=0) "Pre-tightening force of each bolt";
+  parameter Modelica.Units.SI.Force preload(min=0) "Preload of each bolt (bolt force at tightening)";
   parameter Modelica.Units.SI.Torque moment "Bending moment on the joint";
-  parameter Modelica.Units.SI.Mass mass(min=0) "mass of the structure, for the viscous equivalent";
-  parameter Modelica.Units.SI.TranslationalSpringConstant bolts(min=0) "Stiffness of all bolts, beside the interface";
-  parameter Modelica.Units.SI.Force bolt_forces[:](each min=0) "Force of each bolt at tightening, which has an equal part of this stiffness";
-  parameter Boolean plastic_damping = false "normal damping by the plastic work of first loading (Zhao 2018, Eqs. 19-20)";
-  parameter Boolean memory = true "friction with partial slip and memory; without it an elastic joint";
-  parameter Boolean damping = false "the dashpots C_xx, C_yy, C_zz of Zhao 2018 act";
+  parameter Modelica.Units.SI.Mass mass(min=0) "mass of the structure, used for the equivalent viscous damping";
+  parameter Modelica.Units.SI.TranslationalSpringConstant bolts(min=0) "Stiffness of all bolts, parallel to the interface";
+  parameter Modelica.Units.SI.Force bolt_forces[:](each min=0) "Force of each bolt at tightening; all bolts have an equal share of the stiffness";
+  parameter Boolean plastic_damping = false "true: normal damping from the plastic work of first loading (Zhao 2018, Eqs. 19-20)";
+  parameter Boolean memory = true "true: friction with partial slip and memory; false: elastic joint";
+  parameter Boolean damping = false "true: the dashpots C_xx, C_yy, C_zz of Zhao 2018 act";
   parameter Real mu(min=0) "coefficient of static friction";
   parameter Modelica.Units.SI.Force tight(min=0) "Normal force of the tightened interface";
-  parameter Real shear(min=0) "Tangential over normal stiffness";
+  parameter Real shear(min=0) "Ratio of tangential to normal stiffness";
   parameter Real eta_t(min=0) "Tangential dissipation factor";
   parameter Real table[:, 5]
     "Approach from the tightened state [m], force above tightening [N], stiffness [N/m], its derivative before and after [N/m2]";
   parameter Real heights[:, 3]
-    "Approach from the tightened state [m], normal force [N] and stiffness [N/m] there: between them the springs of a slider";
+    "Approach from the tightened state [m], normal force [N] and stiffness [N/m]; the springs of a slider lie between two rows";
   parameter Real sliders[:, 2]
-    "Stiffness [N/m] and friction [N] of the sliders at tightening, first of those that slip earlier";
+    "Stiffness [N/m] and friction limit [N] of the sliders at tightening; those that slip first come first";
   parameter Real eta_n[:, 2] "Approach from the tightened state [m], normal dissipation factor";
 end BoltedJoint;

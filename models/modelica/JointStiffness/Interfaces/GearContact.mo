@@ -3,7 +3,7 @@ partial block GearContact "Tooth contact of a gear: force in, motion out"
   extends Modelica.Blocks.Icons.Block;
   Modelica.Blocks.Interfaces.RealInput f(unit="N") "normal load of the tooth contact"
     annotation (Placement(transformation(extent={{-140,-20},{-100,20}})));
-  Modelica.Blocks.Interfaces.RealOutput s_rel(unit="m") "approach of the two flanks from first touch"
+  Modelica.Blocks.Interfaces.RealOutput s_rel(unit="m") "approach of the two flanks, counted from first touch"
     annotation (Placement(transformation(extent={{100,58},{120,78}})));
   Modelica.Blocks.Interfaces.RealOutput K_N(unit="N/m") "tangent stiffness df/ds"
     annotation (Placement(transformation(extent={{100,12},{120,32}})));

@@ -23,7 +23,7 @@ partial block GearMesh "Mesh of two gear wheels with rough flanks and backlash: 
     annotation (Placement(transformation(extent={{100,-30},{120,-10}})));
   Modelica.Blocks.Interfaces.RealOutput E(unit="J") "elastic energy of the mesh"
     annotation (Placement(transformation(extent={{100,-50},{120,-30}})));
-  Modelica.Blocks.Interfaces.RealOutput step_at_once(unit="s") "largest stable step if the master passes the new force on before the body steps: with inertia1, inertia2, K, d"
+  Modelica.Blocks.Interfaces.RealOutput step_at_once(unit="s") "largest stable step for a sequential (Gauss-Seidel) master, which passes the new force on before the body steps: with inertia1, inertia2, K, d"
     annotation (Placement(transformation(extent={{100,-70},{120,-50}})));
   Modelica.Blocks.Interfaces.RealOutput step_side_by_side(unit="s") "largest stable step for a parallel (Jacobi) master with lag_b = 1; 0: unstable at any step: with inertia1, inertia2, K, d"
     annotation (Placement(transformation(extent={{100,-90},{120,-70}})));

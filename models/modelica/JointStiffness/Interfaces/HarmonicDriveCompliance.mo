@@ -11,11 +11,11 @@ partial block HarmonicDriveCompliance "Wind-up of a harmonic drive with the wave
     annotation (Placement(transformation(extent={{100,16},{120,36}})));
   Modelica.Blocks.Interfaces.RealOutput K_FTS(unit="N.m/rad") "stiffness of circular spline and flexspline"
     annotation (Placement(transformation(extent={{100,-10},{120,10}})));
-  Modelica.Blocks.Interfaces.RealOutput K_TS_pair(unit="N.m/rad") "K_TS over drive_scale, if any: scale of Hu 2023, Fig. 11"
+  Modelica.Blocks.Interfaces.RealOutput K_TS_pair(unit="N.m/rad") "K_TS divided by drive_scale (if the law has one): scale of Hu 2023, Fig. 11"
     annotation (Placement(transformation(extent={{100,-36},{120,-16}})));
   Modelica.Blocks.Interfaces.RealOutput p_max(unit="Pa") "peak contact pressure, at the major axis and the cup's opening"
     annotation (Placement(transformation(extent={{100,-61},{120,-41}})));
-  Modelica.Blocks.Interfaces.RealOutput E_loss(unit="J") "work turned into heat by hysteresis and dry friction since initialization"
+  Modelica.Blocks.Interfaces.RealOutput E_loss(unit="J") "energy dissipated by hysteresis and dry friction since initialization"
     annotation (Placement(transformation(extent={{100,-87},{120,-67}})));
   annotation (
     Icon(graphics={Text(extent={{-90,30},{90,-30}}, textColor={43,58,74}, textString="FMU")}),

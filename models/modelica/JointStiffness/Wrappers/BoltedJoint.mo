@@ -1,6 +1,6 @@
 within JointStiffness.Wrappers;
 model BoltedJoint "BoltedJoint as an imported FMU, between flanges"
-  parameter Modelica.Units.SI.Force preload(min=0, start=0) "pre-tightening force of each bolt";
+  parameter Modelica.Units.SI.Force preload(min=0, start=0) "preload of each bolt (bolt force at tightening)";
   parameter Modelica.Units.SI.Torque moment=0 "bending moment on the joint";
   replaceable JointStiffness.Interfaces.BoltedJoint fmu "Redeclare as the imported FMU"
     annotation (Placement(transformation(extent={{-20,-20},{20,20}})));
@@ -111,6 +111,6 @@ equation
       Text(extent={{-150,125},{150,85}}, textColor={0,0,255}, textString="%name")}),
     Documentation(info="<html>
 <p>The FMU BoltedJoint between flanges. It takes motion and gives force, so it belongs between inertias.</p>
-<p>Redeclare <code>fmu</code> as the class that your tool made of the FMU; set the FMU's parameters there.</p>
+<p>Redeclare <code>fmu</code> as the class that your tool created from the FMU; set the FMU's parameters there.</p>
 </html>"));
 end BoltedJoint;

@@ -25,6 +25,6 @@ equation
       Text(extent={{-150,125},{150,85}}, textColor={0,0,255}, textString="%name")}),
     Documentation(info="<html>
 <p>The FMU GearContact between flanges. The flange follows the FMU's displacement, so give it a force that does not depend on an inertia right at the flange: an inertia there would need the inverse of the FMU. Between inertias take a component of <a href=\"modelica://JointStiffness.Components\">Components</a>.</p>
-<p>Redeclare <code>fmu</code> as the class that your tool made of the FMU; set the FMU's parameters there.</p>
+<p>Redeclare <code>fmu</code> as the class that your tool created from the FMU; set the FMU's parameters there.</p>
 </html>"));
 end GearContact;

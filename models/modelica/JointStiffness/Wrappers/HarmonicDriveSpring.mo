@@ -45,6 +45,6 @@ equation
       Text(extent={{-150,125},{150,85}}, textColor={0,0,255}, textString="%name")}),
     Documentation(info="<html>
 <p>The FMU HarmonicDriveSpring between flanges. It takes motion and gives force, so it belongs between inertias.</p>
-<p>Redeclare <code>fmu</code> as the class that your tool made of the FMU; set the FMU's parameters there.</p>
+<p>Redeclare <code>fmu</code> as the class that your tool created from the FMU; set the FMU's parameters there.</p>
 </html>"));
 end HarmonicDriveSpring;

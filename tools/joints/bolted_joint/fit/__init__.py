@@ -13,7 +13,7 @@ SERIES_OPTION = Option(
 FITS = (
     Procedure(
         name="preload",
-        description="stiffness or frequency over preload to the bolted joint",
+        description="the bolted joint to stiffness or frequency over preload",
         takes_file=True,
         options=(
             Option(
@@ -26,12 +26,14 @@ FITS = (
     ),
     Procedure(
         name="loop",
-        description="loops, decays or responses in shear to the bolted joint",
+        description="the bolted joint to loops, decays or responses in shear",
         takes_file=True,
         identifying_column="displacement",
         options=(
             Option(
-                "preload", "of each bolt in the test [N] (default: of the start's inputs)", is_number=True
+                "preload",
+                "preload of each bolt in the test [N] (default: that of the start file)",
+                is_number=True,
             ),
             Option(
                 "modal_mass", "mass that vibrates on the joint [kg], for decays and responses", is_number=True

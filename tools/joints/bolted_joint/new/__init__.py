@@ -46,7 +46,7 @@ NEW = NewJointCommand(
         Option("head", "head of the bolts (default: hexagon)", choices=("hexagon", "socket")),
         Option("hole", "diameter of the clearance holes [mm] (default: ISO 273, medium)", "D"),
         Option("bearing", "outer diameter of the bearing surface [mm] (default: of the head)", "D"),
-        Option("preload", "force of each bolt [N] (default: VDI 2230)", "F"),
+        Option("preload", "preload of each bolt [N] (default: VDI 2230)", "F"),
         Option(
             "embedding", "preload that each bolt loses by embedding [N] (default: VDI 2230, Table 5)", "F"
         ),

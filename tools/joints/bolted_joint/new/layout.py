@@ -92,7 +92,7 @@ def _grid_size(spans: Sequence[float], bolt_count: int, grid: str | None) -> tup
     if grid:
         match = _GRID_PATTERN.fullmatch(grid)
         if not match or 0 in (sizes := (int(match[1]), int(match[2]))):
-            raise ValueError(f"--grid = {grid!r} is no grid; expected the bolts along x and y, as in 3x2")
+            raise ValueError(f"--grid = {grid!r} is not a grid; expected the bolts along x and y, as in 3x2")
         columns, rows = sizes
         rim = 2 * (columns + rows) - 4 if min(sizes) > 2 else columns * rows
         if bolt_count not in (columns * rows, rim):

@@ -88,7 +88,7 @@ def make_joint(options: DrawingOptions) -> NewJoint:
         * bolt.clamped_parts[0].thickness
         * faces.read_materials(options)[0].numbers["density"].value
     )
-    sheet.add("mass", mass, "estimate", "mass of the plate of side 1; what vibrates")
+    sheet.add("mass", mass, "estimate", "mass of the plate of side 1, assumed to vibrate")
     preload, warnings = _add_preload(sheet, options, thread)
     if not loss < preload:
         raise ValueError(
@@ -114,7 +114,7 @@ def make_joint(options: DrawingOptions) -> NewJoint:
     alone = _interface_only_text(facts["interface_K_zz"][0] / count, bolt)
     if options["tapped"] and options["thickness"] is None:
         return NewJoint(
-            file, facts, [*warnings, f"{alone}: for the whole joint state --thickness of both plates"]
+            file, facts, [*warnings, f"{alone}: for the complete joint state --thickness of both plates"]
         )
     attached, sides = options["attached"] or "faces", options["sides"]
     complete_joint = plate_finite_elements.compute_facts(file, plates, attached, sides, alone, shape)
@@ -220,7 +220,7 @@ def outer_diameter(plate_size: tuple[float, float], positions: Array) -> float:
     if np.min(edge) <= 0.0:
         i = int(np.argmin(edge))
         x, y = positions[i] * 1e3
-        raise ValueError(f"bolt {i + 1} at ({x:g}, {y:g}) mm leaves the plate")
+        raise ValueError(f"bolt {i + 1} at ({x:g}, {y:g}) mm is not inside the plate")
     distance = np.hypot(*np.moveaxis(positions[:, None, :] - positions, -1, 0)) + np.diag(
         np.full(len(positions), np.inf)
     )
@@ -239,12 +239,12 @@ def _add_plate(
         f"{clamped_bolt.cone_slope:.4g}"
     )
     sheet.add("plate.cone_diameter", plate.cone_diameter, "derived", cone)
-    sheet.add("A_0", plate.area, "derived", "the plate without its holes")
+    sheet.add("A_0", plate.area, "derived", "area of the plate without the holes")
 
 
 def _add_bolts(sheet: ParameterSheet, plate: BoltedPlate, clamped_bolt: ClampedBolt, thread: Thread) -> None:
     row_bolts, row_distance = plate.equivalent_bolt_rows
-    rows = "the places of the bolts: two rows that would carry a moment about x as they do"
+    rows = "from the bolt positions: two equivalent rows that carry the same moment about x"
     sheet.add("n_bolts", float(len(plate.x)), "user", "stated on the drawing")
     sheet.add("row_bolts", row_bolts, "derived", rows)
     sheet.add("row_distance", row_distance, "derived", rows)
@@ -326,15 +326,15 @@ def _design_facts(
     bolts = values.n_bolts * clamped_bolt.bolt_stiffness
     K = float(state["K_zz"]) - bolts
     facts = {
-        "preload": (preload, "N", "force of each bolt as it is tightened"),
+        "preload": (preload, "N", "force of each bolt at tightening"),
         "embedding": (
             values.embedding,
             "N",
             f"preload lost by embedding ({values.embedding / preload:.1%}); stiffness and slip are those of "
             "the remaining preload",
         ),
-        "p_mean": (float(state["p_mean"]), "Pa", "mean pressure on the plate"),
-        "p_max": (float(state["p_max"]), "Pa", "largest pressure, near a bolt"),
+        "p_mean": (float(state["p_mean"]), "Pa", "mean contact pressure"),
+        "p_max": (float(state["p_max"]), "Pa", "largest contact pressure, near a bolt"),
         "h": (float(file.values_by_name.get("h", np.nan)), "m", "combined rms height of both faces"),
         "interface_K_zz": (
             K,
@@ -342,11 +342,15 @@ def _design_facts(
             "normal stiffness of the interface alone at this preload, without the bolts",
         ),
         "interface_K_xx": (float(state["K_xx"]), "N/m", "tangential stiffness of the interface alone"),
-        "bolt_stiffness": (clamped_bolt.bolt_stiffness, "N/m", "of one bolt, 1/delta_S of VDI 2230"),
+        "bolt_stiffness": (
+            clamped_bolt.bolt_stiffness,
+            "N/m",
+            "stiffness of one bolt, 1/delta_S of VDI 2230",
+        ),
         "member_stiffness": (
             clamped_bolt.member_stiffness,
             "N/m",
-            "of the parts that one bolt clamps, 1/delta_P of VDI 2230",
+            "stiffness of the members that one bolt clamps, 1/delta_P of VDI 2230",
         ),
         "load_factor": (
             clamped_bolt.bolt_stiffness / (clamped_bolt.bolt_stiffness + clamped_bolt.member_stiffness),

@@ -132,7 +132,7 @@ def compute_joint_of_assembly(
     Raises ValueError for bolt heads that overlap or extend beyond the plate, and if a package is missing.
     """
 
-    with require_fem_packages("the whole joint"):
+    with require_fem_packages("the complete joint"):
         from ....fem.geometry import check_thickness
         from ....fem.reduction.elastic_bodies import reduce_bodies
         from ....fem.whole_joint import JointFiniteElements
@@ -168,7 +168,7 @@ def set_elastic_bodies(file: ParameterFile, bodies: ElasticBodies, attachment: s
     values = replace(file.values, sides="elastic", bodies=replace(bodies, attached=attachment))
     source = f"finite elements of the bodies between {ATTACHMENTS[attachment]}, reduced to modes"
     names = [f"bodies.{name}" for name, value in flatten_parameters(bodies).items() if value != ()]
-    stated = "the whole joint between what it connects; rigid: the interface alone"
+    stated = "elastic: the complete joint between its attachments; rigid: the interface alone"
     return replace(
         file,
         values=values,
@@ -267,7 +267,7 @@ def _stiffness_facts(compliances: Compliances, attachment: str, fmu_suffix: str)
         rows[f"joint_{name}"] = (
             joint,
             unit,
-            f"complete joint between {ATTACHMENTS[attachment]}, other motions held"
+            f"complete joint between {ATTACHMENTS[attachment]}, other motions fixed"
             + (f": output {name} of the FMU{fmu_suffix}" if fmu_suffix else "")
             + f"; compliance: {shares}; the interface alone is {interface / joint:.3g} times as stiff",
         )
@@ -286,22 +286,26 @@ def _interface_share(compliances: Compliances, is_interface_only: bool) -> Facts
     text = f"share of the interface in the compliance along z, at most {rest:.3g} in other directions; " + (
         "the FMU is the interface alone (--sides rigid)"
         if is_interface_only
-        else "the FMU is the whole joint (sides = elastic)"
+        else "the FMU is the complete joint (sides = elastic)"
     )
     return {"interface_share": (float(share[2]), "1", text)}
 
 
 def _load_facts(compliances: Compliances, remaining_preload: float, attachment: str) -> Facts:
     """Effect of an external force along z without bending: load factor, bolt share, opening load."""
-    where = f"a force along z at {ATTACHMENTS[attachment]}"
+    where = f"force along z at {ATTACHMENTS[attachment]}"
     opens = compliances.opening_load(remaining_preload)
     free = f"{where}, other motions free"
     return {
-        "joint_load_factor": (compliances.load_factor, "1", f"n Phi_K: share that the bolts carry of {free}"),
+        "joint_load_factor": (
+            compliances.load_factor,
+            "1",
+            f"n Phi_K: share that all bolts carry of a {free}",
+        ),
         "bolt_load_share": (
             float(compliances.bolt_force[:, 2].max()),
             "1",
-            f"largest share that one bolt carries of {free}",
+            f"share that the most loaded bolt carries of a {free}",
         ),
         "opening_load": (
             opens,

@@ -7,7 +7,7 @@ from ..catalogue import STIFFNESS_COLUMNS
 FITS = (
     Procedure(
         name="torque-angle",
-        description="a torque-angle curve to the harmonic drive",
+        description="the harmonic drive to a torque-angle curve",
         takes_file=True,
         options=(
             Option(
@@ -25,13 +25,13 @@ FITS = (
     ),
     Procedure(
         name="loop",
-        description="loops, decays or responses to the hysteresis of the harmonic drive",
+        description="the hysteresis of the harmonic drive to loops, decays or responses",
         takes_file=True,
         identifying_column="angle",
         options=(
             Option(
                 "inertia",
-                "inertia that vibrates on the drive [kg.m2], for decays and responses",
+                "moment of inertia that vibrates on the drive [kg.m2], for decays and responses",
                 is_number=True,
             ),
         ),
@@ -39,7 +39,7 @@ FITS = (
     ),
     Procedure(
         name="log",
-        description="a robot's logs to the friction of the harmonic drive",
+        description="the friction of the harmonic drive to logs of a robot",
         takes_file=True,
         takes_several_files=True,
         options=(
@@ -53,14 +53,16 @@ FITS = (
             Option("torque_constant", "motor torque over motor current [N.m/A]", is_number=True),
             Option("ratio", "speed ratio (default: that of the start file)", is_number=True),
             Option(
-                "motor_inertia", "inertia of the rotor [kg.m2], which does not load the teeth", is_number=True
+                "motor_inertia",
+                "moment of inertia of the rotor [kg.m2]; its torque does not pass through the teeth",
+                is_number=True,
             ),
         ),
         run=lazy_fit(f"{__name__}.log"),
     ),
     Procedure(
         name="catalogue",
-        description="a catalogue row to the harmonic drive",
+        description="the harmonic drive to a catalogue row",
         takes_file=False,
         options=(
             *(

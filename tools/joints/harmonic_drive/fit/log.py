@@ -92,8 +92,8 @@ def fit(
             fitted_log = fit_with_rotor(file, samples, names_to_fit, *rotor_fit)
         else:
             notes.append(
-                "without --motor-inertia all inertia counts as the arm's: what hangs on the load, load_loss "
-                "and stiffness, is off by the rotor's share"
+                "without --motor-inertia the rotor counts as part of the arm: load_loss and the stiffness "
+                "have an error equal to the share of the rotor in the inertia"
             )
     solution, drawn_pictures = fitted_log.solution, [*draw_pictures(samples, fitted_log)]
     intervals = _confidence_intervals(fitted_log.solution)
@@ -173,7 +173,7 @@ def _fit_stiffness(
         if name in file.values_by_name and (not fitted_names or name in fitted_names)
     ]
     if file.law != "catalogue" or not names:
-        return None, ["stiffness and hysteresis are found with a start of the law catalogue"]
+        return None, ["stiffness and hysteresis are fitted only if the start file has law = catalogue"]
     load, spread = log.sensor_torque, np.zeros((0, log.q.size))
     if not np.all(np.isfinite(load)):
         load, spread = fitted_log.evaluate_load(log)

@@ -214,20 +214,21 @@ def select_parameters(
     else:
         back_driven = load * samples.dq < -MIN_LOAD_RATIO * drive.rated_torque * np.abs(samples.dq)
         if drive.load_loss_back < 0.0:
-            reasons[LOAD_LOSS_BACK] = "it is that of load_loss in the start file"
+            reasons[LOAD_LOSS_BACK] = "the start file sets it equal to load_loss"
         elif not back_driven.any():
             reasons[LOAD_LOSS_BACK] = "the load never drives the motor"
     known = samples.temperature[np.isfinite(samples.temperature)]
     if known.size == 0 or np.ptp(known) < MIN_TEMPERATURE_RANGE:
-        span = "no temperature in it" if known.size == 0 else f"{np.ptp(known):.2g} K of temperature"
+        span = "the log has no temperature" if known.size == 0 else f"{np.ptp(known):.2g} K of temperature"
         reasons |= dict.fromkeys(TEMPERATURE_COEFFICIENTS, f"{span}, {MIN_TEMPERATURE_RANGE:g} K are needed")
     slowest = abs(drive.ratio) * np.min(np.abs(samples.dq))
     if slowest > 2.0 * drive.stribeck_speed:
         reasons[STRIBECK_FRICTION] = (
-            f"the motor is never slower than {slowest:.3g} rad/s, twice stribeck_speed is needed"
+            f"the motor is never slower than {slowest:.3g} rad/s; speeds below twice "
+            f"stribeck_speed are needed"
         )
     notes = [
-        f"the log does not determine {name}, which stays as it is: {why}" for name, why in reasons.items()
+        f"the log does not determine {name}, which keeps its value: {why}" for name, why in reasons.items()
     ]
     return [name for name in FITTED_PARAMETERS if name not in reasons], notes
 
@@ -300,7 +301,7 @@ def drop_undetermined(
         other = fit_samples(file, samples, determined, fitted_log.rotor_inertia)
         increase = np.sum(other.solution.residuals**2) - np.sum(fitted_log.solution.residuals**2)
         if increase < len(undetermined) * (MAX_RESIDUAL_INCREASE * fitted_log.solution.noise) ** 2:
-            text = "the log does not determine {}, which stays as it is: that fits as well"
+            text = "the log does not determine {}, which keeps its value: the fit is as good with that value"
             return other, determined, [text.format(name) for name in undetermined]
     return fitted_log, list(names), []
 

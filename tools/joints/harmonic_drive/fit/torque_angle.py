@@ -198,8 +198,8 @@ def _check_size(midline: backbone.Backbone, start_file: ParameterFile, table: co
         area, deviation = midline.loop_area
         if area < -max(3.0 * deviation, MAX_CREATED_ENERGY * torque_range * angle_range):
             raise ValueError(
-                f"{path}: the loop creates energy, loop_area = {area:.3g} J, expected is 0 or more: the "
-                "angle has to lag behind the torque; reverse the order of the rows if they run back in time"
+                f"{path}: the loop creates energy, loop_area = {area:.3g} J, expected 0 or more: the angle "
+                "must lag behind the torque; reverse the order of the rows if their time order is reversed"
             )
 
 

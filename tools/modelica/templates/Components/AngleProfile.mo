@@ -20,6 +20,6 @@ equation
       Line(points={{-90,-70},{82,-70}}, color={192,192,192}),
       Line(points={{-80,-70},{-50,-70},{-30,-60},{-10,-20},{10,20},{30,50},{50,60},{80,60}}, color={31,95,168}, thickness=0.5)}),
     Documentation(info="<html>
-<p>The motion of the FMU <code>AngleProfile</code>: a quintic from rest to rest. The speed is given and the angle its integral, so that a drive on the flange finds a state there as on any inertia. Begin and end are time events.</p>
+<p>The motion of the FMU <code>AngleProfile</code>: a quintic from rest to rest. The angle is the integral of the speed, so that the flange has a state, as on an inertia. Start and end are time events.</p>
 </html>"));
 end AngleProfile;

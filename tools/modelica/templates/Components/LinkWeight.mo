@@ -13,6 +13,6 @@ equation
       Line(points={{20,34},{20,-60}}, color={209,67,43}, thickness=0.5, arrow={Arrow.None,Arrow.Filled}),
       Text(extent={{-150,110},{150,70}}, textColor={0,0,255}, textString="%name")}),
     Documentation(info="<html>
-<p>The torque of gravity on a link, m g l sin &phi;, with &phi; = 0 where the link hangs down. The inertia of the link is not inside.</p>
+<p>The torque of gravity on a link, m g l sin &phi;, with &phi; = 0 when the link hangs down. The inertia of the link is not included.</p>
 </html>"));
 end LinkWeight;

@@ -19,6 +19,6 @@ equation
       Line(points={{-90,-70},{82,-70}}, color={192,192,192}),
       Line(points={{-80,-70},{-50,-70},{-30,-20},{0,50},{20,40},{40,-10},{60,-30},{80,-30}}, color={31,95,168}, thickness=0.5)}),
     Documentation(info="<html>
-<p>The torque of the FMU <code>TorqueCurve</code>. Begin and end are time events.</p>
+<p>The torque of the FMU <code>TorqueCurve</code>. Start and end are time events.</p>
 </html>"));
 end TorqueCurve;

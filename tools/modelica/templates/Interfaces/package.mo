@@ -2,6 +2,6 @@ within JointStiffness;
 package Interfaces "Inputs and outputs of the FMUs"
   extends Modelica.Icons.InterfacesPackage;
   annotation (Documentation(info="<html>
-<p>One partial block per FMU with exactly its inputs and outputs. An imported FMU fits in its place.</p>
+<p>One partial block per FMU with exactly its inputs and outputs. An imported FMU can replace it.</p>
 </html>"));
 end Interfaces;

@@ -1,5 +1,5 @@
 within JointStiffness.Components;
-model BoltedJoint "Bolted joint at a fixed preload: three axes, side 1 fixed"
+model BoltedJoint "Bolted joint at a fixed preload: translation along three axes, side 1 fixed"
   parameter JointStiffness.Data.BoltedJoint data = JointStiffness.Data.<< record >>() "The tightened joint"
     annotation (choicesAllMatching=true);
   parameter Modelica.Units.SI.Mass mass(min=0) = data.mass "<< meta.mass >>";
@@ -8,62 +8,62 @@ model BoltedJoint "Bolted joint at a fixed preload: three axes, side 1 fixed"
   parameter Boolean plastic_damping = data.plastic_damping "<< meta.plastic_damping >>";
   parameter StateSelect stateSelect=StateSelect.default "Priority to use s_rel and v_rel as states"
     annotation (HideResult=true, Dialog(tab="Advanced"));
-  Modelica.Mechanics.Translational.Interfaces.Flange_b flange_x "Side 2 along x, along the rows of bolts"
+  Modelica.Mechanics.Translational.Interfaces.Flange_b flange_x "Side 2 along x (along the bolt rows)"
     annotation (Placement(transformation(extent={{90,50},{110,70}})));
-  Modelica.Mechanics.Translational.Interfaces.Flange_b flange_y "Side 2 along y, across the rows"
+  Modelica.Mechanics.Translational.Interfaces.Flange_b flange_y "Side 2 along y (across the bolt rows)"
     annotation (Placement(transformation(extent={{90,-10},{110,10}})));
-  Modelica.Mechanics.Translational.Interfaces.Flange_b flange_z "Side 2 along the normal, positive apart"
+  Modelica.Mechanics.Translational.Interfaces.Flange_b flange_z "Side 2 along the normal, positive: the sides separate"
     annotation (Placement(transformation(extent={{90,-70},{110,-50}})));
   Modelica.Units.SI.Position s_rel[3](each start=0, each nominal=1e-6, each stateSelect=stateSelect)
     "Displacement x, y, z of side 2 from the tightened state";
-  Modelica.Units.SI.Velocity v_rel[3](each start=0, each nominal=1e-3, each stateSelect=stateSelect) "Its rate";
-  Modelica.Units.SI.Force f[3](each nominal=1e4) "Force x, y, z on side 2, restoring";
+  Modelica.Units.SI.Velocity v_rel[3](each start=0, each nominal=1e-3, each stateSelect=stateSelect) "Rate of s_rel";
+  Modelica.Units.SI.Force f[3](each nominal=1e4) "Restoring force x, y, z on side 2";
   Modelica.Units.SI.TranslationalSpringConstant K_n(nominal=1e10) "Normal stiffness of the interface without shear";
-  Modelica.Units.SI.TranslationalSpringConstant K_t(nominal=1e10) "Tangential stiffness while nothing slips";
+  Modelica.Units.SI.TranslationalSpringConstant K_t(nominal=1e10) "Tangential stiffness in full stick";
   Modelica.Units.SI.TranslationalDampingConstant C_n(nominal=1e4) "<< docs.C_zz >>";
-  Modelica.Units.SI.TranslationalDampingConstant C_t(nominal=1e4) "Viscous-equivalent damping along x and y";
+  Modelica.Units.SI.TranslationalDampingConstant C_t(nominal=1e4) "Equivalent viscous damping along x and y";
   Real eta_n "<< docs.eta_n >>";
   Modelica.Units.SI.Power lossPower "Power dissipated by friction and dashpots";
 protected
   parameter Integer n=size(data.heights, 1) - 1 "Pairs of sliders";
   parameter Real h[n + 1]=data.heights[:, 1] "Approach at which the springs of a pair begin to touch [m]";
-  parameter Real g[n + 1]=data.heights[:, 2] "Normal force there [N]";
-  parameter Real k[n + 1]=data.heights[:, 3] "Normal stiffness there [N/m]";
-  parameter Modelica.Units.SI.Length still=1e-4*data.mu*data.tight/(data.shear*JointStiffness.Functions.stiffness(0, data.table)) "Way back or across from which on the path has turned";
+  parameter Real g[n + 1]=data.heights[:, 2] "Normal force at approach h [N]";
+  parameter Real k[n + 1]=data.heights[:, 3] "Normal stiffness at approach h [N/m]";
+  parameter Modelica.Units.SI.Length still=1e-4*data.mu*data.tight/(data.shear*JointStiffness.Functions.stiffness(0, data.table)) "Distance backwards or sideways beyond which the path is a reversal";
   parameter Real K_t0[2*n]=data.sliders[:, 1] "Stiffness of the sliders at tightening [N/m]";
-  parameter Real Q_t0[2*n]=data.sliders[:, 2] "Their friction there [N]";
-  constant Real bent=0.2 "Across over along, from which on a path has turned as well";
-  constant Real changed=0.02 "Change of the normal force over that at tightening after which the sliders' forces are kept";
+  parameter Real Q_t0[2*n]=data.sliders[:, 2] "Friction limits of the sliders at tightening [N]";
+  constant Real bent=0.2 "Ratio of sideways to forward motion beyond which the path is a reversal too";
+  constant Real changed=0.02 "Change of the normal force, relative to that at tightening, after which the slider forces are stored";
   constant Real spread=<< spread >> "1/sqrt(12)";
   parameter Integer b=size(data.bolt_forces, 1) "Number of bolts";
-  Modelica.Units.SI.Force pull[b](each nominal=1e3) "Forces of the bolts less those at tightening: bolts only pull";
+  Modelica.Units.SI.Force pull[b](each nominal=1e3) "Change of the bolt forces since tightening; bolts only pull";
   Real c "Approach from the tightened state [m]";
-  Real v_c "Its rate [m/s]";
+  Real v_c "Rate of c [m/s]";
   Real bend "Derivative of the normal stiffness [N/m2]";
   Real G "Normal force of the interface [N]";
   Real S[n] "Normal stiffness of the springs of a pair [N/m]";
-  Real grow[n] "Its derivative in the approach [N/m2]";
-  Real N[n] "Their normal force [N]";
-  Real apart[n] "Half the difference of what the two sliders of a pair carry [N]";
-  Real widen[n] "Its derivative in the approach [N/m]";
+  Real grow[n] "Derivative of S with respect to the approach [N/m2]";
+  Real N[n] "Normal force of the springs of a pair [N]";
+  Real apart[n] "Half the difference of the normal forces of the two sliders of a pair [N]";
+  Real widen[n] "Derivative of apart with respect to the approach [N/m]";
   Real K[2*n] "Stiffness of the sliders [N/m]";
-  Real K_rate[2*n] "Its rate [N/m/s]";
-  Real Q[2*n] "Their friction [N]";
-  Real Q_rate[2*n] "Its rate [N/s]";
-  discrete Real q_0[2, 2*n](each start=0, each fixed=true, each nominal=100) "Their forces where they were last kept [N]";
-  discrete Real K_0[2*n](start=K_t0, each fixed=true) "Their stiffness there [N/m]";
-  discrete Real Q_0[2*n](start=Q_t0, each fixed=true) "Their friction there [N]";
-  discrete Modelica.Units.SI.Position s_0[2](each start=0, each fixed=true, each nominal=1e-6) "Shift there";
-  discrete Modelica.Units.SI.Force G_0(start=data.tight, fixed=true, nominal=1e4) "Normal force there";
-  Boolean turned(start=false, fixed=true) "The path since then has turned";
-  Boolean loaded(start=false, fixed=true) "The normal force has changed since then";
-  Real u[2] "Shift since then [m]";
-  Real q[2, 2*n](each nominal=100) "Their forces along x and y [N]";
-  Real size_q[2*n] "Size of their forces [N]";
-  Real slips[2*n] "Rate at which those at their friction slip, times their force [W]";
-  Real heat[2*n] "Power that they dissipate [W]";
-  Real square "Of the shift [m2]";
-  Real R "Without memory: tangential stiffness while nothing slips over that of the force from the origin";
+  Real K_rate[2*n] "Rate of K [N/m/s]";
+  Real Q[2*n] "Friction limits of the sliders [N]";
+  Real Q_rate[2*n] "Rate of Q [N/s]";
+  discrete Real q_0[2, 2*n](each start=0, each fixed=true, each nominal=100) "Slider forces at the last stored state [N]";
+  discrete Real K_0[2*n](start=K_t0, each fixed=true) "Stiffness of the sliders at the stored state [N/m]";
+  discrete Real Q_0[2*n](start=Q_t0, each fixed=true) "Friction limits at the stored state [N]";
+  discrete Modelica.Units.SI.Position s_0[2](each start=0, each fixed=true, each nominal=1e-6) "Displacement at the stored state";
+  discrete Modelica.Units.SI.Force G_0(start=data.tight, fixed=true, nominal=1e4) "Normal force at the stored state";
+  Boolean turned(start=false, fixed=true) "The path has reversed since the stored state";
+  Boolean loaded(start=false, fixed=true) "The normal force has changed since the stored state";
+  Real u[2] "Displacement since the stored state [m]";
+  Real q[2, 2*n](each nominal=100) "Forces of the sliders along x and y [N]";
+  Real size_q[2*n] "Magnitude of the slider forces [N]";
+  Real slips[2*n] "Slip rate times force of the sliders at their friction limit [W]";
+  Real heat[2*n] "Power dissipated by the sliders [W]";
+  Real square "Square of the tangential displacement [m2]";
+  Real R "Without memory: tangential stiffness in full stick divided by the secant stiffness from the origin";
 equation
   c = -s_rel[3];
   v_c = -v_rel[3];
@@ -139,18 +139,18 @@ equation
     Documentation(info="<html>
 << html.what >>
 <h4>Flanges</h4>
-<p>The three flanges are side 2 along x, y and z, from the tightened state; z is the normal, positive apart. Side 1 is fixed. Hold a flange that does not move with <code>Modelica.Mechanics.Translational.Components.Fixed</code>.</p>
+<p>The three flanges are side 2 along x, y and z, measured from the tightened state; z is the normal, positive when the sides separate. Side 1 is fixed. Fix a flange that does not move with <code>Modelica.Mechanics.Translational.Components.Fixed</code>.</p>
 <h4>Law</h4>
 << html.law >>
-<p>All nodes of the joint at its preload and moment add up to one curve g(c) of the total force over the approach c = -s<sub>z</sub>, from which normal force and friction follow: f<sub>z</sub> = g(c) - g(0) - &Sigma; max(k s<sub>z</sub>, -F<sub>0</sub>). F<sub>0</sub> is the force of a bolt at tightening: where it would push, its head lifts off. Friction is that of << sliders >> sliders, whose forces along x and y go straight on from where they were last kept (an event): where the shift has turned, or the normal force has changed by a fiftieth of the tightened one. Each takes together springs that touch one after the other, of the tangential stiffness &rho; g''(h) dh at the height h, and slips at &mu; times their normal force. The sums of their stiffness, &rho; g'(c), and of their friction, &mu; g(c), are exact at every approach.</p>
-<p>With <code>memory=false</code> shear is elastic, grows to &mu; g(0) and reacts on the normal force, with the FMU's law for the sum of its nodes: R = (1 + (&rho; g'(c) u/(&mu; g(0)))<sup>2</sup>)<sup>&frac12;</sup> at the shift u, f<sub>x</sub> = -&rho; g'(c) s<sub>x</sub>/R, f<sub>z</sub> as above and &rho; g''(c) u<sup>2</sup>/(R (1 + R)).</p>
+<p>All nodes of the joint at its preload and moment add up to one curve g(c) of the total force over the approach c = -s<sub>z</sub>, from which normal force and friction follow: f<sub>z</sub> = g(c) - g(0) - &Sigma; max(k s<sub>z</sub>, -F<sub>0</sub>). F<sub>0</sub> is the force of a bolt at tightening: when its force reaches zero, its head lifts off. Friction is modelled by << sliders >> sliders, whose forces along x and y are computed from the state stored at the last event: a reversal of the displacement, or a change of the normal force by a fiftieth of that at tightening. Each slider combines springs at neighbouring heights, of the tangential stiffness &rho; g''(h) dh at the height h, and slips at &mu; times their normal force. The sums of their stiffness, &rho; g'(c), and of their friction, &mu; g(c), are exact at every approach.</p>
+<p>With <code>memory=false</code> shear is elastic, approaches &mu; g(0) and changes the normal force, with the FMU's law for the sum of its nodes: R = (1 + (&rho; g'(c) u/(&mu; g(0)))<sup>2</sup>)<sup>&frac12;</sup> at the displacement u, f<sub>x</sub> = -&rho; g'(c) s<sub>x</sub>/R, f<sub>z</sub> as above and &rho; g''(c) u<sup>2</sup>/(R (1 + R)).</p>
 <h4>Not in this table</h4>
 <ul>
 <li>Preload and moment are those of the record <code>data</code> and cannot change during a simulation. The FMU takes both as inputs.</li>
-<li>Side 2 does not turn: rotations, moments and contact pressures are the FMU's.</li>
-<li>The FMU has sliders of its own on each of its patches: where few of them slip, at a small part of the friction limit, the two differ in what a loop loses.</li>
+<li>Side 2 does not rotate: only the FMU has rotations, moments and contact pressures.</li>
+<li>The FMU has separate sliders on each friction patch. At a small fraction of the friction limit, where few of them slip, the energy losses of component and FMU differ.</li>
 <li>The normal dissipation factor is interpolated linearly, within << damping_tolerance >>.</li>
-<li>The table ends at << strongest >> times the total preload; beyond, the last tangent continues without a warning. With side 2 lifted off, only the bolts' stiffness n k is left.</li>
+<li>The table ends at << strongest >> times the total preload; beyond, the last tangent continues without a warning. With side 2 lifted off, only the stiffness n k of the bolts remains.</li>
 </ul>
 <h4>How far to trust it</h4>
 << html.trust >>

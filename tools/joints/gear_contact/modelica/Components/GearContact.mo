@@ -4,7 +4,7 @@ model GearContact "Contact of two rough tooth flanks along their normal"
   parameter JointStiffness.Data.GearContact data = JointStiffness.Data.<< record >>() "The contact"
     annotation (choicesAllMatching=true);
   parameter Modelica.Units.SI.Distance s_rel0=0 "Distance of the flanges at first touch";
-  Modelica.Units.SI.Position approach(nominal=1e-6) "<< docs.s_rel >>, negative while apart";
+  Modelica.Units.SI.Position approach(nominal=1e-6) "<< docs.s_rel >>, negative while separated";
   Modelica.Units.SI.TranslationalSpringConstant K_N(nominal=1e9) "Tangent stiffness";
 equation
   approach = s_rel0 - s_rel;
@@ -20,11 +20,11 @@ equation
     Documentation(info="<html>
 << html.what >>
 <h4>Flanges</h4>
-<p>The flanks touch when flange_b is <code>s_rel0</code> from flange_a and press as they come closer; apart there is no force. The contact has no damping: the law gives none.</p>
+<p>The flanks touch when flange_b is <code>s_rel0</code> from flange_a and a compressive force acts when they come closer; separated flanks have no force. The law has no damping.</p>
 <h4>Law</h4>
 << html.law >>
 <h4>Not in this table</h4>
-<p>Real area and its elastic part are not given; the FMU gives them. The table ends where the hardness presses on the whole nominal area, << end >>; beyond, the last tangent continues without a warning.</p>
+<p>Real area and its elastic part are outputs of the FMU only. The table ends where the mean pressure reaches the hardness, << end >>; beyond, the last tangent continues without a warning.</p>
 <h4>How far to trust it</h4>
 << html.trust >>
 << html.paper >>

@@ -14,10 +14,10 @@ model GearMesh "Mesh of two gear wheels with rough flanks, bending teeth and bac
     annotation (Placement(transformation(extent={{-110,-10},{-90,10}})));
   Modelica.Mechanics.Rotational.Interfaces.Flange_b flange_b "Wheel 2"
     annotation (Placement(transformation(extent={{90,-10},{110,10}})));
-  Modelica.Units.SI.Position along(nominal=1e-4) "Way of both base circles towards each other";
-  Modelica.Units.SI.Velocity v(nominal=0.1) "Its rate";
+  Modelica.Units.SI.Position along(nominal=1e-4) "Displacement along the line of action, sum of both base circles";
+  Modelica.Units.SI.Velocity v(nominal=0.1) "Rate of along";
   Modelica.Units.SI.Position s_rel(nominal=1e-5) "<< docs.s_rel >>";
-  Real phase "Place in the mesh cycle";
+  Real phase "Phase of the mesh cycle";
   Real pairs "<< docs.pairs >>";
   Modelica.Units.SI.Force f(nominal=1e3) "<< docs.f >>";
   Modelica.Units.SI.TranslationalSpringConstant K(nominal=1e8) "<< docs.K >>";
@@ -27,8 +27,8 @@ protected
   parameter Modelica.Units.SI.Length pitch = 2*Modelica.Constants.pi*r_b1/teeth1 "Base pitch";
   Modelica.Units.SI.Length size "Absolute value of the deflection";
   Modelica.Units.SI.Energy pairEnergy "Energy of a tooth pair";
-  Real damping "Part of the damping that acts, 0 to 1";
-  Modelica.Units.SI.Force rolling "Force by the change of the number of pairs, per way of one base circle";
+  Real damping "Active fraction of the damping, 0 to 1";
+  Modelica.Units.SI.Force rolling "Force from the change of the number of pairs, per displacement of one base circle";
 
   function energy "Energy of a tooth pair at a deflection"
     extends Modelica.Icons.Function;
@@ -40,12 +40,12 @@ protected
     Integer i "Row at which the segment begins";
     Real inside "Deflection, at most the end of the table";
     Real h "Length of the segment";
-    Real t "Place in the segment, 0 to 1";
+    Real t "Relative position in the segment, 0 to 1";
     Real b "First coefficient";
     Real c "Second coefficient";
-    Real p "What the cubic leaves of the force at the end";
-    Real q "Of the stiffness";
-    Real r "Of its derivative";
+    Real p "Error of the cubic in the force at the end";
+    Real q "Error of the cubic in the stiffness at the end";
+    Real r "Error of the cubic in the derivative of the stiffness at the end";
   algorithm
     inside := min(x, table[size(table, 1), 1]);
     i := JointStiffness.Functions.segment(inside, table);
@@ -74,14 +74,14 @@ protected
     annotation (smoothOrder=2);
   end power;
 
-  function extraPair "How much of the pair that comes and goes is in contact: 0 to 1, even in the phase"
+  function extraPair "Fraction of the additional pair in contact: 0 to 1, symmetric in the phase"
     extends Modelica.Icons.Function;
-    input Real phase "Place in the mesh cycle";
-    input Real part "Part of the cycle with the pair";
-    input Real width "Part of the cycle in which it takes up its load";
-    output Real one "Of the pair";
+    input Real phase "Phase of the mesh cycle";
+    input Real part "Fraction of the cycle with the additional pair";
+    input Real width "Fraction of the cycle in which the pair takes up its load";
+    output Real one "Fraction of the pair in contact";
   protected
-    Real away "From the middle of the part with the pair, -0.5 to 0.5";
+    Real away "Phase from the middle of the contact of the additional pair, -0.5 to 0.5";
   algorithm
     away := phase - floor(phase + 0.5);
     one := if width <= 0 then 0 else JointStiffness.Functions.smoothStep(0.5 + (0.5*part - abs(away))/width);
@@ -90,13 +90,13 @@ protected
 
   function extraPairSlope "Derivative of extraPair with respect to the phase"
     extends Modelica.Icons.Function;
-    input Real phase "Place in the mesh cycle";
-    input Real part "Part of the cycle with the pair";
-    input Real width "Part of the cycle in which it takes up its load";
+    input Real phase "Phase of the mesh cycle";
+    input Real part "Fraction of the cycle with the additional pair";
+    input Real width "Fraction of the cycle in which the pair takes up its load";
     output Real slope "Derivative";
   protected
-    Real away "From the middle of the part with the pair, -0.5 to 0.5";
-    Real r "Place in the smooth step, 0 to 1";
+    Real away "Phase from the middle of the contact of the additional pair, -0.5 to 0.5";
+    Real r "Relative position in the smooth step, 0 to 1";
   algorithm
     away := phase - floor(phase + 0.5);
     r := if width <= 0 then 0 else min(max(0.5 + (0.5*part - abs(away))/width, 0), 1);
@@ -104,17 +104,17 @@ protected
     annotation (smoothOrder=1);
   end extraPairSlope;
 
-  function extraPairIntegral "Integral of extraPair less its mean from the middle of the part with the pair, odd in the phase"
+  function extraPairIntegral "Integral of extraPair minus its mean, from the middle of the contact of the pair; antisymmetric in the phase"
     extends Modelica.Icons.Function;
-    input Real phase "Place in the mesh cycle";
-    input Real part "Part of the cycle with the pair";
-    input Real width "Part of the cycle in which it takes up its load";
+    input Real phase "Phase of the mesh cycle";
+    input Real part "Fraction of the cycle with the additional pair";
+    input Real width "Fraction of the cycle in which the pair takes up its load";
     output Real passed "Integral";
   protected
-    Real away "From the middle of the part with the pair, -0.5 to 0.5";
-    Real first "Place in the smooth step at the middle, at least 1";
-    Real x "Place in the smooth step";
-    Real r "The same, 0 to 1";
+    Real away "Phase from the middle of the contact of the additional pair, -0.5 to 0.5";
+    Real first "Relative position in the smooth step at the middle, at least 1";
+    Real x "Relative position in the smooth step";
+    Real r "x limited to 0 to 1";
   algorithm
     away := phase - floor(phase + 0.5);
     first := if width <= 0 then 1 else 0.5 + 0.5*part/width;
@@ -125,11 +125,11 @@ protected
     annotation (smoothOrder=2);
   end extraPairIntegral;
 
-  parameter Real least = floor(contact_ratio) "Pairs that are always in contact";
-  parameter Real part = contact_ratio - least "Part of the cycle with one pair more";
-  parameter Real width = engagement*min(part, 1 - part) "Part of the cycle in which it takes up its load";
-  parameter Boolean helical = overlap_ratio > 1e-6 "Sections of the wheels are spread over the mesh cycle";
-  parameter Real spread = if helical then overlap_ratio else 1 "Their length in the mesh cycle";
+  parameter Real least = floor(contact_ratio) "Number of pairs that are always in contact";
+  parameter Real part = contact_ratio - least "Fraction of the cycle with an additional pair";
+  parameter Real width = engagement*min(part, 1 - part) "Fraction of the cycle in which the pair takes up its load";
+  parameter Boolean helical = overlap_ratio > 1e-6 "true: the phase varies over the face width";
+  parameter Real spread = if helical then overlap_ratio else 1 "Range of the phase over the face width";
   Real slope "Derivative of pairs with respect to the phase";
 equation
   along = r_b1*flange_a.phi + r_b2*flange_b.phi;
@@ -163,7 +163,7 @@ equation
     Documentation(info="<html>
 << html.what >>
 <h4>Flanges</h4>
-<p>Both angles are counted so that external wheels roll with <code>r_b1*flange_a.phi + r_b2*flange_b.phi = 0</code>; with both zero the teeth stand in the middle of the backlash. For internal wheels, or angles counted as in <code>Modelica.Mechanics.Rotational.Components.IdealGear</code>, put an <code>IdealGear</code> of ratio -1 on one flange. The housing is ground: it takes the difference of the torques. Inertias are not inside; put one on each wheel.</p>
+<p>The signs of the angles are such that external wheels roll with <code>r_b1*flange_a.phi + r_b2*flange_b.phi = 0</code>; with both zero the teeth are in the middle of the backlash. For internal wheels, or angles as in <code>Modelica.Mechanics.Rotational.Components.IdealGear</code>, put an <code>IdealGear</code> of ratio -1 on one flange. The housing is fixed and carries the difference of the torques. Inertias are not included: connect one to each wheel.</p>
 <h4>Law</h4>
 << html.law >>
 <h4>Not in this table</h4>

@@ -4,7 +4,7 @@ model HarmonicDriveSpring "Torsional spring and damper of a harmonic drive betwe
     annotation (choicesAllMatching=true);
   parameter Real ratio = data.ratio "<< meta.ratio >>";
   parameter Modelica.Units.SI.RotationalDampingConstant d(min=0) = data.d "<< meta.d >>";
-  parameter Modelica.Units.SI.Torque hysteresis_friction(min=0) = data.hysteresis_friction "Friction of its hysteresis; 0: none"
+  parameter Modelica.Units.SI.Torque hysteresis_friction(min=0) = data.hysteresis_friction "Friction torque of the hysteresis; 0: none"
     annotation (Dialog(tab="Friction"));
   parameter Modelica.Units.SI.RotationalSpringConstant hysteresis_stiffness(min=0) = data.hysteresis_stiffness "<< meta.hysteresis_stiffness.split(";")[0] >>"
     annotation (Dialog(tab="Friction"));
@@ -28,7 +28,7 @@ model HarmonicDriveSpring "Torsional spring and damper of a harmonic drive betwe
     annotation (Dialog(tab="Friction"));
   parameter Modelica.Units.SI.LinearTemperatureCoefficient dry_temperature_coefficient = data.dry_temperature_coefficient "<< meta.dry_temperature_coefficient.split(";")[0] >>"
     annotation (Dialog(tab="Friction"));
-  parameter Boolean useHeatPort = false "= true, if heatPort is enabled: it gives the temperature and takes lossPower"
+  parameter Boolean useHeatPort = false "= true, if heatPort is enabled: it sets the temperature and receives lossPower"
     annotation (Evaluate=true, HideResult=true, choices(checkBox=true), Dialog(tab="Friction"));
   parameter Modelica.Units.SI.Temperature T = data.T "Temperature of the lubricant, if useHeatPort = false"
     annotation (Dialog(tab="Friction", enable=not useHeatPort));
@@ -44,7 +44,7 @@ model HarmonicDriveSpring "Torsional spring and damper of a harmonic drive betwe
     annotation (Dialog(tab="Kinematic error"));
   parameter Modelica.Units.SI.Angle error_4_phase = data.error_4_phase "<< meta.error_4_phase >>"
     annotation (Dialog(tab="Kinematic error"));
-  parameter Boolean use_damping = true "false: the wind-up follows the torque at once, for a drive without inertia, damping, hysteresis and friction"
+  parameter Boolean use_damping = true "false: the wind-up follows the torque without delay; no damping, hysteresis or friction"
     annotation (Evaluate=true, Dialog(tab="Advanced"));
   parameter StateSelect stateSelect=if use_damping then StateSelect.prefer else StateSelect.default "Priority to use phi_rel and w_rel as states"
     annotation (HideResult=true, Dialog(tab="Advanced"));
@@ -68,38 +68,38 @@ model HarmonicDriveSpring "Torsional spring and damper of a harmonic drive betwe
   Modelica.Units.SI.RotationalSpringConstant K_TS(nominal=5e3) "<< docs.K_TS >>";
   Modelica.Units.SI.Power lossPower "Power dissipated by damper and friction";
 protected
-  constant Real layer=1e-3 "Width of the layer beyond its friction in which a slider of the wave generator ceases to stick, over that friction";
-  constant Modelica.Units.SI.Time turned=<< turned >> "Time for which a drive that turns at initialization has turned before";
-  constant Modelica.Units.SI.Time forgets=1e-4 "Time in which a slider at rest that friction holds no more goes back to its friction";
-  constant Modelica.Units.SI.Temperature reference=<< reference >> "Temperature at which the friction parameters hold";
-  constant Real width=<< width >> "Torque at the output over rated torque within which |tau| is smooth";
-  constant Real brakes[:, 2]=<< brakes >> "Springs and friction of the wave generator's sliders, each over the sum of all";
-  parameter Integer n=size(data.sliders, 1) "Sliders of the hysteresis";
-  parameter Modelica.Units.SI.RotationalSpringConstant K_h[n]=(if hysteresis_friction > 0 then hysteresis_stiffness else 0)*data.sliders[:, 1] "Their stiffness";
-  parameter Modelica.Units.SI.Torque M_h[n]=hysteresis_friction*data.sliders[:, 2] "Their friction";
-  constant Modelica.Units.SI.AngularVelocity still=1e-7 "Rate of the wind-up beyond which it has turned round";
-  discrete Modelica.Units.SI.Torque q_h[n](each start=0, each fixed=true, each nominal=0.01) "Their torques where the wind-up last turned round";
-  discrete Modelica.Units.SI.Angle phi_h(start=0, fixed=true, nominal=1e-3) "Wind-up there";
-  Boolean ahead(start=false, fixed=true) "The wind-up grows";
-  Boolean behind(start=false, fixed=true) "It falls";
-  Modelica.Units.SI.Torque stuck_h[n] "Their torques if they stuck since then";
-  Modelica.Units.SI.Torque held_h[n] "What of it friction holds";
-  Modelica.Units.SI.Power heat_h[n] "What they turn into heat";
-  parameter Integer m=size(brakes, 1) "Sliders of the friction at the wave generator";
-  parameter Real loss_back(unit="1")=if load_loss_back < 0 then load_loss else load_loss_back "Share of the load where it drives the motor";
+  constant Real layer=1e-3 "Width of the transition from stick to slip of a slider at the wave generator, relative to its friction limit";
+  constant Modelica.Units.SI.Time turned=<< turned >> "Duration of the motion before initialization of a drive that turns then";
+  constant Modelica.Units.SI.Time forgets=1e-4 "Time constant with which a slider above its friction limit returns to it at rest";
+  constant Modelica.Units.SI.Temperature reference=<< reference >> "Reference temperature of the friction parameters";
+  constant Real width=<< width >> "Torque, relative to rated torque, within which |tau| is smoothed";
+  constant Real brakes[:, 2]=<< brakes >> "Stiffness and friction of the sliders at the wave generator, relative to their sums";
+  parameter Integer n=size(data.sliders, 1) "Number of sliders of the hysteresis";
+  parameter Modelica.Units.SI.RotationalSpringConstant K_h[n]=(if hysteresis_friction > 0 then hysteresis_stiffness else 0)*data.sliders[:, 1] "Stiffness of the hysteresis sliders";
+  parameter Modelica.Units.SI.Torque M_h[n]=hysteresis_friction*data.sliders[:, 2] "Friction limits of the hysteresis sliders";
+  constant Modelica.Units.SI.AngularVelocity still=1e-7 "Rate of the wind-up beyond which it counts as reversed";
+  discrete Modelica.Units.SI.Torque q_h[n](each start=0, each fixed=true, each nominal=0.01) "Torques of the hysteresis sliders at the last reversal of the wind-up";
+  discrete Modelica.Units.SI.Angle phi_h(start=0, fixed=true, nominal=1e-3) "Wind-up at the last reversal";
+  Boolean ahead(start=false, fixed=true) "The wind-up increases";
+  Boolean behind(start=false, fixed=true) "The wind-up decreases";
+  Modelica.Units.SI.Torque stuck_h[n] "Torques of the hysteresis sliders if they stick since the last reversal";
+  Modelica.Units.SI.Torque held_h[n] "Torques of the hysteresis sliders, within their friction limits";
+  Modelica.Units.SI.Power heat_h[n] "Power dissipated by the hysteresis sliders";
+  parameter Integer m=size(brakes, 1) "Number of sliders of the friction at the wave generator";
+  parameter Real loss_back(unit="1")=if load_loss_back < 0 then load_loss else load_loss_back "Value of load_loss when the load drives the motor";
   parameter Modelica.Units.SI.Torque M_rated=temperature_factor*(friction_coulomb + friction_stribeck + max(load_loss, loss_back)*data.rated_torque/abs(ratio)) "Limit of dry friction at rest and rated torque";
-  parameter Modelica.Units.SI.RotationalSpringConstant K_w[m]=M_rated/presliding*brakes[:, 1] "Their stiffness";
-  Real f_dry(unit="1") "Dry friction at the temperature over that of the parameters";
-  Real f_viscous(unit="1") "Viscous friction at the temperature over that of the parameters";
-  Modelica.Units.SI.Torque unloaded "Limit of dry friction without load, but for the temperature";
+  parameter Modelica.Units.SI.RotationalSpringConstant K_w[m]=M_rated/presliding*brakes[:, 1] "Stiffness of the sliders at the wave generator";
+  Real f_dry(unit="1") "Temperature factor of the dry friction";
+  Real f_viscous(unit="1") "Temperature factor of the viscous friction";
+  Modelica.Units.SI.Torque unloaded "Limit of dry friction without load, at the reference temperature";
   Modelica.Units.SI.Torque tau_begun "Torque at the output with hysteresis from rest";
   Modelica.Units.SI.Torque M_p "Limit of positive dry friction at the wave generator";
   Modelica.Units.SI.Torque M_n "Limit of negative dry friction at the wave generator";
-  Modelica.Units.SI.Torque q_w[m](each start=0, each nominal=0.01) "Their torques, less than the layer beyond their friction";
-  Modelica.Units.SI.Torque held_w[m] "What of it friction holds";
-  Real rate_w[m](each unit="N.m/s") "Their rates";
-  Modelica.Units.SI.Power heat_w[m] "What they turn into heat";
-  Real errorSlope "Derivative of phi_error in flange_a.phi";
+  Modelica.Units.SI.Torque q_w[m](each start=0, each nominal=0.01) "Torques of the sliders at the wave generator, at most one transition width above their limits";
+  Modelica.Units.SI.Torque held_w[m] "Torques of the sliders at the wave generator, within their friction limits";
+  Real rate_w[m](each unit="N.m/s") "Rates of q_w";
+  Modelica.Units.SI.Power heat_w[m] "Power dissipated by the sliders at the wave generator";
+  Real errorSlope "Derivative of phi_error with respect to flange_a.phi";
   Modelica.Units.SI.Angle windUp "Absolute value of the wind-up";
 initial equation
   for i in 1:m loop
@@ -108,7 +108,7 @@ initial equation
       f_dry*JointStiffness.Functions.frictionLimit(unloaded, load_loss, loss_back, tau_begun, width*data.rated_torque, ratio)*brakes[i, 2]);
   end for;
 equation
-  assert(ratio < 0 or ratio > 0, "ratio = 0: it may be negative, not zero");
+  assert(ratio < 0 or ratio > 0, "ratio = 0 is outside (-inf, 0) and (0, inf)");
   phi_error = error_1*sin(flange_a.phi + error_1_phase) + error_2*sin(2*flange_a.phi + error_2_phase) + error_4*sin(4*flange_a.phi + error_4_phase);
   errorSlope = error_1*cos(flange_a.phi + error_1_phase) + 2*error_2*cos(2*flange_a.phi + error_2_phase) + 4*error_4*cos(4*flange_a.phi + error_4_phase);
   phi_rel = flange_b.phi - flange_a.phi/ratio - phi_error;
@@ -172,12 +172,12 @@ equation
     Documentation(info="<html>
 << html.what >>
 <h4>Flanges</h4>
-<p>Positive wind-up is the output ahead of the motor. The housing is ground: it takes the difference of the two torques. Inertias are not inside; put one on each flange. With a flange held, the other at a given torque and no inertia, the damper decides the speed, which is a division by zero if <code>d</code> is 0: set <code>use_damping=false</code> then, and the wind-up follows the torque at once.</p>
+<p>The wind-up is positive if the output is ahead of the motor. The housing is fixed and carries the difference of the two torques. Inertias are not included: connect one to each flange. If one flange is fixed and the other has a given torque but no inertia, the damper determines the speed; with <code>d</code> = 0 this is a division by zero. Then set <code>use_damping=false</code>: the wind-up follows the torque without delay.</p>
 <h4>Law</h4>
 << html.law >>
-<p>T<sub>h</sub> is the hysteresis of the FMU: the same sliders, from where the wind-up last turned round (an event) on. The FMU states it by <code>hysteresis_loss</code>; the component by its friction and its stiffness at tiny motion, see the example. The sliders of the friction at the wave generator are the FMU's too; their torques are states, and their limit M follows speed and load. Such a slider ceases to stick within a layer of a thousandth of its friction; what is beyond its friction never acts, so a drive at rest holds. Where friction costs the solver too many steps take the FMU in its wrapper.</p>
+<p>T<sub>h</sub> is the hysteresis of the FMU: the same sliders, computed from the last reversal of the wind-up (an event). The parameter of the FMU is <code>hysteresis_loss</code>; the parameters of the component are the friction torque and the stiffness for small motions, see the example. The sliders of the friction at the wave generator are those of the FMU too. Their torques are states, and their limit M depends on speed and load. The transition from stick to slip has a width of a thousandth of the friction limit. No torque above the limit acts, so a drive at rest holds its position. If friction needs too many solver steps, use the FMU in its wrapper.</p>
 <h4>Not in this table</h4>
-<p>The parameters of the law and the lost motion are those of the record <code>data</code>, fixed. With <code>use_damping=false</code> the drive has neither hysteresis nor friction. The table is odd in the wind-up and ends at << end >>; beyond, the last tangent continues without a warning.</p>
+<p>The parameters of the law and the lost motion are those of the record <code>data</code>, fixed. With <code>use_damping=false</code> the drive has neither hysteresis nor friction. The table is antisymmetric in the wind-up and ends at << end >>; beyond, the last tangent continues without a warning.</p>
 <h4>How far to trust it</h4>
 << html.trust >>
 << html.paper >>
