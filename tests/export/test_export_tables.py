@@ -287,7 +287,7 @@ def test_a_catalogue_drive_has_rows_for_a_per_cent_of_its_stiffness(tmp_path, ca
         assert cli.main(asked) == 0
         found = json.loads(capsys.readouterr().out)
         assert found["stiffness_error"] <= 0.01
-        assert not [text for text in found["warnings"] if "off the stiffness" in text]
+        assert not [text for text in found["warnings"] if "differs from the stiffness" in text]
         lines = (line.split() for line in out.read_text().split("\n"))
         rows = np.array(
             [row for row in lines if len(row) == 3 and row[0].lstrip("-")[:1].isdigit()], dtype=float

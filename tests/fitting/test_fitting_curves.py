@@ -266,7 +266,7 @@ BAD = {
     ),
     "degrees": (
         [HEADING, *[f"{T},{np.degrees(T / 4e3)}" for T in np.linspace(-25, 25, 20)]],
-        "likely the angle is in deg, where the heading says rad; if both are right, start from",
+        "likely the angle is in deg, where the heading says rad; if the units are right, start from",
     ),
     "stiff": (
         [HEADING.replace("rad", "arcsec"), *[f"{T},{0.1 * T}" for T in np.linspace(-5, 5, 20)]],
@@ -342,7 +342,7 @@ def test_neither_or_both(tmp_path, capsys):
 
 def test_zero_cannot_be_fitted(loops, capsys):
     line = refused_line(capsys, "fit", "torque-angle", loops, "--free", "eccentricity")
-    assert "eccentricity = 0 m cannot be fitted from there" in line
+    assert "eccentricity = 0 m cannot be the start value" in line
 
 
 def test_another_joints_file(loops, tmp_path, capsys):

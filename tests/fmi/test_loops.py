@@ -143,13 +143,13 @@ SHEAR = ["--input", "s_rel_x", "--loop", "1e-6"]
 @pytest.mark.parametrize(
     ("fmu", "words", "said"),
     [
-        ("GearContact", GEAR, "expected --to with --step, or --loop"),
-        ("GearContact", [*GEAR, "--to", "1"], "expected --to with --step, or --loop"),
+        ("GearContact", GEAR, "state --to with --step, or --loop"),
+        ("GearContact", [*GEAR, "--to", "1"], "state --to with --step, or --loop"),
         ("GearContact", [*GEAR, "--to", "1", "--step", "1", "--loop", "1"], "--loop and --to are both given"),
         (
             "GearContact",
             [*GEAR, "--to", "1", "--step", "1", "--points", "8"],
-            "--points is given without --loop",
+            "--points is for load cycles",
         ),
         ("GearContact", [*GEAR, "--loop", "-1"], "loop = -1 is outside (0, inf)"),
         ("GearContact", [*GEAR, "--loop", "1", "--about", "nan"], "about = nan is outside (-inf, inf)"),

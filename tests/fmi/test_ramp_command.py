@@ -22,7 +22,7 @@ def test_columns_are_those_asked_for_behind_the_input(words, capsys):
         capsys, *words, "--columns", "q"
     )
     looped = [*words[:4], "--loop", "1e-6", "--columns", "K_N"]
-    assert "--columns is given with --loop" in refused_line(capsys, *looped)
+    assert "--columns is for a ramp" in refused_line(capsys, *looped)
 
 
 def test_a_terminal_gets_a_table_and_a_pipe_every_point(words, capsys, monkeypatch):

@@ -128,7 +128,7 @@ def test_loads_beyond_the_table_are_refused():
 def test_all_refused():
     given = {"eccentricity": "0.9e-3..0.99e-3"}  # allowed each for itself, but the pair loses contact
     task = state_problem(load_default("harmonic_drive"), given, None, 3)
-    with pytest.raises(RuntimeError, match="all 8 samples are errors; the first: eccentricity = "):
+    with pytest.raises(RuntimeError, match="all 8 samples are rejected; the first: eccentricity = "):
         propagate.compute_bands(task, propagate.sample_designs(task, 8, 0)[0])
 
 
@@ -230,7 +230,7 @@ def test_study_file(tmp_path, capsys):
         (["bolted_joint", "--set", "H=+-5%", "--to", "-3"], "to = -3 N is outside (0, "),
         (["harmonic_drive", "--set", "ratio=+-5%", "--to", "31"], "to = 31 N.m is outside (0, 30]"),
         (["bolted_joint", "--set", "H=+-5%", "preload=-5"], "preload = -5 N is outside (0, "),
-        (["bolted_joint", "--set", "H=+-5%", "preload=9e3", "--to", "5"], "cannot be ramped as well"),
+        (["bolted_joint", "--set", "H=+-5%", "preload=9e3", "--to", "5"], "is also the ramped input"),
         (["bolted_joint", "--set", "H=+-5%", "--points", "1"], "points = 1 is outside [2, 10000]"),
         (["bolted_joint", "--set", "H=+-5%", "--samples", "1"], "samples = 1 is outside [2, "),
         (["bolted_joint", "--set", "H=+-5%", "--seed", "-1"], "seed = -1 is outside [0, inf)"),

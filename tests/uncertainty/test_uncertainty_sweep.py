@@ -330,7 +330,7 @@ def test_an_interval_is_that_of_the_file_that_the_fmu_carries(fmu, tmp_path):
         (["--input", "tau", "--set", "mu=interval"], "mu = interval: its source states none"),
         (["--input", "tau", "--set", "surface.X=1..2"], "unknown name 'surface.X', allowed are tau"),
         (["--input", "torque", "--set", "surface.D=2.4..2.6"], "unknown input 'torque', allowed are tau"),
-        (["--input", "tau", "--set", "tau=1..2"], "tau is driven by the ramp"),
+        (["--input", "tau", "--set", "tau=1..2"], "tau is the input of the ramp"),
         (["--input", "tau", "--set", "surface.D=2.4"], "or a study file (--set)"),
         (["--input", "tau", "--set", "surface.D=2.6..2.4"], "low = 2.6 is not below high = 2.4"),
         (["--input", "tau", "--set", "surface.D=+-1%", "--workers", "0"], "workers = 0 is outside [1, inf)"),
@@ -348,7 +348,7 @@ def test_refused_folders_and_schedulers(fmu, tmp_path, capsys):
     arguments = ["sweep", fmu, *SETTINGS, *RAMP, "--samples", "4", "--out"]
     (tmp_path / "full").mkdir()
     (tmp_path / "full" / "thesis.tex").write_text("x")
-    assert "holds something else than a sweep" in refused_line(capsys, *arguments, tmp_path / "full")
+    assert "contains other files than those of a sweep" in refused_line(capsys, *arguments, tmp_path / "full")
     line = refused_line(capsys, *arguments, tmp_path / "new" / "one", "--scheduler", "nowhere")
     assert "scheduler = nowhere: cannot be reached" in line
     assert not (tmp_path / "new").exists()

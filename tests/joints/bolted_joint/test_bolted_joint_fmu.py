@@ -399,5 +399,5 @@ def test_the_picture_of_points_without_an_outline() -> None:
     assert f"points over {wide:.4g} mm, x to the right" in told
     assert len(PlaneLayout.from_joint(joint).bolt_positions) == 0
     figure = picture_figure(LoadHistory(MODELS["BoltedJoint"], replace(file, values=joint)))
-    assert "no places of the bolts" in figure.text
+    assert "no bolt positions" in figure.text
     assert len(figure.pictures) == 1

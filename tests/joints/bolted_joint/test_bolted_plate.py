@@ -356,7 +356,7 @@ def test_the_load_at_the_faces_passes_the_bolts_by(capsys, fine_elements):
         "between the outer faces, other motions fixed: output K_zz of the FMU at preload = 60000 N; "
         "compliance: " in found["facts"]["joint_K_zz"]["text"]
     )
-    assert "the FMU is the whole" in found["facts"]["interface_share"]["text"]
+    assert "the FMU is the complete joint" in found["facts"]["interface_share"]["text"]
 
 
 @needs("gmsh")

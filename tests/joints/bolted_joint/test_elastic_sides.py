@@ -441,15 +441,15 @@ def refused(changes, file):
 
 def test_what_does_not_go_with_elastic_sides_is_refused(made, tmp_path, capsys):
     file = made(*FOUR, preload=15e3).file
-    assert "memory = false beside sides = elastic" in refused({"memory": False}, file)
-    assert "damping = true beside sides = elastic" in refused({"damping": True}, file)
+    assert "memory = false with sides = elastic" in refused({"memory": False}, file)
+    assert "damping = true with sides = elastic" in refused({"damping": True}, file)
     assert "n_bolts = 5 is outside [4, 4]: the bolts that [bodies] has" in refused({"n_bolts": 5.0}, file)
     other = replace(file.values.bodies, x=tuple(x + 1e-3 for x in file.values.bodies.x))
-    assert "[bodies] lies 0.001 m beside the contact" in refused({"bodies": other}, file)
+    assert "[bodies] lies 0.001 m away from the contact" in refused({"bodies": other}, file)
     text = format_parameter_file(file)
     alone = text[: text.index("[bodies]")] + text[text.index("[plate]") :] if "[plate]" in text else text
     (tmp_path / "alone.toml").write_text(alone)
-    with pytest.raises(ValueError, match=r"sides = elastic without \[bodies\]"):
+    with pytest.raises(ValueError, match=r"sides = elastic needs the section \[bodies\]"):
         load_parameter_file(tmp_path / "alone.toml")
     capsys.readouterr()
     line = refused_line(capsys, "new", "bolted-joint", *FOUR, "--thickness", "10", "12")
@@ -560,9 +560,9 @@ def plates(tmp_path):
 def test_a_whole_joint_without_a_bolt_or_a_file_is_refused(plates, tmp_path, capsys):
     out = tmp_path / "whole.toml"
     words = ["footprint", "compute", str(plates), "--attached", "faces"]
-    assert "--attached faces without --out" in refused_line(capsys, *words)
+    assert "--attached faces needs --out" in refused_line(capsys, *words)
     line = refused_line(capsys, *words, "--out", str(out))
-    assert "--attached faces without the stiffness of a bolt: expected bolt_stiffness above 0" in line
+    assert "--attached faces needs the stiffness of a bolt; state bolt_stiffness above 0" in line
     assert not out.exists()
 
 
@@ -606,8 +606,8 @@ def test_an_assembly_makes_the_whole_joint(made, plates, tmp_path, capsys, monke
     capsys.readouterr()
     for wrong, told in (
         (["--thickness", "1", "10"], "side1 is 1 mm thick, expected at least 1.3"),
-        (["--attached", "edge"], "--attached edge without --thickness"),
-        (["--thickness", "10", "10", "--bolts", "1,1"], "--bolts has 1 places, expected 4"),
+        (["--attached", "edge"], "--attached edge needs --thickness"),
+        (["--thickness", "10", "10", "--bolts", "1,1"], "--bolts has 1 positions, expected 4"),
         (["--bolts", "1,1", "2,2", "3,3", "80,1"], "bolt 4 at (80, 1) mm is outside the contact"),
     ):
         assert told in refused_line(capsys, *again, *wrong, "--out", str(tmp_path / "none.toml"))
@@ -632,7 +632,7 @@ def test_stiffness_over_preload_gives_the_roughness_of_the_whole(made, tmp_path)
     assert found.solution.relative_deviations["h"] < 0.01
     assert not found.warnings()
     alone = over_preload.fit(path, replace(start, values=interface_alone(start.values)))
-    assert "the law misses the curve systematically" in alone.warnings()[-1]
+    assert "the law deviates systematically from the curve" in alone.warnings()[-1]
 
 
 def test_loops_give_friction_and_roughness_of_the_whole(made, tmp_path, monkeypatch):
