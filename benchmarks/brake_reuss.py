@@ -64,7 +64,7 @@ def by_masing(joint, turns=TURNS):
 
 def linear(structure, found):
     """Frequencies of small motions."""
-    count = structure.interface.area.size
+    count = structure.interface.quadrature_area.size
     heading("Linear frequencies [Hz]", "interface", "f1", "f2", "f3")
     row("solid bar (Timoshenko)", f"{solid_bar(structure.beam):.1f}", "", "")
     glued = spectrum(structure, np.full((count, 3), GLUED))[0]

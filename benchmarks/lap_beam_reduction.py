@@ -98,13 +98,13 @@ def patches(interface):
     """One point for each element of a contact: mean displacement, area and centroid."""
     count, points = interface.basis.dx.shape
     rows = np.repeat(np.arange(count), points)
-    share = sp.csr_matrix((interface.area, (rows, np.arange(rows.size))), shape=(count, rows.size))
+    share = sp.csr_matrix((interface.quadrature_area, (rows, np.arange(rows.size))), shape=(count, rows.size))
     area = np.asarray(share.sum(axis=1)).ravel()
     mean = sp.diags(1.0 / area) @ share
     return Interface(
         interface.basis,
         interface.nodes,
-        (mean @ interface.interpolation).tocsr(),
+        (mean @ interface.interpolation_matrix).tocsr(),
         area,
         mean @ interface.position,
     )
