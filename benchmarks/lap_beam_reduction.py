@@ -106,7 +106,7 @@ def patches(interface):
         interface.nodes,
         (mean @ interface.interpolation_matrix).tocsr(),
         area,
-        mean @ interface.position,
+        mean @ interface.quadrature_position,
     )
 
 
@@ -175,7 +175,7 @@ def reduced(structure, law, preload, shear, gap=None):
     compliance = _compliance(structure, springs)
     at = structure.interface
     tip = float(shape[_tip(structure)])
-    return Reduced(frequencies, tip, solution.approach, springs, at.area, at.position, motion, compliance)
+    return Reduced(frequencies, tip, solution.approach, springs, at.quadrature_area, at.quadrature_position, motion, compliance)
 
 
 def _tip(structure):
