@@ -171,7 +171,7 @@ TORQUE_RATIOS = (0.0, 0.1, 0.2, 0.4, 0.7, 1.0)
 
 
 def _vibration_torques(path: Path, parameters: Mapping[str, float]) -> list[float]:
-    """Torques [N.m] of the simulated free vibrations, from zero to the rated torque."""
+    """Mean torques [N.m] at which free vibrations are simulated: from zero to the rated torque."""
     with Slave(path, parameters, (), ("rated_torque",)) as drive:
         (rated,) = drive.get_outputs()
     return [share * rated for share in TORQUE_RATIOS]
