@@ -175,7 +175,16 @@ def reduced(structure, law, preload, shear, gap=None):
     compliance = _compliance(structure, springs)
     at = structure.interface
     tip = float(shape[_tip(structure)])
-    return Reduced(frequencies, tip, solution.approach, springs, at.quadrature_area, at.quadrature_position, motion, compliance)
+    return Reduced(
+        frequencies,
+        tip,
+        solution.approach,
+        springs,
+        at.quadrature_area,
+        at.quadrature_position,
+        motion,
+        compliance,
+    )
 
 
 def _tip(structure):

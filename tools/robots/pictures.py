@@ -62,7 +62,8 @@ def find_worst_pose(
 ) -> Array:
     """Pose of the grid with the largest tip displacement under weight.
 
-    Displacements that differ by less than 1 nm count as equal. Of several such poses: the one nearest to `pose`. Joints outside the grid keep `pose`.
+    Displacements that differ by less than 1 nm count as equal. Of several such
+    poses: the one nearest to `pose`. Joints outside the grid keep `pose`.
     """
     poses = sorted(
         grid_poses(model, axes, pose, grid),
