@@ -140,5 +140,5 @@ def shared_definitions(shared_files: Sequence[str]) -> Definitions:
     if "approach" not in shared_files:
         return tables
     steps = {"APPROACH_STEPS": curve.MIN_STEPS_PER_LOG_AREA, "CLOSING_STEPS": curve.CLOSING_STEPS}
-    ratio = {"CLOSING_RATIO": curve.CLOSING_AREA_RATIO}
+    ratio = {"CLOSING_AREA_RATIO": curve.CLOSING_AREA_RATIO}
     return tables | Definitions(steps, ratio) | define_quadrature("APPROACH_GAUSS", curve.GAUSS_RULE)

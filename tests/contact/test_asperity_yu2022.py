@@ -240,7 +240,7 @@ def test_elastic_load(law, u):
     s = law.spots()
     elastic = sum(term.integral(s.size_exponent, u) for term in s.regime_terms["load"][3:])
     # difference of powers: 1e-11 of a_nec over 0.1 * 0.025
-    assert s.size_exponent * s.weight * np.exp(s.size_exponent * u) * elastic == pytest.approx(
+    assert s.size_exponent * s.size_prefactor * np.exp(s.size_exponent * u) * elastic == pytest.approx(
         expected, rel=1e-8
     )
 

@@ -56,7 +56,7 @@ def imbalance(solution):
         @ (model.interface.quadrature_area * solution.pressure)
         * (0.5 if model.is_mirrored else 1.0)
     )
-    parts = zip(model.bodies, solution.loads, model.traces(), solution.displacement, strict=True)
+    parts = zip(model.bodies, solution.loads, model.approach_matrices(), solution.displacement, strict=True)
     return [load - body.stiffness @ u - trace.T @ nodal for body, load, trace, u in parts]
 
 
