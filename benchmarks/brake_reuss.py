@@ -135,7 +135,7 @@ def main():
     """Print everything; `--images` draws the picture."""
     structure = Structure.of(beam(), Fineness())
     mass = sum(body.mass.sum() for body in structure.bodies) * 2.0 / 3.0
-    nodes = sum(body.size for body in structure.bodies) // 3
+    nodes = sum(body.unknown_count for body in structure.bodies) // 3
     print(
         f"{mass:.3f} kg, {nodes} nodes and {structure.interface.quadrature_area.size} patches in half "
         "the width"

@@ -76,7 +76,7 @@ def figures(job_result: Any) -> list[Figure]:
             "Stiffness over torque",
             "K_WTS and the contact pair's part of it on the drive's scale, as the FMU gives them; then the "
             "pair on the scale of the paper's figures.",
-            stiffness_panels(result, job_result.rows),
+            stiffness_panels(result, job_result.validated_points),
             data_file=f"{_COMPLIANCE_FMU}.csv",
         ),
         Figure(
