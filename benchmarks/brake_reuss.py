@@ -44,7 +44,7 @@ def joints(structure, gap=None):
 
 def rubbing(joint, friction):
     """The same joint with another coefficient of friction [1]."""
-    return replace(joint, sliders=replace(joint.sliders, friction=friction))
+    return replace(joint, sliders=replace(joint.sliders, friction_coefficient=friction))
 
 
 def curves(joint):
