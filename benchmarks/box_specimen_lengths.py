@@ -103,7 +103,7 @@ def identify(
 
     def error(ratio: Array) -> Array:
         box = specimen(start, (ratio * first).tolist())
-        found = frequencies(box, joint, [(preload, 0.0)], refinement=refinement, count=measured.size)
+        found = frequencies(box, joint, [(preload, 0.0)], refinement=refinement, mode_count=measured.size)
         return np.asarray(found[0] / measured - 1.0)
 
     fit = least_squares(error, np.ones(first.size), diff_step=STEP, x_scale=RANGE, ftol=1e-3, max_nfev=trials)

@@ -44,7 +44,7 @@ def joints(structure, gap=None):
 
 def rubbing(joint, friction):
     """The same joint with another coefficient of friction [1]."""
-    return replace(joint, sliders=replace(joint.sliders, friction=friction))
+    return replace(joint, sliders=replace(joint.sliders, friction_coefficient=friction))
 
 
 def curves(joint):
@@ -64,7 +64,7 @@ def by_masing(joint, turns=TURNS):
 
 def linear(structure, found):
     """Frequencies of small motions."""
-    count = structure.interface.area.size
+    count = structure.interface.quadrature_area.size
     heading("Linear frequencies [Hz]", "interface", "f1", "f2", "f3")
     row("solid bar (Timoshenko)", f"{solid_bar(structure.beam):.1f}", "", "")
     glued = spectrum(structure, np.full((count, 3), GLUED))[0]
@@ -135,7 +135,7 @@ def main():
     """Print everything; `--images` draws the picture."""
     structure = Structure.of(beam(), Fineness())
     mass = sum(body.mass.sum() for body in structure.bodies) * 2.0 / 3.0
-    nodes = sum(body.size for body in structure.bodies) // 3
+    nodes = sum(body.unknown_count for body in structure.bodies) // 3
     print(
         f"{mass:.3f} kg, {nodes} nodes and {structure.interface.quadrature_area.size} patches in half "
         "the width"

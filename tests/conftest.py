@@ -307,7 +307,7 @@ def solved_once(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
         return found
 
     solve = plate_finite_elements.compute_joint
-    compiled_models = once("whole", solve)
+    solve_once = once("whole", solve)
 
     def whole(*asked: Any) -> Any:
         try:
@@ -323,7 +323,7 @@ def solved_once(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
                 "from_assembly",
                 partial(JointFiniteElements.from_assembly, refinement=REFINEMENT["bodies"]),
             )
-            return compiled_models(*asked)
+            return solve_once(*asked)
 
     def experiments_of(model: Model, parameters: ParameterFile) -> Any:
         text = f"{model.name}\n{format_parameter_file(parameters)}"  # what the product keeps them by

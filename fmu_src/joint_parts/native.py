@@ -37,6 +37,10 @@ class Definitions:
     arrays: Mapping[str, Sequence[str]] = field(default_factory=dict)
 
     def __or__(self, addition: "Definitions") -> "Definitions":
+        """Constants of both; ValueError if they give one name two values."""
+        first, second = ({**each.counts, **each.macros, **each.arrays} for each in (self, addition))
+        if clashes := [name for name in first.keys() & second if first[name] != second[name]]:
+            raise ValueError(f"C constant {min(clashes)} has two values; expected one name for one constant")
         return Definitions(
             {**self.counts, **addition.counts},
             {**self.macros, **addition.macros},
@@ -136,5 +140,5 @@ def shared_definitions(shared_files: Sequence[str]) -> Definitions:
     if "approach" not in shared_files:
         return tables
     steps = {"APPROACH_STEPS": curve.MIN_STEPS_PER_LOG_AREA, "CLOSING_STEPS": curve.CLOSING_STEPS}
-    ratio = {"CLOSING_RATIO": curve.CLOSING_AREA_RATIO}
+    ratio = {"CLOSING_AREA_RATIO": curve.CLOSING_AREA_RATIO}
     return tables | Definitions(steps, ratio) | define_quadrature("APPROACH_GAUSS", curve.GAUSS_RULE)

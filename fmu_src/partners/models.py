@@ -29,7 +29,7 @@ def _make_model(
         tabulate=lambda partner: partner,
         inputs=inputs,
         outputs=outputs,
-        evaluate=lambda partner, values: partner.outputs(values),
+        evaluate=lambda partner, values: partner.evaluate_outputs(values),
         validity_limits=(),
         ramp=ramp,
         # states depend on no input; the acceleration depends on the inputs and the position

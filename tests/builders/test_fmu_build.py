@@ -411,8 +411,8 @@ def job(tmp_path_factory: pytest.TempPathFactory, fmus: Path, native: Path, syst
         folders = {"python": fmus} | {version: native / version for version in VERSIONS}
         return copied((folders[f] / f"{name}.fmu" for f in flavours for name in NAMES), out)
 
-    def built_systems(out: Path, joints: bool, pool: Executor) -> list[Path]:
-        assert not joints
+    def built_systems(out: Path, build_joints: bool, pool: Executor) -> list[Path]:
+        assert not build_joints
         return [made for suffix in ("fmu", "ssp") for made in copied(system_files.glob(f"*/*.{suffix}"), out)]
 
     def watched(out: Path) -> pipeline.JobResult:

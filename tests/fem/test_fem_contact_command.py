@@ -179,6 +179,6 @@ def test_observed_orders():
         2.0, abs=1e-3
     )  # changes are relative to 1 + 1e-4 h^2
     assert [round(r.refinement, 3) for r in rows] == [0.707, 1.0, 1.414]
-    worse = [*rows[:2], replace(rows[2], values=dict.fromkeys(RESULT_UNITS, 2.0))]
+    worse = [*rows[:2], replace(rows[2], result_values=dict.fromkeys(RESULT_UNITS, 2.0))]
     assert math.isnan(observed_orders(worse)["peak"])
     assert relative_changes(rows)[0]["K_N"] < 0.0

@@ -45,7 +45,7 @@ def solve(below, above, size, normal, tangential, count=6):
     """Two blocks of one plan; None below: the mirror image."""
     bodies = tuple(one.body(size, sign) for one, sign in ((below, -1), (above, 1)) if one)
     interface = above.contact(size)
-    ones = np.ones(interface.area.size)
+    ones = np.ones(interface.quadrature_area.size)
     return bodies, compute_modes(bodies, interface, normal * ones, tangential * ones, count)
 
 

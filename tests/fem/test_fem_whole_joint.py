@@ -21,7 +21,7 @@ def lap(length=0.1, width=0.04, thickness=2e-3, nu=0.0, hole=2e-3):
 
 def even(joint, tangential, normal):
     """Springs [N/m3] that are the same everywhere."""
-    return np.tile([tangential, tangential, normal], (joint.interface.area.size, 1))
+    return np.tile([tangential, tangential, normal], (joint.interface.quadrature_area.size, 1))
 
 
 def block(nu=0.0):
@@ -86,7 +86,7 @@ def test_each_stiffer_part_makes_a_stiffer_joint():
 def test_a_mirrored_side_moves_as_the_mirror_image(monkeypatch):
     """It is not solved for. A softer side is none, nor other heads, nor edges, held at opposite ends."""
     joint = JointFiniteElements.from_assembly(block(nu=0.3), "heads")
-    near = SimpleNamespace(shape=SimpleNamespace(position=joint.interface.centred_position[::40]))
+    near = SimpleNamespace(points=SimpleNamespace(position=joint.interface.centred_position[::40]))
     springs = even(joint, 1e12, 2e12)
 
     def moved():

@@ -36,7 +36,7 @@ def test_first_loading_then_whole_cycles(shape):
 @pytest.mark.parametrize("amplitude", range(2))
 def test_hysteresis_appears(drive, amplitude):
     """Area by Masing's rule, from the law and not from the FMU; trapezoids of 400 points, and the sliders."""
-    row = drive.rows()[amplitude]
+    row = drive.compute_rows()[amplitude]
     law = hysteresis.make_law(load_default("harmonic_drive").with_values(HYSTERESIS, "user", "test").values)
     u = np.array([AMPLITUDES[amplitude]])
     assert row["loss"] == pytest.approx(float(law.loop_area(u)[0]), rel=1e-3)
@@ -48,7 +48,12 @@ def test_hysteresis_appears(drive, amplitude):
 
 def test_force_acts_on_the_joint(drive):
     """tau2 is the torque on the flange, against the motion."""
-    assert (drive.motion, drive.force, drive.sign, drive.units) == ("phi2", "tau2", -1.0, ("rad", "N.m"))
+    assert (drive.motion_name, drive.force_name, drive.force_sign, drive.units) == (
+        "phi2",
+        "tau2",
+        -1.0,
+        ("rad", "N.m"),
+    )
     loop = drive.loops[1]
     np.testing.assert_array_equal(loop.force, -loop.result.columns["tau2"])
     assert loop.force[100] == loop.force.max() == pytest.approx(loop.force[-1], rel=1e-9)

@@ -29,7 +29,7 @@ from jointfmu_fmu_src.native.code.generate import (
     read_token,
 )
 from jointfmu_fmu_src.native.compiled.compiler import TARGETS
-from jointfmu_fmu_src.native.compiled.compiler import _folder as source_folder
+from jointfmu_fmu_src.native.compiled.compiler import _write_source_folder as source_folder
 from jointfmu_fmu_src.partners import PARTNERS
 from jointfmu_fmu_src.partners import load_partner_parameters as partner_parameters
 from jointfmu_tools.systems.fmu.assembly import assemble_system

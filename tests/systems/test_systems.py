@@ -598,12 +598,12 @@ def test_drives_of_the_robot_carry_its_inverse_dynamics(built: Path) -> None:
     """Torques of the rigid arm, and the ringing of six inertias about it; at rest the weight alone, and the
     midline's wind-up within the hysteresis."""
     found, run = load_system("six_axis_robot"), moved(built / "fmi2")
-    q, speed, acceleration = found.arm.motion(run["time"])
-    torque = found.arm.torques(q, speed, acceleration)
+    q, speed, acceleration = found.arm.compute_motion(run["time"])
+    torque = found.arm.inverse_dynamics(q, speed, acceleration)
     commanded, wound, error = wind_up_and_tip_error(found, run)
     np.testing.assert_allclose(commanded, q, atol=1e-12)
     largest = np.max(np.abs(torque))
-    for k, axis in enumerate(found.arm.names):
+    for k, axis in enumerate(found.arm.axis_names):
         carried = run[f"{axis}_drive.tau2"]
         assert np.max(np.abs(carried - torque[:, k])) < 0.12 * np.max(np.abs(torque[:, k])) + 1e-4 * largest
         assert np.mean(carried[-3000:]) == pytest.approx(torque[-1, k], abs=2e-3 * largest)
@@ -622,7 +622,8 @@ def test_the_tips_error_is_what_the_arms_jacobian_makes_of_the_wind_up(built: Pa
     commanded, wound, error = wind_up_and_tip_error(found, run)
     q, dq = commanded[-1], wound[-1]
     step = 1e-6
-    slope = [(found.arm.tip(q + step * e)[0] - found.arm.tip(q - step * e)[0]) / (2.0 * step)
+    tip = found.arm.tip_position
+    slope = [(tip(q + step * e)[0] - tip(q - step * e)[0]) / (2.0 * step)
              for e in np.eye(6)[:, None, :]]  # fmt: skip
     assert np.linalg.norm(dq @ np.array(slope)) == pytest.approx(error[-1], rel=5e-3)  # of second order
 

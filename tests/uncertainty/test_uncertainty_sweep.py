@@ -179,9 +179,9 @@ def test_ctrl_c_ends_it_at_once_and_it_resumes(moment, fmu, tmp_path, capsys):
 def test_a_process_that_dies_as_it_starts_prints_nothing():
     code = (
         "import subprocess, sys\n"
-        "from jointfmu.progress import _quiet_start\n"
+        "from jointfmu.progress import _quiet_start_context\n"
         "child = [sys.executable, '-c', '1/0']\n"
-        "with _quiet_start():\n"
+        "with _quiet_start_context():\n"
         "    subprocess.run(child)\n"
         "print('after', file=sys.stderr)\n"
         "subprocess.run([*child[:2], 'import sys; sys.stderr.write(str(1))'])\n"
@@ -264,7 +264,7 @@ from jointfmu_tools.uncertainty import sweep
 sweep.run_locally = tests.local_dies_at_five
 fmu, out = map(tests.Path, sys.argv[1:3])
 done = sweep.sweep(fmu, tests.DRIVE, [{"surface.D": 2.5}] * 24, out, workers=2)
-print(done.runs, done.new_runs, done.failed, done.first_failure)
+print(done.run_count, done.new_runs, done.failed_count, done.first_failure)
 """
 DIED = {"run": 5, "parameters": {"surface.D": 2.5}, "error": "the process of the run died"}
 

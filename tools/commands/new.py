@@ -58,7 +58,7 @@ def _declare_joint(joint_parsers: SubParsers, name: str, joint_command: NewJoint
 
 
 def _run_new(joint_command: NewJointCommand, args: argparse.Namespace) -> CommandResult:
-    """Make a joint from the options of its drawing."""
+    """Make a joint from the dimensions of its drawing, given as options."""
     joint = make_from_drawing(
         joint_command, {option.name: getattr(args, option.name) for option in joint_command.options}
     )

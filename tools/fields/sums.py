@@ -171,7 +171,7 @@ class SumFunctions:
     def _preload_pressure(
         self, pressure_shape: PressureDistribution, load_cases: Sequence[LoadCase]
     ) -> Array:
-        """Nodal pressure (m, n) [Pa] in the load cases without normal motion."""
+        """Nodal pressure (m, n) [Pa] of each load case under preload and moment, before normal motion."""
         force = self.preload * np.array([load.preload_ratio for load in load_cases])
         moment = np.array([load.moment_ratio for load in load_cases]) * force
         moment *= self.joint.row_distance * self.joint.row_bolts

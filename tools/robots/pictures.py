@@ -60,9 +60,10 @@ def grid_poses(model: "MjModel", axes: Sequence[ElasticAxis], pose: Array, grid:
 def find_worst_pose(
     model: "MjModel", axes: Sequence[ElasticAxis], pose: Array, grid: list[Array], payload: float, tip: int
 ) -> Array:
-    """Pose of the grid with the largest tip displacement under weight, compared to 1 nm.
+    """Pose of the grid with the largest tip displacement under weight.
 
-    Of several such poses: the one nearest to `pose`. Joints outside the grid keep `pose`.
+    Displacements that differ by less than 1 nm count as equal. Of several such
+    poses: the one nearest to `pose`. Joints outside the grid keep `pose`.
     """
     poses = sorted(
         grid_poses(model, axes, pose, grid),

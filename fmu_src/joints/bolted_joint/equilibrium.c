@@ -334,7 +334,7 @@ static NewtonResult solve_newton(Equilibrium *e, LoadStep *step, double load_fac
     if (!evaluate_trial(e, step, q, modal_coordinates, false, why))
         return REFUSED;
     tolerance = residual(e, q, modal_coordinates, r);
-    for (int n = 0, corrections = 0; n < MAX_ITERATIONS; n++) {
+    for (int n = 0, corrections = 0; n < MAX_NEWTON_ITERATIONS; n++) {
         const double norm = residual_norm(r);
         if (norm <= tolerance_factor * tolerance)
             return CONVERGED;

@@ -40,7 +40,7 @@ typedef struct {
     double normal_stiffness[N_COLUMNS][N_COLUMNS], shear_stiffness[N_COLUMNS][N_COLUMNS];
     TractionDerivatives derivatives[MOST_PATCHES];
     Factorization factors; /* of the modal tangent in Newton's method */
-    double corrections[MAX_ITERATIONS][MODES], squares[MAX_ITERATIONS]; /* since then [m], and their squares [m2] */
+    double corrections[MAX_NEWTON_ITERATIONS][MODES], squares[MAX_NEWTON_ITERATIONS]; /* since then [m], and their squares [m2] */
 } Equilibrium;
 
 /* Elongation [m] of bolt b at q and modal coordinates, or its rate. */

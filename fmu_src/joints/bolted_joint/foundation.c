@@ -692,7 +692,7 @@ static PropertiesRate properties_rate(const Foundation *f, int i, const PatchSta
 enum { P_FORCE, P_RETENTION = 2, P_SECANT, P_DISPLACEMENT, P_LIMIT_START = 6, P_LIMIT_END, P_K, P_PER_K, N_PLANE };
 
 /* Relative distance of an elastic predictor from its limit [1] up to which it is at the limit. */
-static const double LIMIT_TOLERANCE = 1e-9;
+static const double LIMIT_ROUND_OFF = 1e-9;
 /* Relative change of the limit at the start [1] that selects the side of a growing or shrinking limit. */
 static const double LIMIT_PERTURBATION = 1e-14;
 
@@ -711,7 +711,7 @@ static inline double predictor_rate(const double *x, const double rate[N_PLANE -
 static bool is_at_limit(const double x[N_PLANE])
 {
     const double u = elastic_predictor(x, 0), v = elastic_predictor(x, 1), limit = x[P_LIMIT_END];
-    return fabs(sqrt(u * u + v * v) - limit) <= LIMIT_TOLERANCE * limit;
+    return fabs(sqrt(u * u + v * v) - limit) <= LIMIT_ROUND_OFF * limit;
 }
 
 /* Whether the rates of a slider may depend on the side. */
@@ -728,7 +728,7 @@ static MappingRate return_map_rate(double x[2 * N_PLANE - P_RETENTION], const do
     const double own[2] = {predictor_rate(x, x + N_PLANE, 0), predictor_rate(x, x + N_PLANE, 1)};
     const bool at_limit = is_at_limit(x);
     const double beyond = u * predictor_rate(x, direction, 0) + v * predictor_rate(x, direction, 1) - limit * direction[P_LIMIT_END - P_RETENTION];
-    const double least = at_limit ? 1.0 - 2.0 * LIMIT_TOLERANCE : 1.0;
+    const double least = at_limit ? 1.0 - 2.0 * LIMIT_ROUND_OFF : 1.0;
     const double grows = direction[P_LIMIT_END - P_RETENTION] - direction[P_LIMIT_START - P_RETENTION];
     if (x[P_LIMIT_START] == limit && grows != 0.0) {
         x[P_LIMIT_START] *= 1.0 - copysign(LIMIT_PERTURBATION, grows);
@@ -935,7 +935,7 @@ static void add_full_range_rates(const Foundation *f, int n, const SideRates *c,
         const double limits[2] = {path->is_first ? own.limit[k] : grown * K * turn[0], path->is_first ? own.limit[k] : grown * K * turn[1]};
         const double stiffer = path->is_first ? own.K[k] : 0.0, gains[2] = {0.0, stiffer};
         argument_rates(f, k, gains, c->rates, 1.0, limits, stiffer, per_K, x + N_PLANE);
-        const double u = elastic_predictor(x, 0), v = elastic_predictor(x, 1), least = (1.0 - 2.0 * LIMIT_TOLERANCE) * after;
+        const double u = elastic_predictor(x, 0), v = elastic_predictor(x, 1), least = (1.0 - 2.0 * LIMIT_ROUND_OFF) * after;
         double dy[N_SLID] = {K * x[N_PLANE + 2] + stiffer * x[P_DISPLACEMENT], K * x[N_PLANE + 3] + stiffer * x[P_DISPLACEMENT + 1],
                                    stiffer, 0.0, stiffer};
         if (u * u + v * v >= least * least) {
@@ -970,7 +970,7 @@ static void add_contact_onset_rate(const Foundation *f, int i, const SideRates *
     for (int late = 0; late < 2; late++) {
         const int at = 2 * i + late, k = follows ? at - 2 : at;
         const double sticks = f->mu / f->ratio * fmax(change, 0.0) * (late ? 1.0 + 2.0 * UNIFORM_DEVIATION : 1.0 - 2.0 * UNIFORM_DEVIATION);
-        const double least = follows ? (1.0 - 2.0 * LIMIT_TOLERANCE) * below.limit[late] : sticks;
+        const double least = follows ? (1.0 - 2.0 * LIMIT_ROUND_OFF) * below.limit[late] : sticks;
         double way[2];
         for (int d = 0; d < 2; d++) {
             const double shift = shift_of(f->torsion_directions, k, path->displacement, d), force = path->force[d][k];

@@ -118,7 +118,7 @@ def _definitions(g: Graph, model: Model) -> Definitions:
     counts |= {
         "MODES": law.MAX_MODES,
         "ELASTIC": int(g.joint.elastic),
-        "MAX_ITERATIONS": equilibrium.MAX_ITERATIONS,
+        "MAX_NEWTON_ITERATIONS": equilibrium.MAX_NEWTON_ITERATIONS,
         "MAX_LINE_SEARCH": equilibrium.MAX_LINE_SEARCH,
     }
     counts["N_INTERFACE_OUTPUTS"] = len([o for o in model.outputs if not o.name.startswith("F_bolt")])

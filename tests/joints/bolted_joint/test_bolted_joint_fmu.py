@@ -385,8 +385,12 @@ def test_the_picture_of_points_without_an_outline() -> None:
     half = np.flatnonzero(shape.position[:, 1] > 0.0)
     some = shape.select_nodes(half)
     share = some.area_share / some.area_share.sum()
-    moved = replace(some, share=share, position=some.position - share @ some.position)
-    moved = replace(moved, equal=some.equal / (share @ some.equal), tilt=some.tilt - share @ some.tilt)
+    moved = replace(some, area_share=share, position=some.position - share @ some.position)
+    moved = replace(
+        moved,
+        preload_shape=some.preload_shape / (share @ some.preload_shape),
+        moment_shape=some.moment_shape - share @ some.moment_shape,
+    )
     joint = replace(file.values, pattern=NodalField(**nodal_field_entries(moved)))
     drawn = ElementTree.fromstring(draw_plan(joint, 9e3, 0.0))
     discs = list(drawn.iter(f"{SVG}circle"))

@@ -385,7 +385,7 @@ def test_the_whole_of_a_computed_field_has_the_stiffness_of_all_its_nodes(capsys
     )
     facts, _ = made(capsys, *words, "--preload", "15e3", "--field", "computed", "--out", str(path))
     values = load_parameter_file(path).values
-    found = Compliances.of(BoltedJointSpring.of(values), 15e3)
+    found = BoltedJointSpring.of(values).compliances(15e3)
     np.testing.assert_allclose(found.total, seen[0].compliances.total, rtol=2e-3)
     for name, compliance in zip(DIRECTIONS, found.total, strict=True):
         whole = facts[f"joint_K_{name if name.startswith('r') else 2 * name}"]

@@ -420,7 +420,7 @@ def test_the_fmu_loses_and_regains_preload_as_the_package(made, tmp_path, flavou
 
 def accept(fmu):
     """End a step at the inputs that were set."""
-    if not fmu.exchange:
+    if not fmu.is_model_exchange:
         fmu.step()
         return
     fmu.fmu.enterContinuousTimeMode()
@@ -500,7 +500,7 @@ def test_long_steps_back_from_gross_slip_are_found(made):
 def test_a_motion_without_equilibrium_is_told_and_the_next_goes_on(made, monkeypatch):
     spring = made(*FOUR, preload=15e3).spring
     with monkeypatch.context() as patch:
-        patch.setattr(equilibrium, "MAX_ITERATIONS", 0)
+        patch.setattr(equilibrium, "MAX_NEWTON_ITERATIONS", 0)
         told = (
             r"preload = 15000, s_rel_x = 1e-07: no equilibrium of the joint was found beyond a fraction of "
             r".* residual is .* N"

@@ -34,7 +34,7 @@ def linear(load_factor, a):
 
 
 def test_newton_converges_in_the_last_iteration(monkeypatch):
-    monkeypatch.setattr(equilibrium, "MAX_ITERATIONS", 1)
+    monkeypatch.setattr(equilibrium, "MAX_NEWTON_ITERATIONS", 1)
     found, converged = equilibrium.solve_newton(load_step(linear), 1.0, np.zeros(2), K)
     assert converged
     np.testing.assert_allclose(found.modal_coordinates, np.linalg.solve(K, LOAD), rtol=1e-12)

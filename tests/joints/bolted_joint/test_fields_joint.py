@@ -61,10 +61,10 @@ def direct(joint, shape, load):
     curve = SumFunctions.from_joint(joint, PRELOAD, preload_pressure).curve
     spring = replace(BoltedJointSpring.of_nodes(elastic, shape), curve=curve)
     force = load.preload_ratio * PRELOAD
-    moment = load.moment * force * joint.row_distance * joint.row_bolts
+    moment = load.moment_ratio * force * joint.row_distance * joint.row_bolts
     start = spring.preloaded_approach(force, moment)
     found = []
-    for s_z in (load.apart, 0.0):
+    for s_z in (load.opening_ratio, 0.0):
         state = spring.evaluate(force, moment, (0.0, 0.0, s_z), (0.0, 0.0, 0.0))
         state["force"] = state["p_mean"] * joint.A_0
         found.append(np.array([state[n] for n in ("force", "K_zz", "K_xx", "K_rx", "K_ry")]))
@@ -75,18 +75,20 @@ def direct(joint, shape, load):
 def test_points_keep_the_sums(reduced):
     """At loads that the reduction never saw, within what it promises; the peak pressure exactly."""
     joint, shape, found = reduced
-    assert found.point_count < 0.35 * found.nodes
-    assert found.deviation <= RELATIVE_TOLERANCE
+    assert found.point_count < 0.35 * found.node_count
+    assert found.largest_deviation <= RELATIVE_TOLERANCE
     rng = np.random.default_rng(11)
     lowest = SumFunctions.from_joint(joint, PRELOAD, preload_pressure).curve.displacement[0]
     for _ in range(15):  # many in benchmarks/field_reduction.py
         load = LoadCase(
-            float(np.exp(rng.uniform(*np.log(PRELOAD_RATIO_RANGE)))), found.moment * rng.uniform(-1, 1), 0.0
+            float(np.exp(rng.uniform(*np.log(PRELOAD_RATIO_RANGE)))),
+            found.max_tested_moment_ratio * rng.uniform(-1, 1),
+            0.0,
         )
         start, _, peak = direct(joint, shape, load)
         apart = rng.choice([0.0, rng.uniform(-MAX_COMPRESSION_RATIO, 1.0)]) * (start.max() - lowest)
-        _, full, _ = direct(joint, shape, load._replace(apart=apart))
-        _, few, same = direct(joint, found.shape, load._replace(apart=apart))
+        _, full, _ = direct(joint, shape, load._replace(opening_ratio=apart))
+        _, few, same = direct(joint, found.reduced_shape, load._replace(opening_ratio=apart))
         np.testing.assert_array_less(
             np.abs(few[0] - full[0]), RELATIVE_TOLERANCE * np.maximum(full[0], full[1])
         )
@@ -95,7 +97,7 @@ def test_points_keep_the_sums(reduced):
 
 def test_points_balance(reduced):
     _, shape, found = reduced
-    points = found.shape
+    points = found.reduced_shape
     assert np.all(points.area_share > 0.0)
     for one in (shape, points):
         assert one.area_share.sum() == pytest.approx(1.0, rel=1e-12)
@@ -243,7 +245,7 @@ def test_file_survives_and_says_where_it_comes_from(imported, tmp_path):
     assert float(FIELD.area.sum()) == again.values.A_0
     assert "pattern." not in " ".join(flatten_parameters(again.values))
     assert again.origins["field.tilt"] == "derived"
-    assert again.sources["field.share"].endswith(f"{found.point_count} points for {found.nodes} nodes")
+    assert again.sources["field.share"].endswith(f"{found.point_count} points for {found.node_count} nodes")
     assert again.sources["A_0"] == "a test's field, sum of the nodal areas"
 
 

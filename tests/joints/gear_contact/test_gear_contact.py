@@ -142,7 +142,7 @@ def test_zeta_is_the_exponent():
 
 @each
 def test_the_closing_is_short(spring):
-    """It ends where the largest spot is CLOSING_RATIO times the largest plastic one."""
+    """It ends where the largest spot is CLOSING_AREA_RATIO times the largest plastic one."""
     force, _ = closing_end(spring)
     spots = spring.joint.spots()
     largest = float(evaluate_at_pressure(spring.joint, force / spring.joint.A_0)["largest_spot"])

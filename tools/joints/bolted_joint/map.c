@@ -1,33 +1,31 @@
-/* The contact pressure for the page: of each node its place x, y [m], its share of the area and its pressure [Pa]
- * at the present inputs. */
+/* Map of the contact pressure for the page. Rows of four numbers, one for each point: position x, y [m], share of the
+ * area [1], pressure [Pa] at the present inputs. */
 #include "instance.h"
 #include "tabulated.h"
 
-enum { ROOM = sizeof ((Kind *)0)->weight / sizeof *((Kind *)0)->weight };
-
-static int nodes; /* that are in the map */
+static int row_count; /* rows that are in use */
 
 __attribute__((visibility("default"))) int lab_map_size(void)
 {
-    return nodes;
+    return row_count;
 }
 
-/* NULL: refused. */
+/* NULL: the inputs are refused. */
 __attribute__((visibility("default"))) const double *lab_map(Instance *m)
 {
-    static double map[ROOM][4];
+    static double map[MOST_POINTS][4];
     if (instance_evaluate(m) != OK)
         return NULL;
     const double *inputs = m->now.values + FIRST_INPUT;
-    const Kind *kind = &m->joint->kind;
-    nodes = 0;
-    for (int i = 0; i < ROOM && kind->weight[i][0] > 0.0; i++) {
-        double *node = map[nodes++];
-        node[2] = kind->weight[i][0];
-        node[0] = kind->weight[i][1] / node[2];
-        node[1] = kind->weight[i][2] / node[2];
-        const double apart = inputs[INPUT_S_REL_Z] + inputs[INPUT_THETA_X] * node[1] - inputs[INPUT_THETA_Y] * node[0];
-        curve_at(&m->joint->curve, kind->start[i] - apart, 0, &node[3]);
+    const Contact *contact = &m->joint->kind.contact;
+    row_count = 0;
+    for (int i = 0; i < MOST_POINTS && contact->weight[i][0] > 0.0; i++) {
+        double *row = map[row_count++];
+        row[2] = contact->weight[i][0];
+        row[0] = contact->weight[i][1] / row[2];
+        row[1] = contact->weight[i][2] / row[2];
+        const double opening = inputs[INPUT_S_REL_Z] + inputs[INPUT_THETA_X] * row[1] - inputs[INPUT_THETA_Y] * row[0];
+        curve_at(&m->joint->curve, contact->preload.approach[i] - opening, 0, &row[3]);
     }
     return map[0];
 }

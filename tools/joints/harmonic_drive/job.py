@@ -76,7 +76,7 @@ def figures(job_result: Any) -> list[Figure]:
             "Stiffness over torque",
             "First chart: the outputs K_WTS and K_TS (contact pair) of the FMU. Second chart: the contact "
             "pair on the scale of the paper's figures.",
-            stiffness_panels(result, job_result.rows),
+            stiffness_panels(result, job_result.validated_points),
             data_file=f"{_COMPLIANCE_FMU}.csv",
         ),
         Figure(
@@ -172,7 +172,7 @@ TORQUE_RATIOS = (0.0, 0.1, 0.2, 0.4, 0.7, 1.0)
 
 
 def _vibration_torques(path: Path, parameters: Mapping[str, float]) -> list[float]:
-    """Torques [N.m] of the simulated free vibrations, from zero to the rated torque."""
+    """Mean torques [N.m] at which free vibrations are simulated: from zero to the rated torque."""
     with Slave(path, parameters, (), ("rated_torque",)) as drive:
         (rated,) = drive.get_outputs()
     return [share * rated for share in TORQUE_RATIOS]

@@ -36,7 +36,7 @@ CANCELLATION_RATIO = 0.02
 """Share of the force by rigid-body opening alone in this sum [1]: modal opening cancels nearly all of it."""
 INTERMEDIATE_TOLERANCE_FACTOR = 1e7
 """Tolerance inside a divided load step over the tolerance at its end [1]."""
-MAX_ITERATIONS, MAX_LINE_SEARCH = 16, 6
+MAX_NEWTON_ITERATIONS, MAX_LINE_SEARCH = 16, 6
 """Newton iterations at one load factor [1], and trial lengths in each iteration [1]."""
 TANGENT_REUSE_RATIO = 0.03
 """Residual after an iteration over the residual before [1], below which the tangent is reused."""
@@ -309,11 +309,11 @@ def solve_newton(step: LoadStep, load_factor: float, a: Array, J: Array) -> tupl
     tolerance_factor = 1.0 if load_factor == 1.0 else INTERMEDIATE_TOLERANCE_FACTOR
     state, last_norm, tangent_is_current = step.evaluate_trial(q, a), np.inf, False
     corrections: list[Array] = []  # since J was computed
-    for iteration in range(MAX_ITERATIONS + 1):
+    for iteration in range(MAX_NEWTON_ITERATIONS + 1):
         norm = state.residual_norm
         if norm <= tolerance_factor * state.tolerance:
             return state, True
-        if iteration == MAX_ITERATIONS:
+        if iteration == MAX_NEWTON_ITERATIONS:
             break
         if not norm < TANGENT_REUSE_RATIO * last_norm:
             J, corrections, tangent_is_current = step.modal_tangent(state), [], True

@@ -103,7 +103,7 @@ static bool add_piece(Approach *approach, Curve *curve, const Spots *spots, cons
 bool approach_tabulate(Approach *approach, Curve *curve, const Spots *spots, const double *c, int steps,
                        Text *why)
 {
-    const double first = spots->onset + same_log(CLOSING_RATIO);
+    const double first = spots->onset + same_log(CLOSING_AREA_RATIO);
     double last = first, slope, ends[N_LAW_ENDS + 2], y[N_LAW_TABLE], x = 0.0;
     if (!spots_solve(spots, c, spots->hardness, &last, &slope, why))
         return false;
