@@ -173,10 +173,8 @@ class Bolted:
         else:
             q = x[6:].reshape(2, -1)
             K, Q, K_rate, Q_rate = self.sliders(-s[2], -v[2])
-            stuck, size = (
-                K * v[:2, None] + np.where(K_rate < 0.0, q * K_rate / np.maximum(K, 1.0), 0.0),
-                np.hypot(*q),
-            )
+            stuck = K * v[:2, None] + np.where(K_rate < 0.0, q * K_rate / np.maximum(K, 1.0), 0.0)
+            size = np.hypot(*q)
             along = np.sum(q * stuck, axis=0) / np.maximum(size, 1e-60)
             layer = np.clip((size - Q) / (LAYER * Q + 1e-9), 0.0, 1.0)
             more = stuck - layer * np.maximum(along - Q_rate, 0.0) * q / np.maximum(size, 1e-60)

@@ -73,10 +73,8 @@ def computed(file: ParameterFile, options: str) -> PressureDistribution:
     bolts = BoltList(
         x=pattern.x, y=pattern.y, hole_diameter=pattern.hole_diameter, head_diameter=thread.hexagon
     )
-    contact, preload = (
-        BoltedContact.from_assembly(Assembly(file.name, *sides, bolts)),
-        file.start_value("preload"),
-    )
+    contact = BoltedContact.from_assembly(Assembly(file.name, *sides, bolts))
+    preload = file.start_value("preload")
     field = contact.solve(tabulate_approach(file.values), preload).field
     return pressure_shape(replace(file.values, A_0=float(field.area.sum())), field, preload)
 

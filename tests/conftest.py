@@ -40,9 +40,8 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 sys.dont_write_bytecode = False
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # of the processes of xdist, which share the cores
-os.environ.setdefault(
-    COMPILER_CACHE_VARIABLE, str(compiler_cache())
-)  # tests without kept parts compile with a warm cache
+# tests without kept parts compile with a warm cache
+os.environ.setdefault(COMPILER_CACHE_VARIABLE, str(compiler_cache()))
 
 HERE = Path(__file__).parent
 RELEASED = ("-target", TARGETS[platform_tuple], "-O2", "-s")

@@ -175,10 +175,8 @@ def load_parameter_file(path: str | Path, joint: str | None = None) -> Parameter
     values, origins, sources = read_entries(path, declared, body, keys)
     input_values, surface_heights = _pop_section(values, _INPUTS_PREFIX), _pop_section(values, prefix)
     try:
-        inputs, heights = (
-            _check_start_values(stated, input_values),
-            roughness.check_heights(surface_heights, prefix),
-        )
+        inputs = _check_start_values(stated, input_values)
+        heights = roughness.check_heights(surface_heights, prefix)
         of_law = _law_height(declared, values, heights)
         parameters = build_parameter_set(cls, values | of_law)
     except ValueError as error:

@@ -29,10 +29,8 @@ def add_slider_functions(function_graph: Graph) -> None:
     function_graph.add_function("slide_steady", doc, [force, after, stiffness, compliance, shift], y)
     slid = return_map([force], 1.0, stiffness, [shift], before, after, stiffness, compliance)
     doc = f"force, limit before, stiffness, compliance, shift, limit after -> {results}"
-    x, y = (
-        [force, before, stiffness, compliance, shift, after],
-        [*slid.force, *slid.tangent, slid.dissipated_energy],
-    )
+    x = [force, before, stiffness, compliance, shift, after]
+    y = [*slid.force, *slid.tangent, slid.dissipated_energy]
     function_graph.add_with_derivative("slide_line", doc, x, y, constant_count=4)
     _add_plane_functions(function_graph)
 

@@ -9,11 +9,9 @@ REFERENCE_FOLDER = f"extra/{STANDARD_NAME}"
 MANIFEST_PATH = f"{REFERENCE_FOLDER}/fmi-ls-manifest.xml"
 ATTRIBUTE_NAMESPACE = "http://fmi-standard.org/fmi-ls-manifest"
 """XML namespace of the attributes of the manifest."""
-EXPERIMENTS_TYPE, SSV_TYPE, CSV_TYPE = (
-    "application/x-ma-hs-experiments",
-    "application/x-ssp-parameter-set",
-    "text/csv",
-)
+EXPERIMENTS_TYPE = "application/x-ma-hs-experiments"
+SSV_TYPE = "application/x-ssp-parameter-set"
+CSV_TYPE = "text/csv"
 """MIME types of the related files that are read."""
 TRANSIENT_ELEMENT = "TransientSimulation"
 CO_SIMULATION, MODEL_EXCHANGE = INTERFACES = ("co-simulation", "model exchange")

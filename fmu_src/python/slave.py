@@ -105,11 +105,9 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
 
     def _make_variable(self, listed_variable: ListedVariable) -> object:
         """pythonfmu variable of a listed variable."""
-        name, output, parameter = (
-            listed_variable.name,
-            listed_variable.causality == "output",
-            listed_variable.causality == "parameter",
-        )
+        name = listed_variable.name
+        output = listed_variable.causality == "output"
+        parameter = listed_variable.causality == "parameter"
         initial = Fmi2Initial.calculated if output else Fmi2Initial.exact
         return (Boolean if listed_variable.is_boolean else Real)(
             name,
@@ -222,18 +220,12 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
         return True
 
     get_real, set_real = protect_references(Fmi2Slave.get_real), protect_references(Fmi2Slave.set_real)
-    get_integer, set_integer = (
-        protect_references(Fmi2Slave.get_integer),
-        protect_references(Fmi2Slave.set_integer),
-    )
-    get_boolean, set_boolean = (
-        protect_references(Fmi2Slave.get_boolean),
-        protect_references(Fmi2Slave.set_boolean),
-    )
-    get_string, set_string = (
-        protect_references(Fmi2Slave.get_string),
-        protect_references(Fmi2Slave.set_string),
-    )
+    get_integer = protect_references(Fmi2Slave.get_integer)
+    set_integer = protect_references(Fmi2Slave.set_integer)
+    get_boolean = protect_references(Fmi2Slave.get_boolean)
+    set_boolean = protect_references(Fmi2Slave.set_boolean)
+    get_string = protect_references(Fmi2Slave.get_string)
+    set_string = protect_references(Fmi2Slave.set_string)
 
     def _get_fmu_state(self) -> dict[str, object]:
         state = {

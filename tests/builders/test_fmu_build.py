@@ -464,9 +464,8 @@ def test_the_main_job_builds_checks_and_reports(job: Job) -> None:
     assert not re.findall(r"@import|url\(\s*[\"']?(?:https?:)?//", page)
     assert [x for x in links.loaded if not x.startswith(("#", "data:"))] == []
     assert [name for name in NAMES if name not in page] == []
-    counted = validation.format_summary(
-        validation.validate()
-    )  # the command, the job and the page count alike
+    # the command, the job and the page count alike
+    counted = validation.format_summary(validation.validate())
     assert f"compared: {counted}; " in out
     assert f"<p>{counted}.</p>" in page
 

@@ -143,10 +143,8 @@ def other_parameters(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def doubled_sources(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """FMUs of a package whose gear contact is twice as stiff."""
-    out, sources = (
-        tmp_path_factory.mktemp("doubled_sources"),
-        python_build.collect_runtime_sources(KINDS["gear_contact"]),
-    )
+    out = tmp_path_factory.mktemp("doubled_sources")
+    sources = python_build.collect_runtime_sources(KINDS["gear_contact"])
     sources["joints/gear_contact/spring.py"] += """
 _single = GearContactSpring.evaluate
 GearContactSpring.evaluate = lambda self, f: _single(self, f) | {"K_N": 2.0 * _single(self, f)["K_N"]}

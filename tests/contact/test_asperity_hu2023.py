@@ -202,10 +202,8 @@ def test_lower_bound_of_the_mean_pressure():
 
 def test_kogut_etsion_products():
     # errata: six and seven digits
-    first, second = (
-        kogut_etsion.eliminate_deformation(kogut_etsion.FIRST_STAGE),
-        kogut_etsion.eliminate_deformation(kogut_etsion.SECOND_STAGE),
-    )
+    first = kogut_etsion.eliminate_deformation(kogut_etsion.FIRST_STAGE)
+    second = kogut_etsion.eliminate_deformation(kogut_etsion.SECOND_STAGE)
     coefficients = (first.load_factor, second.load_factor, first.stiffness_factor, second.stiffness_factor)
     assert coefficients == pytest.approx((1.12816, 1.49880, 1.50815, 1.79349), abs=5e-6)
     ends = (kogut_etsion.SECOND_STAGE_AREA_RATIO, kogut_etsion.PLASTIC_AREA_RATIO)

@@ -303,10 +303,8 @@ def test_dimensional_homogeneity(kind, data, stress, length, mass):
     }
     u = np.array([-20.0, -5.0, -0.5, 0.5, 3.0, 8.0, 20.0])
     pressure = law.spots().total("load", u) / law.A_0
-    before, after = (
-        evaluate_at_pressure(law, pressure),
-        evaluate_at_pressure(changed(law, scaled), pressure * stress),
-    )
+    before = evaluate_at_pressure(law, pressure)
+    after = evaluate_at_pressure(changed(law, scaled), pressure * stress)
     assert before.keys() <= UNITS.keys()
     for symbol, value in before.items():
         expected = value * factor[UNITS[symbol]]

@@ -432,10 +432,8 @@ def test_elastic_shear_of_the_bolted_component_is_that_of_the_package(rumoca: An
     wires = "\n  ".join(f"connect(joint.flange_{a}, m{a}.flange);" for a in "xyz")
     found = simulate(rumoca, top(body, wires, move("Translational", "s")), 1.0, 1e-2)
     total = bolted_modelica.combine_nodes(bolted, 9e3, 0.0)
-    limit, u = (
-        bolted.joint.mu * total.preload_contact_force,
-        (found["joint.s_rel[1]"], found["joint.s_rel[2]"]),
-    )
+    limit = bolted.joint.mu * total.preload_contact_force
+    u = (found["joint.s_rel[1]"], found["joint.s_rel[2]"])
     assert np.max(np.hypot(*u) * found["joint.K_t"]) > 2.0 * limit
     curve = [found[f"joint.{name}"] for name in ("G", "K_n", "bend")]
     x, y, *_, lifted, _ = elastic_shear(limit, total.shear_ratio, [*curve, 0.0 * u[0]], *u)

@@ -669,10 +669,8 @@ def test_the_page_shows_every_warning_and_typical_refusals(name: str) -> None:
 def test_the_page_draws_the_ramp_of_its_own_parameters() -> None:
     model = MODELS["GearContact"]
     file = load_default(model.joint).with_values({"lambda": 0.5}, "user", "my own")
-    usual, other = (
-        pages(model.name)["index.html"].decode(),
-        make_documentation(model, file)["index.html"].decode(),
-    )
+    usual = pages(model.name)["index.html"].decode()
+    other = make_documentation(model, file)["index.html"].decode()
 
     def figure(text: str) -> str:
         return re.findall(r'<script type="application/json">(.*?)</script>', text)[0]

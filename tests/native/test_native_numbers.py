@@ -9,7 +9,7 @@ from types import ModuleType
 
 import pytest
 from jointfmu_fmu_src import joints
-from jointfmu_fmu_src.joint_parts.native import COUNT_NAMES, NUMBER_NAMES, ModuleConstants
+from jointfmu_fmu_src.joint_parts.native import COUNT_NAMES, NUMBER_NAMES, Definitions, ModuleConstants
 from jointfmu_fmu_src.joints.harmonic_drive import native as drive_native
 from jointfmu_fmu_src.native.code import generate
 
@@ -54,6 +54,14 @@ def compiles(folder: Path, files: dict[str, str], text: str) -> bool:
         (folder / name).write_text(content, encoding="utf-8")
     command = (sys.executable, "-m", "ziglang", "cc", "-std=c11", "-c", "probe.c", "-o", "probe.o")
     return subprocess.run(command, cwd=folder, capture_output=True).returncode == 0
+
+
+def test_one_name_of_a_constant_has_one_value() -> None:
+    first = Definitions({"MAX_ITERATIONS": 200}, {"TOLERANCE": 1e-9})
+    assert (first | Definitions({"MAX_ITERATIONS": 200})).counts == {"MAX_ITERATIONS": 200}
+    for other in (Definitions({"MAX_ITERATIONS": 16}), Definitions({}, {"MAX_ITERATIONS": 16.0})):
+        with pytest.raises(ValueError, match="C constant MAX_ITERATIONS has two values"):
+            _ = first | other
 
 
 @pytest.mark.parametrize("name", EVERY)

@@ -282,10 +282,8 @@ def test_a_bolted_joint_of_a_drawing_is_refused(
         assert said.endswith("jointfmu report mine.toml")
 
 
-BOX, DRIVE = (
-    format_parameter_file(load_default("bolted_joint")),
-    format_parameter_file(load_default("harmonic_drive")),
-)
+BOX = format_parameter_file(load_default("bolted_joint"))
+DRIVE = format_parameter_file(load_default("harmonic_drive"))
 
 
 def field_text() -> str:
@@ -369,7 +367,7 @@ def test_a_faulty_file_is_refused(shown: Browser, what: str, tmp_path: Path) -> 
 @needed
 @pytest.mark.parametrize("path", FOREIGN, ids=lambda path: f"{path.parent.name}/{path.name}")
 def test_a_file_of_another_kind_is_refused(shown: Browser, path: Path) -> None:
-    refusal(shown, path.read_text(encoding="utf-8"))
+    assert refusal(shown, path.read_text(encoding="utf-8")), "the page says nothing"
 
 
 def reopen(shown: Browser, address: str) -> None:
@@ -419,10 +417,8 @@ def test_an_opened_file_is_reset_and_saved(shown: Browser, drawings: dict[str, s
       lab.take(lab.set);
       return [text, lab.toml()];
     })""")
-    again, moved = (
-        load_parameter_file(write(tmp_path / "back.toml", back)),
-        load_parameter_file(write(tmp_path / "moved.toml", text)),
-    )
+    again = load_parameter_file(write(tmp_path / "back.toml", back))
+    moved = load_parameter_file(write(tmp_path / "moved.toml", text))
     assert replace(again, inputs=first.inputs) == first
     assert moved.values_by_name == first.values_by_name | {"h": 2.0 * first.values_by_name["h"]}
     assert moved.roughness == {}  # the height stands in their place

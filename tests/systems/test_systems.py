@@ -678,10 +678,8 @@ def test_the_bolted_column_converges_to_the_packages_law(built: Path) -> None:
     found, stop = load_system("bolted_column").list_values, 1.6e-3
     defaults = flatten_parameters(ssp.partner_parameters("ForceProfile").values)
     pulse = {k.removeprefix("load."): v for k, v in found.items() if k.startswith("load.")}
-    load, mass = (
-        ForceProfile(**(defaults | pulse)),
-        TranslationalMass(m=found["column.m"], lag_a=0.0, lag_b=0.0),
-    )
+    load = ForceProfile(**(defaults | pulse))
+    mass = TranslationalMass(m=found["column.m"], lag_a=0.0, lag_b=0.0)
     stiffness, limit = column_sliders(bolted(), found["joint.preload"])
 
     def rates(time: float, x: Array) -> list[float]:

@@ -25,12 +25,10 @@ def format_springs(springs: Springs, placement: Placement, comment_lines: Sequen
     All stiffness elements come first. Pairs that agree to nine digits, the precision of the format, share a
     set of real constants.
     """
-    first, first_set, units, count = (
-        placement.first_number,
-        placement.first_set_number,
-        placement.units,
-        len(springs.nodes),
-    )
+    first = placement.first_number
+    first_set = placement.first_set_number
+    units = placement.units
+    count = len(springs.nodes)
     stiffness = placement.assign_to_axes(units.convert(springs.K_t, "N/m"), units.convert(springs.K_n, "N/m"))
     damping = placement.assign_to_axes(
         units.convert(springs.C_t, "N.s/m"), units.convert(springs.C_n, "N.s/m")

@@ -71,11 +71,9 @@ class ContactEnergy:
         u = np.zeros(self.load.size) if initial_minimum is None else initial_minimum.displacement
         inner, approach = K @ u, approach_offset + T @ u
         total_load = float(np.abs(self.load).sum())
-        factor, slow, last_residual = (
-            None if initial_minimum is None else initial_minimum.tangent_factor,
-            False,
-            np.inf,
-        )
+        factor = None if initial_minimum is None else initial_minimum.tangent_factor
+        slow = False
+        last_residual = np.inf
         for step in track_progress(range(MAX_NEWTON_STEPS), "contact"):
             p, k = self.pressure_law(approach)[:2]
             residual = self.load - inner - T.T @ (self.quadrature_area * p)

@@ -86,7 +86,7 @@ def field_adapters() -> dict[str, FieldAdapter]:
 
 
 def field_adapter(joint: str) -> FieldAdapter:
-    """Adapter of a kind of joint; ValueError if its pressure cannot be a field."""
+    """Functions for pressure fields of a kind of joint; ValueError if it takes no pressure field."""
     adapters = field_adapters()
     if joint not in adapters:
         allowed = " or ".join(repr(name) for name in adapters)

@@ -58,11 +58,9 @@ def recombine(values: Array, weights: Array, orthogonal_transform: Array) -> tup
         factors, _ = nnls(vectors, np.sum(vectors, axis=1), maxiter=20 * count)
         node_factors = np.repeat(factors, np.diff(bounds))
         positive = node_factors > 0.0
-        selected, weights, values = (
-            selected[positive],
-            (weights * node_factors)[positive],
-            values[positive],
-        )
+        selected = selected[positive]
+        weights = (weights * node_factors)[positive]
+        values = values[positive]
     return selected, weights
 
 
@@ -189,10 +187,8 @@ def _search_points(
     unrounded_shape : pressure shape of all nodes
     """
     limit = max_moment_ratio(sum_functions.joint, rounded_shape)
-    loads, tests = (
-        random_load_cases(limit),
-        int(np.clip(MAX_TEST_EVALUATIONS / rounded_shape.area_share.size, *TEST_LOAD_RANGE)),
-    )
+    loads = random_load_cases(limit)
+    tests = int(np.clip(MAX_TEST_EVALUATIONS / rounded_shape.area_share.size, *TEST_LOAD_RANGE))
     system = _SumSystem.from_loads(
         sum_functions,
         rounded_shape,

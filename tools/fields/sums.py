@@ -202,10 +202,8 @@ class SumFunctions:
         pairs, index = np.unique([load[:2] for load in load_cases], axis=0, return_inverse=True)
         index = index.ravel()
         preloaded = [LoadCase(p, m, 0.0) for p, m in pairs]
-        group_size, blocks = (
-            nodes_per_group(pressure_shape.area_share.size),
-            list(_node_blocks(pressure_shape, len(load_cases), whole_groups=True)),
-        )
+        group_size = nodes_per_group(pressure_shape.area_share.size)
+        blocks = list(_node_blocks(pressure_shape, len(load_cases), whole_groups=True))
         peak = np.max([np.max(self._preload_pressure(block, preloaded), axis=1) for block in blocks], axis=0)
         max_opening = self._approach(peak) - self.curve.displacement[0]
         opening = np.array([load.opening_ratio for load in load_cases]) * max_opening[index]
@@ -331,12 +329,10 @@ def _moment_factors(pressure_shape: PressureDistribution) -> Array:
 
 def _sum_scales(sums: Array, radius_x: float, radius_y: float) -> Array:
     """Scales (m, 9) of sums (m, 9); radius_x and radius_y [m] are the radii of gyration of the contact."""
-    p, k, x_scale, y_scale = (
-        sums[:, 0],
-        sums[:, 3],
-        COUPLING_TOLERANCE_FACTOR * radius_x,
-        COUPLING_TOLERANCE_FACTOR * radius_y,
-    )
+    p = sums[:, 0]
+    k = sums[:, 3]
+    x_scale = COUPLING_TOLERANCE_FACTOR * radius_x
+    y_scale = COUPLING_TOLERANCE_FACTOR * radius_y
     columns = [p, p * x_scale, p * y_scale, k, k * x_scale, k * y_scale]
     return np.stack([*columns, sums[:, 6], sums[:, 7], k * x_scale * radius_y], axis=1)
 

@@ -97,10 +97,8 @@ class Loops:
         residual, derivative = self._force_residuals(law, 0.0), self._force_residuals(law, 1.0)
         derivative = (derivative - residual) / self.start_motion_deviation[self.branch_index]
         force, mean_derivative = self._branch_means(residual), self._branch_means(derivative)
-        residual, derivative = (
-            residual - force[self.branch_index],
-            derivative - mean_derivative[self.branch_index],
-        )
+        residual = residual - force[self.branch_index]
+        derivative = derivative - mean_derivative[self.branch_index]
         weight = residual_scale**-2.0
         shift = -self._branch_sums(weight * residual * derivative) / (
             self._branch_sums(weight * derivative**2) + self.start_motion_deviation**-2.0

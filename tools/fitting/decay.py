@@ -164,10 +164,8 @@ def _design_matrix(window_parameters: Array, window_time: Array) -> Array:
     window_parameters : w, s and their rates (4)
     """
     w, s, w_rate, s_rate = window_parameters
-    angle, decay = (
-        (w + 0.5 * w_rate * window_time) * window_time,
-        np.exp(-(s + 0.5 * s_rate * window_time) * window_time),
-    )
+    angle = (w + 0.5 * w_rate * window_time) * window_time
+    decay = np.exp(-(s + 0.5 * s_rate * window_time) * window_time)
     return np.stack(
         [np.ones_like(window_time), window_time, decay * np.cos(angle), decay * np.sin(angle)], axis=1
     )

@@ -30,10 +30,8 @@ from .decay import DecayPoints
 
 ForceFunction = Callable[[Array], Array]
 _HALF_CYCLE_ANGLES, _HALF_CYCLE_WEIGHTS = np.polynomial.legendre.leggauss(64)
-_HALF_CYCLE_ANGLES, _HALF_CYCLE_WEIGHTS = (
-    0.5 * np.pi * (1.0 + _HALF_CYCLE_ANGLES),
-    0.5 * np.pi * _HALF_CYCLE_WEIGHTS,
-)
+_HALF_CYCLE_ANGLES = 0.5 * np.pi * (1.0 + _HALF_CYCLE_ANGLES)
+_HALF_CYCLE_WEIGHTS = 0.5 * np.pi * _HALF_CYCLE_WEIGHTS
 """Gauss-Legendre angles (64) [rad] from 0 to pi, and their weights: half an oscillation u = a cos(angle)."""
 _MAX_SECANT_STEPS, _MAX_DECREMENT = 12, 3.0
 """Number of secant iterations for the logarithmic decrement of half a period, and upper limit of it [1]."""

@@ -103,10 +103,8 @@ class ColumnNames:
             (self.motion_column, -1.0, self.motion_units),
             (self.force_column, 1.0, self.force_units),
         ):
-            stated, text = (
-                measured_in(stated_units[column], own),
-                f"where the heading says {stated_units[column]}",
-            )
+            stated = measured_in(stated_units[column], own)
+            text = f"where the heading says {stated_units[column]}"
             errors = {
                 unit: abs(np.log(stiffness_ratio * (size / stated) ** power)) for unit, size in own.items()
             }

@@ -109,10 +109,8 @@ def run_job(out_folder: Path) -> JobResult:
         outcome.fmu_paths = build([], list(FLAVOURS), None, out_folder, pool=pool)
         outcome.system_files = build_systems(out_folder, build_joints=False, pool=pool)
         components = [path for path in outcome.system_files if path.suffix == ".fmu"]
-        arms, ringdowns = (
-            pool.submit(cosimulation.simulate_arms, folder),
-            pool.submit(decays.simulate_examples, folder),
-        )
+        arms = pool.submit(cosimulation.simulate_arms, folder)
+        ringdowns = pool.submit(decays.simulate_examples, folder)
         ringing = pool.submit(simulate_examples, folder)
         page = pool.submit(write_laboratory, out_folder / "report" / "laboratory.html")
         paths = [*outcome.fmu_paths, *components]

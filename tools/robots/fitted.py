@@ -88,10 +88,8 @@ def fit_spring(drive: Transmission, max_torque: float) -> FittedSpring:
 
 def loop_half_width(wind_up: Array, force: Array) -> Array:
     """Half the distance (n) between the branches of a loop, at n wind-ups between its ends."""
-    back, forth = (
-        slice(RAMP_POINTS, RAMP_POINTS + LOOP_POINTS // 2 + 1),
-        slice(RAMP_POINTS + LOOP_POINTS // 2, None),
-    )
+    back = slice(RAMP_POINTS, RAMP_POINTS + LOOP_POINTS // 2 + 1)
+    forth = slice(RAMP_POINTS + LOOP_POINTS // 2, None)
     x = np.linspace(wind_up[back].min(), wind_up[back].max(), RAMP_POINTS)
     down = np.interp(x, wind_up[back][::-1], force[back][::-1])
     return np.asarray(0.5 * (down - np.interp(x, wind_up[forth], force[forth])))

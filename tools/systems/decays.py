@@ -121,10 +121,8 @@ def _simulate_decay(
     states = [v.name for v in partner.outputs[: partner.state_count]]
     # away from zero: monotonic loading, as the FMU starts at zero
     pulled = rest.position + np.copysign(initial_deflection, rest.position)
-    start, settings = (
-        {joint.inertia_parameter: inertia, states[0]: pulled},
-        {**parameters, **body.find_start_values(load)},
-    )
+    start = {joint.inertia_parameter: inertia, states[0]: pulled}
+    settings = {**parameters, **body.find_start_values(load)}
     step = 2.0 * np.pi / np.sqrt(rest.stiffness / inertia) / STEPS_PER_PERIOD
     with (
         Slave(
@@ -181,10 +179,8 @@ def _evaluate_loops(
         for loop, a in zip(run.loops, amplitudes, strict=True)
     ]
     frequency, decrement = np.array(results)[:, :, 0].T
-    deflection, eta = (
-        np.abs(run.loops[0].motion - working_point.position),
-        run.loops[0].result.columns.get("eta_loop"),
-    )
+    deflection = np.abs(run.loops[0].motion - working_point.position)
+    eta = run.loops[0].result.columns.get("eta_loop")
     first = slice(None, swing.points // 4 + 1)
     law = None if eta is None else 0.5 * np.interp(amplitudes, deflection[first], eta[first])
     return frequency, decrement / np.hypot(np.pi, decrement), law

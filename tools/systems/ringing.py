@@ -284,10 +284,8 @@ def frequency_curve(
     vibrating_joint: VibratingJoint, folder: Path, vibrations: Sequence[FreeVibration]
 ) -> tuple[Array, Array]:
     """Loads (n), evenly spaced over the range of simulated points, and sqrt(K/J) (n) [rad/s] there."""
-    joint, path = (
-        {**vibrating_joint.parameters, **vibrating_joint.test.frictionless_parameters},
-        folder / f"{vibrating_joint.fmu_name}.fmu",
-    )
+    joint = {**vibrating_joint.parameters, **vibrating_joint.test.frictionless_parameters}
+    path = folder / f"{vibrating_joint.fmu_name}.fmu"
     ends, inertia = [point.load for point in vibrations], vibrations[0].inertia
     loads = np.linspace(min(ends), max(ends), CURVE_POINTS)
     stiffness = np.array(

@@ -96,7 +96,7 @@ def find_connections(system: System) -> list[tuple[ConnectionEnd, ConnectionEnd]
 
 
 def find_signals(system: System) -> list[Signal]:
-    """All signals of a system. Raises ValueError as `find_connections`."""
+    """List all signals of a system. Raises ValueError for the same faults as `find_connections`."""
     signals = []
     for first, second in find_connections(system):
         if first.component is None or second.component is None:

@@ -184,10 +184,8 @@ def _draw_indices(axes: "Axes", sensitivity: Sensitivity, name: str, load: str, 
     indices = sensitivity.outputs[name]
     for i, parameter in enumerate(sensitivity.parameter_names):
         colour = _COLOURS[i % len(_COLOURS)]
-        low, high = (
-            indices.total[:, i] - indices.total_half[:, i],
-            indices.total[:, i] + indices.total_half[:, i],
-        )
+        low = indices.total[:, i] - indices.total_half[:, i]
+        high = indices.total[:, i] + indices.total_half[:, i]
         axes.fill_between(sensitivity.loads, low, high, color=colour, alpha=0.2, linewidth=0)
         axes.plot(sensitivity.loads, indices.total[:, i], color=colour, label=parameter)
         axes.plot(sensitivity.loads, indices.first[:, i], color=colour, linestyle="--")

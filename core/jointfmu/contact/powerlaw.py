@@ -93,10 +93,8 @@ class PowerTerm:
         )
 
     def integral(self, size_exponent: Number, largest_log_area: Number) -> Number:
-        lower, upper = (
-            clip_limit(self.lower, largest_log_area),
-            clip_limit(self.upper, largest_log_area, open_end=largest_log_area),
-        )
+        lower = clip_limit(self.lower, largest_log_area)
+        upper = clip_limit(self.upper, largest_log_area, open_end=largest_log_area)
         return self.coefficient * exp_integral(self.exponent - size_exponent, lower, upper)
 
 

@@ -33,7 +33,7 @@ class HistoryLayout:
     @property
     def size(self) -> int:
         """Total number of values [1]."""
-        return sum(map(prod, self.shapes.values()))
+        return self._places[-1][2] if self._places else 0
 
     @property
     def offsets(self) -> dict[str, int]:

@@ -65,10 +65,8 @@ def slider_heights(curve: Curve, reference: ArrayLike, height_offset: ArrayLike)
     height_offset : (...) in (0, 1) [1] moves the heights. Parallel foundations with different offsets slip at
                     different displacements, so the errors of their stepwise slip cancel in the sum.
     """
-    reference_approach, offset_column = (
-        np.asarray(reference, dtype=np.float64),
-        np.asarray(height_offset, dtype=np.float64)[..., None],
-    )
+    reference_approach = np.asarray(reference, dtype=np.float64)
+    offset_column = np.asarray(height_offset, dtype=np.float64)[..., None]
     end = curve.end[1]
     load = curve.derivatives(reference_approach, 0)[0]
     touches = load > MIN_REFERENCE_RATIO * end
@@ -193,10 +191,8 @@ class Foundation:
         start_approach, end_approach : (...) [m] approaches at the start and at the end
         tangential_displacement : (..., 3) [m] of the other side along x, y and around the centre
         """
-        stiffness_start, stiffness_end = (
-            self.stick_stiffness(start_approach),
-            self.stick_stiffness(end_approach),
-        )
+        stiffness_start = self.stick_stiffness(start_approach)
+        stiffness_end = self.stick_stiffness(end_approach)
         is_unloading = np.asarray(end_approach) < np.asarray(start_approach)
         rule = stick_retention(stiffness_start, stiffness_end, is_unloading)
         retention, secant_stiffness = (np.asarray(factor)[..., None] for factor in rule)
@@ -237,10 +233,8 @@ class Foundation:
         approach                : delta (...) [m]
         tangential_displacement : u (...) >= 0 [m] from the virgin state
         """
-        upper, displacement = (
-            np.asarray(approach, dtype=np.float64),
-            np.asarray(tangential_displacement, dtype=np.float64),
-        )
+        upper = np.asarray(approach, dtype=np.float64)
+        displacement = np.asarray(tangential_displacement, dtype=np.float64)
         lower = np.asarray(upper - displacement / (self.friction_coefficient / self.stiffness_ratio))
         load, slipped_load = (self.curve.derivatives(x, 0)[0] for x in (upper, lower))
         return load, slipped_load, self.curve.energy(upper) - self.curve.energy(lower)
@@ -256,10 +250,8 @@ class Foundation:
             self.curve.derivatives(x, 3)
             for x in (upper_approach, upper_approach - a / (self.friction_coefficient / self.stiffness_ratio))
         )
-        general, small_amplitude = (
-            cycle_energies(*law, *self.slipped_pressure(upper_approach, a)),
-            small_cycle_energies(*law, upper, lower),
-        )
+        general = cycle_energies(*law, *self.slipped_pressure(upper_approach, a))
+        small_amplitude = small_cycle_energies(*law, upper, lower)
         is_small = is_small_amplitude(*law, load, upper[0])
         loss, stored = (np.where(is_small, *each) for each in zip(small_amplitude, general, strict=True))
         return loss, stored
@@ -312,12 +304,10 @@ class Foundation:
 
         The loss is exact for sliders of constant stiffness, else accurate to third order in the increment.
         """
-        path, properties_end = (
-            _Increment.from_ends(
-                start_approach, end_approach, self._slider_displacements(tangential_displacement)
-            ),
-            self.slider_properties(end_approach),
+        path = _Increment.from_ends(
+            start_approach, end_approach, self._slider_displacements(tangential_displacement)
         )
+        properties_end = self.slider_properties(end_approach)
         properties_start = (
             self.slider_properties(start_approach) if np.any(path.approach_change) else properties_end
         )
@@ -520,11 +510,9 @@ def small_cycle_energies(
     upper_derivatives, lower_derivatives : first three derivatives of the pressure, at delta and at
         delta - kappa a/mu
     """
-    reach, (upper_stiffness, upper_d2p, upper_d3p), (lower_stiffness, lower_d2p, lower_d3p) = (
-        amplitude * (stiffness_ratio / friction_coefficient),
-        upper_derivatives,
-        lower_derivatives,
-    )
+    reach = amplitude * (stiffness_ratio / friction_coefficient)
+    upper_stiffness, upper_d2p, upper_d3p = upper_derivatives
+    lower_stiffness, lower_d2p, lower_d3p = lower_derivatives
     fall = reach * (0.5 * (upper_stiffness + lower_stiffness) - reach * (upper_d2p - lower_d2p) / 12.0)
     excess = reach**3 * ((upper_d2p + lower_d2p) / 24.0 - reach * (upper_d3p - lower_d3p) / 120.0)
     return _cycle_energies(friction_coefficient, stiffness_ratio, amplitude, fall, excess)

@@ -89,7 +89,7 @@ def load_native_definition(model: Model) -> NativeDefinition:
 
 
 def _read_handwritten_files(model: Model, definition: NativeDefinition) -> dict[str, str]:
-    """{file name: text} of hand-written C: runtime, shared files of the joint, its own files."""
+    """Read the hand-written C of a joint, {file name: text}: runtime, shared files, files of its own."""
     paths = list_runtime_files((*definition.shared_files, "elementary"))
     joint_files = [path for path in find_source_folder(model).iterdir() if path.suffix in (".c", ".h")]
     header = [path.name for path in joint_files if path.suffix == ".h"]

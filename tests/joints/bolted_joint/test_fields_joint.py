@@ -113,10 +113,8 @@ def test_points_balance(reduced):
 def test_a_field_that_is_a_bit_off_is_the_same():
     """Reduced are the same bits: 40 times with every number of the file off by 1e-15 of itself."""
     rng, shape = np.random.default_rng(8), pressure_shape(JOINT, FIELD, PRELOAD)
-    before, numbers = (
-        round_distribution(shape, ROUNDING_BITS),
-        ("area_share", "position", "preload_shape", "moment_shape"),
-    )
+    before = round_distribution(shape, ROUNDING_BITS)
+    numbers = ("area_share", "position", "preload_shape", "moment_shape")
     for _ in range(40):
         area, position, pressure = (
             values * (1.0 + 1e-15 * rng.choice([-1.0, 1.0], values.shape))

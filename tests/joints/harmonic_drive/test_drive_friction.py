@@ -120,10 +120,8 @@ def test_work_of_a_straight_path_is_exact_while_the_limit_changes():
 
 
 def test_no_path_gives_energy_back_from_heat():
-    law, rng = (
-        spring(**DRY, load_loss_back=0.4, friction_viscous=1e-4, hysteresis_loss=2e-4, error_2=1e-4),
-        np.random.default_rng(5),
-    )
+    law = spring(**DRY, load_loss_back=0.4, friction_viscous=1e-4, hysteresis_loss=2e-4, error_2=1e-4)
+    rng = np.random.default_rng(5)
     memory, previous = started(law, 0.0, 0.0, 0.0, 0.0), 0.0
     for _ in range(500):
         phi1 = rng.normal(0.0, 0.05)

@@ -224,10 +224,8 @@ LEVEL = ("N.m", 0.0 * TIME)
 def test_what_a_light_arm_leaves_open_stays_as_it_is(drive, tmp_path, capsys):
     """Its load is above the least one; what is fitted without being determined is no calibration."""
     noise = 0.1 * np.random.default_rng(0).standard_normal(4001)
-    path, out = (
-        written(tmp_path / "log.csv", tau=("N.m", LIGHT + noise), gravity=LEVEL),
-        tmp_path / "out.toml",
-    )
+    path = written(tmp_path / "log.csv", tau=("N.m", LIGHT + noise), gravity=LEVEL)
+    out = tmp_path / "out.toml"
     asked = ["fit", "log", str(path), "--params", str(drive), "--motor-inertia", "1e-6", "--out", str(out)]
     assert cli.main(asked) == 0
     shown, start, found = capsys.readouterr().err, load_parameter_file(drive), load_parameter_file(out)

@@ -136,10 +136,8 @@ def test_derivatives_are_the_slopes_of_the_outputs(host: Host, built: Path, one:
 def test_lines_that_cannot_be_are_refused(
     host: Host, fmu: Callable[..., Fmu], built: Path, values: dict[str, Any], message: str
 ) -> None:
-    native, python = (
-        host(SPRING, "fmi3", built / "catalogue"),
-        fmu(SPRING, folder=built / "catalogue" / "python"),
-    )
+    native = host(SPRING, "fmi3", built / "catalogue")
+    python = fmu(SPRING, folder=built / "catalogue" / "python")
     for instance in (native, python):
         assert message in instance.refused(instance.start, values)
 

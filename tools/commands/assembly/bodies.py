@@ -70,10 +70,8 @@ def find_bolt_positions(args: argparse.Namespace, file: ParameterFile, field: Co
 
     Raises ValueError if `--bolts` has too few or too many positions, or one outside the contact.
     """
-    low, high = (
-        np.min(field.position, axis=0) - MAX_OUTSIDE_DISTANCE,
-        np.max(field.position, axis=0) + MAX_OUTSIDE_DISTANCE,
-    )
+    low = np.min(field.position, axis=0) - MAX_OUTSIDE_DISTANCE
+    high = np.max(field.position, axis=0) + MAX_OUTSIDE_DISTANCE
     if not args.bolts:
         positions = field_adapter(file.joint).bolt_layout(file.values).bolt_positions + field.centroid
         inside = np.all((positions > low) & (positions < high))

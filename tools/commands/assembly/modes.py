@@ -43,10 +43,8 @@ def run(args: argparse.Namespace) -> CommandResult:
     force = float(assembly.bolt_forces(args.preload, args.moment).sum())
     _check_arguments(args)
     file = with_assembly(load_joint_file(args.params), assembly, include_bolts=False)
-    law, shear = (
-        tabulate_approach(file.values),
-        float(field_adapter(file.joint).tangential_stiffness_ratio(file.values)),
-    )
+    law = tabulate_approach(file.values)
+    shear = float(field_adapter(file.joint).tangential_stiffness_ratio(file.values))
     with require_fem_packages("the finite-element analysis"):
         contact = BoltedContact.from_assembly(assembly, args.refinement)
         solution = contact.solve(law, args.preload, args.moment)

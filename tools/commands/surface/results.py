@@ -71,6 +71,7 @@ def build_document(
 def _joint_document(
     identification: Identification, joint: str, args: argparse.Namespace
 ) -> Mapping[str, float | None]:
+    """Surface parameters of a joint: {name: value}; None if the scan does not determine them."""
     determined = args.force or undetermined_reason(identification, joint) is None
     values = fractal_parameters(identification, joint, args.method)
     return {name: _finite_or_none(value) if determined else None for name, (value, _) in values.items()}

@@ -65,10 +65,8 @@ def reduce_bodies(
     stretch = joint.elongation_matrix.T @ fields
     patches = spring.patches
     start = spring.preloaded_approach(preload, 0.0)
-    point_stiffness, patch_approach = (
-        spring.curve.derivatives(start, 1)[1],
-        spring.contact.patch_approach(start),
-    )
+    point_stiffness = spring.curve.derivatives(start, 1)[1]
+    patch_approach = spring.contact.patch_approach(start)
     ratio = spring.friction.foundation().stiffness_ratio
     patch_shear = ratio * spring.curve.derivatives(patch_approach, 1)[1]
     x, y = patches.position.T
@@ -232,10 +230,8 @@ def _match_stiffness(
         full_rigid_displacement.T @ (full_stiffness[:, None] * full_rigid_displacement),
         full_rigid_displacement.T @ (full_stiffness[:, None] * full_displacement),
     )
-    few_bending, all_bending = (
-        reduced_displacement - reduced_rigid_displacement @ few_rigid_part,
-        full_displacement - full_rigid_displacement @ all_rigid_part,
-    )
+    few_bending = reduced_displacement - reduced_rigid_displacement @ few_rigid_part
+    all_bending = full_displacement - full_rigid_displacement @ all_rigid_part
     target = all_bending.T @ (full_stiffness[:, None] * all_bending)
     target += 1e-6 * np.trace(target) / len(target) * np.eye(len(target))
     ratio, vectors = la.eigh(few_bending.T @ (reduced_stiffness[:, None] * few_bending), target)

@@ -223,11 +223,9 @@ class PatchFit:
             * np.sqrt(len(self.target_work.cycle_loss) / patch_displacement.size)
             / np.maximum(typical, MIN_RELATIVE_SCALE * typical.max())
         )
-        weight, initial, damping = (
-            np.broadcast_to(weight, patch_displacement.shape),
-            patch_displacement,
-            INITIAL_DAMPING,
-        )
+        weight = np.broadcast_to(weight, patch_displacement.shape)
+        initial = patch_displacement
+        damping = INITIAL_DAMPING
         work_residual = self._work_residual(patch_displacement, weight * (patch_displacement - initial))
         stiffness_residual = self._stiffness_residual(patch_displacement)
         for _ in range(MAX_FIT_STEPS):
@@ -251,11 +249,9 @@ class PatchFit:
                 damping *= DAMPING_INCREASE
             else:
                 return patch_displacement
-            patch_displacement, (work_residual, stiffness_residual), damping = (
-                trial,
-                residuals,
-                DAMPING_DECREASE * damping,
-            )
+            patch_displacement = trial
+            work_residual, stiffness_residual = residuals
+            damping = DAMPING_DECREASE * damping
         return patch_displacement
 
     def _stiffness_residual(self, patch_displacement: Array) -> Array:
@@ -286,10 +282,8 @@ class PatchFit:
     def _work_residual(self, patch_displacement: Array, weighted_change: Array) -> Array:
         """Relative errors [1] of forces, stick forces and loss of the patches, then their weighted change."""
         displacement, friction = self.evaluate_sliders(self.shear_states, patch_displacement)
-        actual, target = (
-            assemble_friction_work(friction, self.sliders.point_area, displacement),
-            self.target_work,
-        )
+        actual = assemble_friction_work(friction, self.sliders.point_area, displacement)
+        target = self.target_work
         pairs = (
             (actual.forces, target.forces),
             (actual.stick_forces, target.stick_forces),
@@ -366,10 +360,8 @@ def patch_rotations(
     """
     cell = cKDTree(patches.position).query(quadrature_position)[1]
     x, y = (quadrature_position - (averaging_matrix @ quadrature_position)[cell]).T
-    lever, square = (
-        x[:, None] * tangential_displacements[1] - y[:, None] * tangential_displacements[0],
-        averaging_matrix @ (x * x + y * y),
-    )
+    lever = x[:, None] * tangential_displacements[1] - y[:, None] * tangential_displacements[0]
+    square = averaging_matrix @ (x * x + y * y)
     extended = square > 0.0
     inverse = np.where(extended, 1.0 / np.where(extended, square, 1.0), 0.0)
     return np.asarray(inverse[:, None] * (averaging_matrix @ lever))

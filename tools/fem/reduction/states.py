@@ -103,10 +103,8 @@ class CellLoads:
 
 def _solve_body(body: ElasticBody, fixed_unknowns: IndexArray, unit_loads: sp.csr_matrix) -> Array:
     """Solve for displacements (n, k) [m/N] of a body under unit loads (k, n) [1]; its attachment is fixed."""
-    displacement, free = (
-        np.zeros(unit_loads.shape[::-1]),
-        np.setdiff1d(np.arange(body.unknown_count), fixed_unknowns),
-    )
+    displacement = np.zeros(unit_loads.shape[::-1])
+    free = np.setdiff1d(np.arange(body.unknown_count), fixed_unknowns)
     displacement[free] = Cholesky(body.stiffness[free][:, free]).solve(unit_loads[:, free].T.tocsc())
     return displacement
 
@@ -154,10 +152,8 @@ class CellJoint:
     @classmethod
     def from_cells(cls, cell_loads: CellLoads, bolt_positions: Array, preload: float) -> "CellJoint":
         """Joint preloaded by bolts at positions (b, 2) [m], with the compliance of its cells."""
-        spring, compliance = (
-            cell_loads.spring,
-            np.asarray(cell_loads.averaging_operators @ cell_loads.unit_load_displacement),
-        )
+        spring = cell_loads.spring
+        compliance = np.asarray(cell_loads.averaging_operators @ cell_loads.unit_load_displacement)
         x, y = spring.points.position.T
         n, b = x.size, len(bolt_positions)
         rigid = np.zeros((3 * n + b, 6))
@@ -177,10 +173,8 @@ class CellJoint:
         spring, n = self.spring, self.preload_approach.size
         joint, area = spring.joint, spring.joint.A_0 * spring.points.area_share
         foundation = spring.friction.foundation()
-        ratio, slip_ratio = (
-            foundation.stiffness_ratio,
-            foundation.friction_coefficient / foundation.stiffness_ratio,
-        )
+        ratio = foundation.stiffness_ratio
+        slip_ratio = foundation.friction_coefficient / foundation.stiffness_ratio
         approach = self.preload_approach - displacements[:n]
         p, k = spring.curve.derivatives(approach, 1)
         p_preload = spring.curve.derivatives(self.preload_approach, 0)[0]
@@ -271,16 +265,12 @@ def refine_equilibrium(
     Each iteration uses the stiffness of the preloaded joint. Slip only lowers the stiffness, so the iteration
     converges. A state whose step grows (its contact closes) is not changed.
     """
-    joint, law, preloaded = (
-        linear_joint.joint,
-        spring.friction.foundation(),
-        approach_at_stiffness(spring, normal_stiffness),
-    )
+    joint = linear_joint.joint
+    law = spring.friction.foundation()
+    preloaded = approach_at_stiffness(spring, normal_stiffness)
     interface, curve = joint.interface, spring.curve
-    relative, stretch = (
-        [joint.relative_displacement_matrix(axis) for axis in AXES],
-        sp.csr_matrix(joint.elongation_matrix),
-    )
+    relative = [joint.relative_displacement_matrix(axis) for axis in AXES]
+    stretch = sp.csr_matrix(joint.elongation_matrix)
     rigid = linear_joint.rigid_displacement @ motions.T
     prescribed = [rows @ rigid for rows in (*relative, stretch.T)]
     last_decrement = np.full(len(motions), np.inf)

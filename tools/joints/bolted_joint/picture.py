@@ -151,10 +151,8 @@ def draw_plan(joint: Bolted, preload: float, moment: float) -> str:
     rotation = f"rotate(-90 {x1 - 26.0:.1f} {0.5 * (y1 + y2):.1f})"
     sheet.add_text(x1 - 26.0, 0.5 * (y1 + y2), f"{height}, y up", "middle", GREY, transform=rotation)
     _draw_colour_bar(sheet, sheet.width - 98.0, MARGIN, sheet.height - 2.0 * MARGIN, top)
-    moment_text, remaining_preload = (
-        f", {moment:g} N m" if moment else "",
-        float(working_preload(joint, preload)),
-    )
+    moment_text = f", {moment:g} N m" if moment else ""
+    remaining_preload = float(working_preload(joint, preload))
     sheet.add_text(
         MARGIN,
         22.0,

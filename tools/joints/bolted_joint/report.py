@@ -125,11 +125,11 @@ def loss_factor(spring: BoltedJointSpring, remaining_preload: float, shear: floa
     joint, shape = spring.joint, spring.patches
     law, mean = spring.friction.foundation(), remaining_preload * joint.n_bolts / joint.A_0
     approach = spring.curve.inverse(shaped_pressure(shape.preload_shape, shape.moment_shape, mean, 0.0))
-    low, size = (
-        0.0,
+    low = 0.0
+    size = (
         law.friction_coefficient
         / law.stiffness_ratio
-        * float(np.max(approach - spring.curve.displacement[0])),
+        * float(np.max(approach - spring.curve.displacement[0]))
     )
     for _ in range(60):
         middle = 0.5 * (low + size)

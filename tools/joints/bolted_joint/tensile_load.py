@@ -35,10 +35,8 @@ def bolt_forces(spring: BoltedJointSpring, preload: float, moment: float, tensil
     tension = bolts.preload_force(spring.joint, preload, moment)
     G, E = whole.opening_jacobian, whole.elongation_jacobian
     preload_pressure, preload_stiffness = spring.curve.derivatives(start, 1)
-    min_stiffness, results = (
-        MIN_STIFFNESS_RATIO * law.stick_stiffness(spring.contact.patch_approach(start)).max(),
-        [],
-    )
+    min_stiffness = MIN_STIFFNESS_RATIO * law.stick_stiffness(spring.contact.patch_approach(start)).max()
+    results = []
 
     def residual(z: Array, K: Array, tensile_force: float) -> Array:
         p = spring.curve.derivatives(start - G @ z, 0)[0]

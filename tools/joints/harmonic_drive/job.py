@@ -109,10 +109,8 @@ def friction_panels(fmu_path: Path) -> list[Panel]:
     panels, published_torques, found_torques = [], [], []
     drives, share = efficiency.drives_with_friction(), np.linspace(0.1, 1.0, 41) ** 2
     for drive in drives:
-        rated, published_torque = (
-            drive.numbers["rated_torque"].value,
-            drive.numbers["back_driving_torque"].value,
-        )
+        rated = drive.numbers["rated_torque"].value
+        published_torque = drive.numbers["back_driving_torque"].value
         with efficiency.open_fmu_test_rig(fmu_path, efficiency.friction_and_ratio(drive)) as bench:
             rows = {
                 rpm: [bench.efficiency(rpm * np.pi / 30.0, load) for load in rated * share]

@@ -60,10 +60,8 @@ def _make_joint(options: DrawingOptions) -> NewJoint:
     if "rated_torque" not in printed:
         text = "no rated torque given; T2 of the catalogue"
         printed["rated_torque"] = SourcedNumber(printed["T2"].value, "estimate", text)
-    friction_numbers, (printed["ratio"], ratio_text) = (
-        _friction_parameters(options, printed),
-        _signed_ratio(options, printed["ratio"]),
-    )
+    friction_numbers = _friction_parameters(options, printed)
+    (printed["ratio"], ratio_text) = _signed_ratio(options, printed["ratio"])
     printed = {name: number for name, number in printed.items() if name not in FRICTION_COLUMNS}
     if options["corner"] is not None:
         if options["law"] == "hu2023":

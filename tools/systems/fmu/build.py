@@ -27,10 +27,8 @@ def fmu_paths(title: str, out: Path, versions: Sequence[str] = ("2", "3")) -> li
 def make_sources(system_model: SystemModel) -> tuple[dict[str, str], str]:
     """{file name: text} of all C sources of a system's FMU, with its data, and the instantiation token."""
     model, files = system_model.make_model(), generate_sources(system_model)
-    parameters, parameter_split = (
-        system_model.make_parameters(model),
-        ParameterSplit((), {}, {}, model.parameters, EMPTY_TABLES),
-    )
+    parameters = system_model.make_parameters(model)
+    parameter_split = ParameterSplit((), {}, {}, model.parameters, EMPTY_TABLES)
     data = make_fmu_data(model, parameters, parameter_split, files, has_file=False)
     files |= {
         "data.h": data.make_header(),

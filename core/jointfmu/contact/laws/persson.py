@@ -28,10 +28,8 @@ def contact_area_shares(
     """
     x = np.minimum(pressure / hardness, 1.0)
     t = (pressure_standard_deviation / hardness) ** 2
-    image_series, mode_series = (
-        _image_series(x, np.minimum(t, _MAX_IMAGE_VARIANCE)),
-        _mode_series(x, np.maximum(t, _MAX_IMAGE_VARIANCE)),
-    )
+    image_series = _image_series(x, np.minimum(t, _MAX_IMAGE_VARIANCE))
+    mode_series = _mode_series(x, np.maximum(t, _MAX_IMAGE_VARIANCE))
     elastic, load = (
         select(t < _MAX_IMAGE_VARIANCE, a, b) for a, b in zip(image_series, mode_series, strict=True)
     )

@@ -108,10 +108,8 @@ class RoughnessLaw(RoughSurfaces, CheckedParameters):
     def find_range_violations(self, lowest_pressure: float, highest_pressure: float) -> list[str]:
         """Messages, one line each, if an interval of pressures [Pa] leaves the validated range."""
         scale = contact_modulus(self.side1, self.side2) * self.h
-        min_pressure, max_pressure = (
-            MIN_LOAD_RATIO * scale * self.longest_wave / self.A_0,
-            MAX_PRESSURE_RATIO * scale / self.longest_wave,
-        )
+        min_pressure = MIN_LOAD_RATIO * scale * self.longest_wave / self.A_0
+        max_pressure = MAX_PRESSURE_RATIO * scale / self.longest_wave
         messages = []
         if lowest_pressure < min_pressure:
             messages.append(

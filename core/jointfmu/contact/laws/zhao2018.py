@@ -97,10 +97,8 @@ class Zhao2018(CheckedParameters):
         F, A_r, K_N, K_T = (
             s.total(name, largest_log_area) for name in ("load", "area", "normal", "tangential")
         )
-        plastic, elastic = (
-            s.total("plastic_work", largest_log_area),
-            s.total("elastic_work", largest_log_area),
-        )
+        plastic = s.total("plastic_work", largest_log_area)
+        elastic = s.total("elastic_work", largest_log_area)
         with np.errstate(divide="ignore", invalid="ignore"):
             eta_n = np.where(elastic > 0.0, plastic / np.where(elastic > 0.0, elastic, 1.0), np.inf)
             C_N = np.where(K_N > 0.0, mindlin.equivalent_damping(eta_n, self.mass, K_N), 0.0)

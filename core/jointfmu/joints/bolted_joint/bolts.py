@@ -44,7 +44,7 @@ class BoltSprings:
 
     @classmethod
     def of(cls, joint: Bolted, closure_pressure: float) -> "BoltSprings":
-        """The bolts of a joint; closed [Pa]: pressure at which its contact closes."""
+        """Bolt springs of a joint; closure_pressure: [Pa] at which its contact closes."""
         position = bolt_positions(joint)
         count = float(joint.n_bolts) / len(position)
         return cls(
@@ -90,9 +90,10 @@ def bolt_positions(joint: Bolted) -> Array:
 
 
 def moment_lever(position: Array) -> Array:
-    """Force that a moment about x adds to each bolt over the moment (b) [1/m], as in `BoltedPlate.shape`.
+    """Force that a moment about x adds to each bolt over the moment (b) [1/m].
 
-    Bolts of one row along x cannot carry a moment by their forces: 0.
+    It is that of `BoltedPlate.pressure_distribution`. Bolts of one row along x cannot carry a moment by their
+    forces: 0.
     """
     x, y = position.T
     if np.ptp(y) <= ONE_ROW * max(float(np.ptp(x)), float(np.max(np.abs(y)))):

@@ -193,10 +193,8 @@ class LoadStep:
         assembly, bolts = self.assembly, self.assembly.bolts
         normal = assembly.evaluate_normal(self.preload, q, a)
         increment = assembly.tangential_displacement(q - self.start, a - self.modal_coordinates)
-        friction, elongation = (
-            self.update_friction(normal.patch_approach, increment),
-            assembly.elongation(q, a),
-        )
+        friction = self.update_friction(normal.patch_approach, increment)
+        elongation = assembly.elongation(q, a)
         traction, preload_pressure = friction.traction, self.preload.pressure
         bolt_force_change = bolts.stiffness * (elongation + bolts.gap(self.bolt_force, elongation))
         residual = assembly.residual(a, normal.pressure - preload_pressure, traction, bolt_force_change)

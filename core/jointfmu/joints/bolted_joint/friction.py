@@ -19,7 +19,7 @@ from ...mechanics.sliders import (
     sum_slider_forces,
 )
 from ...quantity import Array
-from .kinematics import TANGENTIAL, tangential_jacobian
+from .kinematics import TANGENTIAL, tangential_displacement
 from .law import MAX_MODES
 
 History = Mapping[str, Array]
@@ -183,7 +183,7 @@ class FrictionLaw:
 
 def unit_displacements(patches: FrictionPatches) -> list[Array]:
     """Tangential displacements (m, 3) [1, m] by a unit s_x, s_y and theta_z."""
-    return list(tangential_jacobian(patches)[:, :, TANGENTIAL].transpose(2, 1, 0))
+    return [tangential_displacement(patches, unit) for unit in np.eye(6)[TANGENTIAL]]
 
 
 def directional_stiffness(tangent: Array, direction: Array) -> Array:

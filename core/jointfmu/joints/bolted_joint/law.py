@@ -274,7 +274,8 @@ def preload_pressure(
     """Node pressures (..., n) [Pa] of the tightened joint, preload [N] per bolt, moment [N.m] (...).
 
     The moment raises the bolt forces of the row y > 0 by M/(L_a N_b) and lowers those of the row
-    y < 0 (Zhao 2018, section 3); for other layouts see BoltedPlate.shape. Nodes with a negative sum are open.
+    y < 0 (Zhao 2018, section 3); for other layouts see
+    `BoltedPlate.pressure_distribution`. Nodes with a negative sum are open.
     """
     force, bending = np.asarray(preload)[..., None], np.asarray(moment)[..., None]
     return np.asarray(node_pressure(joint, shape.preload_shape, shape.moment_shape, force, bending))

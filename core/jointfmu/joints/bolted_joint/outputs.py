@@ -134,10 +134,8 @@ def assembly_sums(
     loop_energy : [J/m2] of the friction patches
     """
     area, modes, bolts, elongation = joint.A_0, assembly.modes, assembly.bolts, state.elongation
-    bolt_stiffness, (_, _, x2, y2, _) = (
-        joint.n_bolts * joint.bolt_stiffness,
-        joint.pattern.bolt_position_means,
-    )
+    bolt_stiffness = joint.n_bolts * joint.bolt_stiffness
+    _, _, x2, y2, _ = joint.pattern.bolt_position_means
     gap, bolt_tangent = bolts.gap(bolt_force, elongation), bolts.tangent(bolt_force, elongation)
     H = assembly.tangent_stiffness(state.normal.stiffness, state.friction.slider_update.tangent, bolt_tangent)
     K = np.maximum(np.diag(condense_stiffness(H)), 0.0)
@@ -180,10 +178,8 @@ def joint_outputs(
     `BoltSprings`.
     """
     area, rho = joint.A_0, joint.shear_stiffness_ratio()
-    bolts, (_, _, bolt_x2, bolt_y2, _) = (
-        joint.n_bolts * joint.bolt_stiffness,
-        joint.pattern.bolt_position_means,
-    )
+    bolts = joint.n_bolts * joint.bolt_stiffness
+    _, _, bolt_x2, bolt_y2, _ = joint.pattern.bolt_position_means
     K_n = area * sums["stiffness"]
     eta_n, eta_t = sums["plastic"] / sums["elastic"], joint.loss_factor()
     first_loading = mindlin.equivalent_damping(eta_n, joint.mass, K_n)

@@ -38,10 +38,8 @@ HISTORY_LAYOUT = HistoryLayout({"brake": (FRICTION_SLIDERS,), "angle": (), "limi
 """History variables: slider torques [N.m], phi1 [rad], friction limits [N.m], 1 after the first step."""
 _REMAINING_FRICTION_SHARES = (*(np.linspace(1.0, 0.0, FRICTION_SLIDERS, endpoint=False) ** 2).tolist(), 0.0)
 _SLIDER_STIFFNESS_AND_LIMIT_SHARES = slider_shares(1.0, _REMAINING_FRICTION_SHARES)
-STIFFNESS_SHARES, LIMIT_SHARES = (
-    np.array(_SLIDER_STIFFNESS_AND_LIMIT_SHARES[0]),
-    np.array(_SLIDER_STIFFNESS_AND_LIMIT_SHARES[1]),
-)
+STIFFNESS_SHARES = np.array(_SLIDER_STIFFNESS_AND_LIMIT_SHARES[0])
+LIMIT_SHARES = np.array(_SLIDER_STIFFNESS_AND_LIMIT_SHARES[1])
 """Shares [1] of each slider in the total spring stiffness M/presliding and in the total limit M."""
 REFERENCE_TEMPERATURE = 293.15
 """Temperature [K] at which the friction parameters hold: 20 degrees C, as in the catalogues."""

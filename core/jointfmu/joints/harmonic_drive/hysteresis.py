@@ -204,10 +204,8 @@ def _find_limit_torque(
         if limit == 0.0:
             return limit
         sliders = replace(unit_sliders, friction_limit=limit * unit_sliders.friction_limit)
-        previous, opening = (
-            limit,
-            sliders.unloading_friction(curve, drive.rated_torque, 0.5 * drive.hysteresis_loss),
-        )
+        previous = limit
+        opening = sliders.unloading_friction(curve, drive.rated_torque, 0.5 * drive.hysteresis_loss)
         limit *= half_loop_torque / opening if opening > 0.0 else np.inf
         if not limit < drive.rated_torque:
             break

@@ -171,11 +171,9 @@ class CatalogueDrive(PrescribedDrive):
     def make_nodes(self) -> list[SplineNode]:
         """Nodes of the first line with the play, then both ends of each corner, then the end of the table."""
         (first, second), (K1, K2, K3) = self.corner_angles, (self.K1, self.K2, self.K3)
-        first_width, second_width, end = (
-            self.corner_half_width_ratio * first,
-            self.corner_half_width_ratio * second,
-            self.max_table_torque,
-        )
+        first_width = self.corner_half_width_ratio * first
+        second_width = self.corner_half_width_ratio * second
+        end = self.max_table_torque
         play_angle = lost_motion_angle(self, self._first_line_torque)[0]
         return [
             *self._play_nodes(),
@@ -188,10 +186,10 @@ class CatalogueDrive(PrescribedDrive):
 
     def _play_nodes(self) -> list[SplineNode]:
         """Nodes of the first line with the play in series, denser at small torque."""
-        end_torque, nodes = (
-            np.minimum(PLAY_END_TORQUE_RATIO * PLAY_WIDTH_RATIO * self.rated_torque, self._first_line_torque),
-            [],
+        end_torque = np.minimum(
+            PLAY_END_TORQUE_RATIO * PLAY_WIDTH_RATIO * self.rated_torque, self._first_line_torque
         )
+        nodes = []
         for position in np.arange(PLAY_NODE_COUNT) / PLAY_NODE_COUNT:
             torque = end_torque * float(position) ** 2
             angle, compliance, change = lost_motion_angle(self, torque)
@@ -283,20 +281,16 @@ class TableDrive(MeasuredDrive):
         common_slope = np.concatenate([[0.0], mean, slope_before[-1:]])
         smallest = np.min(_sample_stiffness(h, torque_steps, s, common_slope[:-1], common_slope[1:]), axis=0)
         is_stiff = smallest > MIN_STIFFNESS_RATIO * np.minimum(np.minimum(s[:-1], s[1:]), torque_steps / h)
-        slope_after, slope_before = (
-            np.where(is_stiff, common_slope[:-1], slope_after),
-            np.where(is_stiff, common_slope[1:], slope_before),
-        )
+        slope_after = np.where(is_stiff, common_slope[:-1], slope_after)
+        slope_before = np.where(is_stiff, common_slope[1:], slope_before)
         ends = np.concatenate([[0.0], slope_before]), np.concatenate([slope_after, [0.0]])
         return [SplineNode(*row) for row in np.column_stack([x, y, s, *ends]).tolist()]
 
 
 def _node_stiffness(segment_widths: Array, secant_stiffnesses: Array) -> Array:
     """Stiffness (n + 1) at the points of an odd curve, from widths (n) and secant stiffnesses (n)."""
-    weight_left, weight_right = (
-        2.0 * segment_widths[1:] + segment_widths[:-1],
-        segment_widths[1:] + 2.0 * segment_widths[:-1],
-    )
+    weight_left = 2.0 * segment_widths[1:] + segment_widths[:-1]
+    weight_right = segment_widths[1:] + 2.0 * segment_widths[:-1]
     inner = (weight_left + weight_right) / (
         weight_left / secant_stiffnesses[:-1] + weight_right / secant_stiffnesses[1:]
     )
@@ -330,11 +324,9 @@ def _sample_stiffness(
     """
     t = _SAMPLE_POINTS[:, None]
     first, last = node_stiffness[:-1], node_stiffness[1:]
-    a2, c0, c1 = (
-        torque_steps / segment_widths,
-        0.5 * segment_widths * slope_after,
-        0.5 * segment_widths * slope_before,
-    )
+    a2 = torque_steps / segment_widths
+    c0 = 0.5 * segment_widths * slope_after
+    c1 = 0.5 * segment_widths * slope_before
     cubic = 30.0 * a2 - 18.0 * first - 12.0 * last - 9.0 * c0 + 3.0 * c1
     quartic = -60.0 * a2 + 32.0 * first + 28.0 * last + 12.0 * c0 - 8.0 * c1
     quintic = 30.0 * a2 - 15.0 * first - 15.0 * last - 5.0 * c0 + 5.0 * c1

@@ -44,7 +44,7 @@ def torque_curve(drive: Drive) -> Curve:
 
 
 def _tabulate_midline(drive: ContactPairDrive, step_count: int) -> Curve:
-    """Table of the midline with a number of steps, see `torque_curve`."""
+    """Tabulate the midline, torque over wind-up, with a number of steps; see `torque_curve`."""
     smoothing = drive.torque_smoothing
     xi = np.linspace(0.0, np.arcsinh(drive.max_torque / smoothing), step_count + 1)
     T, half = smoothing * np.sinh(xi), 0.5 * xi[1]
@@ -201,10 +201,8 @@ def motion_outputs(
     spring_state        : state of the spring at this motion
     dry_friction_torque : [N.m] at the wave generator
     """
-    tau, friction = (
-        transmitted_torque(drive, motion, spring_state),
-        dry_friction_torque + viscous_torque(drive, motion[1], temperature),
-    )
+    tau = transmitted_torque(drive, motion, spring_state)
+    friction = dry_friction_torque + viscous_torque(drive, motion[1], temperature)
     w = mobility(drive.inertia1, 1.0 / drive.ratio) + mobility(drive.inertia2)
     at_once, side_by_side = largest_stable_steps(spring_state.midline_stiffness, drive.d, w)
     return {

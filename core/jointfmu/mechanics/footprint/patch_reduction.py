@@ -108,10 +108,8 @@ def reduce_patches(
         return distribution.as_patches()
     rough = round_distribution(distribution)
     gyration = float(np.sqrt(np.add.reduce(rough.area_share * np.add.reduce(rough.position**2, axis=1))))
-    highest, steep = (
-        float(np.max(rough.preload_shape)),
-        max(float(np.max(np.abs(rough.moment_shape))), SMALLEST_FLOAT),
-    )
+    highest = float(np.max(rough.preload_shape))
+    steep = max(float(np.max(np.abs(rough.moment_shape))), SMALLEST_FLOAT)
     unit = np.array([1.0, gyration, gyration, highest, steep, gyration])[:, None]
     few = reduce_points(rough if start_points is None else round_distribution(start_points), max_patch_count)
     first = _divide_nodes(rough, few.position)
@@ -174,7 +172,7 @@ def _divide_nodes(distribution: PressureDistribution, centres: Array) -> Frictio
 
 @dataclass(frozen=True, slots=True)
 class _SlipCases:
-    """Cases (m, 1) of normal loading and tangential motion whose friction is fitted.
+    """Load cases (m, 1), normal and tangential, in which the patches are fitted to the friction of all nodes.
 
     Lengths are divided by the radius of gyration of the contact, pressures by the largest one.
 
@@ -252,18 +250,14 @@ class _SlipCases:
         _, x, y, equal, tilt, radius = points
         start = binary_root(np.maximum(equal + self.moment_factor * tilt, 0.0), self.law_exponent)
         now = np.maximum(start - (self.normal_displacement + self.tilt_x * y - self.tilt_y * x), 0.0)
-        most, whole, turned = (
-            binary_power(now, self.law_exponent),
-            np.zeros((4, *now.shape)),
-            np.zeros(now.shape),
-        )
+        most = binary_power(now, self.law_exponent)
+        whole = np.zeros((4, *now.shape))
+        turned = np.zeros(now.shape)
         places, stored = CIRCLE_POINTS if np.any(radius) else CIRCLE_POINTS[:1], now * most
         for along, across in places:
             there_x, there_y = x + along * radius, y + across * radius
-            u, v = (
-                self.motion_direction[0] - self.motion_direction[2] * there_y,
-                self.motion_direction[1] + self.motion_direction[2] * there_x,
-            )
+            u = self.motion_direction[0] - self.motion_direction[2] * there_y
+            v = self.motion_direction[1] + self.motion_direction[2] * there_x
             size = np.sqrt(u * u + v * v)
             way = self.motion_length * size
             then = np.maximum(now - way, 0.0)
@@ -301,10 +295,8 @@ class _TargetSums:
         """Compute the target sums of nodes (6, n)."""
         reach = np.maximum(np.max(np.abs(nodes[1:3]), axis=1), SMALLEST_FLOAT)
         motions, share = _SlipCases.sample(nodes, largest_moment, reach), nodes[0]
-        friction, gross = (
-            np.zeros(4 * (SLIP_CASE_COUNT + GROSS_SLIP_CASE_COUNT)),
-            np.zeros(SLIP_CASE_COUNT + GROSS_SLIP_CASE_COUNT),
-        )
+        friction = np.zeros(4 * (SLIP_CASE_COUNT + GROSS_SLIP_CASE_COUNT))
+        gross = np.zeros(SLIP_CASE_COUNT + GROSS_SLIP_CASE_COUNT)
         for first in range(0, share.size, BATCH_SIZE):
             some = nodes[:, first : first + BATCH_SIZE]
             each, most = motions.evaluate_friction(some)

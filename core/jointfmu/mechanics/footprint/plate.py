@@ -181,11 +181,9 @@ def plate_cells(plate: BoltedPlate) -> tuple[Array, Array]:
 
     Cells within the disc of a bolt are halved in both directions until they are small compared with R.
     """
-    reach, plan, count = (
-        plate.pressure_radius,
-        np.array([plate.length, plate.width]),
-        plate.coarse_cell_counts,
-    )
+    reach = plate.pressure_radius
+    plan = np.array([plate.length, plate.width])
+    count = plate.coarse_cell_counts
     index = np.stack(np.meshgrid(*(np.arange(n) for n in count), indexing="ij"), -1).reshape(-1, 2)
     side = plan / count
     middle = (index + 0.5) * side - 0.5 * plan

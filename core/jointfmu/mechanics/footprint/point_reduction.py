@@ -66,10 +66,8 @@ def reduce_points(distribution: PressureDistribution, max_point_count: int) -> P
     if np.max(np.bincount(group)) * MIN_SYMMETRY_GROUPS > max_point_count:
         group = np.arange(distribution.area_share.size)
     nodes, factor = _select_groups(rounded_shape, group, max_point_count)
-    old_shares, exact = (
-        _group_sums(group, distribution.area_share),
-        _group_means(_scaled_exact_functions(distribution), distribution, group),
-    )
+    old_shares = _group_sums(group, distribution.area_share)
+    exact = _group_means(_scaled_exact_functions(distribution), distribution, group)
     new_shares, exact_nodes = np.zeros_like(old_shares), exact[:, nodes]
     new_shares[nodes] = factor * old_shares[nodes]
     new_shares[nodes] += weight_changes(
@@ -120,10 +118,8 @@ def _minimum_shares(
     distribution: PressureDistribution, node_groups: NodeIndices, group_shares: Array
 ) -> Array:
     """Smallest shares (groups) [1] that the groups must keep: nonzero for nodes with the largest pressure."""
-    min_shares, peak_groups = (
-        np.zeros_like(group_shares),
-        np.unique(node_groups[find_peak_nodes(distribution)]),
-    )
+    min_shares = np.zeros_like(group_shares)
+    peak_groups = np.unique(node_groups[find_peak_nodes(distribution)])
     min_shares[peak_groups] = MIN_PEAK_SHARE_FACTOR * group_shares[peak_groups]
     return min_shares
 
@@ -147,12 +143,10 @@ def _find_symmetry_groups(distribution: PressureDistribution) -> NodeIndices:
 
     At y = 0 moment_shape changes its sign.
     """
-    share, (x, y), equal, tilt = (
-        distribution.area_share,
-        distribution.position.T,
-        distribution.preload_shape,
-        distribution.moment_shape,
-    )
+    share = distribution.area_share
+    x, y = distribution.position.T
+    equal = distribution.preload_shape
+    tilt = distribution.moment_shape
 
     def mirrored_node_keys(x_sign: float, y_sign: float) -> Array:
         return np.column_stack([x_sign * x, y_sign * y, share, equal, y_sign * tilt]) + 0.0  # no -0.0
@@ -246,10 +240,8 @@ def _sample_functions(distribution: PressureDistribution) -> Array:
     moment, opening, about_x, about_y = (
         2.0 * ((0.5 + (number + 1.0) * _SEQUENCE_STEPS) % 1.0).T[..., None] - 1.0
     )
-    power, is_moved = (
-        np.choose(number % len(LAW_EXPONENTS), LAW_EXPONENTS),
-        number >= UNTILTED_STATE_SHARE * STATE_COUNT,
-    )
+    power = np.choose(number % len(LAW_EXPONENTS), LAW_EXPONENTS)
+    is_moved = number >= UNTILTED_STATE_SHARE * STATE_COUNT
     normal_displacement = is_moved * (
         MAX_OPENING_RATIO * opening + MAX_TILT_OPENING_RATIO * (about_x * y - about_y * x)
     )

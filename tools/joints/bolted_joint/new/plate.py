@@ -102,10 +102,8 @@ def make_joint(options: DrawingOptions) -> NewJoint:
     density = tuple(material.numbers["density"].value for material in faces.read_materials(options))
     layers, depth = bolt.clamped_parts, 0.0
     if options["tapped"] and options["thickness"] is not None:
-        layers, depth = (
-            (*layers, vdi2230.ClampedPart(_plate_thicknesses(options)[1], moduli[1])),
-            THREAD_DEPTH_RATIO * thread.d,
-        )
+        layers = (*layers, vdi2230.ClampedPart(_plate_thicknesses(options)[1], moduli[1]))
+        depth = THREAD_DEPTH_RATIO * thread.d
     plates = BoltedPlates(plate, layers, bolt.bearing_diameter, density, preload, preload - loss, depth)
     shape = None
     if options["field"] == "computed":

@@ -97,11 +97,9 @@ def fit_pair(
     Raises ValueError for a name that cannot be fitted, RuntimeError if no law meets the angles.
     """
     numbers = numbers or source_numbers(row)
-    file, rated, origin = (
-        start or load_default("harmonic_drive"),
-        numbers["rated_torque"],
-        numbers["T1"].source,
-    )
+    file = start or load_default("harmonic_drive")
+    rated = numbers["rated_torque"]
+    origin = numbers["T1"].source
     file = drive.resize_drive(file, row.rated, MAX_TORQUE_RATIO, rated.kind, rated.source)
     if "ratio" in numbers:
         file = file.with_values({"ratio": numbers["ratio"].value}, "catalogue", origin)

@@ -101,19 +101,15 @@ def fit(
         stiffness_fit, link_notes = _fit_stiffness(file, logs_with_motor_angle[0], fitted_log, fitted_names)
         notes += link_notes
         if stiffness_fit is not None:
-            solution, drawn_pictures = (
-                _combine_solutions(solution, stiffness_fit[0]),
-                [*drawn_pictures, stiffness_fit[1]],
-            )
+            solution = _combine_solutions(solution, stiffness_fit[0])
+            drawn_pictures = [*drawn_pictures, stiffness_fit[1]]
             intervals |= _confidence_intervals(stiffness_fit[0])
     result = fitted_parameters(file, solution.values, "calibration", label, _describe_ranges(samples))
     for name, value in solution.values.items():
         kind, text = "estimate", "not determined: other values fit as well"
         if name in intervals:
-            kind, text = (
-                "calibration",
-                "{:g} % interval {:.4g} to {:.4g}".format(100.0 * CONFIDENCE_LEVEL, *intervals[name]),
-            )
+            kind = "calibration"
+            text = "{:g} % interval {:.4g} to {:.4g}".format(100.0 * CONFIDENCE_LEVEL, *intervals[name])
         result = result.with_values({name: value}, kind, f"{result.sources[name]}; {text}")
     return FitResult(
         result,
@@ -149,10 +145,8 @@ def _fit_rotor_inertia(
     if file.law != "catalogue":
         return None
     square = fitted_log.drive.ratio**2
-    (load, spread), phi = (
-        fitted_log.evaluate_load(log),
-        hysteresis.measured_wind_up(log, abs(fitted_log.drive.ratio)),
-    )
+    load, spread = fitted_log.evaluate_load(log)
+    phi = hysteresis.measured_wind_up(log, abs(fitted_log.drive.ratio))
     return hysteresis.fit_rotor_inertia(
         file, phi, -load, -spread, square * log.ddq, fitted_log.inertia / square
     )
@@ -333,10 +327,8 @@ def _speed_picture(samples: Samples, fitted_log: FittedLog, misfit: Array) -> Pi
     speed = np.linspace(-fastest, fastest, 400)
     known = samples.temperature[np.isfinite(samples.temperature)]
     usual = float(np.median(known)) if known.size else np.nan
-    y, line = (
-        fitted_log.no_load_friction(samples.dq, usual) + misfit,
-        (speed, fitted_log.no_load_friction(speed, usual)),
-    )
+    y = fitted_log.no_load_friction(samples.dq, usual) + misfit
+    line = (speed, fitted_log.no_load_friction(speed, usual))
     picture = _friction_picture(samples.dq, y, misfit, line, "speed of the joint [rad/s]")
     marks = None if samples.is_dynamic.any() else samples.is_held_out
     labels = (picture.axis_labels[0], _NO_LOAD_LABEL, _ERROR_LABEL)

@@ -98,11 +98,9 @@ def filtered_motor_friction(drive: Drive, samples: Samples, load: Array) -> Arra
     )
 
 
-DRY_FRICTION, STRIBECK_FRICTION, VISCOUS_FRICTION = (
-    "friction_coulomb",
-    "friction_stribeck",
-    "friction_viscous",
-)
+DRY_FRICTION = "friction_coulomb"
+STRIBECK_FRICTION = "friction_stribeck"
+VISCOUS_FRICTION = "friction_viscous"
 LOAD_LOSS, LOAD_LOSS_BACK = "load_loss", "load_loss_back"
 TEMPERATURE_COEFFICIENTS = ("viscous_temperature_coefficient", "dry_temperature_coefficient")
 FITTED_PARAMETERS = (
