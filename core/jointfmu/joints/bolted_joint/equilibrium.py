@@ -288,7 +288,7 @@ def predict_by_tangent(step: LoadStep) -> ModalPredictor:
         reason = (
             f"{step.input_summary}: no equilibrium of the joint was found beyond a fraction of 0 of the way"
         )
-        raise ValueError(f"{reason}, their tangent stiffness is singular there") from None
+        raise ValueError(f"{reason}, the tangent stiffness is singular there") from None
     return ModalPredictor(np.asarray(a - change), H[6:, 6:])
 
 
