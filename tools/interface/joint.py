@@ -11,11 +11,12 @@ from numpy.typing import ArrayLike
 
 from jointfmu.files.outputs import HTML_PAGE, PARAMETER_FILE, check_output, write_parameter_text
 from jointfmu.joints import KINDS
-from jointfmu.joints.model import History, Model, TabulatedJoint
+from jointfmu.joints.model import Model, TabulatedJoint
 from jointfmu.parameters import ParameterFile, format_parameter_file
 
 from .. import plots
 from ..command_line.common import require_package
+from ..engine import JointEngine, open_joint
 from ..judgement import find_rms_height
 from ..pressure import judge_file
 from ..ramps.ramp import broadcast_columns
@@ -153,12 +154,7 @@ class Joint(TableDisplay):
         >>> bool(frame["f_x"][1] < frame["f_x"][0] == 0.0)
         True
         """
-        model = self.model(fmu)
-
-        def step(point: Mapping[str, float], history: History) -> tuple[Any, History]:
-            return model.evaluate(self.spring, point), history
-
-        return self._evaluate_points(model, inputs, step, np.zeros(0))
+        return self._run(fmu, inputs, each_from_rest=True)
 
     def follow(self, fmu: str | None = None, /, **inputs: ArrayLike) -> Frame:
         """Compute every output along a path of inputs from rest. Friction keeps its history along the path.
@@ -174,42 +170,36 @@ class Joint(TableDisplay):
         >>> bool(path["f_x"][2] > 0.0 and path["E_loss"][2] > 0.0)
         True
         """
+        return self._run(fmu, inputs, each_from_rest=False)
+
+    def _run(self, fmu: str | None, inputs: Mapping[str, ArrayLike], *, each_from_rest: bool) -> Frame:
+        """Evaluate the points one after the other, with inputs broadcast to the same length."""
         model = self.model(fmu)
-        if model.advance is None or model.initial_history is None:
-            return self.evaluate(fmu, **inputs)
-        evolve = model.advance
-
-        def step(point: Mapping[str, float], history: History) -> tuple[Any, History]:
-            return evolve(self.spring, point, history)
-
-        return self._evaluate_points(model, inputs, step, model.initial_history(self.spring))
-
-    def _evaluate_points(
-        self, model: Model, inputs: Mapping[str, ArrayLike], step: Any, history: History
-    ) -> Frame:
-        """Evaluate the steps one after the other, with inputs broadcast to the same length."""
         names = [v.name for v in model.inputs]
         if unknown := [name for name in inputs if name not in names]:
             raise ValueError(f"{model.name}: unknown input {unknown[0]!r}, allowed are {', '.join(names)}")
-        rest = {name: self.file.start_value(name) for name in names}
         columns = {name: np.ravel(np.asarray(value, dtype=np.float64)) for name, value in inputs.items()}
-        columns, count = broadcast_columns(columns, model.name)
+        columns, _ = broadcast_columns(columns, model.name)
         for variable in model.inputs:
             outside = [x for x in columns.get(variable.name, ()) if not variable.interval.contains(x)]
             if outside:
                 allowed = f"{variable.interval} {variable.unit}"
                 raise ValueError(f"{model.name}: {variable.name} = {outside[0]:g} is outside {allowed}")
-        rows: list[dict[str, float]] = []
-        for i in range(count):
-            point = rest | {name: float(column[i]) for name, column in columns.items()}
-            outputs, history = step(point, history)
-            rows.append(point | {name: float(value) for name, value in outputs.items()})
+        if model.name not in self._engines:
+            self._engines[model.name] = open_joint(model, self.file)
+        found = self._engines[model.name].follow(columns, each_from_rest=each_from_rest)
         units = {v.name: v.unit for v in (*model.inputs, *model.outputs)}
-        warnings = dict.fromkeys(
-            text for row in rows for text in model.find_warnings(self.spring, row).values()
-        )
-        names = [name for name in rows[0] if name in columns or name not in rest]
-        return Frame({name: [row[name] for row in rows] for name in names}, units, tuple(warnings))
+        shown = {n: found.columns[n] for n in units if n in columns or n not in names}
+        return Frame(shown, units, found.warnings)
+
+    @cached_property
+    def _engines(self) -> dict[str, JointEngine]:
+        """{FMU: opened joint}."""
+        return {}
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Fields alone: an opened joint belongs to its process."""
+        return {name: getattr(self, name) for name in self.__dataclass_fields__}
 
     @plots.apply_style()
     def plot(self, fmu: str | None = None) -> "Figure":

@@ -1,15 +1,12 @@
-"""Load histories of a joint for its report: load ramp and load cycles, computed in Python without an FMU."""
-
-from collections.abc import Mapping
-from typing import Any
+"""Load histories of a joint for its report: load ramp and load cycles."""
 
 import numpy as np
-from jointfmu_fmu_src.native.page import evaluate_outputs
 
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
 
+from ..engine import open_joint
 from ..ramps.loops import CyclicPath, HysteresisLoops, find_conjugate_output, loops_from_results
 from ..ramps.ramp import RampResult
 
@@ -41,14 +38,14 @@ class LoadHistory:
         self.model = model.with_parameters(file.joint, file.values).with_load_range(
             self.spring, self.start_values
         )
-        self.law_limit = _find_law_limit(self.model, self.spring, self.start_values)
+        self._engine = open_joint(self.model, file)
+        self.law_limit = self._find_law_limit()
 
     def compute_ramp(self) -> dict[str, Array]:
         """Compute inputs and outputs (n) along the load ramp; points are dense where curves bend."""
         ramp = self.model.ramp
-        points = [{**self.start_values, ramp.input_name: float(x)} for x in ramp.sample_inputs(_RAMP_POINTS)]
-        rows = [point | evaluate_outputs(self.model, self.spring, point) for point in points]
-        return {name: np.array([row[name] for row in rows]) for name in rows[0]}
+        points = {ramp.input_name: ramp.sample_inputs(_RAMP_POINTS)}
+        return self._engine.follow(points, each_from_rest=True).columns
 
     @property
     def loop_inputs(self) -> dict[str, float]:
@@ -95,37 +92,34 @@ class LoadHistory:
 
     def _follow_path(self, name: str, points: Array, units: dict[str, str]) -> RampResult:
         """Compute the outputs along a path of one input, from rest."""
-        evolve, rest = self.model.advance, self.model.initial_history
-        assert evolve
-        assert rest
-        memory, rows = rest(self.spring), []
-        for x in points:
-            outputs, memory = evolve(self.spring, {**self.loop_inputs, name: float(x)}, memory)
-            rows.append({name: float(x)} | {output: float(value) for output, value in outputs.items()})
-        return RampResult({key: np.array([row[key] for row in rows]) for key in rows[0]}, units, ())
+        columns = self._engine.follow({**self.loop_inputs, name: points}).columns
+        read = (name, *(v.name for v in self.model.outputs))
+        return RampResult({key: columns[key] for key in read}, units, ())
 
+    def _find_law_limit(self) -> tuple[float, str] | None:
+        """Find the end of the law: smallest ramped input with a new warning, and the warning.
 
-def _find_law_limit(model: Model, spring: Any, start_values: Mapping[str, float]) -> tuple[float, str] | None:
-    """Find the end of the law: smallest ramped input with a warning that is absent at zero, and the warning.
+        New is a warning that is absent at zero. None if none appears up to 2^10 times the end of the ramp.
+        """
+        model = self.model
 
-    None if no such warning appears up to 2^10 times the end of the ramp.
-    """
+        def warnings_at(x: float) -> dict[int, str]:
+            columns = self._engine.follow({model.ramp.input_name: x}, each_from_rest=True).columns
+            return model.find_warnings(
+                self.spring, {name: float(column[0]) for name, column in columns.items()}
+            )
 
-    def warnings_at(x: float) -> dict[int, str]:
-        inputs = {**start_values, model.ramp.input_name: x}
-        return model.find_warnings(spring, inputs | evaluate_outputs(model, spring, inputs))
+        before = warnings_at(0.0)
 
-    before = warnings_at(0.0)
+        def new_warnings(x: float) -> list[str]:
+            return [text for number, text in warnings_at(x).items() if number not in before]
 
-    def new_warnings(x: float) -> list[str]:
-        return [text for number, text in warnings_at(x).items() if number not in before]
-
-    low, high = 0.0, 2.0**-_MAX_DOUBLINGS * model.ramp.end_value
-    while not new_warnings(high):
-        low, high = high, 2.0 * high
-        if high > 2.0**_MAX_DOUBLINGS * model.ramp.end_value:
-            return None
-    for _ in range(_BISECTIONS):
-        middle = 0.5 * (low + high)
-        low, high = (low, middle) if new_warnings(middle) else (middle, high)
-    return high, new_warnings(high)[0]
+        low, high = 0.0, 2.0**-_MAX_DOUBLINGS * model.ramp.end_value
+        while not new_warnings(high):
+            low, high = high, 2.0 * high
+            if high > 2.0**_MAX_DOUBLINGS * model.ramp.end_value:
+                return None
+        for _ in range(_BISECTIONS):
+            middle = 0.5 * (low + high)
+            low, high = (low, middle) if new_warnings(middle) else (middle, high)
+        return high, new_warnings(high)[0]

@@ -12,7 +12,7 @@ import signal
 import tarfile
 import tempfile
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from functools import cache
 from hashlib import sha256
@@ -30,7 +30,7 @@ from ...folders import find_source_folder
 from ...joint_parts.data import ParameterSplit
 from ..data import PLACEHOLDER, make_placeholder
 from .cache import check_access, compiled_model_folder, make_folder
-from .compiler import compile_libraries, select_units
+from .compiler import TARGETS, compile_libraries, select_units
 
 SHIPPED_FOLDER = Path(__file__).parent.with_name("parts")
 """Folder of the compiled models in a wheel."""
@@ -56,17 +56,25 @@ class CompiledModel(NamedTuple):
     libraries: dict[str, dict[str, bytes]]
 
 
-def get_compiled_model(model: Model, parameters: ParameterFile, split: ParameterSplit) -> CompiledModel:
+def get_compiled_model(
+    model: Model, parameters: ParameterFile, split: ParameterSplit, platform: str | None = None
+) -> CompiledModel:
     """Get the compiled model of an FMU from the wheel or the cache, or compile and cache it.
+
+    platform : compile for this platform and the newest FMI version alone; None: for all of them
 
     Raises ImportError if it must be compiled and a package is missing, ValueError if other users may write
     to the cache, ValueError and RuntimeError as `compiler.compile_libraries`.
     """
     paths = _candidate_paths(compiled_model_name(model, split))
+    if platform:
+        name = paths[-1].name.removesuffix(_MODEL_SUFFIX)
+        paths = (*paths, paths[-1].with_name(f"{name}-{platform}{_MODEL_SUFFIX}"))
     for content in filter(None, map(_read_cached, paths)):
         with suppress(lzma.LZMAError, tarfile.TarError, ValueError, EOFError):
             return unpack_model(content)
-    compiled_model = compile_model(model, parameters, split)
+    targets = ((platform,), FMI_VERSIONS[-1:]) if platform else (tuple(TARGETS), FMI_VERSIONS)
+    compiled_model = compile_model(model, parameters, split, *targets)
     with suppress(OSError):  # without cache the next build compiles again
         _write_cached(paths[-1], pack_model(compiled_model))
     return compiled_model
@@ -114,8 +122,14 @@ def _defer_interrupt() -> Iterator[None]:
         raise KeyboardInterrupt
 
 
-def compile_model(model: Model, parameters: ParameterFile, split: ParameterSplit) -> CompiledModel:
-    """Compile the model of an FMU for all platforms and FMI versions."""
+def compile_model(
+    model: Model,
+    parameters: ParameterFile,
+    split: ParameterSplit,
+    platforms: Sequence[str],
+    versions: Sequence[str],
+) -> CompiledModel:
+    """Compile the model of an FMU for platforms and FMI versions."""
     set_step(f"compile {model.name}")
     from ..code.generate import generate_code
 
@@ -123,8 +137,10 @@ def compile_model(model: Model, parameters: ParameterFile, split: ParameterSplit
         sources = generate_code(model, parameters, split)
     all_sources = sources | {"data.c": make_placeholder(model, split).make_source()}
     libraries_by_version = {
-        fmi: compile_libraries(model.name, all_sources, select_units(all_sources, fmi), stem=PLACEHOLDER)
-        for fmi in FMI_VERSIONS
+        fmi: compile_libraries(
+            model.name, all_sources, select_units(all_sources, fmi), platforms, stem=PLACEHOLDER
+        )
+        for fmi in versions
     }
     return CompiledModel(sources, libraries_by_version)
 
@@ -136,7 +152,7 @@ def compiled_model_name(model: Model, split: ParameterSplit) -> str:
     return f"{model.name}-{sha256(text.encode()).hexdigest()[:32]}{_MODEL_SUFFIX}"
 
 
-def _candidate_paths(file_name: str) -> tuple[Path, Path]:
+def _candidate_paths(file_name: str) -> tuple[Path, ...]:
     """Paths of a file in the wheel and in the cache, which has one folder per set of compiler versions."""
     compilers = []
     for package in _COMPILER_PACKAGES:
@@ -178,8 +194,8 @@ def _read_source_files(folder: Path) -> Iterator[tuple[str, bytes]]:
 def pack_model(model: CompiledModel) -> bytes:
     """Encode a compiled model as an archive; equal models give equal bytes."""
     members = {f"sources/{name}": text.encode() for name, text in model.sources.items()}
-    for platform in model.libraries[FMI_VERSIONS[0]]:  # similar content is adjacent, for better compression
-        members |= {f"{v}/{platform}": model.libraries[v][platform] for v in FMI_VERSIONS}
+    for platform in next(iter(model.libraries.values())):  # similar content is adjacent: it compresses better
+        members |= {f"{v}/{platform}": libraries[platform] for v, libraries in model.libraries.items()}
     buffer = io.BytesIO()
     with tarfile.open(fileobj=buffer, mode="w:xz", preset=9) as archive:
         for name, content in members.items():
@@ -207,7 +223,7 @@ def unpack_model(content: bytes) -> CompiledModel:
                 sources[name] = member.decode()
             else:
                 libraries_by_version.setdefault(folder, {})[name] = member
-    if not sources or not libraries_by_version.keys() >= {*FMI_VERSIONS}:
+    if not sources or not libraries_by_version:
         raise ValueError("no part")
     return CompiledModel(sources, libraries_by_version)
 

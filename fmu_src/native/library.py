@@ -1,0 +1,53 @@
+"""Library of a native FMU for this machine alone: what programs open that need the joint and no FMU."""
+
+import platform
+import sys
+from typing import NamedTuple
+
+from jointfmu.joints.model import Model
+from jointfmu.parameters import ParameterFile
+
+from .compiled.binary import fill_library
+from .compiled.compiled_models import FMI_VERSIONS, get_compiled_model
+from .compiled.compiler import TARGETS
+from .data import make_fmu_data, make_placeholder, split_parameters
+
+
+class Library(NamedTuple):
+    """Shared library of a joint with its data.
+
+    content : bytes of the file
+    token   : instantiation token
+    """
+
+    content: bytes
+    token: str
+
+
+def machine_platform() -> str:
+    """Platform of this process, by its name in FMI 3.0.
+
+    Raises ValueError if libraries are not compiled for it.
+    """
+    system = {"win32": "windows", "linux": "linux", "darwin": "darwin"}.get(sys.platform, sys.platform)
+    processor = {"amd64": "x86_64", "arm64": "aarch64"}.get(platform.machine().lower(), platform.machine())
+    name = f"{processor.lower()}-{system}"
+    if name not in TARGETS:
+        raise ValueError(f"platform {name}: no library is compiled for it; expected {', '.join(TARGETS)}")
+    return name
+
+
+def make_library(model: Model, parameters: ParameterFile) -> Library:
+    """Make the library that the FMU of a model would carry for this machine.
+
+    It is compiled for this machine alone, unless a build has compiled it already.
+
+    Raises ValueError for a platform without libraries, ImportError if it must be compiled and a package is
+    missing, RuntimeError if the compiler fails.
+    """
+    split = split_parameters(model, parameters)
+    target = machine_platform()
+    compiled = get_compiled_model(model, parameters, split, target)
+    data = make_fmu_data(model, parameters, split, compiled.sources)
+    library = compiled.libraries[FMI_VERSIONS[-1]][target]
+    return Library(fill_library(library, make_placeholder(model, split), data, model.title), data.token)

@@ -1,0 +1,234 @@
+"""Evaluation of a joint: by the compiled library of its FMU, or by the Python law where there is none.
+
+Both give the same numbers; the library needs some microseconds for what the Python law does in milliseconds.
+"""
+
+import ctypes
+import shutil
+import sys
+import tempfile
+import weakref
+from collections.abc import Mapping, Sequence
+from functools import lru_cache
+from pathlib import Path
+from threading import Lock
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from jointfmu.joints.model import Model
+from jointfmu.parameters import ParameterFile
+from jointfmu.quantity import Array, build_parameter_set
+
+_ERROR, _WARNING = 3, 1
+"""Status of a log message in FMI 3.0."""
+_LOGGER = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_int, ctypes.c_char_p, ctypes.c_char_p)
+_POINTER = ctypes.c_void_p
+_SIZE = ctypes.c_size_t
+
+
+class PathResult(NamedTuple):
+    """Outputs along a path of inputs.
+
+    columns  : {variable: values (n)}: all inputs, then all outputs [SI]
+    warnings : one line for each validity limit that the path exceeds
+    """
+
+    columns: dict[str, Array]
+    warnings: tuple[str, ...]
+
+
+class JointEngine(Protocol):
+    """A joint that can be evaluated along paths of its inputs.
+
+    model : its inputs and outputs
+    """
+
+    model: Model
+
+    def set_parameters(self, values: Mapping[str, Any]) -> None:
+        """Set parameters by structured name [SI]. Their check comes with the next evaluation."""
+
+    def follow(self, inputs: Mapping[str, ArrayLike], *, each_from_rest: bool = False) -> PathResult:
+        """Evaluate the joint along a path that starts in the virgin state.
+
+        inputs         : numbers or columns (n) [SI]; other inputs have their start values
+        each_from_rest : every point is reached on a straight path of its own from the virgin state
+
+        Raises ValueError, one line, for a value that the joint refuses.
+        """
+
+
+def open_joint(model: Model, file: ParameterFile) -> JointEngine:
+    """Open a joint for evaluation: compiled if a library is at hand or can be compiled, else in Python.
+
+    Prints one line on standard error, once in a process, if it is evaluated in Python.
+
+    Raises ValueError, one line, for parameters that the joint refuses.
+    """
+    try:
+        return CompiledJoint(model, file)
+    except (ImportError, OSError, RuntimeError) as error:
+        _announce_python(" ".join(str(error).split()))
+        return PythonJoint(model, file)
+
+
+@lru_cache(maxsize=1)
+def _announce_python(reason: str) -> None:
+    print(
+        f"jointfmu: the joint is evaluated by its Python law, which is slow ({reason}); "
+        "for the compiled joint: pip install 'jointfmu[build]'",
+        file=sys.stderr,
+    )
+
+
+class CompiledJoint:
+    """A joint that the library of its FMU evaluates. See `JointEngine`.
+
+    Raises ImportError if the library must be compiled and a package is missing, RuntimeError if the compiler
+    fails, OSError if the library cannot be loaded.
+    """
+
+    def __init__(self, model: Model, file: ParameterFile) -> None:
+        from jointfmu_fmu_src.native.library import make_library
+
+        self.model = model
+        self._start_values = {v.name: file.start_value(v.name) for v in model.inputs}
+        self._messages: list[tuple[int, str]] = []
+        self._lock = Lock()  # calls of the library release Python's own lock
+        fields = model.parameter_fields()
+        names = ["time", *self._start_values, *(v.name for v in model.outputs), *fields]
+        self._references = {name: i for i, name in enumerate(names)}
+        self._booleans = {name for name, item in fields.items() if "allowed" in item.metadata}
+        library, messages = make_library(model, file), self._messages
+
+        def log(environment: Any, status: int, category: bytes, text: bytes) -> None:
+            messages.append((status, text.decode("utf-8", "replace")))
+
+        self._logger = _LOGGER(log)
+        folder = tempfile.mkdtemp(prefix="jointfmu-")
+        try:
+            path = Path(folder) / model.title
+            path.write_bytes(library.content)
+            self._library = ctypes.CDLL(str(path))
+        except BaseException:
+            shutil.rmtree(folder, ignore_errors=True)
+            raise
+        self._declare_functions()
+        instance = self._library.fmi3InstantiateCoSimulation(
+            model.title.encode(), library.token.encode(), None, False, False, False, False, None, 0, None,
+            self._logger, None,
+        )  # fmt: skip
+        self._instance = _POINTER(instance)
+        # The file stays as long as the library is loaded: another file may get its number on the disk, and
+        # the loader would take it for this one.
+        weakref.finalize(self, _close, self._library, self._instance, self._logger, folder)
+        if not instance:
+            raise RuntimeError(self._messages[-1][1] if self._messages else "no instance of the library")
+
+    def _declare_functions(self) -> None:
+        lib = self._library
+        lib.fmi3InstantiateCoSimulation.restype = _POINTER
+        lib.fmi3InstantiateCoSimulation.argtypes = [
+            ctypes.c_char_p, ctypes.c_char_p, ctypes.c_char_p, ctypes.c_bool, ctypes.c_bool, ctypes.c_bool,
+            ctypes.c_bool, _POINTER, _SIZE, _POINTER, _LOGGER, _POINTER,
+        ]  # fmt: skip
+        for function in (lib.fmi3SetFloat64, lib.fmi3SetBoolean):
+            function.argtypes = [_POINTER, _POINTER, _SIZE, _POINTER, _SIZE]
+        lib.jointfmu_follow_path.restype = _SIZE
+        lib.jointfmu_follow_path.argtypes = [
+            _POINTER, ctypes.c_bool, ctypes.c_bool, _SIZE, _SIZE, _POINTER, _POINTER, _SIZE, _POINTER, _POINTER,
+        ]  # fmt: skip
+
+    def set_parameters(self, values: Mapping[str, Any]) -> None:
+        """See `JointEngine.set_parameters`; parameters that the FMU does not expose cannot be set here."""
+        for is_boolean, function, kind in (
+            (False, self._library.fmi3SetFloat64, np.float64),
+            (True, self._library.fmi3SetBoolean, np.bool_),
+        ):
+            names = [name for name in values if (name in self._booleans) == is_boolean]
+            if names:
+                references = self._list_references(names)
+                numbers = np.array([values[name] for name in names], kind)
+                if function(
+                    self._instance, references.ctypes.data, len(names), numbers.ctypes.data, len(names)
+                ):
+                    raise ValueError(self._take_error())
+
+    def _list_references(self, names: Sequence[str]) -> Any:
+        return np.array([self._references[name] for name in names], np.uint32)
+
+    def _take_error(self) -> str:
+        text = next((text for status, text in reversed(self._messages) if status >= _ERROR), "refused")
+        self._messages.clear()
+        return text
+
+    def follow(self, inputs: Mapping[str, ArrayLike], *, each_from_rest: bool = False) -> PathResult:
+        """See `JointEngine.follow`."""
+        names = list(self._start_values)
+        columns = np.broadcast_arrays(*(np.atleast_1d(x) for x in (self._start_values | {**inputs}).values()))
+        values = np.ascontiguousarray(np.stack(columns, axis=1), np.float64)
+        outputs = [v.name for v in self.model.outputs]
+        results = np.empty((len(values), len(outputs)))
+        given, read = self._list_references(names), self._list_references(outputs)
+        with self._lock:
+            self._messages.clear()
+            done = self._library.jointfmu_follow_path(
+                self._instance, True, each_from_rest, len(values),
+                len(names), given.ctypes.data, values.ctypes.data,
+                len(outputs), read.ctypes.data, results.ctypes.data,
+            )  # fmt: skip
+            if done < len(values):
+                raise ValueError(self._take_error())
+            warnings = tuple(dict.fromkeys(text for status, text in self._messages if status == _WARNING))
+        found = dict(zip((*names, *outputs), (*values.T, *results.T), strict=True))
+        return PathResult(found, warnings)
+
+
+def _close(library: Any, instance: Any, logger: Any, folder: str) -> None:
+    """Free the instance, unload the library and remove its file; `logger` lives until here."""
+    import _ctypes
+
+    if instance:
+        library.fmi3FreeInstance(instance)
+    if sys.platform == "win32":
+        _ctypes.FreeLibrary(library._handle)
+    else:
+        _ctypes.dlclose(library._handle)
+    shutil.rmtree(folder, ignore_errors=True)
+
+
+class PythonJoint:
+    """A joint that its Python law evaluates. See `JointEngine`."""
+
+    def __init__(self, model: Model, file: ParameterFile) -> None:
+        self.model = model
+        self._parameter_class, self._values = type(file.values), dict(file.values_by_name)
+        self._start_values = {v.name: file.start_value(v.name) for v in model.inputs}
+        self._joint: Any = model.tabulate(file.values)
+
+    def set_parameters(self, values: Mapping[str, Any]) -> None:
+        """See `JointEngine.set_parameters`."""
+        self._values |= values
+        self._joint = None
+
+    def follow(self, inputs: Mapping[str, ArrayLike], *, each_from_rest: bool = False) -> PathResult:
+        """See `JointEngine.follow`."""
+        if self._joint is None:
+            self._joint = self.model.tabulate(build_parameter_set(self._parameter_class, self._values))
+        model, joint = self.model, self._joint
+        columns = self._start_values | {**inputs}
+        arrays = np.broadcast_arrays(*(np.atleast_1d(np.asarray(x, np.float64)) for x in columns.values()))
+        points = [dict(zip(columns, map(float, point), strict=True)) for point in zip(*arrays, strict=True)]
+        rest = model.initial_history(joint) if model.initial_history else None
+        history, rows = rest, []
+        for point in points:
+            if model.advance is None or each_from_rest:
+                outputs = model.evaluate(joint, point)
+            else:
+                outputs, history = model.advance(joint, point, history)
+            rows.append(point | {name: float(value) for name, value in outputs.items()})
+        found = {name: np.array([row[name] for row in rows]) for name in rows[0]}
+        texts = (text for row in rows for text in model.find_warnings(joint, row).values())
+        return PathResult(found, tuple(dict.fromkeys(texts)))
