@@ -138,7 +138,8 @@ class CompiledJoint:
             function.argtypes = [_POINTER, _POINTER, _SIZE, _POINTER, _SIZE]
         lib.jointfmu_follow_path.restype = _SIZE
         lib.jointfmu_follow_path.argtypes = [
-            _POINTER, ctypes.c_bool, ctypes.c_bool, _SIZE, _SIZE, _POINTER, _POINTER, _SIZE, _POINTER, _POINTER,
+            _POINTER, ctypes.c_bool, ctypes.c_bool, _SIZE,
+            _SIZE, _POINTER, _POINTER, _SIZE, _POINTER, _POINTER,
         ]  # fmt: skip
 
     def set_parameters(self, values: Mapping[str, Any]) -> None:

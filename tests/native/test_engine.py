@@ -1,0 +1,120 @@
+"""The compiled joint and the Python law give the same numbers along paths of inputs, for every joint and law."""
+
+import gc
+import pickle
+import tempfile
+
+import numpy as np
+import pytest
+from jointfmu_tools import engine
+from jointfmu_tools.engine import CompiledJoint, PythonJoint, open_joint
+
+import jointfmu
+from jointfmu.joints import KINDS
+from jointfmu.parameters import load_default
+
+LAWS = [(name, law, model.name) for name, kind in KINDS.items() for law in kind.laws for model in kind.models]
+SAME = 1e-9
+"""Largest difference [1] over the largest value of an output on a path: that of the FMU and the package."""
+
+
+def a_path(python, seed, count=25):
+    """Random inputs that the joint accepts: within its load ramp, and the motions of its load cycle."""
+    model, random = python.model, np.random.default_rng(seed)
+    ramp, start = model.ramp, {v.name: 0.0 for v in model.inputs}
+    inputs = start | {ramp.input_name: ramp.end_value * random.uniform(0.1, 0.9)}
+    if model.load_cycle:
+        inputs |= {n: float(v) for n, v in model.load_cycle.settings.items() if n in inputs}
+        name, amplitude = model.load_cycle.input_name, model.load_cycle.amplitude
+        inputs[name] = amplitude * random.uniform(-1.0, 1.0, count)
+    else:
+        inputs[ramp.input_name] = ramp.end_value * random.uniform(0.0, 1.0, count)
+    return inputs
+
+
+def largest_difference(one, other):
+    """Over the largest value of each output."""
+    sizes = {name: float(np.max(np.abs(column))) or 1.0 for name, column in other.columns.items()}
+    return max(float(np.max(np.abs(one.columns[n] - other.columns[n]))) / size for n, size in sizes.items())
+
+
+@pytest.mark.parametrize(("kind", "law", "fmu"), LAWS)
+def test_the_compiled_joint_gives_the_numbers_of_the_python_law(kind, law, fmu):
+    file = load_default(kind, law)
+    model = KINDS[kind].find_model(fmu).with_parameters(kind, file.values)
+    compiled, python = CompiledJoint(model, file), PythonJoint(model, file)
+    for seed, each in enumerate((False, True)):
+        path = a_path(python, seed)
+        assert (
+            largest_difference(
+                compiled.follow(path, each_from_rest=each), python.follow(path, each_from_rest=each)
+            )
+            <= SAME
+        )
+    values = {name: file.values_by_name[name] for name in model.parameter_fields()}
+    number = next(name for name, value in values.items() if isinstance(value, float) and value)
+    for joint in (compiled, python):
+        joint.set_parameters({number: 1.01 * values[number]})
+    path = a_path(python, 2)
+    found = compiled.follow(path)
+    assert largest_difference(found, python.follow(path)) <= SAME
+
+
+def test_a_path_begins_in_the_virgin_state():
+    plate = jointfmu.load("BoltedJoint")
+    path = {"preload": 9e3, "s_rel_x": [0.0, 5e-6, 0.0]}
+    first = plate.follow(**path)
+    np.testing.assert_array_equal(plate.follow(**path)["f_x"], first["f_x"])
+    assert plate.evaluate(**path)["f_x"][2] == 0.0 != first["f_x"][2]
+
+
+def test_both_refuse_the_same_value_with_one_line():
+    file = load_default("bolted_joint")
+    model = KINDS["bolted_joint"].models[0]
+    for joint in (CompiledJoint(model, file), PythonJoint(model, file)):
+        joint.set_parameters({"mu": -1.0})
+        with pytest.raises(ValueError, match=r"mu = -1 is outside") as refused:
+            joint.follow({"preload": 9e3})
+        assert "\n" not in str(refused.value)
+        joint.set_parameters({"mu": 0.2})
+        assert joint.follow({"preload": 9e3}).columns["K_zz"][0] > 0.0
+
+
+def test_a_warning_is_given_by_each_path_that_exceeds_the_law():
+    plate = jointfmu.load("BoltedJoint")
+    end = float(plate.values["H"] * plate.values["A_0"])
+    for _ in range(2):
+        (text,) = plate.evaluate(preload=[9e3, end, 2.0 * end]).messages
+        assert "is outside" in text
+    assert not plate.evaluate(preload=9e3).messages
+
+
+def test_without_a_compiler_the_python_law_answers_and_says_so(monkeypatch, capsys):
+    file = load_default("gear_contact")
+    model = KINDS["gear_contact"].models[0]
+    wanted = CompiledJoint(model, file).follow({"f": [0.0, 500.0]})
+
+    def missing(*_):
+        raise ImportError("No module named 'ziglang'")
+
+    monkeypatch.setattr("jointfmu_fmu_src.native.library.get_compiled_model", missing)
+    engine._announce_python.cache_clear()
+    for _ in range(2):
+        joint = open_joint(model, file)
+        assert isinstance(joint, PythonJoint)
+    assert largest_difference(joint.follow({"f": [0.0, 500.0]}), wanted) <= SAME
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "ziglang" in line
+    assert "pip install 'jointfmu[build]'" in line
+
+
+def test_the_file_of_a_library_goes_with_its_joint(tmp_path, monkeypatch):
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    contact = jointfmu.load("GearContact")
+    contact.evaluate(f=500.0)
+    assert [*tmp_path.iterdir()]
+    again = pickle.loads(pickle.dumps(contact))
+    np.testing.assert_array_equal(again.evaluate(f=500.0)["K_N"], contact.evaluate(f=500.0)["K_N"])
+    del contact, again
+    gc.collect()
+    assert not [*tmp_path.iterdir()]
