@@ -1,4 +1,4 @@
-"""The compiled joint and the Python law give the same numbers along paths of inputs, for every joint and law."""
+"""The compiled joint and the Python law give the same numbers for every joint and law."""
 
 import gc
 import pickle
