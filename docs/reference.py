@@ -5,7 +5,7 @@ import re
 from functools import cached_property
 from typing import Any
 
-from jointfmu_tools.joint_parts import load_tool_module
+from jointfmu_tools.common.joint_parts import load_tool_module
 
 import jointfmu
 from jointfmu.joints import KINDS

@@ -63,7 +63,7 @@ def test_a_name_that_is_not_there():
 @pytest.mark.slow
 @pytest.mark.parametrize("name", MODULES)
 def test_examples(name):
-    assert doctest.testmod(import_module(f"jointfmu_tools.interface.{name}")).failed == 0
+    assert doctest.testmod(import_module(f"jointfmu_tools.api.{name}")).failed == 0
 
 
 @pytest.mark.parametrize(

@@ -7,10 +7,10 @@ from pathlib import Path
 from jointfmu.joints import KINDS
 from jointfmu.parameters import load_default
 
-from ..fields.bolted_interface import field_adapter
-from ..joint_parts import load_tool_module
-from ..published.reference import compute_trivial_guesses, read_points
-from ..published.validation import ValidatedPoint, compare_point
+from ..common.joint_parts import load_tool_module
+from ..inputs.fields.bolted_interface import field_adapter
+from ..studies.published.reference import compute_trivial_guesses, read_points
+from ..studies.published.validation import ValidatedPoint, compare_point
 
 
 @dataclass(frozen=True, slots=True)

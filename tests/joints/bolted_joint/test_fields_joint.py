@@ -7,15 +7,21 @@ import patch_reduction
 import pytest
 from conftest import here_alone
 from jointfmu_fmu_src.building import build
-from jointfmu_tools import PARTS, cli, plots
-from jointfmu_tools.fields import nodal_result, reduction
-from jointfmu_tools.fields.joint_parameters import insert_field, pressure_shape
-from jointfmu_tools.fields.nodal_result import ContactField
-from jointfmu_tools.fields.reduction import RELATIVE_TOLERANCE, ROUNDING_BITS, reduce_field
-from jointfmu_tools.fields.sums import MAX_COMPRESSION_RATIO, PRELOAD_RATIO_RANGE, LoadCase, SumFunctions
+from jointfmu_tools import PARTS, cli
+from jointfmu_tools.common import plots
+from jointfmu_tools.exchange.modelica import library
+from jointfmu_tools.inputs.fields import nodal_result, reduction
+from jointfmu_tools.inputs.fields.joint_parameters import insert_field, pressure_shape
+from jointfmu_tools.inputs.fields.nodal_result import ContactField
+from jointfmu_tools.inputs.fields.reduction import RELATIVE_TOLERANCE, ROUNDING_BITS, reduce_field
+from jointfmu_tools.inputs.fields.sums import (
+    MAX_COMPRESSION_RATIO,
+    PRELOAD_RATIO_RANGE,
+    LoadCase,
+    SumFunctions,
+)
 from jointfmu_tools.joints.bolted_joint.published import pressure_between_bolts
-from jointfmu_tools.modelica import library
-from jointfmu_tools.ramps import ramp
+from jointfmu_tools.run.ramps import ramp
 
 from jointfmu.joints import KINDS
 from jointfmu.joints.bolted_joint import KIND

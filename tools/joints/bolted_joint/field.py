@@ -13,10 +13,10 @@ from jointfmu.mechanics.footprint.plate import BoltedPlate
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
 
-from ...drawing.vdi2230 import proof_load
+from ...common.pressure import NominalPressure
 from ...fem.validation import MeasuredFrequencies
-from ...fields.bolted_interface import FieldAdapter
-from ...pressure import NominalPressure
+from ...inputs.drawing.vdi2230 import proof_load
+from ...inputs.fields.bolted_interface import FieldAdapter
 
 if TYPE_CHECKING:
     from ...fem.geometry import Assembly

@@ -18,7 +18,7 @@ from typing import TypeAlias
 
 from jointfmu.quantity.units import conversion_factor
 
-from ...catalogue import Catalogue, CatalogueColumn, CatalogueEntry, SourcedNumber
+from ...inputs.catalogue import Catalogue, CatalogueColumn, CatalogueEntry, SourcedNumber
 from .friction import add_friction_estimates, collect_published
 
 STIFFNESS_COLUMNS = (

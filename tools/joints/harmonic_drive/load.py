@@ -19,13 +19,13 @@ from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.mechanics.curve import Curve
 from jointfmu.quantity import Array
 
-from ...export.exports import Exports, LoadCurve
-from ...interface.joint import Joint
-from ...pressure import NominalPressure
-from ...robots.transmission import Transmission
+from ...api.joint import Joint
+from ...common.pressure import NominalPressure
+from ...exchange.export.exports import Exports, LoadCurve
+from ...exchange.robots.transmission import Transmission
 
 if TYPE_CHECKING:
-    from ...export.tables import LoadTable
+    from ...exchange.export.tables import LoadTable
 
 
 class DriveJoint(Joint):
@@ -111,7 +111,7 @@ def _list_missing_effects(drive: Drive) -> Iterator[str]:
 
 
 def _torque_table(drive: Drive, _: None, max_error: float) -> "LoadTable":
-    from ...export.tables import tabulate_odd_curve
+    from ...exchange.export.tables import tabulate_odd_curve
 
     return tabulate_odd_curve(HarmonicDriveSpring.tabulate(drive).curve, max_error)
 

@@ -18,9 +18,9 @@ from jointfmu_fmu_src.xml_parts import serialize_xml
 from jointfmu import __version__
 from jointfmu.joints.model import Model
 
-from ...host import unpack_fmu
-from ...proof import exchange
-from ...proof.task import Task
+from ...run.host import unpack_fmu
+from ...run.proof import exchange
+from ...run.proof.task import Task
 
 OUTPUT_TOLERANCE = 5e-3
 """Tolerance of an output over its scale [1], as stated in docs/systems_explanation.md."""
