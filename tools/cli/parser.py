@@ -7,7 +7,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from jointfmu import __version__
+from jointfmu.version import __version__
 
 from .command import DEFAULT_SUBCOMMANDS, Parser, suggest_word
 

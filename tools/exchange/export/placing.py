@@ -7,9 +7,9 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from jointfmu import __version__
 from jointfmu.quantity import Array
 from jointfmu.quantity.units import conversion_factor, replace_symbols
+from jointfmu.version import __version__
 
 T = TypeVar("T", float, NDArray[np.float64])
 

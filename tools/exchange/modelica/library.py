@@ -12,7 +12,6 @@ from jointfmu_fmu_src.folders import find_asset
 from jointfmu_fmu_src.partners.laws import CONTROL_POINTS
 from jointfmu_fmu_src.templates import PAGE_FOLDER, law_variables, load_template
 
-from jointfmu import __version__
 from jointfmu.files.outputs import EXCHANGE_TEXT, PROGRAM_MARK, check_output
 from jointfmu.files.writing import write_files
 from jointfmu.joints import KINDS, MODELS
@@ -21,6 +20,7 @@ from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile, load_default
 from jointfmu.quantity import flat_fields
 from jointfmu.quantity.smooth import STEP_COEFFICIENTS
+from jointfmu.version import __version__
 
 from ...common.joint_parts import load_tool_module
 from ...systems.system import System, load_systems

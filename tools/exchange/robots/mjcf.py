@@ -12,8 +12,8 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 from jointfmu_fmu_src.xml_parts import format_xml_comment
 
-from jointfmu import __version__
 from jointfmu.quantity import Array
+from jointfmu.version import __version__
 
 from .bristles import format_friction, presliding_angle
 from .fitted import FittedSpring, fit_spring

@@ -5,7 +5,7 @@ from xml.sax.saxutils import quoteattr
 
 from jointfmu_fmu_src.xml_parts import format_xml_comment
 
-from jointfmu import __version__
+from jointfmu.version import __version__
 
 from .transmission import Transmission, loop_area
 

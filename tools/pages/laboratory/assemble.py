@@ -14,11 +14,11 @@ from jointfmu_fmu_src.joint_parts import chart
 from jointfmu_fmu_src.licence import read_webassembly_licences
 from jointfmu_fmu_src.templates import load_template
 
-from jointfmu import __version__
 from jointfmu.contact.roughness import RQ_OVER_RA
 from jointfmu.files.writing import write_text
 from jointfmu.parameters import ORIGINS, RELATIVE_HEIGHT_TOLERANCE
 from jointfmu.quantity import units
+from jointfmu.version import __version__
 
 from .describe import compile_modules, describe_module, list_modules
 

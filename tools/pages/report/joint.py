@@ -11,13 +11,13 @@ from jointfmu_fmu_src.joint_parts.chart import encode_panels
 from jointfmu_fmu_src.native.page import draw_further_charts, find_ramp_panels
 from jointfmu_fmu_src.templates import PAGE_FOLDER, law_variables, load_template
 
-from jointfmu import __version__
 from jointfmu.files.writing import write_text
 from jointfmu.joints import KINDS
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ORIGINS, ParameterFile
 from jointfmu.progress import set_step
 from jointfmu.quantity.units import conversion_factor
+from jointfmu.version import __version__
 
 from ...common.joint_parts import load_tool_module
 from ...common.pressure import judge_file

@@ -7,11 +7,11 @@ from typing import Any
 from jointfmu_fmu_src.joint_parts.chart import encode_panels
 from jointfmu_fmu_src.templates import load_template
 
-from jointfmu import __version__
 from jointfmu.files.timestamp import build_time
 from jointfmu.files.writing import write_text
 from jointfmu.joints import KINDS
 from jointfmu.joints.kind import JointKind
+from jointfmu.version import __version__
 
 from ...common.joint_parts import load_tool_module
 from ...studies.published.reference import ROLES

@@ -15,8 +15,8 @@ from jointfmu_fmu_src.proof.series import TimeSeries, format_csv
 from jointfmu_fmu_src.proof.standard import CO_SIMULATION, MODEL_EXCHANGE
 from jointfmu_fmu_src.xml_parts import serialize_xml
 
-from jointfmu import __version__
 from jointfmu.joints.model import Model
+from jointfmu.version import __version__
 
 from ...run.host import unpack_fmu
 from ...run.proof import exchange
