@@ -262,7 +262,7 @@ LOCAL = """
 import sys
 sys.path.insert(0, sys.argv[3])
 import test_uncertainty_sweep as tests
-from jointfmu_tools.uncertainty import sweep
+from jointfmu_tools.studies.uncertainty import sweep
 sweep.run_locally = tests.local_dies_at_five
 fmu, out = map(tests.Path, sys.argv[1:3])
 done = sweep.sweep(fmu, tests.DRIVE, [{"surface.D": 2.5}] * 24, out, workers=2)

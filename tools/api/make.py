@@ -22,6 +22,9 @@ from ..inputs.drawing.part import NewJoint, NewJointCommand
 from ..inputs.drawing.reading import parse_number
 from ..inputs.fitting.outcome import FitResult, draw_fit, figure_size, format_deviation
 from ..inputs.fitting.procedure import fit_procedures
+from ..joints.harmonic_drive.catalogue import list_drives
+from ..joints.harmonic_drive.new import NEW as NEW_DRIVE
+from .drive_joint import DriveJoint
 from .frame import Table, TableDisplay
 from .joint import Facts, Joint
 
@@ -44,9 +47,9 @@ _OPTION_PATTERN = re.compile(r"--([A-Za-z][\w-]*)")
 
 
 def create_joint(file: ParameterFile, facts: Facts | None = None, notes: Sequence[str] = ()) -> Joint:
-    """Make the joint object of a parameter file; some joints have a subclass of Joint."""
-    module = load_tool_module(KINDS[file.joint], "interface")
-    return (module.CLASS if module else Joint)(file, facts or {}, tuple(notes))
+    """Make the joint object of a parameter file."""
+    joint_class = DriveJoint if file.joint == "harmonic_drive" else Joint
+    return joint_class(file, facts or {}, tuple(notes))
 
 
 def load(source: str | Path) -> Joint:
@@ -66,11 +69,9 @@ def load(source: str | Path) -> Joint:
         return create_joint(load_default(MODELS[name].joint if name in MODELS else name))
     if Path(source).suffix == ".toml" or Path(source).is_file():
         return create_joint(load_file(source))
-    for kind in KINDS.values():
-        module = load_tool_module(kind, "catalogue")
-        if module and any(item.name.lower() == name.lower() for item in module.CATALOGUE.entries()):
-            with _use_python_names():
-                return make_from_drawing(load_tool_module(kind, "new").NEW, {"catalogue": name})  # type: ignore[union-attr]
+    if any(item.name.lower() == name.lower() for item in list_drives()):
+        with _use_python_names():
+            return make_from_drawing(NEW_DRIVE, {"catalogue": name})
     raise ValueError(
         f"{name!r} is not a parameter file (.toml) or a known name; allowed are "
         f"{', '.join((*MODELS, *KINDS))} and names of the catalogue (jointfmu catalogue)"

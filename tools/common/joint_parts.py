@@ -15,14 +15,10 @@ if TYPE_CHECKING:  # the command line imports this module first: no slow imports
     from jointfmu.joints.kind import JointKind
 
 TOOL_NAMES = (
-    "catalogue",
     "checks",
     "export",
-    "field",
     "figures",
     "fit",
-    "frequencies",
-    "interface",
     "laboratory",
     "modelica",
     "new",
@@ -31,7 +27,6 @@ TOOL_NAMES = (
     "reduced",
     "report",
     "ringing",
-    "transmission",
 )
 """Tools that look for a module in the folder of a joint."""
 

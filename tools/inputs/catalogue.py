@@ -1,6 +1,5 @@
-"""Catalogue of bought joints: published numbers of makers, defined by a joint's module `catalogue.py`."""
+"""Entries of a catalogue of bought joints: published numbers of makers with their sources."""
 
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -38,15 +37,3 @@ class CatalogueEntry:
 
     name: str
     numbers: dict[str, SourcedNumber]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Catalogue:
-    """Catalogue of one kind of joint: the constant CATALOGUE in `catalogue.py` of the joint's folder.
-
-    columns : columns in display order
-    entries : function that returns the joints in the order of the printed catalogue
-    """
-
-    columns: Sequence[CatalogueColumn]
-    entries: Callable[[], Sequence[CatalogueEntry]]

@@ -114,10 +114,12 @@ def _export_drive(args: argparse.Namespace) -> CommandResult:
     _refuse_options(args, dict.fromkeys(idle, args.form))
     if args.units != SI_UNIT_SET.name:
         raise ValueError(f"--units = {args.units}: {args.form} is in {SI_UNIT_SET.name}")
+    from ...api import load
     from ...exchange.robots.writing import write_drive
+    from ...joints.harmonic_drive.transmission import make_transmission
 
     with require_package("measure the file", "mujoco"):
-        text, lines, facts = write_drive(args.form, args.what, args.torque)
+        text, lines, facts = write_drive(args.form, make_transmission(load(args.what).file), args.torque)
     write_text(args.out, text)
     return CommandResult(
         document={"written": str(args.out), "format": args.form, **facts},

@@ -21,6 +21,7 @@ from ...common.pressure import judge_file
 from ...common.shown import align_columns, fact_document, format_facts
 from ...inputs.catalogue import CatalogueColumn, CatalogueEntry
 from ...inputs.drawing.part import NewJointCommand
+from ...joints.harmonic_drive.catalogue import COLUMNS, list_drives
 from ..command import CommandResult, Parser, SubParsers, declare_argument, declare_command, format_sentence
 from ..outputs import declare_output
 from . import declare_option
@@ -169,27 +170,18 @@ def add_catalogue(commands: SubParsers) -> None:
 
 def _run_catalogue(args: argparse.Namespace) -> CommandResult:
     """List the bought joints whose names contain the words. Raises ValueError if there is none."""
-    rows = [
-        (kind.name, module.CATALOGUE.columns, item)
-        for kind in KINDS.values()
-        if (module := load_tool_module(kind, "catalogue"))
-        for item in module.CATALOGUE.entries()
-        if _contains_words(args.words, item.name)
-    ]
-    if not rows:
+    found = [item for item in list_drives() if _contains_words(args.words, item.name)]
+    if not found:
         word = " ".join(args.words)
         raise ValueError(f"no drive in the catalogue has {word!r} in its name (jointfmu catalogue)")
-    lines, last_joint = [], None
-    for joint, columns, item in rows:
-        if joint != last_joint:
-            lines.append(f"{joint.replace('_', '-'):13}  {'  '.join(map(_format_heading, columns))}")
-            last_joint = joint
+    lines = [f"{'harmonic-drive':13}  {'  '.join(map(_format_heading, COLUMNS))}"]
+    for item in found:
         lines.append(
-            f"{item.name:13}  {'  '.join(_format_number(item, column) for column in columns)}".rstrip()
+            f"{item.name:13}  {'  '.join(_format_number(item, column) for column in COLUMNS)}".rstrip()
         )
-    if any(number.kind == "estimate" for _, _, item in rows for number in item.numbers.values()):
+    if any(number.kind == "estimate" for item in found for number in item.numbers.values()):
         lines.append("~ is an estimate, < an upper limit; --json has the source of each number")
-    return CommandResult(document=[_entry_document(*row) for row in rows], lines=lines)
+    return CommandResult(document=[_entry_document(COLUMNS, item) for item in found], lines=lines)
 
 
 def _contains_words(words: Sequence[str], name: str) -> bool:
@@ -213,8 +205,8 @@ def _format_number(entry: CatalogueEntry, column: CatalogueColumn) -> str:
     )
 
 
-def _entry_document(joint: str, catalogue_columns: Any, entry: CatalogueEntry) -> dict[str, Any]:
+def _entry_document(columns: Sequence[CatalogueColumn], entry: CatalogueEntry) -> dict[str, Any]:
     """JSON object of a catalogue entry: numbers in SI units, with origin and source."""
-    units = {column.name: column.unit for column in catalogue_columns}
+    units = {column.name: column.unit for column in columns}
     numbers = {name: number._asdict() | {"unit": units[name]} for name, number in entry.numbers.items()}
-    return {"joint": joint, "name": entry.name, "numbers": numbers}
+    return {"joint": "harmonic_drive", "name": entry.name, "numbers": numbers}

@@ -12,7 +12,7 @@ from jointfmu.joints import KINDS
 from jointfmu.parameters import load_parameter_file
 
 from ...fem import require_fem_packages
-from ...fem.validation import compare_natural_frequencies
+from ...joints.bolted_joint.frequencies import compare_natural_frequencies
 from ...run.proof import listing, report
 from ...run.proof.importers import IMPORTERS
 from ...run.proof.run import ExpectedContents, prove

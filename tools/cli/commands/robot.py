@@ -71,7 +71,7 @@ def run(args: argparse.Namespace) -> CommandResult:
     from ...exchange.robots import elastic, poses
     from ...exchange.robots import pictures as drawn
     from ...exchange.robots.names import check_names, make_identifier
-    from ...exchange.robots.transmission import make_transmission
+    from ...joints.harmonic_drive.transmission import make_transmission
 
     spec = elastic.read_robot(args.robot)
     loaded = {name: load(name).file for name in dict.fromkeys(names.values())}  # axes may share a drive

@@ -1,4 +1,4 @@
-"""Drive between motor and link, as a joint's tool module `transmission` defines it (TRANSMISSION)."""
+"""Drive between motor and link of a robot."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -6,11 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from jointfmu.joints import KINDS
-from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
-
-from ...common.joint_parts import load_tool_module
 
 RAMP_POINTS = 200
 """Number of points of the ramp to the largest torque [1]."""
@@ -60,15 +56,3 @@ class Transmission:
 def loop_area(wind_up: Array, torque: Array) -> float:
     """Area [J] of the loop after the ramp: the energy dissipated in one cycle."""
     return float(np.trapezoid(torque[RAMP_POINTS:], wind_up[RAMP_POINTS:]))
-
-
-def make_transmission(file: ParameterFile) -> Transmission:
-    """Drive of a parameter file. Raises ValueError if its joint is not a drive."""
-    tool_module = load_tool_module(KINDS[file.joint], "transmission")
-    if tool_module is None:
-        drives = [name for name, kind in KINDS.items() if load_tool_module(kind, "transmission")]
-        raise ValueError(
-            f"{file.name} is a {file.joint}, no drive of a motor; allowed is a {', '.join(drives)}"
-        )
-    drive: Transmission = tool_module.TRANSMISSION(file.name, file.values)
-    return drive

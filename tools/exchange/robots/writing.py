@@ -2,25 +2,22 @@
 
 from dataclasses import asdict
 
-from ...api import load
 from . import mjcf, urdf
-from .transmission import make_transmission
+from .transmission import Transmission
 
 
 def write_drive(
-    robot_format: str, source: str, torque: float | None
+    robot_format: str, drive: Transmission, torque: float | None
 ) -> tuple[str, list[str], dict[str, object]]:
     """Write a drive in a robot format, fitted up to a torque.
 
     robot_format : a key of FORMAT_WRITERS
-    source       : parameter file or name of the drive
     torque       : [N.m]; None: rated torque
 
     Returns the file text, notes on fit errors and omitted effects, and the same as values in SI units.
 
-    Raises ValueError if the source is no drive or the torque outside its table, ImportError without mujoco.
+    Raises ValueError if the torque is outside the drive's table, ImportError without mujoco.
     """
-    drive = make_transmission(load(source).file)
     fit_torque = drive.rated_torque if torque is None else torque
     if not 0.0 < fit_torque <= drive.max_torque:
         raise ValueError(

@@ -1,17 +1,17 @@
-"""Functions and parameters of a kind of bolted joint for the commands that use pressure fields."""
+"""Bolted joint with a pressure field: parameters, and nodal pressures under preload and moment."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import replace
 from typing import Any, ClassVar, Protocol
 
-from jointfmu.contact.interface import InterfaceLaw
-from jointfmu.joints import KINDS
-from jointfmu.mechanics.footprint.bolts import PressureSource
-from jointfmu.mechanics.footprint.distribution import PressureDistribution
-from jointfmu.parameters import ParameterFile
-from jointfmu.quantity import Array, Number
+from numpy.typing import ArrayLike
 
-from ...common.joint_parts import load_tool_module
+from jointfmu.contact.interface import InterfaceLaw
+from jointfmu.joints.bolted_joint import KIND
+from jointfmu.joints.bolted_joint.law import preload_pressure
+from jointfmu.mechanics.footprint.bolts import PressureSource
+from jointfmu.mechanics.footprint.distribution import MergedDistribution, PressureDistribution
+from jointfmu.quantity import Array
 
 PressureFunction = Callable[[Any, PressureDistribution, Array, Array], Array]
 
@@ -42,53 +42,23 @@ class BoltedInterface(InterfaceLaw, Protocol):
         """Source of the pressure distribution: table [pattern], [plate] or [field] of a parameter file."""
 
 
-class BoltLayout(Protocol):
-    """Bolt positions and sizes in the parameters of a joint; empty or 0 where the parameters have none."""
-
-    @property
-    def bolt_positions(self) -> Array:
-        """Positions (b, 2) [m] relative to the centroid of the contact."""
-
-    @property
-    def hole_diameter(self) -> float:
-        """Diameter of the holes [m]."""
-
-    @property
-    def head_diameter(self) -> float:
-        """Outer diameter of the bolt heads or washers [m]."""
+def check_pressure_field(joint: str) -> None:
+    """Raise ValueError if a joint cannot have a pressure field."""
+    if joint != KIND.name:
+        raise ValueError(f"joint = {joint!r} has no pressure field; expected {KIND.name!r}")
 
 
-@dataclass(frozen=True, slots=True)
-class FieldAdapter:
-    """Functions of a kind of joint for pressure fields: the constant `FIELD` in field.py of its folder.
+def nodal_pressures(
+    joint: Any,
+    pressure_shape: PressureDistribution | MergedDistribution,
+    preload: ArrayLike,
+    moment: ArrayLike,
+) -> Array:
+    """Nodal pressures (m, n) [Pa], >= 0: (preload n_bolts preload_shape + moment/L_a moment_shape)/A_0.
 
-    nodal_pressures : nodal pressure (m, n) [Pa] for parameters, a pressure shape (n), preloads (m) [N] per
-        bolt and moments (m) [N.m]: (preload n_bolts preload_shape + moment/L_a moment_shape)/A_0, >= 0
-    tangential_stiffness_ratio : tangential over normal stiffness [1] for parameters, the same at every
-        pressure
-    bolt_layout : bolt positions, hole and head sizes for parameters, as far as they have them
-    insert_elastic_bodies : parameter file with elastic bodies, from a parameter file, an assembly, the
-        preload [N] per bolt, the name of the attachment and the pressure shape of all nodes
-    describe_joint : {name: (value, unit, meaning)} of the complete joint for such a file and preload
+    pressure_shape : pressure shape (n)
+    preload        : preloads (m) [N] per bolt, without a further loss by embedding: a field is computed for
+                     the preload that remains
+    moment         : moments (m) [N.m]
     """
-
-    nodal_pressures: PressureFunction
-    tangential_stiffness_ratio: Callable[[Any], Number]
-    bolt_layout: Callable[[Any], BoltLayout]
-    insert_elastic_bodies: Callable[[ParameterFile, Any, float, str, PressureDistribution], ParameterFile]
-    describe_joint: Callable[[ParameterFile, float], dict[str, tuple[float, str, str]]]
-
-
-def field_adapters() -> dict[str, FieldAdapter]:
-    """{name of the joint kind: adapter} of all joints whose pressure may be a field."""
-    modules = {name: load_tool_module(kind, "field") for name, kind in KINDS.items()}
-    return {name: module.FIELD for name, module in modules.items() if module is not None}
-
-
-def field_adapter(joint: str) -> FieldAdapter:
-    """Functions for pressure fields of a kind of joint; ValueError if it takes no pressure field."""
-    adapters = field_adapters()
-    if joint not in adapters:
-        allowed = " or ".join(repr(name) for name in adapters)
-        raise ValueError(f"joint = {joint!r} has no pressure field; expected {allowed}")
-    return adapters[joint]
+    return preload_pressure(replace(joint, embedding=0.0), pressure_shape, preload, moment)

@@ -19,7 +19,7 @@ from jointfmu.quantity import Array, build_parameter_set
 from jointfmu.quantity.refusal import InputRefusal
 
 from ...common import plots
-from .bolted_interface import BoltedInterface, field_adapter
+from .bolted_interface import BoltedInterface, check_pressure_field, nodal_pressures
 from .nodal_result import ContactField
 from .reduction import MAX_KEPT_NODES, Reduction, reduce_field
 
@@ -63,9 +63,11 @@ def insert_field(
     bolt force by more than the tolerance, if the two fields have different nodes, or if the moment of the
     pressure is far from the given moment.
     """
-    pressures = field_adapter(file.joint).nodal_pressures
+    check_pressure_field(file.joint)
     shape = pressure_shape(file.values, field, preload, moment_field, moment, force_tolerance)
-    reduction = reduce_field(replace(file.values, A_0=float(np.sum(field.area))), shape, preload, pressures)
+    reduction = reduce_field(
+        replace(file.values, A_0=float(np.sum(field.area))), shape, preload, nodal_pressures
+    )
     initial = reduction.reduced_shape if shape.area_share.size > MAX_KEPT_NODES else None
     patches = reduce_patches(shape, MAX_PATCHES, initial)
     lists = nodal_field_entries(reduction.reduced_shape) | nodal_field_entries(patches)

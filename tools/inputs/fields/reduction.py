@@ -141,7 +141,7 @@ def reduce_field(
 
     preload         : [N] per bolt of the field. Load cases cover PRELOAD_RATIO_RANGE of it, from compression
                       to full opening, with moments up to `max_moment_ratio`
-    nodal_pressures : function of the joint for nodal pressures, see FieldAdapter
+    nodal_pressures : function of the joint for nodal pressures, see `bolted_interface.nodal_pressures`
 
     Raises RuntimeError if the field has too many nodes and no points are within LARGE_FIELD_TOLERANCE.
     """

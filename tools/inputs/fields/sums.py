@@ -147,7 +147,7 @@ class SumFunctions:
 
     curve           : pressure as a function of the approach
     preload         : [N] per bolt of the field
-    nodal_pressures : function of the joint for nodal pressures, see FieldAdapter
+    nodal_pressures : function of the joint for nodal pressures, see `bolted_interface.nodal_pressures`
     approach_table  : pressures, their cubic roots and approaches, for the start of Newton's method
     """
 

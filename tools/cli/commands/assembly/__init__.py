@@ -6,12 +6,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from jointfmu.joints import KINDS
+from jointfmu.joints.bolted_joint import KIND
 from jointfmu.parameters import ParameterFile, load_default, load_parameter_file
 
 from ....common.judgement import Plausibility, assess_law, find_rms_height
 from ....common.pressure import warn_overload
 from ....inputs.drawing.vdi2230 import proof_load
-from ....inputs.fields.bolted_interface import field_adapters
 from ...command import declare_argument
 
 if TYPE_CHECKING:
@@ -26,17 +26,15 @@ def declare_assembly_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def load_joint_file(path: Path | None) -> ParameterFile:
-    """Load the parameter file of a bolted joint; None: the default file of the first bolted joint.
+    """Load the parameter file of a bolted joint; None: the default file.
 
     Raises ValueError for a file of another joint.
     """
-    joints = list(field_adapters())
     if path is None:
-        return load_default(joints[0])
+        return load_default(KIND.name)
     file = load_parameter_file(path)
-    if file.joint not in joints:
-        allowed = " or ".join(repr(name) for name in joints)
-        raise ValueError(f"{path}: joint = {file.joint!r}, expected a parameter file of a {allowed}")
+    if file.joint != KIND.name:
+        raise ValueError(f"{path}: joint = {file.joint!r}, expected a parameter file of a {KIND.name!r}")
     return file
 
 

@@ -10,8 +10,8 @@ from jointfmu.quantity import Array
 
 from ....inputs.drawing.reading import parse_number, parse_numbers
 from ....inputs.drawing.tables import read_threads
-from ....inputs.fields.bolted_interface import field_adapter
 from ....inputs.fields.nodal_result import ContactField
+from ....joints.bolted_joint.field import PlaneLayout
 from ...command import declare_argument
 from . import check_bolt_stiffness
 
@@ -73,7 +73,7 @@ def find_bolt_positions(args: argparse.Namespace, file: ParameterFile, field: Co
     low = np.min(field.position, axis=0) - MAX_OUTSIDE_DISTANCE
     high = np.max(field.position, axis=0) + MAX_OUTSIDE_DISTANCE
     if not args.bolts:
-        positions = field_adapter(file.joint).bolt_layout(file.values).bolt_positions + field.centroid
+        positions = PlaneLayout.from_joint(file.values).bolt_positions + field.centroid
         inside = np.all((positions > low) & (positions < high))
         return positions if len(positions) == file.values.n_bolts and inside else None
     stated = np.array(
@@ -151,7 +151,7 @@ def build_assembly(
 
 def _hole_and_head_diameters(args: argparse.Namespace, file: ParameterFile) -> tuple[float, float]:
     """Diameters [m] of clearance hole and head. Raises ValueError if one of them is not known."""
-    layout = field_adapter(file.joint).bolt_layout(file.values)
+    layout = PlaneLayout.from_joint(file.values)
     hole = parse_number("hole", args.hole, "mm", "m") if args.hole else layout.hole_diameter
     if not hole > 0.0:
         raise ValueError("--thickness needs the holes of the bolts; state --hole")

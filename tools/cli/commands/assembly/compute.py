@@ -11,7 +11,7 @@ from jointfmu.parameters import ParameterFile, format_parameter_file
 from ....common.columns import FIELD_FILE_KIND
 from ....common.shown import fact_document, format_facts
 from ....fem import require_fem_packages
-from ....inputs.fields.bolted_interface import field_adapter
+from ....joints.bolted_joint.field import insert_elastic_bodies, joint_facts
 from ...command import CommandResult, SubParsers, declare_argument, declare_command
 from ...outputs import declare_output
 from . import check_bolt_stiffness, declare_assembly_arguments, judge_assembly, load_joint_file, with_assembly
@@ -72,11 +72,7 @@ def run(args: argparse.Namespace) -> CommandResult:
         curve = tabulate_approach(file.values)
         rows, solution = convergence.run_mesh_study(assembly, curve, args.preload, moment, levels)
     result = _with_field(args, file, solution) if args.out else file
-    whole = (
-        field_adapter(file.joint).describe_joint(result, tightening_force(args, result))
-        if args.attached
-        else {}
-    )
+    whole = joint_facts(result, tightening_force(args, result)) if args.attached else {}
     written = _write_outputs(args, result, solution)
     facts = _collect_results(solution, moment, args.preload)
     judgement = judge_assembly(file, assembly, args.preload, facts["p_mean"], solution.peak_pressure)
@@ -123,9 +119,7 @@ def _with_field(args: argparse.Namespace, file: ParameterFile, solution: "JointS
     if not args.attached:
         return interface
     preload = tightening_force(args, interface)
-    return field_adapter(interface.joint).insert_elastic_bodies(
-        interface, solution.joint.assembly, preload, args.attached, shape
-    )
+    return insert_elastic_bodies(interface, solution.joint.assembly, preload, args.attached, shape)
 
 
 def tightening_force(args: argparse.Namespace, file: ParameterFile) -> float:

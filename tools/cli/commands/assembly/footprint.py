@@ -12,7 +12,7 @@ from jointfmu.parameters import ParameterFile, format_parameter_file
 from ....common.judgement import assess_law, find_rms_height
 from ....common.pressure import warn_missing_members
 from ....common.shown import fact_document, format_facts
-from ....inputs.fields.bolted_interface import field_adapter
+from ....joints.bolted_joint.field import insert_elastic_bodies, joint_facts
 from ...command import CommandResult, Parser, SubParsers, declare_argument, declare_command, format_sentence
 from ...outputs import declare_output
 from . import bodies, compute, load_joint_file
@@ -110,11 +110,9 @@ def _run_import(args: argparse.Namespace) -> CommandResult:
     file = replace(file, name=f"{start.name}, field of {args.file.name}")
     whole = {}
     if plates:
-        preload, joint = compute.tightening_force(args, file), field_adapter(file.joint)
-        file = joint.insert_elastic_bodies(
-            file, plates, preload, args.attached or "faces", reduction.full_shape
-        )
-        whole = joint.describe_joint(file, preload)
+        preload = compute.tightening_force(args, file)
+        file = insert_elastic_bodies(file, plates, preload, args.attached or "faces", reduction.full_shape)
+        whole = joint_facts(file, preload)
     if args.plot:
         joint_parameters.draw_field(field, reduction, args.plot)
     if args.out:

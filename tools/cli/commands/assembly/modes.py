@@ -9,7 +9,6 @@ from jointfmu.files.writing import write_bytes
 from jointfmu.mechanics.curve import tabulate_approach
 
 from ....fem import require_fem_packages
-from ....inputs.fields.bolted_interface import field_adapter
 from ...command import CommandResult, SubParsers, declare_argument, declare_command
 from ...outputs import declare_output
 from . import declare_assembly_arguments, judge_assembly, load_joint_file, with_assembly
@@ -44,7 +43,7 @@ def run(args: argparse.Namespace) -> CommandResult:
     _check_arguments(args)
     file = with_assembly(load_joint_file(args.params), assembly, include_bolts=False)
     law = tabulate_approach(file.values)
-    shear = float(field_adapter(file.joint).tangential_stiffness_ratio(file.values))
+    shear = float(file.values.shear_stiffness_ratio())
     with require_fem_packages("the finite-element analysis"):
         contact = BoltedContact.from_assembly(assembly, args.refinement)
         solution = contact.solve(law, args.preload, args.moment)
