@@ -30,7 +30,7 @@ from jointfmu_fmu_src.native.code import generate
 from jointfmu_fmu_src.native.compiled import compiler
 from jointfmu_fmu_src.native.compiled.binary import fill_library
 from jointfmu_fmu_src.native.compiled.compiled_models import get_compiled_model
-from jointfmu_tools.host import Instance
+from jointfmu_tools.run.host import Instance
 
 from jointfmu.joints import MODELS
 from jointfmu.parameters import load_default

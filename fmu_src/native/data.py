@@ -13,10 +13,10 @@ from uuid import NAMESPACE_URL, uuid5
 
 import numpy as np
 
-from jointfmu import __version__
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile, format_parameter_file
 from jointfmu.quantity import Array, flat_fields
+from jointfmu.version import __version__
 
 from ..folders import find_fmu_parts
 from ..joint_parts.c_text import escape_comment, format_number, format_string

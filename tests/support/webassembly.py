@@ -15,7 +15,7 @@ from jointfmu_fmu_src.native.compiled.compiled_models import get_compiled_model
 from jointfmu_fmu_src.native.compiled.compiler import library_file_name
 from jointfmu_fmu_src.native.data import make_fmu_data, make_placeholder, split_parameters
 from jointfmu_fmu_src.native.description import format_fmi3_description
-from jointfmu_tools.laboratory.describe import PageModule
+from jointfmu_tools.pages.laboratory.describe import PageModule
 
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import build_parameter_set as make

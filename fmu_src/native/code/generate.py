@@ -3,11 +3,11 @@
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from jointfmu import __version__
 from jointfmu.joints import MODELS
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Interval
+from jointfmu.version import __version__
 
 from ...folders import find_fmu_parts, find_source_folder
 from ...joint_parts.c_text import format_array, format_number, format_string
