@@ -15,9 +15,9 @@ from jointfmu.mechanics.memory import HistoryLayout
 from .c_text import number
 from .graph import Graph
 
-CURVE = ("tabulated", "curve")
+CURVE = ("tabulated_joint", "curve")
 """Shared C files of a joint with a tabulated curve."""
-TABLES = (*CURVE, "spots")
+TABLES = (*CURVE, "spot_distribution")
 """Shared C files of a joint that also inverts its interface law."""
 APPROACH = (*TABLES, "approach")
 """Shared C files of a joint that also has a curve of pressure against approach."""
@@ -88,7 +88,7 @@ class NativePart:
     add_functions    : adds the functions that the C of the joint calls to a graph
     shared_files     : stems of files in `runtime/law/` that it needs, besides the files of every FMU
     make_definitions : (graph, model) -> constants of its C
-    history_layout   : layout of the history variables, of the largest size possible; C names are `AT_NAME`
+    history_layout   : layout of the history variables, of the largest size; `HISTORY_NAME` in C is an index
     """
 
     functions: Callable[[Graph, Model], None]
@@ -99,7 +99,7 @@ class NativePart:
     @property
     def tabulated(self) -> bool:
         """Whether the joint has a tabulated curve."""
-        return "tabulated" in self.shared
+        return "tabulated_joint" in self.shared
 
 
 def _equations(g: Graph, model: Model) -> None:
@@ -110,7 +110,7 @@ def _equations(g: Graph, model: Model) -> None:
     doc = "time, inputs, states -> outputs"
     if model.find_event_times:
         g.add(
-            "events",
+            "event_times",
             "-> times at which the course of the outputs has a corner",
             [],
             model.find_event_times(g.joint),
@@ -124,7 +124,7 @@ EQUATIONS = NativePart(_equations, ("equations",))
 
 def shared_definitions(shared: Sequence[str]) -> Definitions:
     """Constants that the shared C files need."""
-    if "tabulated" not in shared:
+    if "tabulated_joint" not in shared:
         return Definitions()
     tables = named(NUMBERS, COUNTS) | Definitions({"CURVE_NODES": curve.MAX_NODES})
     if "approach" not in shared:

@@ -1,4 +1,4 @@
-"""Return mapping of one friction slider (Jenkins element) as C functions, called by `law/sliders.c`."""
+"""Return mapping of one friction slider (Jenkins element) as C functions, called by `law/jenkins.c`."""
 
 import casadi as ca
 
@@ -7,61 +7,82 @@ from jointfmu.quantity import select
 
 from .graph import Graph, symbols
 
-SLIDERS = ("sliders", "vectors")
+SLIDERS = ("jenkins", "simd")
 """Shared C files of joints with friction sliders."""
 
 
 def add_sliders(g: Graph) -> None:
     """Add the slider functions: in one direction with a constant or a changing limit, and in a plane."""
-    force, shift, before, after, stiffness, compliance = symbols("x", 6)
-    tried = elastic_predictor([force], 1.0, stiffness, [shift])
-    doc = "force, shift, limit, stiffness -> force if it sticks, whether that is at the limit or beyond"
-    g.add("stick_line", doc, [force, shift, after, stiffness], [*tried, limit_function(tried, after)])
-    slid = return_map([force], 1.0, stiffness, [shift], after, after, stiffness, compliance)
-    results = "force, tangent along and across, loss"
-    doc = (
-        f"force, limit, stiffness, compliance, shift -> {results}, its derivative in the shift: the friction"
+    force, displacement, limit_start, limit_end, stiffness, compliance = symbols("x", 6)
+    predictor = elastic_predictor([force], 1.0, stiffness, [displacement])
+    doc = "force, displacement, limit, stiffness -> elastic predictor, its limit function"
+    g.add(
+        "elastic_predictor_1d",
+        doc,
+        [force, displacement, limit_end, stiffness],
+        [*predictor, limit_function(predictor, limit_end)],
     )
-    heat = select(slid.slip > 0.0, slid.force[0], 0.0)
-    y = [*slid.force, *slid.tangent, slid.loss, heat]
-    g.add("slide_steady", doc, [force, after, stiffness, compliance, shift], y)
-    slid = return_map([force], 1.0, stiffness, [shift], before, after, stiffness, compliance)
-    doc = f"force, limit before, stiffness, compliance, shift, limit after -> {results}"
-    x, y = [force, before, stiffness, compliance, shift, after], [*slid.force, *slid.tangent, slid.loss]
-    g.add_with_seed("slide_line", doc, x, y, constant_count=4)
+    mapping = return_map([force], 1.0, stiffness, [displacement], limit_end, limit_end, stiffness, compliance)
+    results = "force, tangent along and across, loss"
+    derivative = "derivative of the loss by the displacement"
+    doc = f"force, limit, stiffness, compliance, displacement -> {results}, {derivative}"
+    loss_derivative = select(mapping.slip > 0.0, mapping.force[0], 0.0)
+    y = [*mapping.force, *mapping.tangent, mapping.loss, loss_derivative]
+    g.add("return_map_1d_constant_limit", doc, [force, limit_end, stiffness, compliance, displacement], y)
+    mapping = return_map(
+        [force], 1.0, stiffness, [displacement], limit_start, limit_end, stiffness, compliance
+    )
+    doc = f"force, limit at start, stiffness, compliance, displacement, limit at end -> {results}"
+    x, y = (
+        [force, limit_start, stiffness, compliance, displacement, limit_end],
+        [*mapping.force, *mapping.tangent, mapping.loss],
+    )
+    g.add_with_seed("return_map_1d", doc, x, y, constant_count=4)
     _plane(g)
 
 
 def _plane(g: Graph) -> None:
     """Add the functions of a slider with two tangential directions."""
-    x, (force, after, shift), slid = _slider_update()
-    tried = elastic_predictor(force, x[2], x[3], shift)
-    doc = "force, part kept, gain, shift"
-    y = [*tried, limit_function(tried, after)]
+    x, (force, limit_end, displacement), mapping = _slider_update()
+    predictor = elastic_predictor(force, x[2], x[3], displacement)
+    doc = "force, retention, secant stiffness, displacement"
+    y = [*predictor, limit_function(predictor, limit_end)]
     g.add(
-        "stick_plane",
-        f"{doc}, limit -> force if it sticks, whether at the limit or beyond",
-        [*x[:6], after],
+        "elastic_predictor_2d",
+        f"{doc}, limit -> elastic predictor, its limit function",
+        [*x[:6], limit_end],
         y,
     )
-    doc = f"{doc}, limits before and after, stiffness, compliance"
-    y = [*slid.force, *slid.tangent, slid.loss, slid.slip]
-    g.add("slide_plane", f"{doc} -> force, tangent xx, xy, yy, loss, slip", x, y)
-    g.add("return_plane", f"{doc} -> force", x, slid.force)
-    g.add_seed("slide_plane", doc, x, y, constant_count=2)
-    x, (_, after, shift), slid = _slider_update()  # new symbols: a separate function
-    y = list(ca.densify(ca.jacobian(ca.vertcat(*slid.force), ca.vertcat(*shift, after))).T.nz)
-    g.add("return_slopes", f"{doc} -> derivatives of the force by shift and limit after", x, y, looped=True)
+    doc = f"{doc}, limits at start and end, stiffness, compliance"
+    y = [*mapping.force, *mapping.tangent, mapping.loss, mapping.slip]
+    g.add("return_map_2d", f"{doc} -> force, tangent xx, xy, yy, loss, slip", x, y)
+    g.add("return_map_2d_force", f"{doc} -> force", x, mapping.force)
+    g.add_seed("return_map_2d", doc, x, y, constant_count=2)
+    x, (_, limit_end, displacement), mapping = _slider_update()  # new symbols: a separate function
+    y = list(ca.densify(ca.jacobian(ca.vertcat(*mapping.force), ca.vertcat(*displacement, limit_end))).T.nz)
+    g.add(
+        "return_map_2d_derivatives",
+        f"{doc} -> derivatives of the force by displacement and limit at end",
+        x,
+        y,
+        looped=True,
+    )
 
 
 def _slider_update() -> tuple[list[ca.SX], tuple[list[ca.SX], ca.SX, list[ca.SX]], ReturnMapping]:
     """Return mapping of a slider with two tangential directions, for symbolic arguments.
 
     Returns all arguments (force, fraction of the force retained, stiffness of the increment, displacement
-    increment, limits before and after, stiffness, compliance), among them (force, limit after, increment),
+    increment, limits at start and end, stiffness, compliance), among them (force, limit at end, increment),
     and the result.
     """
-    force, shift, (keeps, carries) = symbols("q", 2), symbols("u", 2), symbols("k", 2)
-    before, after, stiffness, compliance = ends = symbols("x", 4)
-    slid = return_map(force, keeps, carries, shift, before, after, stiffness, compliance)
-    return [*force, keeps, carries, *shift, *ends], (force, after, shift), slid
+    force, displacement, (retention, secant_stiffness) = symbols("q", 2), symbols("u", 2), symbols("k", 2)
+    limit_start, limit_end, stiffness, compliance = ends = symbols("x", 4)
+    mapping = return_map(
+        force, retention, secant_stiffness, displacement, limit_start, limit_end, stiffness, compliance
+    )
+    return (
+        [*force, retention, secant_stiffness, *displacement, *ends],
+        (force, limit_end, displacement),
+        mapping,
+    )

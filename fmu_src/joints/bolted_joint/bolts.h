@@ -19,9 +19,9 @@ void bolts_tighten(Joint *joint, const double *inputs);
 /* Rates of these forces along a seed of preload and moment. */
 void bolts_tighten_rates(Joint *joint, const double *inputs, const double *seed);
 /* Gap, force and stiffness of bolt b at an elongation from the tightened state. */
-void bolt_elongate(Kind *kind, int b, double elongation);
+void bolt_elongate(JointModel *model, int b, double elongation);
 /* Rate of the gap of bolt b, whose elongation has this rate. */
-double bolt_gap_rate(const Kind *kind, int b, double rate);
+double bolt_gap_rate(const JointModel *model, int b, double rate);
 /* Sums of rigid sides: gaps, and the stiffness of bolts that lifted off; and rates of the gaps. */
 void bolts_sums(Joint *joint, const double *inputs, double *x);
 void bolts_sum_rates(const Joint *joint, const double *seed, double *dx);

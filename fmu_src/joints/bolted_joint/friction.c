@@ -4,8 +4,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "cold.h"
-#include "vectors.h"
+#include "optimize_for_size.h"
+#include "simd.h"
 
 /* What each slider of a range has at a point, the early and the late one; or rates of it. */
 typedef struct {
@@ -20,17 +20,17 @@ static double inverse(const Foundation *f, double load)
     return curve_inverse(f->curve, load, &segment, &carried);
 }
 
-COLD
+OPTIMIZE_FOR_SIZE
 
 /* As `around` of the package. */
 static void lay_heights(Foundation *f, double reference)
 {
     const double end = f->curve->end.y;
     double y[2], *h = f->height;
-    curve_at(f->curve, reference, 0, y);
+    curve_evaluate(f->curve, reference, 0, y);
     const bool touches = y[0] > MIN_REFERENCE_RATIO * end, given = touches && y[0] < MAX_REFERENCE_RATIO * end;
-    const double load = touches ? fmin(y[0], MAX_REFERENCE_RATIO * end) : DEFAULT_REFERENCE_RATIO * end, over = same_log(end / load);
-    *h++ = f->curve->first.x;
+    const double load = touches ? fmin(y[0], MAX_REFERENCE_RATIO * end) : DEFAULT_REFERENCE_RATIO * end, over = portable_log(end / load);
+    *h++ = f->curve->start.x;
     for (int k = N_BELOW - 1; k >= 0; k--) {
         const double part = (k + f->offset) / (double)N_BELOW, rest = (1.0 - part) * (1.0 - part);
         *h++ = inverse(f, load * rest / (part * part + rest));
@@ -38,12 +38,12 @@ static void lay_heights(Foundation *f, double reference)
     *h++ = given ? reference : inverse(f, load);
     for (int k = 0; k < N_ABOVE; k++) {
         const double part = (k + f->offset) / (double)N_ABOVE;
-        *h++ = inverse(f, load * same_exp(over * (part * part)));
+        *h++ = inverse(f, load * portable_exp(over * (part * part)));
     }
     *h = f->curve->end.x;
 }
 
-END_OF_COLD
+END_OPTIMIZE_FOR_SIZE
 
 /* The sums over the springs of a range, and its sliders. */
 static void lay_range(Foundation *f, int i)
@@ -71,7 +71,7 @@ static void sum_sticks(Foundation *f)
 static void put_height(Foundation *f, int i, double height)
 {
     double y[2];
-    curve_at(f->curve, height, 1, y);
+    curve_evaluate(f->curve, height, 1, y);
     f->height[i] = height;
     f->load[i] = y[0];
     f->stiffness[i] = y[1];
@@ -113,12 +113,12 @@ void foundation_lower(Foundation *f, double lowest)
 }
 
 /* Place, load with two derivatives and energy where the curve goes on as its tangent, or before it begins. */
-static void point_beyond(const Curve *curve, const Energy *energy, Point *p)
+static void point_beyond(const Curve *curve, const CurveEnergy *energy, Point *p)
 {
     const bool after = p->approach >= curve->end.x;
-    const double beyond = p->approach - (after ? curve->end.x : curve->first.x);
-    curve_at(curve, p->approach, 2, p->y);
-    p->energy = energy->at[after ? curve->n - 1 : 0] + beyond * (p->y[0] - 0.5 * beyond * p->y[1]);
+    const double beyond = p->approach - (after ? curve->end.x : curve->start.x);
+    curve_evaluate(curve, p->approach, 2, p->y);
+    p->energy = energy->node_energy[after ? curve->n - 1 : 0] + beyond * (p->y[0] - 0.5 * beyond * p->y[1]);
 }
 
 void foundation_find(const Foundation *f, Point *p)
@@ -133,13 +133,13 @@ void foundation_find(const Foundation *f, Point *p)
 Point foundation_point(const Foundation *f, double approach, int near)
 {
     const Curve *curve = f->curve;
-    const Energy *energy = f->energy;
+    const CurveEnergy *energy = f->energy;
     Point p = {.approach = approach, .full = near};
-    if (approach >= curve->first.x && approach < curve->end.x) {
-        const int segment = curve_segment(curve, approach);
-        const double t = (approach - curve->x[segment]) * curve->per[segment];
-        curve_derivatives(curve, segment, t, 2, p.y);
-        p.energy = energy_inside(energy, curve, segment, t);
+    if (approach >= curve->start.x && approach < curve->end.x) {
+        const int segment = curve_find_segment(curve, approach);
+        const double t = (approach - curve->x[segment]) * curve->inverse_length[segment];
+        segment_derivatives(curve, segment, t, 2, p.y);
+        p.energy = segment_energy(energy, curve, segment, t);
     } else {
         point_beyond(curve, energy, &p);
     }
@@ -169,7 +169,7 @@ static inline Pair pair_at(const Foundation *f, int i, const Point *p)
         return pair;
     if (i < p->full) {
         const double *limit = f->limit + 2 * i, K = f->K[2 * i], to = f->mu / f->ratio * p->approach;
-        return (Pair){.K = K, .limit = {limit_at(limit[0], K, to), limit_at(limit[1], K, to)}};
+        return (Pair){.K = K, .limit = {limit_at_growth(limit[0], K, to), limit_at_growth(limit[1], K, to)}};
     }
     entered(f, i, p, x);
     touching(x, NULL, &pair.K);
@@ -203,7 +203,7 @@ static const Point *middle_of(const Foundation *f, const PatchPath *path, Middle
     return &middle->at;
 }
 
-static void add(const SliderSum *sum, Shear *shear)
+static void add(const SliderResultant *sum, Shear *shear)
 {
     for (int d = 0; d < 3; d++)
         shear->traction[d] += sum->force[d];
@@ -217,7 +217,7 @@ static inline void add_one(const double *slid, double e_x, double e_y, Shear *sh
 {
     const double x = slid[0], y = slid[1], xx = slid[2], xy = slid[3], yy = slid[4];
     const double x_t = xx * e_x + xy * e_y, y_t = xy * e_x + yy * e_y;
-    const SliderSum one = {{x, y, x * e_x + y * e_y}, {xx, xy, yy, x_t, y_t, x_t * e_x + y_t * e_y}, slid[SLID_LOSS]};
+    const SliderResultant one = {{x, y, x * e_x + y * e_y}, {xx, xy, yy, x_t, y_t, x_t * e_x + y_t * e_y}, slid[MAPPING_LOSS]};
     add(&one, shear);
 }
 
@@ -233,13 +233,13 @@ static inline double changing(const Run *run, int k, const Abreast *all)
     double x[N_CHANGING] = {run->across}, loss;
     for (int d = 0; d < 2; d++) {
         x[C_FORCE + d] = all->force[d][at];
-        x[C_MOVED + d] = all->slid[SLID_FORCE + d][at];
+        x[C_MOVED + d] = all->slid[MAPPING_FORCE + d][at];
         x[C_SHIFT + d] = all->shift[d][at];
-        x[C_MIDDLE + d] = run->across ? all->slid[SLID_FORCE + d][at + 2] : 0.0;
+        x[C_MIDDLE + d] = run->across ? all->slid[MAPPING_FORCE + d][at + 2] : 0.0;
     }
     x[C_FIRST] = run->K;
     x[C_LAST] = all->K[at];
-    x[C_SLIP] = all->slid[SLID_SLIP][at];
+    x[C_SLIP] = all->slid[MAPPING_SLIP][at];
     changing_loss(x, NULL, &loss);
     return loss;
 }
@@ -247,45 +247,45 @@ static inline double changing(const Run *run, int k, const Abreast *all)
 static inline void end_run(const Run *run, const Abreast *all)
 {
     for (int k = 0; k < 2; k++) {
-        double slid[N_SLID];
-        for (int r = 0; r < N_SLID; r++)
+        double slid[N_MAPPING];
+        for (int r = 0; r < N_MAPPING; r++)
             slid[r] = all->slid[r][run->at + k];
         if (run->changes)
-            slid[SLID_LOSS] = changing(run, k, all);
+            slid[MAPPING_LOSS] = changing(run, k, all);
         add_one(slid, run->turning[0][k], run->turning[1][k], run->shear);
         for (int d = 0; d < 2; d++)
             run->moved[d][k] = slid[d];
     }
 }
 
-static PlaneSliders abreast(const Abreast *all)
+static Sliders2D abreast(const Abreast *all)
 {
-    return (PlaneSliders){.force = {all->force[0], all->force[1]},
-                          .turning = {all->shift[0], all->shift[1]},
-                          .shift = {0.0, 0.0, 1.0},
-                          .keeps = all->keeps,
-                          .carries = all->carries,
+    return (Sliders2D){.force = {all->force[0], all->force[1]},
+                          .torsion_directions = {all->shift[0], all->shift[1]},
+                          .displacement = {0.0, 0.0, 1.0},
+                          .retention = all->keeps,
+                          .secant_stiffness = all->carries,
                           .K = all->K,
-                          .per_K = all->per_K,
-                          .before = all->before,
-                          .after = all->after};
+                          .compliance = all->per_K,
+                          .limit_start = all->before,
+                          .limit_end = all->after};
 }
 
 /* All runs so far. */
 static void end_runs(Work *work)
 {
     Abreast *all = &work->abreast;
-    const PlaneSliders s = abreast(all);
-    double *slid[N_SLID];
-    for (int r = 0; r < N_SLID; r++)
+    const Sliders2D s = abreast(all);
+    double *slid[N_MAPPING];
+    for (int r = 0; r < N_MAPPING; r++)
         slid[r] = all->slid[r];
-    sliders_slide(all->fours, 0, (all->n + 3) / 4 * 4, &s, slid, work->forces); /* the last beside old ones */
+    sliders_return_map(all->use_avx, 0, (all->n + 3) / 4 * 4, &s, slid, work->forces); /* the last beside old ones */
     for (int i = 0; i < work->n; i++) {
         const Run *run = &work->runs[i];
         if (!work->forces)
             end_run(run, all);
         else
-            add_forces(2, slid[0] + run->at, slid[1] + run->at, run->turning[0], run->turning[1], run->shear->traction);
+            add_resultant(2, slid[0] + run->at, slid[1] + run->at, run->turning[0], run->turning[1], run->shear->traction);
     }
     work->n = all->n = 0;
 }
@@ -310,29 +310,29 @@ static Run *begin_run(Work *work, int most, int k, double *const moved[2], const
 }
 
 /* The next pair. */
-static inline void add_pair(Abreast *all, const PlaneSliders *s, int first)
+static inline void add_pair(Abreast *all, const Sliders2D *s, int first)
 {
     for (int k = first; k < first + 2; k++, all->n++) {
         for (int d = 0; d < 2; d++) {
             all->force[d][all->n] = s->force[d][k];
-            all->shift[d][all->n] = shift_of(s->turning, k, s->shift, d);
+            all->shift[d][all->n] = slider_displacement(s->torsion_directions, k, s->displacement, d);
         }
-        all->keeps[all->n] = s->keeps[k];
-        all->carries[all->n] = s->carries[k];
+        all->keeps[all->n] = s->retention[k];
+        all->carries[all->n] = s->secant_stiffness[k];
         all->K[all->n] = s->K[k];
-        all->per_K[all->n] = s->per_K[k];
-        all->before[all->n] = limit_at(s->before[k], s->K[k], s->from);
-        all->after[all->n] = limit_at(s->after[k], s->K[k], s->to);
+        all->per_K[all->n] = s->compliance[k];
+        all->before[all->n] = limit_at_growth(s->limit_start[k], s->K[k], s->growth_start);
+        all->after[all->n] = limit_at_growth(s->limit_end[k], s->K[k], s->growth_end);
     }
 }
 
 /* Sliders whose stiffness stays: `stick` is the sum of the stiffness of those before each second one. */
-static void move_steady(int n, const PlaneSliders *s, const double *stick, bool along, double *const moved[2],
+static void move_steady(int n, const Sliders2D *s, const double *stick, bool along, double *const moved[2],
                         Work *work, Shear *shear)
 {
-    const bool fours = work->abreast.fours;
-    SliderSum sum = {.loss = 0.0};
-    const int first = along ? sliders_sticking(n, s, moved[0], &sum) : sliders_stick(fours, n, s, moved, sum.force);
+    const bool use_avx = work->abreast.use_avx;
+    SliderResultant sum = {.loss = 0.0};
+    const int first = along ? sliders_advance_along_x(n, s, moved[0], &sum) : sliders_predict(use_avx, n, s, moved, sum.force);
     const int end = first + (n - first) / 4 * 4;
     const double K = first > 0 ? stick[first / 2 - 1] : 0.0;
     sum.tangent[0] += K;
@@ -342,20 +342,20 @@ static void move_steady(int n, const PlaneSliders *s, const double *stick, bool 
     if (along)
         return;
     if (end > first) {
-        double rows[N_SLID - 2][FOUNDATION_SLIDERS], *slid[N_SLID] = {moved[0], moved[1]};
-        for (int r = 2; r < N_SLID; r++)
+        double rows[N_MAPPING - 2][FOUNDATION_SLIDERS], *slid[N_MAPPING] = {moved[0], moved[1]};
+        for (int r = 2; r < N_MAPPING; r++)
             slid[r] = rows[r - 2];
-        sliders_slide(fours, first, end, s, slid, work->forces);
+        sliders_return_map(use_avx, first, end, s, slid, work->forces);
         if (!work->forces) {
-            sliders_sum(fours, first, end, s, slid, &sum);
+            sliders_resultant(use_avx, first, end, s, slid, &sum);
             add(&sum, shear);
         } else {
-            add_forces(end - first, moved[0] + first, moved[1] + first, s->turning[0] + first, s->turning[1] + first,
+            add_resultant(end - first, moved[0] + first, moved[1] + first, s->torsion_directions[0] + first, s->torsion_directions[1] + first,
                        shear->traction);
         }
     }
     if (n > end) {
-        begin_run(work, 2, end, moved, s->turning, shear);
+        begin_run(work, 2, end, moved, s->torsion_directions, shear);
         add_pair(&work->abreast, s, end);
     }
 }
@@ -367,23 +367,23 @@ static const double all_kept[] = {
 _Static_assert(sizeof all_kept == FOUNDATION_SLIDERS * sizeof *all_kept, "of each");
 
 /* Those from one on. */
-static inline PlaneSliders sliders_on(const Foundation *f, const PatchPath *path, int k)
+static inline Sliders2D sliders_on(const Foundation *f, const PatchPath *path, int k)
 {
-    return (PlaneSliders){.force = {path->force[0] + k, path->force[1] + k},
-                          .keeps = all_kept,
-                          .turning = {f->turning[0] + k, f->turning[1] + k},
-                          .shift = {path->shift[0], path->shift[1], path->shift[2]}};
+    return (Sliders2D){.force = {path->force[0] + k, path->force[1] + k},
+                          .retention = all_kept,
+                          .torsion_directions = {f->turning[0] + k, f->turning[1] + k},
+                          .displacement = {path->shift[0], path->shift[1], path->shift[2]}};
 }
 
 /* Those of ranges all in contact. */
-static PlaneSliders full_on(const Foundation *f, const PatchPath *path)
+static Sliders2D full_on(const Foundation *f, const PatchPath *path)
 {
-    PlaneSliders s = sliders_on(f, path, 0);
-    s.K = s.carries = f->K;
-    s.per_K = f->per_K;
-    s.before = s.after = f->limit;
-    s.from = f->mu / f->ratio * path->from->approach;
-    s.to = f->mu / f->ratio * path->to->approach;
+    Sliders2D s = sliders_on(f, path, 0);
+    s.K = s.secant_stiffness = f->K;
+    s.compliance = f->per_K;
+    s.limit_start = s.limit_end = f->limit;
+    s.growth_start = f->mu / f->ratio * path->from->approach;
+    s.growth_end = f->mu / f->ratio * path->to->approach;
     return s;
 }
 
@@ -391,7 +391,7 @@ static PlaneSliders full_on(const Foundation *f, const PatchPath *path)
 static void move_full(const Foundation *f, int n, const PatchPath *path, bool along, double *const moved[2],
                       Work *work, Shear *shear)
 {
-    const PlaneSliders s = full_on(f, path);
+    const Sliders2D s = full_on(f, path);
     move_steady(n, &s, f->stick, along, moved, work, shear);
 }
 
@@ -402,10 +402,10 @@ static void move_resting(const Foundation *f, int i, const PatchPath *path, bool
     const Pair here = pair_at(f, i, path->to);
     const double soft = here.K > 0.0 ? 1.0 / here.K : 0.0, K[2] = {here.K, here.K}, per_K[2] = {soft, soft};
     double *const to[2] = {moved[0] + 2 * i, moved[1] + 2 * i}, stick = 2.0 * here.K;
-    PlaneSliders s = sliders_on(f, path, 2 * i);
-    s.K = s.carries = K;
-    s.per_K = per_K;
-    s.before = s.after = here.limit;
+    Sliders2D s = sliders_on(f, path, 2 * i);
+    s.K = s.secant_stiffness = K;
+    s.compliance = per_K;
+    s.limit_start = s.limit_end = here.limit;
     move_steady(2, &s, &stick, along, to, work, shear);
 }
 
@@ -437,16 +437,16 @@ static inline void gain(const Foundation *f, int i, const PatchPath *path, const
 }
 
 /* The next pair, that of a range which changes, from its start to an end; `gained` is of `carrying`. */
-static inline void add_range(PlaneSliders s, const Pair *start, const Pair *end, const double gained[2], Abreast *all)
+static inline void add_range(Sliders2D s, const Pair *start, const Pair *end, const double gained[2], Abreast *all)
 {
     const double soft = end->K > 0.0 ? 1.0 / end->K : 0.0, K[2] = {end->K, end->K}, per_K[2] = {soft, soft};
     const double keeps[2] = {gained[0], gained[0]}, carries[2] = {gained[1], gained[1]};
     s.K = K;
-    s.per_K = per_K;
-    s.keeps = keeps;
-    s.carries = carries;
-    s.before = start->limit;
-    s.after = end->limit;
+    s.compliance = per_K;
+    s.retention = keeps;
+    s.secant_stiffness = carries;
+    s.limit_start = start->limit;
+    s.limit_end = end->limit;
     add_pair(all, &s, 0);
 }
 
@@ -460,7 +460,7 @@ static void move_range(const Foundation *f, int i, const PatchPath *path, Middle
     const Pair ends[2] = {end, across ? pair_at(f, i, half) : end};
     const int n = across ? 2 : 1;
     double x[N_CARRYING], gained[2];
-    PlaneSliders s = sliders_on(f, path, 2 * i);
+    Sliders2D s = sliders_on(f, path, 2 * i);
     Run *run = begin_run(work, 2 * n, 2 * i, moved, f->turning, shear);
     run->across = across;
     run->K = start.K;
@@ -470,7 +470,7 @@ static void move_range(const Foundation *f, int i, const PatchPath *path, Middle
         carrying(x, NULL, gained);
         add_range(s, &start, &ends[at], gained, &work->abreast);
         for (int d = 0; d < 3; d++)
-            s.shift[d] *= 0.5;
+            s.displacement[d] *= 0.5;
     }
 }
 
@@ -542,8 +542,8 @@ void foundation_slopes(const Foundation *f, const PatchPath *path, double step, 
     const int full = full_on_way(path), touched = touched_on(path);
     Abreast *all = &work->abreast;
     double force[3];
-    PlaneSliders s = full_on(f, path);
-    const int first = sliders_stick(all->fours, 2 * full, &s, tried, force);
+    Sliders2D s = full_on(f, path);
+    const int first = sliders_predict(all->use_avx, 2 * full, &s, tried, force);
     const Point apart = foundation_point(f, path->to->approach - step, path->to->full);
     for (int k = first; k < 2 * full; k += 2) {
         part_pair(f, k, f->K[k], work);
@@ -553,8 +553,8 @@ void foundation_slopes(const Foundation *f, const PatchPath *path, double step, 
         add_parting(f, i, path, &apart, step, work);
     if (all->n % 4 > 0) { /* two that have nothing */
         static const double none[2] = {0.0};
-        s = (PlaneSliders){.force = {none, none}, .keeps = none, .turning = {none, none}, .K = none, .carries = none,
-                           .per_K = none, .before = none, .after = none};
+        s = (Sliders2D){.force = {none, none}, .retention = none, .torsion_directions = {none, none}, .K = none, .secant_stiffness = none,
+                           .compliance = none, .limit_start = none, .limit_end = none};
         part_pair(f, 0, 0.0, work);
         add_pair(all, &s, 0);
     }
@@ -562,7 +562,7 @@ void foundation_slopes(const Foundation *f, const PatchPath *path, double step, 
                                work->apart.limit,
                                {work->apart.shift[0], work->apart.shift[1]}};
     s = abreast(all);
-    sliders_slopes(all->fours, all->n, &s, &rates, slope);
+    sliders_force_derivatives(all->use_avx, all->n, &s, &rates, slope);
     for (int d = 0; d < 3 && first > 0; d++)
         slope[d][d] += f->stick[first / 2 - 1];
     all->n = 0;
@@ -614,13 +614,13 @@ void foundation_spread(const Foundation *f, const Point *at, const double tracti
         const double part = stick > 0.0 ? pair_at(f, i, at).K / stick : 0.0;
         for (int d = 0; d < 2; d++)
             for (int k = 2 * i; k < 2 * i + 2; k++)
-                force[d][k] = part * shift_of(f->turning, k, traction, d);
+                force[d][k] = part * slider_displacement(f->turning, k, traction, d);
     }
     for (int d = 0; d < 2; d++)
         memset(force[d] + 2 * at->touched, 0, (size_t)(FOUNDATION_SLIDERS - 2 * at->touched) * sizeof *force[d]);
 }
 
-COLD
+OPTIMIZE_FOR_SIZE
 
 /* Rates
  *
@@ -654,7 +654,7 @@ typedef struct {
     Pair at, rate;
 } Pairs;
 typedef struct {
-    double at[N_SLID], rate[N_SLID];
+    double at[N_MAPPING], rate[N_MAPPING];
 } Slid;
 
 /* The approach of the point and the stiffness' slope change with rates. */
@@ -687,7 +687,7 @@ static Pairs pairs_at(const Foundation *f, int i, const Point *p, double rate, d
     return pairs;
 }
 
-/* Arguments of `slide_plane`; rates of those from P_KEEPS on follow them in its seed. */
+/* Arguments of `return_map_2d`; rates of those from P_KEEPS on follow them in its seed. */
 enum { P_FORCE, P_KEEPS = 2, P_CARRIES, P_SHIFT, P_BEFORE = 6, P_AFTER, P_K, P_PER_K, N_PLANE };
 
 /* A trial force this near to its limit is at it [1]: limits of springs that touch late are small differences. */
@@ -737,13 +737,13 @@ static Slid slide_towards(double x[2 * N_PLANE - P_KEEPS], const double towards[
         x[k] *= least;
         x[k + N_PLANE - P_KEEPS] *= least;
     }
-    slide_plane(x, NULL, slid.at);
-    slide_plane_seed(x, NULL, slid.rate);
+    return_map_2d(x, NULL, slid.at);
+    return_map_2d_seed(x, NULL, slid.rate);
     *corner = *corner || (at_limit && beyond != 0.0);
     if (at_limit && !(beyond > 0.0)) { /* it sticks; its tangent stays that of a slider that slips */
         slid.rate[0] = own[0];
         slid.rate[1] = own[1];
-        slid.rate[SLID_LOSS] = slid.rate[SLID_SLIP] = 0.0;
+        slid.rate[MAPPING_LOSS] = slid.rate[MAPPING_SLIP] = 0.0;
     }
     return slid;
 }
@@ -753,8 +753,8 @@ static Slid slide_towards(double x[2 * N_PLANE - P_KEEPS], const double towards[
 static void slider_rates(const Foundation *f, int k, const double gains[2], const PathRate *rates, double part,
                          const double limits[2], double K_rate, double per_K, double out[N_PLANE - P_KEEPS])
 {
-    const double all[] = {gains[0], gains[1], part * shift_of(f->turning, k, rates->shift, 0),
-                          part * shift_of(f->turning, k, rates->shift, 1), limits[0], limits[1], K_rate,
+    const double all[] = {gains[0], gains[1], part * slider_displacement(f->turning, k, rates->shift, 0),
+                          part * slider_displacement(f->turning, k, rates->shift, 1), limits[0], limits[1], K_rate,
                           -K_rate * per_K * per_K};
     memcpy(out, all, sizeof all);
 }
@@ -794,8 +794,8 @@ static Slid slide_on(const Foundation *f, const PathSide *c, int i, const Point 
     const int k = 2 * i + late;
     const double K = own->end.at.K, per_K = K > 0.0 ? 1.0 / K : 0.0;
     double x[2 * N_PLANE - P_KEEPS] = {c->path->force[0][k], c->path->force[1][k], own->gained[0], own->gained[1],
-                                       part * shift_of(f->turning, k, c->path->shift, 0),
-                                       part * shift_of(f->turning, k, c->path->shift, 1),
+                                       part * slider_displacement(f->turning, k, c->path->shift, 0),
+                                       part * slider_displacement(f->turning, k, c->path->shift, 1),
                                        own->start.at.limit[late], own->end.at.limit[late], K, per_K};
     double direction[N_PLANE - P_KEEPS] = {0.0};
     const double limits[2] = {own->start.rate.limit[late], own->end.rate.limit[late]};
@@ -851,18 +851,18 @@ static void range_rate(const Foundation *f, int i, const PathSide *c, const Poin
         const Slid *end = &slid[0][late], *half = &slid[1][late];
         const double *moved = end->at;
         const int k = 2 * i + late;
-        double shift[2], rated[2], dy[N_SLID];
+        double shift[2], rated[2], dy[N_MAPPING];
         memcpy(dy, end->rate, sizeof dy);
         for (int d = 0; d < 2; d++) {
-            shift[d] = shift_of(f->turning, k, path->shift, d);
-            rated[d] = shift_of(f->turning, k, c->rates->shift, d);
+            shift[d] = slider_displacement(f->turning, k, path->shift, d);
+            rated[d] = slider_displacement(f->turning, k, c->rates->shift, d);
         }
         double x[] = {across, path->force[0][k], path->force[1][k], moved[0], moved[1],
-                            shift[0], shift[1], start->at.K, last->at.K, moved[SLID_SLIP], half->at[0], half->at[1],
-                            dy[0], dy[1], rated[0], rated[1], start->rate.K, last->rate.K, dy[SLID_SLIP],
+                            shift[0], shift[1], start->at.K, last->at.K, moved[MAPPING_SLIP], half->at[0], half->at[1],
+                            dy[0], dy[1], rated[0], rated[1], start->rate.K, last->rate.K, dy[MAPPING_SLIP],
                             half->rate[0], half->rate[1]};
         if (start->at.K != last->at.K || start->rate.K != last->rate.K)
-            dy[SLID_LOSS] = loss_rate(c, x);
+            dy[MAPPING_LOSS] = loss_rate(c, x);
         add_one(dy, f->turning[0][k], f->turning[1][k], rate);
     }
 }
@@ -877,7 +877,7 @@ static void height_rates(const Foundation *f, double rate, double height[N_HEIGH
 {
     const double end = f->curve->end.y;
     double y[2];
-    curve_at(f->curve, f->reference, 1, y);
+    curve_evaluate(f->curve, f->reference, 1, y);
     const bool follow = y[0] > MIN_REFERENCE_RATIO * end && y[0] < MAX_REFERENCE_RATIO * end;
     memset(height, 0, N_HEIGHTS * sizeof *height);
     for (int i = 1; i < N_HEIGHTS - 1 && follow; i++) { /* loads in proportion below, in that of their logarithm above */
@@ -898,7 +898,7 @@ static void laid_rates(const Foundation *f, int n, double approach, double rate,
     height_rates(f, rate, height);
     for (int i = 0; i < N_HEIGHTS; i++) {
         double y[3];
-        curve_at(f->curve, f->height[i], 2, y);
+        curve_evaluate(f->curve, f->height[i], 2, y);
         stiffness[i] = y[2] * height[i];
     }
     for (int i = 0; i < n; i++) {
@@ -926,16 +926,16 @@ static void full_rates(const Foundation *f, int n, const PathSide *c, Shear *rat
     if (path->first)
         laid_rates(f, n / 2, path->to->approach, turn[1], &own);
     for (int k = 0; k < n; k++) {
-        const double K = f->K[k], per_K = f->per_K[k], before = limit_at(f->limit[k], K, from), after = limit_at(f->limit[k], K, to);
+        const double K = f->K[k], per_K = f->per_K[k], before = limit_at_growth(f->limit[k], K, from), after = limit_at_growth(f->limit[k], K, to);
         double x[2 * N_PLANE - P_KEEPS] = {path->force[0][k], path->force[1][k], 1.0, K,
-                                           shift_of(f->turning, k, path->shift, 0), shift_of(f->turning, k, path->shift, 1),
+                                           slider_displacement(f->turning, k, path->shift, 0), slider_displacement(f->turning, k, path->shift, 1),
                                            before, after, K, per_K};
         double direction[N_PLANE - P_KEEPS] = {0.0};
         const double limits[2] = {path->first ? own.limit[k] : grown * K * turn[0], path->first ? own.limit[k] : grown * K * turn[1]};
         const double stiffer = path->first ? own.K[k] : 0.0, gains[2] = {0.0, stiffer};
         slider_rates(f, k, gains, c->rates, 1.0, limits, stiffer, per_K, x + N_PLANE);
         const double u = trial_force(x, 0), v = trial_force(x, 1), least = (1.0 - 2.0 * NEAR_LIMIT) * after;
-        double dy[N_SLID] = {K * x[N_PLANE + 2] + stiffer * x[P_SHIFT], K * x[N_PLANE + 3] + stiffer * x[P_SHIFT + 1],
+        double dy[N_MAPPING] = {K * x[N_PLANE + 2] + stiffer * x[P_SHIFT], K * x[N_PLANE + 3] + stiffer * x[P_SHIFT + 1],
                                    stiffer, 0.0, stiffer};
         if (u * u + v * v >= least * least) {
             const bool sides = path->first ? near_limit(x) : has_sides(x); /* both limits of a first path are the same */
@@ -972,11 +972,11 @@ static void touching_rate(const Foundation *f, int i, const PathSide *c, const P
         const double least = follows ? (1.0 - 2.0 * NEAR_LIMIT) * below.limit[late] : sticks;
         double way[2];
         for (int d = 0; d < 2; d++) {
-            const double shift = shift_of(f->turning, k, path->shift, d), force = path->force[d][k];
+            const double shift = slider_displacement(f->turning, k, path->shift, d), force = path->force[d][k];
             way[d] = lifts ? force / start.K + shift : follows ? force : shift;
         }
         const double square = way[0] * way[0] + way[1] * way[1], per = square > least * least ? K / square : 0.0;
-        const double dy[N_SLID] = {0.0, 0.0, K - per * way[0] * way[0], -per * way[0] * way[1], K - per * way[1] * way[1]};
+        const double dy[N_MAPPING] = {0.0, 0.0, K - per * way[0] * way[0], -per * way[0] * way[1], K - per * way[1] * way[1]};
         add_one(dy, f->turning[0][at], f->turning[1][at], rate);
     }
 }
@@ -1008,4 +1008,4 @@ bool foundation_rates(const Foundation *f, const PatchPath *path, const PathRate
     return corner;
 }
 
-END_OF_COLD
+END_OPTIMIZE_FOR_SIZE

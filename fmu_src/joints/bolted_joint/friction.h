@@ -3,7 +3,7 @@
 #define JOINTFMU_FRICTION_H
 
 #include "curve.h"
-#include "sliders.h"
+#include "jenkins.h"
 
 enum {
     N_HEIGHTS = N_BELOW + N_ABOVE + 3,
@@ -11,11 +11,11 @@ enum {
     FOUNDATION_SLIDERS = 2 * HEIGHTS   /* from the lowest heights on, of each range first the one that slips earlier */
 };
 
-_Static_assert((int)FOUNDATION_SLIDERS <= (int)MOST_SLIDERS, "in one call");
+_Static_assert((int)FOUNDATION_SLIDERS <= (int)MAX_SLIDERS, "in one call");
 
 typedef struct {
     const Curve *curve;
-    const Energy *energy; /* its integral */
+    const CurveEnergy *energy; /* its integral */
     double mu, ratio;
     const double *turning[2]; /* shifts of the sliders in a turn about the centre, over its way */
     double offset;    /* of the heights, see `around` */
@@ -60,7 +60,7 @@ static inline int touched_on(const PatchPath *path)
     return path->from->touched > path->to->touched ? path->from->touched : path->to->touched;
 }
 
-/* What the sliders of a patch give together, per area, as SliderSum; a rate is its derivative along a seed. */
+/* What the sliders of a patch give together, per area, as SliderResultant; a rate is its derivative along a seed. */
 typedef struct {
     double traction[3], tangent[6], loss; /* the tangent of a further motion */
 } Shear;
@@ -79,10 +79,10 @@ typedef struct {
 /* Sliders of all patches side by side, with their shifts. */
 enum { ABREAST = 64 };
 typedef struct {
-    bool fours; /* the processor has vectors_of_four */
+    bool use_avx; /* the processor has has_avx */
     int n;
     double force[2][ABREAST], shift[2][ABREAST], keeps[ABREAST], carries[ABREAST], K[ABREAST], per_K[ABREAST];
-    double before[ABREAST], after[ABREAST], slid[N_SLID][ABREAST];
+    double before[ABREAST], after[ABREAST], slid[N_MAPPING][ABREAST];
 } Abreast;
 
 /* Beside them, for slopes: shifts in a turn, and what coming apart is as a change of limit and shift. */

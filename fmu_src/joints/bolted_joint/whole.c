@@ -4,37 +4,37 @@
 #include <string.h>
 
 #include "bolts.h"
-#include "cold.h"
-#include "tabulated.h"
+#include "optimize_for_size.h"
+#include "tabulated_joint.h"
 
 enum { MOTIONS = 6 };
 
 /* How far patches come apart by modes and motions in the last trial: as the points that press on them do. */
-static void open_patches(Kind *kind)
+static void open_patches(JointModel *model)
 {
     for (int j = 0, e = 0; j < (int)data.n_patches; j++) {
-        const double stiffness = kind->to[j].y[1], per = stiffness > 0.0 ? 1.0 / stiffness : 0.0;
+        const double stiffness = model->to[j].y[1], per = stiffness > 0.0 ? 1.0 / stiffness : 0.0;
         double sum[WIDE] = {0.0};
-        for (; e < kind->press_end[j]; e++) {
+        for (; e < model->press_end[j]; e++) {
             const int i = data.pressing[e][PAIR_POINT];
-            const double by = kind->presses[e] * kind->k[i] * per;
+            const double by = model->presses[e] * model->k[i] * per;
             for (int k = 0; k < WIDE; k++)
-                sum[k] += by * kind->opening[i][k];
+                sum[k] += by * model->opening[i][k];
         }
-        memcpy(kind->patch[3][j], sum, sizeof sum);
+        memcpy(model->patch[3][j], sum, sizeof sum);
     }
 }
 
-void whole_pressed(const Kind *kind, const double *points, double *patches)
+void whole_pressed(const JointModel *model, const double *points, double *patches)
 {
     for (int j = 0, e = 0; j < (int)data.n_patches; j++) {
         double even = 0.0, odd = 0.0;
-        for (; e + 1 < kind->press_end[j]; e += 2) {
-            even += kind->presses[e] * points[data.pressing[e][PAIR_POINT]];
-            odd += kind->presses[e + 1] * points[data.pressing[e + 1][PAIR_POINT]];
+        for (; e + 1 < model->press_end[j]; e += 2) {
+            even += model->presses[e] * points[data.pressing[e][PAIR_POINT]];
+            odd += model->presses[e + 1] * points[data.pressing[e + 1][PAIR_POINT]];
         }
-        for (; e < kind->press_end[j]; e++)
-            even += kind->presses[e] * points[data.pressing[e][PAIR_POINT]];
+        for (; e < model->press_end[j]; e++)
+            even += model->presses[e] * points[data.pressing[e][PAIR_POINT]];
         patches[j] = even + odd;
     }
 }
@@ -42,29 +42,29 @@ void whole_pressed(const Kind *kind, const double *points, double *patches)
 /* The approach of a patch whose points are all open: that of the nearest one. */
 static double open_approach(const Joint *joint, int j, const double *inputs)
 {
-    const Kind *kind = &joint->kind;
+    const JointModel *model = &joint->model;
     double nearest = -INFINITY;
     for (int e = 0; e < (int)data.n_pressing; e++) {
         const int i = data.pressing[e][PAIR_POINT];
         if (data.pressing[e][PAIR_PATCH] == j)
-            nearest = fmax(nearest, kind->start[i] - (apart_at(data.nodes[i], inputs) + kind->opened[i]));
+            nearest = fmax(nearest, model->start[i] - (apart_at(data.nodes[i], inputs) + model->opened[i]));
     }
-    return fmin(nearest, joint->curve.first.x);
+    return fmin(nearest, joint->curve.start.x);
 }
 
 void whole_approach(const Joint *joint, const double *pressure, const double *inputs, double *approach)
 {
-    double pressed[MOST_PATCHES], carried;
-    int segment[MOST_PATCHES];
-    whole_pressed(&joint->kind, pressure, pressed);
+    double pressed[MAX_PATCHES], carried;
+    int segment[MAX_PATCHES];
+    whole_pressed(&joint->model, pressure, pressed);
     for (int j = 0; j < (int)data.n_patches; j++) /* first, so that one does not wait for another */
-        segment[j] = pressed[j] < joint->curve.end.y ? curve_segment_of_load(&joint->curve, pressed[j]) : 0;
+        segment[j] = pressed[j] < joint->curve.end.y ? curve_find_segment_of_load(&joint->curve, pressed[j]) : 0;
     for (int j = 0; j < (int)data.n_patches; j++)
         approach[j] = !inputs || pressed[j] > 0.0 ? curve_inverse(&joint->curve, pressed[j], &segment[j], &carried)
                                                   : open_approach(joint, j, inputs);
 }
 
-COLD
+OPTIMIZE_FOR_SIZE
 
 /* Places of the motions of side 2 in the inputs: s_x, s_y, s_z, theta_x, theta_y, theta_z. */
 static inline int motion_of(int d)
@@ -83,26 +83,26 @@ static void lay_row(const int16_t *digits, double first, double second, double t
     memcpy(row + MODES, motions, sizeof motions);
 }
 
-void whole_begin(Kind *kind)
+void whole_begin(JointModel *model)
 {
     if (!ELASTIC)
         return;
     for (int k = 0; k < MODES; k++)
-        kind->bodies[k] = k < (int)data.n_modes ? data.modes[k][0] : 1.0;
+        model->bodies[k] = k < (int)data.n_modes ? data.modes[k][0] : 1.0;
     for (int i = 0; i < (int)data.n_opening; i++)
-        lay_row(data.opening[i], 1.0, data.nodes[i][PLACE_Y], -data.nodes[i][PLACE_X], kind->opening[i]);
+        lay_row(data.opening[i], 1.0, data.nodes[i][PLACE_Y], -data.nodes[i][PLACE_X], model->opening[i]);
     for (int j = 0; j < (int)data.n_patch_x; j++) {
         const double x = data.patches[j][PLACE_X], y = data.patches[j][PLACE_Y];
-        lay_row(data.patch_x[j], 1.0, 0.0, -y, kind->patch[0][j]);
-        lay_row(data.patch_y[j], 0.0, 1.0, x, kind->patch[1][j]);
-        lay_row(data.patch_around[j], 0.0, 0.0, data.patches[j][RADIUS], kind->patch[2][j]);
+        lay_row(data.patch_x[j], 1.0, 0.0, -y, model->patch[0][j]);
+        lay_row(data.patch_y[j], 0.0, 1.0, x, model->patch[1][j]);
+        lay_row(data.patch_around[j], 0.0, 0.0, data.patches[j][RADIUS], model->patch[2][j]);
     }
     for (int b = 0; b < (int)data.n_stretch; b++)
-        lay_row(data.stretch[b], 1.0, data.bolts[b][BOLT_Y], -data.bolts[b][BOLT_X], kind->stretch[b]);
+        lay_row(data.stretch[b], 1.0, data.bolts[b][BOLT_Y], -data.bolts[b][BOLT_X], model->stretch[b]);
     for (int e = 0; e < (int)data.n_pressing; e++) {
         const int16_t *pair = data.pressing[e];
-        kind->presses[e] = pair[PAIR_PART] / TRANSFER_SCALE * data.nodes[pair[PAIR_POINT]][SHARE] / data.patches[pair[PAIR_PATCH]][SHARE];
-        kind->press_end[pair[PAIR_PATCH]] = e + 1;
+        model->presses[e] = pair[PAIR_PART] / TRANSFER_SCALE * data.nodes[pair[PAIR_POINT]][SHARE] / data.patches[pair[PAIR_PATCH]][SHARE];
+        model->press_end[pair[PAIR_PATCH]] = e + 1;
     }
 }
 
@@ -112,160 +112,160 @@ static inline void add_scaled(double by, const double *restrict row, double *res
         sum[k] += by * row[k];
 }
 
-void whole_deform(const double *amplitude, const Kind *kind, double *opened, double (*bent)[3])
+void whole_deform(const double *amplitude, const JointModel *model, double *opened, double (*bent)[3])
 {
     if (!ELASTIC)
         return;
-    const bool fours = kind->work.abreast.fours;
+    const bool use_avx = model->work.abreast.use_avx;
     const int patches = (int)data.n_patch_x;
     for (int d = 0; d < 3; d++)
-        dense_dots(fours, patches, kind->patch[d], amplitude, 3, &bent[0][d]);
+        dense_dots(use_avx, patches, model->patch[d], amplitude, 3, &bent[0][d]);
     if (opened)
-        dense_dots(fours, (int)data.n_opening, kind->opening, amplitude, 1, opened);
+        dense_dots(use_avx, (int)data.n_opening, model->opening, amplitude, 1, opened);
 }
 
 /* The stiffness by normal motions beside the modes, up to a size, of points and bolts. */
-static void press_all(Kind *kind, int size)
+static void press_all(JointModel *model, int size)
 {
-    const bool fours = kind->work.abreast.fours;
+    const bool use_avx = model->work.abreast.use_avx;
     const int sizes[2] = {(int)data.n_nodes, (int)data.n_stretch};
-    const double(*const rows[2])[WIDE] = {(const double(*)[WIDE])kind->opening, (const double(*)[WIDE])kind->stretch};
-    memset(kind->by_normal, 0, sizeof kind->by_normal);
+    const double(*const rows[2])[WIDE] = {(const double(*)[WIDE])model->opening, (const double(*)[WIDE])model->stretch};
+    memset(model->by_normal, 0, sizeof model->by_normal);
     for (int s = 0; s < 2; s++) {
         for (int i = 0; i < sizes[s]; i++)
-            kind->by[i] = s == 0 ? kind->area * data.nodes[i][SHARE] * kind->k[i] : kind->bolt * kind->bolt_pulls[i];
-        dense_weigh(fours, sizes[s], kind->by, rows[s], kind->weighted);
-        dense_products(fours, sizes[s], (const double(*)[WIDE])kind->weighted, rows[s], size, false, kind->by_normal);
+            model->by[i] = s == 0 ? model->area * data.nodes[i][SHARE] * model->k[i] : model->bolt * model->bolt_pulls[i];
+        dense_weigh(use_avx, sizes[s], model->by, rows[s], model->weighted);
+        dense_products(use_avx, sizes[s], (const double(*)[WIDE])model->weighted, rows[s], size, false, model->by_normal);
     }
 }
 
 /* The same by shear in `by_shear`, of patches by their slopes; all of the matrix or its lower half. */
-static void shear_all(Kind *kind, int size, bool all)
+static void shear_all(JointModel *model, int size, bool all)
 {
-    const bool fours = kind->work.abreast.fours;
+    const bool use_avx = model->work.abreast.use_avx;
     const int n = (int)data.n_patches;
     const double(*rows[4])[WIDE];
-    double by[MOST_PATCHES][4];
+    double by[MAX_PATCHES][4];
     for (int s = 0; s < 4; s++)
-        rows[s] = (const double(*)[WIDE])kind->patch[s];
-    memset(kind->by_shear, 0, sizeof kind->by_shear);
+        rows[s] = (const double(*)[WIDE])model->patch[s];
+    memset(model->by_shear, 0, sizeof model->by_shear);
     for (int d = 0; d < 3; d++) {
         for (int j = 0; j < n; j++)
             for (int s = 0; s < 4; s++)
-                by[j][s] = kind->area * data.patches[j][SHARE] * kind->slope[j][s][d];
-        dense_combine(fours, n, (const double(*)[4])by, rows, kind->weighted);
-        dense_products(fours, n, (const double(*)[WIDE])kind->weighted, rows[d], size, all, kind->by_shear);
+                by[j][s] = model->area * data.patches[j][SHARE] * model->slope[j][s][d];
+        dense_combine(use_avx, n, (const double(*)[4])by, rows, model->weighted);
+        dense_products(use_avx, n, (const double(*)[WIDE])model->weighted, rows[d], size, all, model->by_shear);
     }
 }
 
 /* Factors of the derivative of the residual by the amplitudes, and what acts beside it up to a size: from the slopes of
  * the patches; all of it or as if it were symmetric. */
-static void differentiate(Kind *kind, int size, bool all, Factors *factors)
+static void differentiate(JointModel *model, int size, bool all, Factors *factors)
 {
     double(*a)[MODES] = factors->a;
-    press_all(kind, size);
-    shear_all(kind, size, all);
+    press_all(model, size);
+    shear_all(model, size, all);
     for (int r = 0; r < MODES; r++) {
         for (int k = 0; k <= r; k++) {
-            const double normal = kind->by_normal[r][k], shear = kind->by_shear[r][k];
+            const double normal = model->by_normal[r][k], shear = model->by_shear[r][k];
             a[r][k] = normal + shear;
-            a[k][r] = normal + (all ? kind->by_shear[k][r] : shear);
+            a[k][r] = normal + (all ? model->by_shear[k][r] : shear);
         }
-        a[r][r] += kind->bodies[r];
+        a[r][r] += model->bodies[r];
     }
-    dense_factor(kind->work.abreast.fours, factors);
+    dense_factor(model->work.abreast.use_avx, factors);
 }
 
 /* Equilibrium */
 
-static inline double stretched(const Kind *kind, int b, const double *v, const double *amplitude)
+static inline double stretched(const JointModel *model, int b, const double *v, const double *amplitude)
 {
-    return seat(b, v) + dense_dot(kind->stretch[b], amplitude);
+    return seat(b, v) + dense_dot(model->stretch[b], amplitude);
 }
 
 /* Gaps, forces and stiffness of the bolts at inputs and amplitudes. */
-static void elongate_bolts(Kind *kind, const double *inputs, const double *amplitude)
+static void elongate_bolts(JointModel *model, const double *inputs, const double *amplitude)
 {
     for (int b = 0; b < (int)data.n_stretch; b++)
-        bolt_elongate(kind, b, stretched(kind, b, inputs, amplitude));
+        bolt_elongate(model, b, stretched(model, b, inputs, amplitude));
 }
 
 /* Residual of the amplitudes, and what of it is round-off. */
 static double residual(const Joint *joint, const double *inputs, const double *amplitude, double *r)
 {
-    const Kind *kind = &joint->kind;
-    const bool fours = kind->work.abreast.fours;
+    const JointModel *model = &joint->model;
+    const bool use_avx = model->work.abreast.use_avx;
     double forces = 0.0, stiffness = 0.0, apart = 0.0;
-    double normal[MOST_OPENING], shear[3][MOST_PATCHES], bolts[MOST_STRETCH];
+    double normal[MAX_OPENING], shear[3][MAX_PATCHES], bolts[MAX_STRETCH];
     for (int k = 0; k < MODES; k++)
-        r[k] = kind->bodies[k] * amplitude[k];
+        r[k] = model->bodies[k] * amplitude[k];
     for (int i = 0; i < (int)data.n_nodes; i++) {
-        const double weight = kind->area * data.nodes[i][SHARE], p = kind->p[i], tight = kind->tightened[i];
+        const double weight = model->area * data.nodes[i][SHARE], p = model->p[i], tight = model->tightened[i];
         const double moved = fabs(apart_at(data.nodes[i], inputs));
         normal[i] = -weight * (p - tight);
         forces += weight * (p + tight);
-        stiffness += weight * kind->k[i];
+        stiffness += weight * model->k[i];
         apart = moved > apart ? moved : apart;
     }
     for (int j = 0; j < (int)data.n_patches; j++) {
-        const double weight = kind->area * data.patches[j][SHARE];
+        const double weight = model->area * data.patches[j][SHARE];
         for (int d = 0; d < 3; d++) {
-            shear[d][j] = weight * kind->traction[j][d];
+            shear[d][j] = weight * model->traction[j][d];
             forces += fabs(shear[d][j]);
         }
     }
     for (int b = 0; b < (int)data.n_stretch; b++) {
-        bolts[b] = kind->bolt * (stretched(kind, b, inputs, amplitude) + kind->bolt_gap[b]);
+        bolts[b] = model->bolt * (stretched(model, b, inputs, amplitude) + model->bolt_gap[b]);
         forces += fabs(bolts[b]);
     }
-    dense_add_rows(fours, (int)data.n_nodes, normal, (const double(*)[WIDE])kind->opening, r);
+    dense_add_rows(use_avx, (int)data.n_nodes, normal, (const double(*)[WIDE])model->opening, r);
     for (int d = 0; d < 3; d++)
-        dense_add_rows(fours, (int)data.n_patches, shear[d], (const double(*)[WIDE])kind->patch[d], r);
-    dense_add_rows(fours, (int)data.n_stretch, bolts, (const double(*)[WIDE])kind->stretch, r);
-    return RELATIVE_TOLERANCE * (forces + stiffness * apart * CANCELLATION_RATIO + kind->area * kind->approach.closed);
+        dense_add_rows(use_avx, (int)data.n_patches, shear[d], (const double(*)[WIDE])model->patch[d], r);
+    dense_add_rows(use_avx, (int)data.n_stretch, bolts, (const double(*)[WIDE])model->stretch, r);
+    return RELATIVE_TOLERANCE * (forces + stiffness * apart * CANCELLATION_RATIO + model->area * model->approach.closing_end_pressure);
 }
 
 /* The derivative by what the memory says; in a further motion where that after it is given. */
 static void exact(Joint *joint, const double *inputs, const double *memory, const double *after)
 {
-    Kind *kind = &joint->kind;
+    JointModel *model = &joint->model;
     static const double units[4][4] = {{0.0, 1.0}, {0.0, 0.0, 1.0}, {0.0, 0.0, 0.0, 1.0}, {-1.0}};
     for (int j = 0; j < (int)data.n_patches; j++)
         for (int c = 0; c < 4; c++) {
             const Shear rate = patch_rate(joint, j, inputs, memory, after, units[c][0], units[c] + 1);
-            memcpy(kind->slope[j][c], rate.traction, sizeof kind->slope[j][c]);
+            memcpy(model->slope[j][c], rate.traction, sizeof model->slope[j][c]);
         }
-    open_patches(kind);
-    differentiate(kind, MODES, true, &kind->factors);
+    open_patches(model);
+    differentiate(model, MODES, true, &model->factors);
 }
 
 /* The same at the last trial; what ranges of heights gain that change by differences. */
 static void jacobian(Joint *joint, const double *inputs, const double *memory)
 {
-    Kind *kind = &joint->kind;
-    double deepest = -joint->curve.first.x; /* where the contact has closed */
+    JointModel *model = &joint->model;
+    double deepest = -joint->curve.start.x; /* where the contact has closed */
     for (int j = 0; j < (int)data.n_patches; j++)
-        deepest = fmax(deepest, kind->patch_start[j] - joint->curve.first.x);
-    patch_slopes(joint, inputs, memory, DIFFERENCE_STEP * deepest, kind->slope);
-    open_patches(kind);
-    differentiate(kind, MODES, true, &kind->factors);
+        deepest = fmax(deepest, model->patch_start[j] - joint->curve.start.x);
+    patch_slopes(joint, inputs, memory, DIFFERENCE_STEP * deepest, model->slope);
+    open_patches(model);
+    differentiate(model, MODES, true, &model->factors);
 }
 
 /* How the amplitudes follow the motions, in the tangents of points and patches, and the stiffnesses that are left. */
-static void follow(Kind *kind, const double (*tangent)[6], Followed *followed)
+static void follow(JointModel *model, const double (*tangent)[6], Followed *followed)
 {
     for (int j = 0; j < (int)data.n_patches; j++)
-        slopes_of(tangent[j], kind->slope[j]);
-    differentiate(kind, WIDE, false, &followed->factors);
+        slopes_of(tangent[j], model->slope[j]);
+    differentiate(model, WIDE, false, &followed->factors);
     for (int d = 0; d < MOTIONS; d++) {
         static const int beside[MOTIONS] = {0, 1, 0, 1, 2, 2};
         const int at = MODES + beside[d];
-        const double *h = d < 2 || d == 5 ? kind->by_shear[at] : kind->by_normal[at];
+        const double *h = d < 2 || d == 5 ? model->by_shear[at] : model->by_normal[at];
         double *z = followed->follow[d];
         for (int k = 0; k < MODES; k++)
             z[k] = -h[k];
-        dense_solve(kind->work.abreast.fours, &followed->factors, z);
-        kind->whole[d] = fmax(h[at] + dense_dot(h, z), 0.0); /* not below by round-off */
+        dense_solve(model->work.abreast.use_avx, &followed->factors, z);
+        model->whole[d] = fmax(h[at] + dense_dot(h, z), 0.0); /* not below by round-off */
     }
     followed->known = true;
 }
@@ -275,54 +275,54 @@ static void key_of(const double *inputs, const double *memory, double key[FOLLOW
 {
     key[0] = inputs[INPUT_PRELOAD];
     key[1] = inputs[INPUT_MOMENT];
-    memcpy(key + 2, memory + AT_RIGID, 3 * sizeof *key);
-    memcpy(key + 5, memory + AT_APART, (FOLLOW_KEY - 5) * sizeof *key);
+    memcpy(key + 2, memory + HISTORY_RIGID, 3 * sizeof *key);
+    memcpy(key + 5, memory + HISTORY_APART, (FOLLOW_KEY - 5) * sizeof *key);
 }
 
 /* The place after a part of the way from the memory to the inputs. */
 static void place(const double *inputs, const double *memory, double part, double *at)
 {
-    const double first[MOTIONS] = {memory[AT_RIGID], memory[AT_RIGID + 1], memory[AT_APART],
-                                   memory[AT_APART + 1], memory[AT_APART + 2], memory[AT_RIGID + 2]};
+    const double first[MOTIONS] = {memory[HISTORY_RIGID], memory[HISTORY_RIGID + 1], memory[HISTORY_APART],
+                                   memory[HISTORY_APART + 1], memory[HISTORY_APART + 2], memory[HISTORY_RIGID + 2]};
     memcpy(at, inputs, N_INPUTS * sizeof *at);
     for (int d = 0; d < MOTIONS && part != 1.0; d++)
         at[motion_of(d)] = first[d] + part * (inputs[motion_of(d)] - first[d]);
 }
 
 /* The bodies at amplitudes, and the bolts at inputs. */
-static void deform(Kind *kind, const double *inputs, const double *amplitude)
+static void deform(JointModel *model, const double *inputs, const double *amplitude)
 {
-    elongate_bolts(kind, inputs, amplitude);
-    memcpy(kind->amplitude, amplitude, sizeof kind->amplitude);
-    whole_deform(amplitude, kind, kind->opened, kind->bent);
+    elongate_bolts(model, inputs, amplitude);
+    memcpy(model->amplitude, amplitude, sizeof model->amplitude);
+    whole_deform(amplitude, model, model->opened, model->bent);
 }
 
 /* Amplitudes at the end of the way in the tangent of its beginning; less those there are their rate. */
-static bool predict(Joint *joint, const double *inputs, const double *memory, double *rate, Text *why)
+static bool predict(Joint *joint, const double *inputs, const double *memory, double *rate, Text *reason)
 {
-    Kind *kind = &joint->kind;
-    double key[FOLLOW_KEY], first[N_INPUTS], tangent[MOST_PATCHES][6];
+    JointModel *model = &joint->model;
+    double key[FOLLOW_KEY], first[N_INPUTS], tangent[MAX_PATCHES][6];
     key_of(inputs, memory, key);
     place(inputs, memory, 0.0, first);
-    if (kind->end.known && memcmp(key, kind->end.key, sizeof key) == 0) {
-        kind->begin = kind->end;
-    } else if (!kind->begin.known || memcmp(key, kind->begin.key, sizeof key) != 0) {
-        deform(kind, first, memory + AT_AMPLITUDE);
-        if (!joint_press(joint, first, why))
+    if (model->end.known && memcmp(key, model->end.key, sizeof key) == 0) {
+        model->begin = model->end;
+    } else if (!model->begin.known || memcmp(key, model->begin.key, sizeof key) != 0) {
+        deform(model, first, memory + HISTORY_AMPLITUDE);
+        if (!joint_press(joint, first, reason))
             return false;
-        memcpy(tangent, memory + AT_TANGENT, sizeof tangent);
-        for (int j = 0; j < (int)data.n_patches && memory[AT_STATE] == (double)UNKNOWN; j++) {
-            const Point at = foundation_point(&kind->foundation[j], kind->patch_start[j], 0);
-            const double stick = foundation_stick(&kind->foundation[j], &at);
+        memcpy(tangent, memory + HISTORY_TANGENT, sizeof tangent);
+        for (int j = 0; j < (int)data.n_patches && memory[HISTORY_STATE] == (double)UNKNOWN; j++) {
+            const Point at = foundation_point(&model->foundation[j], model->patch_start[j], 0);
+            const double stick = foundation_stick(&model->foundation[j], &at);
             const double sticks[6] = {stick, 0.0, stick, 0.0, 0.0, stick};
             memcpy(tangent[j], sticks, sizeof sticks);
         }
-        follow(kind, (const double(*)[6])tangent, &kind->begin);
-        memcpy(kind->begin.key, key, sizeof key);
+        follow(model, (const double(*)[6])tangent, &model->begin);
+        memcpy(model->begin.key, key, sizeof key);
     }
     memset(rate, 0, MODES * sizeof *rate);
     for (int d = 0; d < MOTIONS; d++)
-        add_scaled(inputs[motion_of(d)] - first[motion_of(d)], kind->begin.follow[d], rate);
+        add_scaled(inputs[motion_of(d)] - first[motion_of(d)], model->begin.follow[d], rate);
     return true;
 }
 
@@ -332,14 +332,14 @@ typedef struct {
     bool whole; /* the last trial gave sums and memory too */
 } Way;
 
-static bool try_at(Joint *joint, Way *way, const double *at, const double *amplitude, bool whole, Text *why)
+static bool try_at(Joint *joint, Way *way, const double *at, const double *amplitude, bool whole, Text *reason)
 {
-    deform(&joint->kind, at, amplitude);
+    deform(&joint->model, at, amplitude);
     way->whole = whole;
     if (!whole)
-        return joint_forces(joint, at, way->memory, why);
+        return joint_forces(joint, at, way->memory, reason);
     memset(way->x, 0, N_SUMS * sizeof *way->x);
-    return joint_try(joint, at, way->memory, way->after, way->x, why);
+    return joint_try(joint, at, way->memory, way->after, way->x, reason);
 }
 
 static double largest(const double *r)
@@ -353,9 +353,9 @@ static double largest(const double *r)
 typedef enum { FOUND, LOST, REFUSED } Newton;
 
 /* The newest of some steps since the last derivative as Broyden's (good) update of it has it. */
-static void broyden(Kind *kind, int kept)
+static void broyden(JointModel *model, int kept)
 {
-    double(*steps)[MODES] = kind->steps, *squares = kind->squares;
+    double(*steps)[MODES] = model->steps, *squares = model->squares;
     double *step = steps[kept];
     for (int i = 0; i + 1 < kept; i++)
         add_scaled(dense_dot(steps[i], step) / squares[i], steps[i + 1], step);
@@ -368,16 +368,16 @@ static void broyden(Kind *kind, int kept)
 }
 
 /* As `Whole._newton` of the package; where nothing is found with the residual that is missed. */
-static Newton newton(Joint *joint, Way *way, double part, double *amplitude, double *missed, Text *why)
+static Newton newton(Joint *joint, Way *way, double part, double *amplitude, double *missed, Text *reason)
 {
-    Kind *kind = &joint->kind;
+    JointModel *model = &joint->model;
     const double close = part == 1.0 ? 1.0 : INTERMEDIATE_TOLERANCE_FACTOR;
     double at[N_INPUTS], r[MODES], least;
     place(way->inputs, way->memory, part, at);
-    if (!try_at(joint, way, at, amplitude, false, why))
+    if (!try_at(joint, way, at, amplitude, false, reason))
         return REFUSED;
     least = residual(joint, at, amplitude, r);
-    const Factors *with = &kind->begin.factors; /* of the derivative: at first that at the beginning of the way */
+    const Factors *with = &model->begin.factors; /* of the derivative: at first that at the beginning of the way */
     double before = INFINITY;
     bool own = false; /* the derivative is that at the amplitudes */
     for (int n = 0, kept = 0; n < MAX_ITERATIONS; n++) {
@@ -386,23 +386,23 @@ static Newton newton(Joint *joint, Way *way, double part, double *amplitude, dou
             return FOUND;
         if (!(left < TANGENT_REUSE_RATIO * before)) { /* else the last derivative is still good */
             jacobian(joint, at, way->memory);
-            with = &kind->factors;
+            with = &model->factors;
             kept = 0;
             own = true;
         }
         const bool last = part == 1.0 && n > 0 && left < TANGENT_REUSE_RATIO * before && left * left < before * least;
         before = left;
-        double begin[MODES], size = 1.0, *step = kind->steps[kept];
+        double begin[MODES], size = 1.0, *step = model->steps[kept];
         for (int k = 0; k < MODES; k++)
             step[k] = -r[k];
-        dense_solve(kind->work.abreast.fours, with, step);
-        broyden(kind, kept++);
+        dense_solve(model->work.abreast.use_avx, with, step);
+        broyden(model, kept++);
         memcpy(begin, amplitude, sizeof begin);
         const double falls = dense_dot(r, step);
         for (int p = 0; p < MAX_LINE_SEARCH; p++) {
             for (int k = 0; k < MODES; k++)
                 amplitude[k] = begin[k] + size * step[k];
-            if (!try_at(joint, way, at, amplitude, last, why))
+            if (!try_at(joint, way, at, amplitude, last, reason))
                 return REFUSED;
             least = residual(joint, at, amplitude, r);
             const double rises = dense_dot(r, step);
@@ -417,48 +417,48 @@ static Newton newton(Joint *joint, Way *way, double part, double *amplitude, dou
     return *missed <= close * least ? FOUND : LOST;
 }
 
-static void tell(const double *inputs, double done, double missed, Text *why)
+static void tell(const double *inputs, double done, double missed, Text *reason)
 {
     static const int told[] = {INPUT_PRELOAD, INPUT_MOMENT};
-    text_clear(why);
+    text_clear(reason);
     for (int v = 0; v < 2 + MOTIONS; v++) {
         const int at = v < 2 ? told[v] : motion_of(v - 2);
         if (inputs[at] == 0.0)
             continue;
-        text_add(why, why->length > 0 ? ", " : "");
-        text_add(why, variables[FIRST_INPUT + at].name);
-        text_add(why, " = ");
-        text_number(why, inputs[at], 6);
+        text_append(reason, reason->length > 0 ? ", " : "");
+        text_append(reason, variables[FIRST_INPUT + at].name);
+        text_append(reason, " = ");
+        text_append_number(reason, inputs[at], 6);
     }
-    text_add(why, ": the sides find no equilibrium beyond ");
-    text_number(why, done, 3);
-    text_add(why, " of the way, the residual is ");
-    text_number(why, missed, 2);
-    text_add(why, " N");
+    text_append(reason, ": the sides find no equilibrium beyond ");
+    text_append_number(reason, done, 3);
+    text_append(reason, " of the way, the residual is ");
+    text_append_number(reason, missed, 2);
+    text_append(reason, " N");
 }
 
-bool whole_evaluate(Joint *joint, const double *inputs, const double *memory, double *after, double *x, Text *why)
+bool whole_evaluate(Joint *joint, const double *inputs, const double *memory, double *after, double *x, Text *reason)
 {
     if (!ELASTIC)
         return false;
-    Kind *kind = &joint->kind;
+    JointModel *model = &joint->model;
     Way way = {inputs, memory, after, x, false};
     double done = 0.0, step = 1.0, missed = 0.0, amplitude[MODES], rate[MODES], trial[MODES];
-    memcpy(amplitude, memory + AT_AMPLITUDE, sizeof amplitude);
-    whole_deform(amplitude, kind, NULL, kind->bent_before);
-    if (!predict(joint, inputs, memory, rate, why))
+    memcpy(amplitude, memory + HISTORY_AMPLITUDE, sizeof amplitude);
+    whole_deform(amplitude, model, NULL, model->bent_before);
+    if (!predict(joint, inputs, memory, rate, reason))
         return false;
     for (;;) {
         const double part = fmin(done + step, 1.0);
         for (int k = 0; k < MODES; k++)
             trial[k] = amplitude[k] + (part - done) * rate[k];
-        const Newton found = newton(joint, &way, part, trial, &missed, why);
+        const Newton found = newton(joint, &way, part, trial, &missed, reason);
         if (found == REFUSED)
             return false;
         if (found == LOST) {
             step *= 0.5;
             if (step < MIN_LOAD_STEP) {
-                tell(inputs, done, missed, why);
+                tell(inputs, done, missed, reason);
                 return false;
             }
             continue;
@@ -471,22 +471,22 @@ bool whole_evaluate(Joint *joint, const double *inputs, const double *memory, do
         done = part;
         step *= 2.0;
     }
-    if (!way.whole && !try_at(joint, &way, inputs, trial, true, why))
+    if (!way.whole && !try_at(joint, &way, inputs, trial, true, reason))
         return false;
     for (int d = 0; d < 3; d++)
-        after[AT_APART + d] = inputs[motion_of(2 + d)];
-    memcpy(after + AT_AMPLITUDE, trial, sizeof trial);
-    memset(after + AT_TANGENT, 0, 6 * MOST_PATCHES * sizeof *after);
-    memcpy(after + AT_TANGENT, kind->tangent, 6 * (size_t)data.n_patches * sizeof *after);
-    follow(kind, (const double(*)[6])kind->tangent, &kind->end);
-    key_of(inputs, after, kind->end.key);
+        after[HISTORY_APART + d] = inputs[motion_of(2 + d)];
+    memcpy(after + HISTORY_AMPLITUDE, trial, sizeof trial);
+    memset(after + HISTORY_TANGENT, 0, 6 * MAX_PATCHES * sizeof *after);
+    memcpy(after + HISTORY_TANGENT, model->tangent, 6 * (size_t)data.n_patches * sizeof *after);
+    follow(model, (const double(*)[6])model->tangent, &model->end);
+    key_of(inputs, after, model->end.key);
     return true;
 }
 
 /* Sums and forces */
 
 /* Stiffnesses of the whole less what the bolts have between rigid sides, over the area, where the sums have them. */
-static void tell_whole(const Kind *kind, const double stiffness[MOTIONS], double own, double *x)
+static void tell_whole(const JointModel *model, const double stiffness[MOTIONS], double own, double *x)
 {
     static const int sums[MOTIONS] = {SUM_TANGENT_X, SUM_TANGENT_Y, SUM_NORMAL_STIFFNESS,
                                       SUM_NORMAL_ABOUT_X, SUM_NORMAL_ABOUT_Y, SUM_TANGENT_Z};
@@ -497,13 +497,13 @@ static void tell_whole(const Kind *kind, const double stiffness[MOTIONS], double
         bolts[4] += own * data.bolts[b][BOLT_X] * data.bolts[b][BOLT_X];
     }
     for (int d = 0; d < MOTIONS; d++)
-        x[sums[d]] = (stiffness[d] - bolts[d]) / kind->area;
+        x[sums[d]] = (stiffness[d] - bolts[d]) / model->area;
 }
 
-static void tell_stretch(const Kind *kind, const double *amplitude, const double *gaps, double *x)
+static void tell_stretch(const JointModel *model, const double *amplitude, const double *gaps, double *x)
 {
     for (int b = 0; b < (int)data.n_stretch; b++) {
-        const double stretch = dense_dot(kind->stretch[b], amplitude) + gaps[b];
+        const double stretch = dense_dot(model->stretch[b], amplitude) + gaps[b];
         x[SUM_STRETCH] += stretch;
         x[SUM_STRETCH_X] += stretch * data.bolts[b][BOLT_X];
         x[SUM_STRETCH_Y] += stretch * data.bolts[b][BOLT_Y];
@@ -514,86 +514,86 @@ void whole_sums(Joint *joint, const double *inputs, double *x)
 {
     if (!ELASTIC)
         return;
-    const Kind *kind = &joint->kind;
+    const JointModel *model = &joint->model;
     double energy = 0.0;
-    tell_whole(kind, kind->whole, kind->bolt, x);
-    tell_stretch(kind, kind->amplitude, kind->bolt_gap, x);
+    tell_whole(model, model->whole, model->bolt, x);
+    tell_stretch(model, model->amplitude, model->bolt_gap, x);
     for (int k = 0; k < MODES; k++)
-        energy += kind->bodies[k] * kind->amplitude[k] * kind->amplitude[k];
+        energy += model->bodies[k] * model->amplitude[k] * model->amplitude[k];
     for (int b = 0; b < (int)data.n_stretch; b++) {
-        const double stretch = stretched(kind, b, inputs, kind->amplitude), gap = kind->bolt_gap[b];
-        energy += kind->bolt * stretch * stretch - kind->bolt * gap * gap;
+        const double stretch = stretched(model, b, inputs, model->amplitude), gap = model->bolt_gap[b];
+        energy += model->bolt * stretch * stretch - model->bolt * gap * gap;
     }
-    x[SUM_LOOP_ENERGY] += 0.5 * energy / kind->area;
+    x[SUM_LOOP_ENERGY] += 0.5 * energy / model->area;
 }
 
 void whole_rates(Joint *joint, const double *inputs, const double *memory, const double *after, const double *seed)
 {
     if (!ELASTIC)
         return;
-    Kind *kind = &joint->kind;
+    JointModel *model = &joint->model;
     double r[MODES] = {0.0};
     for (int i = 0; i < (int)data.n_nodes; i++)
-        add_scaled(kind->area * data.nodes[i][SHARE] * kind->pressing[i], kind->opening[i], r);
+        add_scaled(model->area * data.nodes[i][SHARE] * model->pressing[i], model->opening[i], r);
     for (int j = 0; j < (int)data.n_patches; j++)
         for (int d = 0; d < 3; d++)
-            add_scaled(-kind->area * data.patches[j][SHARE] * kind->shears[j].traction[d], kind->patch[d][j], r);
+            add_scaled(-model->area * data.patches[j][SHARE] * model->shears[j].traction[d], model->patch[d][j], r);
     for (int b = 0; b < (int)data.n_stretch; b++)
-        add_scaled(-kind->bolt * (seat(b, seed) + bolt_gap_rate(kind, b, seat(b, seed))), kind->stretch[b], r);
+        add_scaled(-model->bolt * (seat(b, seed) + bolt_gap_rate(model, b, seat(b, seed))), model->stretch[b], r);
     exact(joint, inputs, memory, after);
-    dense_solve(kind->work.abreast.fours, &kind->factors, r);
-    memcpy(kind->amplitude_rate, r, sizeof r);
-    whole_deform(r, kind, kind->opened_rate, kind->bent_rate);
+    dense_solve(model->work.abreast.use_avx, &model->factors, r);
+    memcpy(model->amplitude_rate, r, sizeof r);
+    whole_deform(r, model, model->opened_rate, model->bent_rate);
 }
 
 void whole_sum_rates(const Joint *joint, const double *inputs, const double *seed, double *dx)
 {
     if (!ELASTIC)
         return;
-    const Kind *kind = &joint->kind;
+    const JointModel *model = &joint->model;
     double rates[MOTIONS], energy = 0.0;
     for (int d = 0; d < MOTIONS; d++) { /* the motion with what follows is stationary: only tangents change it */
-        const double *z = kind->end.follow[d];
+        const double *z = model->end.follow[d];
         double sum = 0.0;
         for (int i = 0; i < (int)data.n_nodes; i++) {
             const double normal[MOTIONS] = {0.0, 0.0, 1.0, data.nodes[i][PLACE_Y], -data.nodes[i][PLACE_X], 0.0};
-            const double u = normal[d] + dense_dot(kind->opening[i], z);
-            sum += data.nodes[i][SHARE] * kind->stiffening[i] * u * u;
+            const double u = normal[d] + dense_dot(model->opening[i], z);
+            sum += data.nodes[i][SHARE] * model->stiffening[i] * u * u;
         }
         for (int j = 0; j < (int)data.n_patches; j++) {
             const double along[MOTIONS] = {1.0, 0.0, 0.0, 0.0, 0.0, -data.patches[j][PLACE_Y]};
             const double across[MOTIONS] = {0.0, 1.0, 0.0, 0.0, 0.0, data.patches[j][PLACE_X]};
-            const double u = along[d] + dense_dot(kind->patch[0][j], z), v = across[d] + dense_dot(kind->patch[1][j], z);
-            const double *t = kind->shears[j].tangent;
-            const double w = (d == MOTIONS - 1 ? data.patches[j][RADIUS] : 0.0) + dense_dot(kind->patch[2][j], z);
+            const double u = along[d] + dense_dot(model->patch[0][j], z), v = across[d] + dense_dot(model->patch[1][j], z);
+            const double *t = model->shears[j].tangent;
+            const double w = (d == MOTIONS - 1 ? data.patches[j][RADIUS] : 0.0) + dense_dot(model->patch[2][j], z);
             sum += data.patches[j][SHARE] * (t[0] * u * u + t[2] * v * v + t[5] * w * w +
                                              2.0 * (t[1] * u * v + t[3] * u * w + t[4] * v * w));
         }
-        rates[d] = kind->area * sum;
+        rates[d] = model->area * sum;
     }
-    tell_whole(kind, rates, 0.0, dx);
-    double gap_rates[MOST_STRETCH];
+    tell_whole(model, rates, 0.0, dx);
+    double gap_rates[MAX_STRETCH];
     for (int b = 0; b < (int)data.n_stretch; b++)
-        gap_rates[b] = bolt_gap_rate(kind, b, stretched(kind, b, seed, kind->amplitude_rate));
-    tell_stretch(kind, kind->amplitude_rate, gap_rates, dx);
+        gap_rates[b] = bolt_gap_rate(model, b, stretched(model, b, seed, model->amplitude_rate));
+    tell_stretch(model, model->amplitude_rate, gap_rates, dx);
     for (int k = 0; k < MODES; k++)
-        energy += kind->bodies[k] * kind->amplitude[k] * kind->amplitude_rate[k];
+        energy += model->bodies[k] * model->amplitude[k] * model->amplitude_rate[k];
     for (int b = 0; b < (int)data.n_stretch; b++)
-        energy += kind->bolt * stretched(kind, b, inputs, kind->amplitude) *
-                      stretched(kind, b, seed, kind->amplitude_rate) -
-                  kind->bolt * kind->bolt_gap[b] * gap_rates[b];
-    dx[SUM_LOOP_ENERGY] += energy / kind->area;
+        energy += model->bolt * stretched(model, b, inputs, model->amplitude) *
+                      stretched(model, b, seed, model->amplitude_rate) -
+                  model->bolt * model->bolt_gap[b] * gap_rates[b];
+    dx[SUM_LOOP_ENERGY] += energy / model->area;
 }
 
 void whole_bolt_rates(const Joint *joint, const double *seed, double *result)
 {
     if (!ELASTIC)
         return;
-    const Kind *kind = &joint->kind;
+    const JointModel *model = &joint->model;
     for (int b = 0; b < (int)data.n_stretch; b++) {
-        const double rate = stretched(kind, b, seed, kind->amplitude_rate);
-        result[b] = kind->bolt_tightening[b] + kind->bolt * (rate + bolt_gap_rate(kind, b, rate));
+        const double rate = stretched(model, b, seed, model->amplitude_rate);
+        result[b] = model->bolt_tightening[b] + model->bolt * (rate + bolt_gap_rate(model, b, rate));
     }
 }
 
-END_OF_COLD
+END_OPTIMIZE_FOR_SIZE

@@ -17,15 +17,15 @@ static inline double apart_at(const double *point, const double *v)
 }
 
 /* The modes as numbers, once for a parameter set. */
-void whole_begin(Kind *kind);
+void whole_begin(JointModel *model);
 /* What amplitudes (n_modes) move: openings of points, shifts of patches. */
-void whole_deform(const double *amplitude, const Kind *kind, double *opened, double (*bent)[3]);
+void whole_deform(const double *amplitude, const JointModel *model, double *opened, double (*bent)[3]);
 /* Sums over what presses on the patches of values at the points. */
-void whole_pressed(const Kind *kind, const double *points, double *patches);
+void whole_pressed(const JointModel *model, const double *points, double *patches);
 /* Approaches of the patches under pressures of the points, at inputs and what the modes open or, NULL, tightened. */
 void whole_approach(const Joint *joint, const double *pressure, const double *inputs, double *approach);
 /* Amplitudes in equilibrium at the inputs, with the sums and the memory there; false: refused, with the reason. */
-bool whole_evaluate(Joint *joint, const double *inputs, const double *memory, double *after, double *x, Text *why);
+bool whole_evaluate(Joint *joint, const double *inputs, const double *memory, double *after, double *x, Text *reason);
 /* Sums that elastic sides change. */
 void whole_sums(Joint *joint, const double *inputs, double *x);
 /* Rates of the amplitudes along a seed, given those of pressures and tractions while they stay. */
@@ -36,9 +36,9 @@ void whole_bolt_rates(const Joint *joint, const double *seed, double *result);
 
 /* In bolted_joint.c: the joint at given amplitudes, its pressures and tractions alone, or pressures, and derivatives
  * of a patch's traction. */
-bool joint_forces(Joint *joint, const double *inputs, const double *memory, Text *why);
-bool joint_try(Joint *joint, const double *inputs, const double *memory, double *after, double *x, Text *why);
-bool joint_press(Joint *joint, const double *inputs, Text *why);
+bool joint_forces(Joint *joint, const double *inputs, const double *memory, Text *reason);
+bool joint_try(Joint *joint, const double *inputs, const double *memory, double *after, double *x, Text *reason);
+bool joint_press(Joint *joint, const double *inputs, Text *reason);
 Shear patch_rate(Joint *joint, int j, const double *inputs, const double *memory, const double *after, double rate,
                  const double shift[3]);
 /* The slopes of a patch from its tangents xx, xy, yy, xt, yt, tt. */

@@ -15,7 +15,7 @@ def _functions(g: Graph, model: Model) -> None:
     joint = g.joint
     f, approach, stiffness, area, elastic = symbols("x", 5)
     pressure = np.maximum(f, 0.0) / joint.A_0
-    g.add_with_seed("argument", "inputs -> pressure", [f], [pressure])
+    g.add_with_seed("curve_argument", "inputs -> pressure", [f], [pressure])
     x = [f, approach, stiffness]
     if isinstance(joint, spring.RoughGearContact):
         law_functions(g, joint, ("normal",), lambda spots, u: [])
@@ -25,7 +25,7 @@ def _functions(g: Graph, model: Model) -> None:
         x += [area, elastic]
     out = spring.contact_outputs(joint, f, approach, stiffness, area, elastic)
     add_closing(g)
-    doc = "inputs, approach, stiffness of the curve, areas where the law sums them over spots -> outputs"
+    doc = "inputs, approach, stiffness of the curve, areas if the law sums them over spots -> outputs"
     g.add_with_seed("outputs", doc, x, [out[o.name] for o in model.outputs])
 
 

@@ -16,14 +16,14 @@ def _functions(g: Graph, model: Model) -> None:
     law_functions(g, mesh, ("normal",), lambda spots, u: [])
     add_closing(g)
     flanks = symbols("flanks", 4)
-    doc = "approach of the flanks, pressure, its two derivatives -> deflection, load, K, dK/ds of a pair"
-    g.add("in_series", doc, flanks, spring.combine_in_series(mesh, *flanks))
+    doc = "approach, pressure, dp/dx, d2p/dx2 of the flanks -> deflection, load, K, dK/ds of a tooth pair"
+    g.add("combine_in_series", doc, flanks, spring.combine_in_series(mesh, *flanks))
     motion = [ca.SX.sym(v.name) for v in model.inputs]
     argument = np.abs(spring.deflection(mesh, motion))
-    g.add_with_seed("argument", "inputs -> argument of the curve", motion, [argument])
+    g.add_with_seed("curve_argument", "inputs -> argument of the curve", motion, [argument])
     closing, load, stiffness, energy = symbols("pair", 4)
     out = spring.mesh_outputs(mesh, motion, load, stiffness, energy, closing)
-    doc = "deflection at which the closing ends, inputs, load, K and energy of a pair -> outputs"
+    doc = "deflection at the end of the closing, inputs, load, K, energy of a tooth pair -> outputs"
     x = [closing, *motion, load, stiffness, energy]
     g.add_with_seed("outputs", doc, x, [out[o.name] for o in model.outputs], constant_count=1)
 

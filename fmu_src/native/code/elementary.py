@@ -30,22 +30,28 @@ def tables() -> str:
         macros = {
             "LOG_2": _first(log_2, 42),
             "LOG_2_LOW": float(log_2 - Decimal(_first(log_2, 42))),
-            "PLACES_PER_LOG_2": float(1 / per_place),
-            "LOG_2_PER_PLACE": _first(per_place, 42),
-            "LOG_2_PER_PLACE_LOW": float(per_place - Decimal(_first(per_place, 42))),
-            "ERF_PER_PLACE": float(_ERF_PER_PLACE),
-            "TURNS": float(1 / quarter),
+            "INTERVALS_PER_LOG_2": float(1 / per_place),
+            "LOG_2_PER_INTERVAL": _first(per_place, 42),
+            "LOG_2_PER_INTERVAL_LOW": float(per_place - Decimal(_first(per_place, 42))),
+            "ERF_NODES_PER_UNIT": float(_ERF_PER_PLACE),
+            "QUARTERS_PER_RADIAN": float(1 / quarter),
         }
         arrays = {
-            "QUARTER[4]": [[value] for value in _split_number(quarter)],
-            f"POWERS[{PLACES}][2]": [_pair((k * per_place).exp()) for k in range(PLACES)],
-            f"LOGS[{PLACES}][3]": list(_logs()),
-            f"EXPM1[{_N_EXPM1}]": [[1 / factorial(n + 2)] for n in range(_N_EXPM1)],
-            f"ERF[{_ERF_PER_PLACE * _ERF_END + 1}][{_N_ERF}]": list(_erf()),
-            f"SINE[{_N_WAVE}]": [[-((-1) ** n) / factorial(2 * n + 3)] for n in range(_N_WAVE)],
-            f"COSINE[{_N_WAVE}]": [[(-1) ** n / factorial(2 * n + 4)] for n in range(_N_WAVE)],
+            "QUARTER_TURN[4]": [[value] for value in _split_number(quarter)],
+            f"EXP_TABLE[{PLACES}][2]": [_pair((k * per_place).exp()) for k in range(PLACES)],
+            f"LOG_TABLE[{PLACES}][3]": list(_logs()),
+            f"EXPM1_SERIES[{_N_EXPM1}]": [[1 / factorial(n + 2)] for n in range(_N_EXPM1)],
+            f"ERF_TABLE[{_ERF_PER_PLACE * _ERF_END + 1}][{_N_ERF}]": list(_erf()),
+            f"SINE_SERIES[{_N_WAVE}]": [[-((-1) ** n) / factorial(2 * n + 3)] for n in range(_N_WAVE)],
+            f"COSINE_SERIES[{_N_WAVE}]": [[(-1) ** n / factorial(2 * n + 4)] for n in range(_N_WAVE)],
         }
-    counts = {"PLACES": PLACES, "LOG_BITS": LOG_BITS, "N_EXPM1": _N_EXPM1, "N_ERF": _N_ERF, "N_WAVE": _N_WAVE}
+    counts = {
+        "TABLE_INTERVALS": PLACES,
+        "LOG_BITS": LOG_BITS,
+        "N_EXPM1_TERMS": _N_EXPM1,
+        "N_ERF_TERMS": _N_ERF,
+        "N_SINE_TERMS": _N_WAVE,
+    }
     return "\n".join(
         [
             f"enum {{ {', '.join(f'{name} = {n}' for name, n in counts.items())} }};",

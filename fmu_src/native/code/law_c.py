@@ -15,7 +15,7 @@ from .emit import HELPERS, function
 
 _SHORT = 150
 """Largest number of lines of an inlined function [1]: functions evaluated in every step are short."""
-_SERIES = ("law_load", "law_table", "law_state")
+_SERIES = ("law_load", "law_totals", "law_state")
 """Name prefixes of functions that exist once for each regime of the contact law."""
 
 
@@ -38,15 +38,19 @@ def law_c(g: Graph, model: Model, native_part: NativePart) -> tuple[str, str]:
         else:
             bodies.append(text)
             prototypes.append(name)
-    bodies += [array(f"Law *const {name}[N_LAW_SWITCHES + 1]", rows) for name, rows in series.items()]
+    bodies += [
+        array(f"LawFunction *const {name}[N_LAW_RANGE_BOUNDS + 1]", rows) for name, rows in series.items()
+    ]
     definitions = shared_definitions(native_part.shared) | native_part.definitions(g, model)
     variables = [v.name for v in (*model.inputs, *model.outputs)]
-    warnings = [f"{{{variables.index(o.variable)}, {string(o.doc)}}}" for o in model.validity_limits]
+    validity_limits = [f"{{{variables.index(o.variable)}, {string(o.doc)}}}" for o in model.validity_limits]
     header = template(Path(__file__).with_name("law.h")).render(
         counts={**_counts(g, model, native_part, count), **definitions.counts},
         macros={name: number(value) for name, value in definitions.macros.items()},
         tabulated=native_part.tabulated,
-        warnings=array("static const Warning warnings[N_WARNINGS]", warnings),
+        validity_limits=array(
+            "static const ValidityLimit validity_limits[N_VALIDITY_LIMITS]", validity_limits
+        ),
         arrays=definitions.arrays,
         prototypes=prototypes,
         series=series,
@@ -80,16 +84,16 @@ def _counts(g: Graph, model: Model, native_part: NativePart, count: Mapping[str,
     sizes = {"N_CONSTANTS": len(g.theta) + len(g.constants)}
     if not native_part.tabulated:
         return sizes
-    sizes |= {"N_LIMITS": len(g.limits), "N_WARNINGS": len(model.validity_limits)}
-    if "law_head" in count:
+    sizes |= {"N_PARAMETER_LIMITS": len(g.limits), "N_VALIDITY_LIMITS": len(model.validity_limits)}
+    if "law_distribution" in count:
         sizes |= {
-            "N_LAW_HEAD": count["law_head"],
-            "N_LAW_ENDS": count["law_ends"],
-            "N_LAW_SWITCHES": count["law_switches"],
-            "N_LAW_TABLE": count["law_table_0"],
+            "N_LAW_DISTRIBUTION": count["law_distribution"],
+            "N_LAW_REGIME_ENDS": count["law_regime_ends"],
+            "N_LAW_RANGE_BOUNDS": count["law_range_bounds"],
+            "N_LAW_TOTALS": count["law_totals_0"],
             "N_LAW_STATE": count.get("law_state_0", 0) // 3,
         }
-    return sizes | {f"AT_{name.upper()}": place for name, place in native_part.memory.offsets.items()}
+    return sizes | {f"HISTORY_{name.upper()}": offset for name, offset in native_part.memory.offsets.items()}
 
 
 def _limits(g: Graph) -> str:
@@ -99,4 +103,4 @@ def _limits(g: Graph) -> str:
         f"{{{index[m.name]}, {int(m.interval.low_open)}, {int(m.interval.high_open)}, {string(m.doc)}}}"
         for m in g.limits
     ]
-    return array(f"const Limit limits[{max(len(rows), 1)}]", rows or ['{0, 0, 0, ""}'])
+    return array(f"const ParameterLimit limited_parameters[{max(len(rows), 1)}]", rows or ['{0, 0, 0, ""}'])

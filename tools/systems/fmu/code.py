@@ -14,7 +14,7 @@ from .model import SystemComponent, SystemModel
 _COMMON = runtime(("elementary",))
 _LAYERS = {path.stem for path in _COMMON} - {"joint", "variables"} | {"elementary_tables"}
 """Stems of files that all components share."""
-_FUNCTIONS = ("size", "tabulate", "evaluate", "derivative", "outside", "warning")
+_FUNCTIONS = ("size", "tabulate", "evaluate", "derivative", "find_warnings", "describe_warning")
 _DEFINITION = re.compile(
     r"^(?!static|typedef|extern|enum|return|else)[A-Za-z_][\w *]*?\b(\w+)(?:\[.*)?(?:\(| = \{)", re.M
 )
@@ -81,11 +81,13 @@ def _header(assembly: SystemModel) -> str:
         "N_OUTPUTS": len(assembly.outputs),
         "N_PARAMETERS": sum(len(p.exposed) for p in assembly.components),
         "N_COMPONENTS": len(assembly.components),
-        "N_WIRES": wires,
-        "N_ROWS": wires + len(assembly.components),
+        "N_CONNECTIONS": wires,
+        "N_COMPONENT_VALUES": wires + len(assembly.components),
     }
-    definitions = {"N_STATES": 2 * len(assembly.bodies), "MOVES": 1, "IMPLICIT": 1}
-    definitions |= {name: value for name, value in (("N_EVENTS", events), ("N_MEMORY", memory)) if value}
+    definitions = {"N_STATES": 2 * len(assembly.bodies), "IS_TIME_DEPENDENT": 1, "HAS_IMPLICIT_STEP": 1}
+    definitions |= {
+        name: value for name, value in (("N_TIME_EVENTS", events), ("N_HISTORY", memory)) if value
+    }
     macros = "".join(f"#define {name} {value}\n" for name, value in definitions.items())
     enumerators = ", ".join(f"{name} = {value}" for name, value in counts.items())
     body = f"{macros}\nenum {{ {enumerators} }};"
@@ -117,9 +119,9 @@ def _components(assembly: SystemModel, prefixes: Mapping[str, str]) -> str:
         wires += [str(reference[f"{component.name}.{v.name}"]) for v in model.outputs]
         events = _event_count(component)
         if events:
-            declared.append(f"void {prefix}joint_events(Joint *joint, double *times);\n")
+            declared.append(f"void {prefix}joint_event_times(Joint *joint, double *times);\n")
         functions = [f"{prefix}joint_{name}" for name in _FUNCTIONS]
-        functions.append(f"{prefix}joint_events" if events else "NULL")
+        functions.append(f"{prefix}joint_event_times" if events else "NULL")
         counts = [len(model.inputs), len(model.outputs), model.state_count, events, *offset.values()]
         rows.append("{" + ", ".join([string(component.name), *functions, *map(str, counts)]) + "}")
         inputs, outputs = len(model.inputs), len(model.outputs)
@@ -137,7 +139,7 @@ def _components(assembly: SystemModel, prefixes: Mapping[str, str]) -> str:
         '#include "system.h"\n\n'
         + "".join(dict.fromkeys(declared))
         + "\n"
-        + array("const unsigned short wires[N_WIRES]", wires)
+        + array("const unsigned short connections[N_CONNECTIONS]", wires)
         + "\n"
         + array("const Component components[N_COMPONENTS]", rows)
     )
